@@ -1,0 +1,22 @@
+# One INTERFACE target carries the flags that every target of the project shares; nothing is set globally.
+add_library(haptel_flags INTERFACE)
+target_compile_features(haptel_flags INTERFACE cxx_std_20)
+target_include_directories(haptel_flags INTERFACE ${PROJECT_SOURCE_DIR})
+target_compile_options(haptel_flags INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror=switch -Werror=return-type
+    # The height beside a gradient must equal the height alone, and a replay the recording, bit for bit:
+    # the compiler may not fuse a*b+c where it likes.
+    -ffp-contract=off)
+if(HAPTEL_WERROR)
+    target_compile_options(haptel_flags INTERFACE -Werror)
+endif()
+if(HAPTEL_SANITIZE)
+    target_compile_options(haptel_flags INTERFACE -fsanitize=${HAPTEL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+    target_link_options(haptel_flags INTERFACE -fsanitize=${HAPTEL_SANITIZE})
+endif()
+
+# haptel_library(name SOURCES... ) makes the static library of one folder.
+function(haptel_library name)
+    add_library(${name} STATIC ${ARGN})
+    target_link_libraries(${name} PUBLIC haptel_flags)
+endfunction()

@@ -1,0 +1,110 @@
+/* What a compiled texture looks like: the only contract between the compiler, precompiled libraries and the runtime.
+ *
+ * C99 and self-contained, so that JIT code, ahead-of-time libraries and hand-written C or lambdas are textures of equal
+ * rank. Everything is SI and in object space. An entry point never returns NaN or infinity: what could not be computed
+ * is 0 and raises a bit in `faults`. Entries are pure: same point, same block, same bits; they touch nothing but
+ * *sample.
+ */
+#ifndef HAPTEL_LANG_ABI_H
+#define HAPTEL_LANG_ABI_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { HAPTEL_ABI_VERSION = 1 };
+
+/* Bits of haptel_texture::reads: inputs that the entries use. An input whose bit is clear need not be filled. */
+enum {
+    HAPTEL_READS_POINT = 1u << 0,    /* p */
+    HAPTEL_READS_NORMAL = 1u << 1,   /* n, and n_dp for the gradient */
+    HAPTEL_READS_UV = 1u << 2,       /* uv, and uv_dp for the gradient */
+    HAPTEL_READS_TIME = 1u << 3,     /* time_s; excludes a conservative force field */
+    HAPTEL_READS_CENTER = 1u << 4,   /* center in the block */
+    HAPTEL_READS_EXTENT = 1u << 5,   /* extent in the block */
+    HAPTEL_READS_FOOTPRINT = 1u << 6 /* footprint_m in the block */
+};
+
+/* Bits of haptel_texture::writes: outputs beyond height and gradient. */
+enum { HAPTEL_WRITES_STIFFNESS_SCALE = 1u << 0, HAPTEL_WRITES_FRICTION_SCALE = 1u << 1 };
+
+/* Bits of haptel_sample::faults. */
+enum {
+    HAPTEL_FAULT_HEIGHT_NOT_FINITE = 1u << 0,   /* height and gradient were set to 0 */
+    HAPTEL_FAULT_GRADIENT_NOT_FINITE = 1u << 1, /* gradient was set to 0 */
+    HAPTEL_FAULT_OUTPUT_NOT_FINITE = 1u << 2    /* a material output was set to 1 */
+};
+
+/* haptel_parameter::type */
+enum {
+    HAPTEL_FLOAT = 0, /* double in the block */
+    HAPTEL_INT = 1,   /* int32_t */
+    HAPTEL_UINT = 2,  /* uint32_t */
+    HAPTEL_BOOL = 3   /* int32_t, 0 or 1 */
+};
+
+/* haptel_facts::continuity */
+enum { HAPTEL_CONTINUITY_UNKNOWN = 0, HAPTEL_CONTINUITY_JUMP = 1, HAPTEL_CONTINUITY_C0 = 2, HAPTEL_CONTINUITY_C1 = 3 };
+
+/* Where the surface is touched. Jacobians are with respect to p on the facet: n_dp[i][j] = dn_i/dp_j, uv_dp likewise.
+ */
+typedef struct {
+    double p[3];        /* metres */
+    double n[3];        /* unit shading normal */
+    double uv[2];       /* mesh coordinates, no unit */
+    double time_s;      /* since the start of the exploration */
+    double n_dp[3][3];  /* 1/m, filled only where `reads` says so */
+    double uv_dp[2][3]; /* 1/m, likewise */
+} haptel_point;
+
+typedef struct {
+    double height_m;        /* along the outward normal of the base surface */
+    double gradient[3];     /* dh/dp, metres per metre; not yet projected to the surface */
+    double stiffness_scale; /* 1 unless the texture says otherwise */
+    double friction_scale;  /* 1 unless the texture says otherwise */
+    uint32_t faults;
+} haptel_sample;
+
+/* Proven bounds over a box and a set of parameter values. Infinity: unbounded or not found. */
+typedef struct {
+    double height_min_m, height_max_m;
+    double slope_max;           /* sup of the Euclidean norm of the gradient */
+    double curvature_max_per_m; /* Lipschitz constant of the gradient */
+    uint32_t continuity;
+    uint32_t operations_max; /* worst case per call; 0: not counted */
+} haptel_facts;
+
+typedef struct {
+    const char *name, *unit, *doc;
+    uint32_t type, offset;          /* offset in bytes from the start of the block */
+    double value, minimum, maximum; /* SI; the default and the range a slider may use */
+} haptel_parameter;
+
+/* Every block starts with this; parameters follow at their offsets. */
+typedef struct {
+    double center[3];   /* of the object's bounding box, metres */
+    double extent[3];   /* its sides, metres */
+    double footprint_m; /* smallest wavelength worth rendering; 0: everything */
+} haptel_block_head;
+
+typedef void haptel_entry(const haptel_point*, const void* block, haptel_sample*);
+
+/* `size` is sizeof(haptel_texture) of the writer: entries appended later are absent where it is smaller. */
+typedef struct {
+    uint32_t abi, size;
+    uint32_t reads, writes;
+    uint32_t block_size, parameter_count;
+    const char* name;
+    const haptel_parameter* parameters;
+    haptel_facts facts;            /* over the parameters' ranges and any point; a binding carries sharper ones */
+    haptel_entry* height;          /* height_m and faults only; 0: not compiled */
+    haptel_entry* height_gradient; /* the same height, bit for bit, and the gradient; 0: not compiled */
+} haptel_texture;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

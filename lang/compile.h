@@ -1,0 +1,42 @@
+// Front door of the language: text to checked, differentiated, verified IR, and everything there is to say about the
+// text.
+//
+// Performs no I/O: the standard library's text comes as an argument and imports through a callback. Never throws,
+// prints, recurses without bound or loops without end, whatever the bytes.
+#pragma once
+
+#include "lang/diagnostic.h"
+#include "lang/ir/ir.h"
+#include "lang/source.h"
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+namespace haptel::lang {
+
+// Text of an imported file, or nothing if there is none. `path` as written, `importer` the name of the file that asks.
+using ImportLoader = std::function<std::optional<SourceFile>(std::string_view path, std::string_view importer)>;
+
+struct CompileOptions {
+    std::vector<SourceFile> library; // visible everywhere without import; normally stdlib's
+    ImportLoader load_import;        // empty: imports are errors
+    std::string_view only_texture;   // compile entries of this texture alone; empty: of all in the main file
+};
+
+struct Program {
+    SourceSet sources;
+    ir::Module module; // verified; textures of the main file only, in source order
+};
+
+struct CompileResult {
+    std::shared_ptr<const Program> program; // null if there was an error
+    Diagnostics diagnostics;                // sorted by place
+    SourceSet sources;                      // for rendering; also of a program that failed
+    std::vector<std::string> files;         // main file, then imports: what a watcher must watch
+};
+
+CompileResult compile(SourceFile main, const CompileOptions& options);
+
+} // namespace haptel::lang

@@ -1,0 +1,185 @@
+// The middle of the compiler: structured SSA over scalars, in functions.
+//
+// There are no vectors (split on lowering), no branches (only `if` and `for` regions that yield values), no memory and
+// no side effects; every program ends. What is here is what every evaluator must understand: interpreter, intervals,
+// differentiation, LLVM, later C and GLSL. Text form: print.h; invariants: verify.h; construction: builder.h.
+#pragma once
+
+#include "lang/source.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace haptel::ir {
+
+using lang::Span;
+
+enum class Type : uint8_t { real, i32, u32, boolean };
+
+enum class Op : uint8_t {
+#define OP(name, ...) name,
+#include "lang/ir/ops.def"
+#undef OP
+};
+
+// Index of a value in its function; dense. Values are made by instructions, by function parameters and by block
+// parameters.
+struct Value {
+    uint32_t index = UINT32_MAX;
+    bool operator==(const Value&) const = default;
+};
+
+// What a texture's entry may read of the point and of the block's head. Scalars, in the order of haptel_point and
+// haptel_block_head; only entry functions hold `input` and `parameter` instructions: other functions get values passed.
+enum class Input : uint8_t {
+    p_x,
+    p_y,
+    p_z,
+    n_x,
+    n_y,
+    n_z,
+    uv_x,
+    uv_y,
+    time,
+    n_dp_00,
+    n_dp_01,
+    n_dp_02,
+    n_dp_10,
+    n_dp_11,
+    n_dp_12,
+    n_dp_20,
+    n_dp_21,
+    n_dp_22, // n_dp[i][j] = dn_i/dp_j
+    uv_dp_00,
+    uv_dp_01,
+    uv_dp_02,
+    uv_dp_10,
+    uv_dp_11,
+    uv_dp_12,
+    center_x,
+    center_y,
+    center_z,
+    extent_x,
+    extent_y,
+    extent_z,
+    footprint,
+};
+constexpr uint32_t input_count = static_cast<uint32_t>(Input::footprint) + 1;
+
+struct Block;
+
+// The kinds of instruction. `Operation` covers all of ops.def; the others give the program its structure.
+struct Operation {
+    Op op;
+};
+struct RealConstant {
+    double value;
+}; // any bits, NaN and -0 included
+struct IntConstant {
+    uint32_t bits;
+}; // i32 or u32, by the result's type
+struct BoolConstant {
+    bool value;
+};
+struct ReadInput {
+    Input input;
+}; // entry functions only
+struct ReadParameter {
+    uint32_t parameter;
+}; // index into Texture::parameters; entry functions only
+struct ReadTable {
+    uint32_t table;
+}; // operand 0: i32 index, which the front end has clamped or proven in range
+struct Call {
+    uint32_t function;
+}; // operands: arguments; results: the callee's results
+// operand 0: condition. Blocks: then, else; both yield one value per result.
+struct If {
+    std::vector<Block> arms;
+};
+// operand 0: i32 trip count (below 0 counts as 0; above `trip_max` cannot be, `verify` insists that it is a proven
+// bound or clamped); operands 1..n: initial carried values. Block parameters: i32 iteration from 0, then the carried
+// values; it yields the next carried values. Results: the carried values after the last iteration.
+struct For {
+    uint32_t trip_max;
+    std::vector<Block> body; /* exactly one */
+};
+
+using Kind = std::variant<Operation, RealConstant, IntConstant, BoolConstant, ReadInput, ReadParameter, ReadTable, Call,
+                          If, For>;
+
+struct Instruction {
+    Kind kind;
+    std::vector<Value> operands;
+    std::vector<Value> results; // one, except for Call, If and For
+    Span span;                  // innermost user code, for cost and diagnostics
+};
+
+struct Block {
+    std::vector<Value> parameters;
+    std::vector<Instruction> instructions;
+    std::vector<Value> yields; // of a function body: the function's results
+};
+
+// Proven or declared properties of a function's first result; norms with respect to its first non-function argument,
+// all other arguments within their ranges. Absent: unknown.
+struct Facts {
+    std::optional<double> value_minimum, value_maximum;
+    std::optional<double> slope, curvature;
+    std::optional<uint32_t> continuity; // HAPTEL_CONTINUITY_*
+    bool proven = false;                // the standard library's; others print as `declared`
+};
+
+struct Function {
+    std::string name; // unique in its module; readable: "fbm(vec3,int)", "fbm<perlin>(...)", "d noise"
+    std::vector<Value> parameters;
+    uint32_t first_argument_size = 0; // number of leading parameters that make up the first non-function argument
+    std::vector<Type> value_types;    // by Value::index
+    Block body;
+    Facts facts;
+    Type type(Value value) const { return value_types[value.index]; }
+};
+
+// Constant table. Cells of int and uint tables are stored as their bits.
+struct Table {
+    std::string name;
+    Type element = Type::real;
+    std::vector<double> reals;
+    std::vector<uint32_t> words;
+    uint32_t size() const { return static_cast<uint32_t>(element == Type::real ? reals.size() : words.size()); }
+};
+
+// A parameter as the block holds it. Numbers are SI; `offset` in bytes from the start of the block.
+struct Parameter {
+    std::string name, unit, doc;
+    Type type = Type::real;
+    double value = 0, minimum = 0, maximum = 0; // minimum == -inf, maximum == +inf where the author gave no range
+    uint32_t offset = 0;
+    Span span;
+};
+
+// A texture and its entry functions. An entry has no parameters; it reads inputs and block.
+//   height:           results (height_m: real, faults: u32)
+//   height_gradient:  results (height_m, gx, gy, gz: real, faults: u32), height bit-equal to that of `height`
+// Both test their results: no entry returns a value that is not finite (see HAPTEL_FAULT_*).
+struct Texture {
+    std::string name, doc;
+    std::vector<Parameter> parameters;
+    uint32_t block_size = 0;
+    uint32_t reads = 0, writes = 0; // HAPTEL_READS_*, HAPTEL_WRITES_*
+    uint32_t body = UINT32_MAX;     // entry function with one real result: the height as written, before the tests
+    uint32_t height = UINT32_MAX;
+    uint32_t height_gradient = UINT32_MAX;
+    Span span;
+};
+
+struct Module {
+    std::vector<Function> functions; // callees before callers: a call refers to a smaller index
+    std::vector<Table> tables;
+    std::vector<Texture> textures;
+};
+
+} // namespace haptel::ir

@@ -1,0 +1,21 @@
+// Small independent check of final IR: what a servo may rely on, whoever made the program.
+#pragma once
+
+#include "lang/ir/ir.h"
+
+#include <cstdint>
+#include <string>
+
+namespace haptel::ir {
+
+constexpr uint64_t operations_limit = 10'000'000; // worst case of one call of an entry
+
+// Empty if all is well, else the first thing that is not: types, arity, dominance, calls that go forward (recursion),
+// table indices neither constant nor clamped, trip counts that may exceed trip_max, input reads outside entries,
+// worst-case cost.
+std::string verify(const Module& module);
+
+// Worst-case count of operations of one call of `function`, callees included; saturates.
+uint64_t operations_max(const Module& module, uint32_t function);
+
+} // namespace haptel::ir

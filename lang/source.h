@@ -1,0 +1,50 @@
+// File text and places in it. Spans are bytes inside one file; lines and columns are made only when something is
+// printed.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace haptel::lang {
+
+// Half-open byte range [begin, end) of file `file` (index into SourceSet).
+struct Span {
+    uint32_t file = 0, begin = 0, end = 0;
+};
+
+inline Span join(Span a, Span b)
+{
+    return {a.file, a.begin < b.begin ? a.begin : b.begin, a.end > b.end ? a.end : b.end};
+}
+
+// 1-based; columns count code points (an invalid byte counts as one).
+struct Position {
+    uint32_t line = 1, column = 1;
+};
+
+struct SourceFile {
+    std::string name; // as shown in messages
+    std::string text; // any bytes; need not be UTF-8
+};
+
+// The files of one compilation. Indices are stable.
+class SourceSet {
+public:
+    uint32_t add(SourceFile file);
+    const SourceFile& file(uint32_t index) const { return entries[index].file; }
+    uint32_t size() const { return static_cast<uint32_t>(entries.size()); }
+    std::string_view text(Span span) const;
+    Position position(uint32_t file, uint32_t byte) const;
+    std::string_view line(uint32_t file, uint32_t line_number) const; // without its line end
+
+private:
+    struct Entry {
+        SourceFile file;
+        std::vector<uint32_t> line_starts;
+    };
+    std::vector<Entry> entries;
+};
+
+} // namespace haptel::lang

@@ -1,0 +1,75 @@
+// The device as the servo loop sees it. The runtime owns this interface because it is its user; device/ implements it.
+// A simulated, a replayed and a USB device are drivers of equal rank.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace haptel::runtime {
+
+// Where the hand holds the probe: world frame, metres.
+struct DevicePose {
+    glm::dvec3 tip_m{0};  // haptic interface point
+    glm::dvec3 tail_m{0}; // other end of the stylus; equals tip_m for devices that report no orientation
+};
+
+struct DeviceInfo {
+    std::string name;                 // as given in the scene: "simulated:premium"
+    double force_max_n = 0;           // what the motors can hold for a moment
+    double stiffness_max_n_per_m = 0; // recommended at 1 kHz; 0: unknown
+    double workspace_radius_m = 0;    // 0: unbounded
+};
+
+enum class DeviceStatus : uint8_t {
+    ok,
+    finished,  // a replay at its end, a stroke that is over: stop without alarm
+    not_ready, // homing, connecting: no pose yet, force must be zero
+    disconnected,
+    fault,
+};
+
+// read and write are called once per tick by the servo thread only. They allocate, lock, throw and log nothing.
+class HapticDevice {
+public:
+    virtual ~HapticDevice() = default;
+    virtual const DeviceInfo& info() const = 0;
+    virtual DeviceStatus read(DevicePose& pose) noexcept = 0;
+    // Force (N) and torque about the tip (N m) on the hand, world frame, held until the next write.
+    virtual DeviceStatus write(const glm::dvec3& force_n, const glm::dvec3& torque_n_m) noexcept = 0;
+    // Zero force, motors off. Safe to call at any time, from the destructor too.
+    virtual void stop() noexcept = 0;
+};
+
+// The surface as a simulated hand looks for it: first hit of a line along -z.
+struct SurfaceHit {
+    glm::dvec3 point_m{0};
+    glm::dvec3 facet_normal{0, 0, 1};
+};
+
+// All that a driver may need to know of the scene it is opened for.
+struct DeviceRequest {
+    std::string name;   // "simulated:premium", "replay:FILE" (path resolved), "falcon"
+    std::string stroke; // "circles" | "scan" | "press" | "random"
+    double speed_m_per_s = 0.1;
+    double press_n = 1.0;
+    uint64_t seed = 1;
+    double rate_hz = 1000;
+    double stylus_length_m = 0;                    // 0: point probe
+    glm::dvec3 box_minimum_m{0}, box_maximum_m{0}; // of the object that the stroke explores, world frame
+    // First hit from +z at (x, y), or nothing. Allocates nothing; may be called from read().
+    std::function<std::optional<SurfaceHit>(double x_m, double y_m)> surface_below;
+};
+
+struct DeviceResult {
+    std::unique_ptr<HapticDevice> device; // null: see error
+    std::string error;
+};
+
+using DeviceFactory = std::function<DeviceResult(const DeviceRequest&)>;
+
+} // namespace haptel::runtime
