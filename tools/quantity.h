@@ -1,0 +1,33 @@
+// Numbers and lengths as people write them on the command line: "20mm", "0.2 m", "60um"; a bare number is metres.
+//
+// A length is the double nearest to the decimal value times its unit, as in the language: "0.2mm" and "0.0002" are the
+// same bits.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <glm/glm.hpp>
+
+#include <string>
+#include <string_view>
+
+namespace haptel::tools {
+
+// A value or, if `error` is not empty, why there is none: what was expected, what was found.
+template <typename T>
+struct Parsed {
+    T value{};
+    std::string error;
+    explicit operator bool() const { return error.empty(); }
+};
+
+Parsed<double> parse_number(std::string_view text);      // finite; nothing but a number
+Parsed<double> parse_length(std::string_view text);      // metres
+Parsed<glm::dvec3> parse_point(std::string_view text);   // "x,y,z", three lengths
+Parsed<glm::dvec3> parse_vector(std::string_view text);  // "x,y,z", three plain numbers
+Parsed<glm::dvec2> parse_vector2(std::string_view text); // "u,v"
+
+// An option that takes a length; its text is refused as misuse where it is none, or not above `more_than_m`.
+CLI::Option* add_length(CLI::App& app, const std::string& names, double& metres, const std::string& description,
+                        double more_than_m = 0.0);
+
+} // namespace haptel::tools

@@ -1,0 +1,44 @@
+#include "tools/terminal.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <unistd.h>
+
+namespace haptel::tools {
+
+bool stderr_is_terminal()
+{
+    return isatty(STDERR_FILENO) == 1;
+}
+
+bool stderr_has_color()
+{
+    const char* term = std::getenv("TERM");
+    const char* no_color = std::getenv("NO_COLOR");
+    return stderr_is_terminal() && !(no_color && *no_color) && !(term && std::string_view(term) == "dumb");
+}
+
+namespace {
+
+void say(std::string_view kind, const char* color, std::string_view text)
+{
+    if (stderr_has_color())
+        fmt::print(stderr, "haptel: \x1b[1;{}m{}:\x1b[0m {}\n", color, kind, text);
+    else
+        fmt::print(stderr, "haptel: {}: {}\n", kind, text);
+}
+
+} // namespace
+
+void say_error(std::string_view text)
+{
+    say("error", "31", text);
+}
+void say_warning(std::string_view text)
+{
+    say("warning", "33", text);
+}
+
+} // namespace haptel::tools
