@@ -5,6 +5,7 @@
 // bounded. A subtree that could not be parsed is an ErrorExpression or is left out; the diagnostics say why.
 #pragma once
 
+#include "lang/resolution.h"
 #include "lang/source.h"
 #include "lang/type.h"
 
@@ -84,6 +85,7 @@ struct BoolLiteral {
 };
 struct NameExpression {
     std::string name;
+    const Symbol* symbol = nullptr; // set by the checker; null: a function, or an error
 };
 struct Unary {
     UnaryOp op;
@@ -106,12 +108,14 @@ struct Conditional {
 struct CallExpression {
     Name callee;
     std::vector<ExpressionPtr> arguments;
+    CallTarget target = {}; // set by the checker
 };
 // grad(f)(args), grad(grad(f))(args): `order` counts the grads.
 struct GradCall {
     Name function;
     uint32_t order = 1;
     std::vector<ExpressionPtr> arguments;
+    CallTarget target = {}; // set by the checker
 };
 struct Member {
     ExpressionPtr object;
@@ -136,7 +140,8 @@ struct Declaration { // one name; "float a = 1, b;" makes two in a row
     bool is_const = false;
     TypeName type;
     Name name;
-    ExpressionPtr initializer; // may be null
+    ExpressionPtr initializer;      // may be null
+    const Symbol* symbol = nullptr; // set by the checker
 };
 struct Assignment { // target: name, swizzle or index of one. "++i;" and "i++;" are "i += 1".
     ExpressionPtr target;
@@ -163,7 +168,8 @@ struct For {
     ExpressionPtr condition;
     StatementPtr step;
     StatementPtr body;
-}; // parts may be null
+    LoopPlan plan = {}; // set by the checker
+};                      // parts may be null
 struct Break {};
 struct Return {
     ExpressionPtr value;
