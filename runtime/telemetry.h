@@ -1,0 +1,76 @@
+// What the servo tells the rest of the program: one record per tick through a ring that never makes it wait.
+//
+// One servo writes, one reader reads; when the reader is too slow, records are dropped and counted, never waited for.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <atomic>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace haptel::runtime {
+
+// One tick as it was felt. World frame, SI.
+struct TickRecord {
+    uint64_t tick = 0;
+    double time_s = 0; // tick times the period, whatever the wall clock says
+    glm::dvec3 tip_m{0}, tail_m{0};
+    glm::dvec3 force_n{0};   // as sent to the device, after all limits
+    uint32_t contact = 0;    // number of objects touched
+    double depth_m = 0;      // below the base surface, of the deepest object touched
+    double height_m = 0;     // of its texture, as published (not shifted to the envelope)
+    uint64_t compute_ns = 0; // pose in hand to force computed
+    uint64_t binding = 0;    // serial of the texture that is felt, or that is being faded in
+    uint32_t faults = 0;     // bits of TickFault
+};
+
+// Lock-free ring of one writer and one reader.
+template <typename Record>
+class SpscRing {
+public:
+    explicit SpscRing(std::size_t capacity) : slots_(std::bit_ceil(capacity)), mask_(slots_.size() - 1) {}
+
+    // Writer only. False: full, and the record is counted as dropped.
+    bool push(const Record& record) noexcept
+    {
+        const uint64_t head = head_.load(std::memory_order_relaxed);
+        if (head - tail_.load(std::memory_order_acquire) == slots_.size()) {
+            dropped_.fetch_add(1, std::memory_order_relaxed);
+            return false;
+        }
+        slots_[head & mask_] = record;
+        head_.store(head + 1, std::memory_order_release);
+        return true;
+    }
+
+    // Reader only. False: nothing there.
+    bool pop(Record& record) noexcept
+    {
+        const uint64_t tail = tail_.load(std::memory_order_relaxed);
+        if (tail == head_.load(std::memory_order_acquire)) return false;
+        record = slots_[tail & mask_];
+        tail_.store(tail + 1, std::memory_order_release);
+        return true;
+    }
+
+    bool full() const noexcept
+    {
+        return head_.load(std::memory_order_relaxed) - tail_.load(std::memory_order_acquire) == slots_.size();
+    }
+    std::size_t capacity() const noexcept { return slots_.size(); }
+    uint64_t dropped() const noexcept { return dropped_.load(std::memory_order_relaxed); }
+
+private:
+    std::vector<Record> slots_;
+    uint64_t mask_;
+    alignas(64) std::atomic<uint64_t> head_{0};
+    alignas(64) std::atomic<uint64_t> tail_{0};
+    std::atomic<uint64_t> dropped_{0};
+};
+
+using Telemetry = SpscRing<TickRecord>;
+
+} // namespace haptel::runtime

@@ -1,0 +1,75 @@
+// Textures made of C++ functions, so that the runtime is tested without a compiler.
+#pragma once
+
+#include "lang/texture_binding.h"
+
+#include <glm/glm.hpp>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+
+namespace haptel::tests {
+
+// Height in metres at a point of object space; writes the gradient.
+using HeightFunction = std::function<double(const haptel_point&, glm::dvec3& gradient)>;
+
+inline constexpr uint32_t reads_everything =
+    HAPTEL_READS_POINT | HAPTEL_READS_NORMAL | HAPTEL_READS_UV | HAPTEL_READS_TIME;
+
+// A binding of the function, whose height is promised to stay within [minimum, maximum].
+inline TextureBinding lambda_texture(HeightFunction function, double minimum_m, double maximum_m,
+                                     uint32_t reads = reads_everything)
+{
+    struct Block {
+        haptel_block_head head = {};
+        const HeightFunction* function = nullptr;
+    };
+    struct Owner {
+        HeightFunction function;
+        Block block;
+        haptel_texture texture = {};
+    };
+    auto owner = std::make_shared<Owner>();
+    owner->function = std::move(function);
+    owner->block.function = &owner->function;
+    owner->texture.abi = HAPTEL_ABI_VERSION;
+    owner->texture.size = sizeof(haptel_texture);
+    owner->texture.reads = reads;
+    owner->texture.block_size = sizeof(Block);
+    owner->texture.name = "lambda";
+    owner->texture.height_gradient = [](const haptel_point* point, const void* block, haptel_sample* sample) {
+        glm::dvec3 gradient(0);
+        sample->height_m = (*static_cast<const Block*>(block)->function)(*point, gradient);
+        for (int i = 0; i < 3; ++i) sample->gradient[i] = gradient[i];
+        sample->stiffness_scale = sample->friction_scale = 1;
+        sample->faults = 0;
+    };
+
+    TextureBinding binding;
+    binding.texture = &owner->texture;
+    binding.block = &owner->block;
+    binding.facts.height_min_m = minimum_m;
+    binding.facts.height_max_m = maximum_m;
+    binding.owner = std::move(owner);
+    return binding;
+}
+
+inline TextureBinding flat_texture(double height_m)
+{
+    return lambda_texture([height_m](const haptel_point&, glm::dvec3&) { return height_m; }, height_m, height_m);
+}
+
+// A sin(2 pi x / wavelength), along x.
+inline TextureBinding sine_texture(double amplitude_m, double wavelength_m)
+{
+    const double w = 2 * 3.14159265358979323846 / wavelength_m;
+    return lambda_texture(
+        [amplitude_m, w](const haptel_point& at, glm::dvec3& gradient) {
+            gradient.x = amplitude_m * w * std::cos(w * at.p[0]);
+            return amplitude_m * std::sin(w * at.p[0]);
+        },
+        -amplitude_m, amplitude_m);
+}
+
+} // namespace haptel::tests
