@@ -1,0 +1,120 @@
+// Contact of a probe with one surface: the proxy, a point that stays on the free side of the surface, as near to the
+// hand as it can slide.
+//
+// The proxy is (position, feature, side). In free space it is the hand, and each move is swept against the object: its
+// box, then the boxes of its triangles, then triangles, all decided exactly. On the surface it walks by steepest
+// descent of its distance to the hand, from feature to feature by the links of surface.h: a cost that does not depend
+// on the size of the mesh, no wedging in creases, and no query. It lifts off only when the hand lies on the free side
+// of the nearest feature around it. Which side it is on is a stored bit, not a distance, so that no tolerance can lose
+// it.
+//
+// One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
+// sequence of poses. Everything is in the object's space, metres: transform the hand into it first.
+//
+// Known limits: where faces pierce each other without sharing edges the proxy slides along one or two of the sheets at
+// a time and may need several ticks to settle; at a vertex where separate fans touch in one point only the fan being
+// walked on is seen.
+#pragma once
+
+#include "runtime/surface.h"
+
+#include <cstdint>
+#include <memory>
+
+namespace haptel::runtime {
+
+// Coulomb friction coefficients, no unit; negative or not finite counts as 0, dynamic is held at most static.
+struct Friction {
+    double static_coefficient = 0, dynamic_coefficient = 0;
+};
+
+// Where and how the probe touches after a tick. If !touching, proxy_m is the hand and the rest is meaningless.
+struct Contact {
+    bool touching = false;
+    bool sliding = false;        // friction: the proxy moved this tick and dynamic friction holds
+    bool hand_held = false;      // the pose was not finite: the last good one was used
+    bool hand_clamped = false;   // the hand was farther than four half extents from the object's centre
+    bool shaft_crosses = false;  // stylus only: the shaft passes through the surface while the tip does not press
+    uint32_t face = 0, side = 0; // the face under the proxy and the side touched; 0: front
+    glm::dvec3 proxy_m{0};
+    glm::dvec3 hand_m{0};             // the tip as used: held, clamped, rounded to the lattice
+    glm::dvec3 barycentric{1, 0, 0};  // of the proxy in its face, each >= 0, sum 1
+    glm::dvec3 facet_normal{0, 0, 1}; // of the face, unit, toward the free side
+    // Unit, toward the free side: the facet's on a face, between those of the faces that meet on an edge or a vertex.
+    glm::dvec3 normal{0, 0, 1};
+    double depth_m = 0;  // >= 0: how deep the hand is below the proxy along `normal`
+    glm::dvec3 lag_m{0}; // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
+};
+
+// Since construction or reset().
+struct ContactCounters {
+    uint64_t ticks = 0, touching_ticks = 0;
+    uint64_t skipped = 0;                        // free ticks that a known clearance spared a query
+    uint64_t sweeps = 0;                         // segments tested against the object
+    uint64_t object_boxes_missed = 0;            // of those, ended by the first stage: the object's box
+    uint64_t triangles_tested = 0;               // by the last stage: triangles whose box the tree delivered
+    uint64_t walk_steps = 0, walk_steps_max = 0; // over all ticks; in one tick
+    uint64_t walks_cut = 0;  // ticks that reached the step limit; the proxy is valid and goes on next tick
+    uint64_t hands_held = 0; // poses that were not finite
+};
+
+class PointContact {
+public:
+    explicit PointContact(std::shared_ptr<const Surface> surface);
+    ~PointContact();
+    PointContact(PointContact&&) noexcept;
+    PointContact& operator=(PointContact&&) noexcept;
+
+    // One tick. The first after construction or reset() puts the probe down where the hand is, wherever that is: a hand
+    // that starts inside a closed object is inside it, free, and feels the wall from within.
+    const Contact& update(const glm::dvec3& hand_m, const Friction& friction = {}) noexcept;
+    void reset() noexcept;
+
+    const Contact& contact() const noexcept { return contact_; }
+    const ContactCounters& counters() const noexcept { return counters_; }
+    const Surface& surface() const noexcept { return *surface_; }
+
+private:
+    friend class StylusContact;
+    friend class Walk;
+
+    enum class Where : uint8_t { nowhere, free, face, edge, vertex };
+
+    std::shared_ptr<const Surface> surface_;
+    Contact contact_;
+    ContactCounters counters_;
+    // The proxy, in lattice units. `index_` is the edge or corner of face_ that the proxy is on.
+    Where where_ = Where::nowhere;
+    uint32_t face_ = 0, side_ = 0, index_ = 0;
+    glm::dvec3 proxy_{0}, hand_{0};
+    bool sliding_ = false;
+    // A ball around clear_centre_ that holds no triangle's box, and the radius to try next.
+    glm::dvec3 clear_centre_{0};
+    double clear_radius_ = 0, clear_try_ = 0;
+};
+
+// The stylus of the paper: a segment from tail to tip. Its tip is tracked like a point probe; the first tick also looks
+// along the segment, so that a stylus put down with its tip inside and its tail outside touches where it entered.
+// A shaft that rests on the surface beside the tip is not yet held: it is seen (shaft_crosses) and gives no force.
+class StylusContact {
+public:
+    explicit StylusContact(std::shared_ptr<const Surface> surface);
+
+    const Contact& update(const glm::dvec3& tip_m, const glm::dvec3& tail_m, const Friction& friction = {}) noexcept;
+    void reset() noexcept { tip_.reset(); }
+
+    const Contact& contact() const noexcept { return tip_.contact(); }
+    const ContactCounters& counters() const noexcept { return tip_.counters(); }
+    const Surface& surface() const noexcept { return tip_.surface(); }
+
+private:
+    PointContact tip_;
+};
+
+// Torque (N m) about the grip of a force (N) that acts at a point.
+inline glm::dvec3 torque_about(const glm::dvec3& grip_m, const glm::dvec3& point_m, const glm::dvec3& force_n)
+{
+    return glm::cross(point_m - grip_m, force_n);
+}
+
+} // namespace haptel::runtime

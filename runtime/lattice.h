@@ -1,0 +1,30 @@
+// The integer lattice on which contact is decided.
+//
+// Rounded predicates leak: two faces that share an edge may both deny a path that crosses between them. Here every
+// vertex and every hand position is a lattice point, so that the sign of each orientation is exact in 128-bit integers
+// (predicates.h). Lattice coordinates are doubles that hold integers. The object's half extent is 2^39 to 2^40 units,
+// so one unit is below 2e-12 of it; vertices sit on every 64th point, so that a proxy rounded to the lattice is off by
+// far less than the smallest feature; the hand is clamped to 2^42 units (four half extents) from the centre.
+#pragma once
+
+#include <glm/glm.hpp>
+
+namespace haptel::runtime {
+
+struct Lattice {
+    static constexpr double extent = 1099511627776.0;        // 2^40: bound of vertex coordinates
+    static constexpr double workspace = 4.0 * extent - 64.0; // bound of probe coordinates
+    static constexpr double vertex_spacing = 64.0;
+
+    glm::dvec3 centre_m{0};
+    double unit_m = 1; // a power of two, so that scaling is exact
+
+    // The lattice whose vertices can hold the box. The box must be finite; a box without extent gets a unit of 1 m.
+    static Lattice around(const glm::dvec3& minimum_m, const glm::dvec3& maximum_m) noexcept;
+
+    glm::dvec3 snap(const glm::dvec3& point_m) const noexcept;        // nearest point, clamped to the workspace
+    glm::dvec3 snap_vertex(const glm::dvec3& point_m) const noexcept; // nearest point of the coarse lattice
+    glm::dvec3 metres(const glm::dvec3& units) const noexcept { return centre_m + units * unit_m; }
+};
+
+} // namespace haptel::runtime

@@ -1,0 +1,18 @@
+// A mesh as somebody else made it: a soup of triangles, not yet trusted. surface.h repairs it into what can be touched.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace haptel::runtime {
+
+struct Mesh {
+    std::vector<glm::dvec3> positions_m;            // object space
+    std::vector<std::array<uint32_t, 3>> triangles; // indices into positions_m, counter-clockwise seen from outside
+    std::vector<glm::dvec2> uv;                     // empty, or one per position; no unit
+};
+
+} // namespace haptel::runtime

@@ -1,0 +1,24 @@
+// The surface as it should feel between its vertices: interpolated normal and texture coordinates, with their
+// derivatives along the facet, which a texture that reads them needs for its gradient.
+#pragma once
+
+#include "runtime/surface.h"
+
+namespace haptel::runtime {
+
+// Force shading, equation (1) of the paper: vertex normals weighted by the areas of the opposite sub-triangles, which
+// are the barycentric coordinates, normalised (equation (2) needs a unit normal). The vertex normals are averages of
+// the facet normals around, weighted by their angles. Unit, toward `side`; the facet's normal where they cancel.
+glm::dvec3 shading_normal(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept;
+
+struct Shading {
+    glm::dvec3 normal{0, 0, 1};
+    double normal_dp[3][3] = {}; // 1/m: [i][j] = d normal_i / d p_j along the facet; 0 across it
+    glm::dvec2 uv{0};
+    double uv_dp[2][3] = {}; // 1/m, likewise; 0 without texture coordinates
+};
+
+// All of it at once. `normal` equals shading_normal bit for bit.
+Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept;
+
+} // namespace haptel::runtime
