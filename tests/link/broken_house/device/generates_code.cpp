@@ -1,0 +1,2 @@
+#include "jit/compile_texture.h"
+#include "runtime/haptic_device.h"

@@ -1,0 +1,3 @@
+#include "codegen.h"
+#include "runtime/servo_thread.h"
+#include <llvm/IR/IRBuilder.h>

@@ -1,0 +1,2 @@
+#include "lang/abi.h"
+#include "lang/compile.h"

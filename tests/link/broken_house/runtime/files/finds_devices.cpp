@@ -1,0 +1,2 @@
+#include "device/registry.h"
+#include <assimp/Importer.hpp>

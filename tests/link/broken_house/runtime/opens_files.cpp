@@ -1,0 +1,2 @@
+#include "runtime/files/scene_file.h"
+#  include <toml++/toml.h>

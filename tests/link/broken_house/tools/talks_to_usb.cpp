@@ -1,0 +1,3 @@
+#include <libusb-1.0/libusb.h>
+#include "runtime/scene.h"
+#include "jit/compile_texture.h"
