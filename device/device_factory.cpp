@@ -1,0 +1,145 @@
+#include "device/device_factory.h"
+
+#include "device/replay_device.h"
+#include "device/simulated_device.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <string_view>
+#include <utility>
+
+namespace haptel::device {
+
+namespace {
+
+using runtime::DeviceRequest;
+using runtime::DeviceResult;
+
+DeviceResult refused(std::string why)
+{
+    return {nullptr, std::move(why)};
+}
+
+// Levenshtein distance.
+std::size_t edits(std::string_view a, std::string_view b)
+{
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i + 1);
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t changed = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row[b.size()];
+}
+
+std::string unknown(std::string_view what, std::string_view name, const std::vector<std::string_view>& known)
+{
+    std::string message = fmt::format("unknown {} '{}'", what, name.substr(0, 64));
+    std::string_view nearest;
+    std::size_t distance = 3;
+    for (const std::string_view candidate : known)
+        if (const std::size_t d = edits(name.substr(0, 64), candidate); d < distance) nearest = candidate, distance = d;
+    if (!nearest.empty()) return message + fmt::format(": did you mean '{}'?", nearest);
+    return message + fmt::format(": there are {}", fmt::join(known, ", "));
+}
+
+template <typename Named>
+std::vector<std::string_view> names_of(const Named& all)
+{
+    std::vector<std::string_view> names;
+    for (const auto& one : all) names.push_back(one.name);
+    return names;
+}
+
+// The preset of that name, the first if no name is given, null if there is none.
+template <typename Presets>
+auto find_preset(const Presets& presets, std::string_view name)
+{
+    if (name.empty()) return &presets.front();
+    const auto found = std::find_if(presets.begin(), presets.end(), [&](auto& one) { return one.name == name; });
+    return found == presets.end() ? nullptr : &*found;
+}
+
+// What stands before and after the first colon.
+std::pair<std::string_view, std::string_view> split(std::string_view text)
+{
+    const auto colon = text.find(':');
+    return {text.substr(0, colon), colon == text.npos ? std::string_view() : text.substr(colon + 1)};
+}
+
+bool within(double value, double low, double high)
+{
+    return value >= low && value <= high;
+}
+
+DeviceResult open_simulated(std::string_view variant, const DeviceRequest& request)
+{
+    const auto [preset_name, hand_name] = split(variant);
+    const DevicePreset* preset = find_preset(device_presets(), preset_name);
+    if (!preset) return refused(unknown("simulated device", preset_name, names_of(device_presets())));
+    const HandPreset* holding = find_preset(hand_presets(), hand_name);
+    if (!holding) return refused(unknown("simulated hand", hand_name, names_of(hand_presets())));
+
+    if (!within(request.rate_hz, 1, 1e6)) return refused("a simulated device runs at 1 Hz to 1 MHz");
+    if (!within(request.speed_m_per_s, 0, 10)) return refused("the speed of a stroke is 0 to 10 m/s");
+    if (!within(request.press_n, 0, 100)) return refused("a simulated hand presses with 0 to 100 N");
+    if (!within(request.stylus_length_m, 0, 10)) return refused("a stylus is 0 to 10 m long");
+    if (!request.surface_below) return refused("a simulated hand needs a surface to explore");
+
+    const glm::dvec2 low(request.box_minimum_m), high(request.box_maximum_m);
+    const auto start = nearest_hit(request.surface_below, low, high);
+    if (!start) return refused("the simulated hand finds no surface when it looks down on the object from +z");
+    Curve curve =
+        make_curve(request.stroke, {low, high, glm::dvec2(start->point_m), request.speed_m_per_s, request.seed});
+    if (!curve) return refused(unknown("stroke", request.stroke, {stroke_names().begin(), stroke_names().end()}));
+
+    Hand hand(holding->impedance, Stroke(std::move(curve), request.surface_below, *start), request.press_n,
+              1 / request.rate_hz);
+    runtime::DeviceInfo info{request.name, preset->model.force_max_n, preset->model.stiffness_max_n_per_m, 0};
+    return {std::make_unique<SimulatedDevice>(std::move(info), preset->model, std::move(hand),
+                                              SimulatedDevice::Options{request.rate_hz, request.stylus_length_m}),
+            {}};
+}
+
+DeviceResult open_recording(std::string_view file, const DeviceRequest& request)
+{
+    if (file.empty()) return refused("replay needs a file: replay:trace.csv");
+    constexpr double unlimited = std::numeric_limits<double>::infinity();
+    return open_replay({request.name, unlimited, 0, 0}, file, request.rate_hz);
+}
+
+// One entry per driver.
+struct Driver {
+    std::string_view name;
+    DeviceResult (*open)(std::string_view variant, const DeviceRequest& request);
+};
+constexpr std::array<Driver, 2> drivers = {{{"simulated", open_simulated}, {"replay", open_recording}}};
+
+} // namespace
+
+DeviceResult open_device(const DeviceRequest& request)
+{
+    const auto [name, variant] = split(request.name);
+    for (const Driver& driver : drivers)
+        if (driver.name == name) return driver.open(variant, request);
+    return refused(unknown("device", name, names_of(drivers)));
+}
+
+std::vector<std::string> device_names()
+{
+    std::vector<std::string> names;
+    for (const DevicePreset& preset : device_presets()) names.push_back(fmt::format("simulated:{}", preset.name));
+    names.push_back("replay:FILE");
+    return names;
+}
+
+} // namespace haptel::device

@@ -1,0 +1,33 @@
+// A recorded hand: gives the poses of a trace one by one, whatever force it is sent, and then has finished.
+//
+// What is computed from equal poses is equal: a run on the same scene repeats the recorded forces bit for bit.
+#pragma once
+
+#include "runtime/haptic_device.h"
+
+#include <cstddef>
+#include <filesystem>
+#include <vector>
+
+namespace haptel::device {
+
+class ReplayDevice final : public runtime::HapticDevice {
+public:
+    ReplayDevice(runtime::DeviceInfo info, std::vector<runtime::DevicePose> poses);
+
+    const runtime::DeviceInfo& info() const override { return info_; }
+    runtime::DeviceStatus read(runtime::DevicePose& pose) noexcept override; // finished: `pose` is left as it was
+    runtime::DeviceStatus write(const glm::dvec3&, const glm::dvec3&) noexcept override;
+    void stop() noexcept override {}
+
+private:
+    runtime::DeviceInfo info_;
+    std::vector<runtime::DevicePose> poses_;
+    std::size_t next_ = 0;
+};
+
+// Reads trace.csv. An error if the file is no trace, is empty, holds a pose that is not finite or was recorded at
+// another rate than `rate_hz`.
+runtime::DeviceResult open_replay(runtime::DeviceInfo info, const std::filesystem::path& trace, double rate_hz);
+
+} // namespace haptel::device

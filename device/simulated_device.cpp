@@ -1,0 +1,87 @@
+#include "device/simulated_device.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace haptel::device {
+
+namespace {
+
+constexpr double substep_max_s = 10e-6;
+
+// A right hand at -y holds its stylus leaning towards itself.
+const glm::dvec3 stylus_direction = glm::normalize(glm::dvec3(0, -0.25, 1));
+
+bool is_finite(const glm::dvec3& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+glm::dvec3 quantized(const glm::dvec3& position_m, double step_m)
+{
+    return step_m > 0 ? step_m * glm::round(position_m / step_m) : position_m;
+}
+
+} // namespace
+
+SimulatedDevice::SimulatedDevice(runtime::DeviceInfo info, const DeviceModel& model, Hand hand, const Options& options)
+    : info_(std::move(info))
+    , model_(model)
+    , hand_(std::move(hand))
+    , period_s_(1 / options.rate_hz)
+    , substeps_(std::max(1, static_cast<int>(std::ceil(period_s_ / substep_max_s - 1e-6))))
+    , delay_periods_(options.delay_periods)
+    , tail_from_tip_m_(options.stylus_length_m * stylus_direction)
+    , position_m_(hand_.aim_m(1))
+{
+}
+
+runtime::DeviceStatus SimulatedDevice::read(runtime::DevicePose& pose) noexcept
+{
+    if (std::exchange(started_, true)) advance_period();
+    pose.tip_m = quantized(position_m_, model_.encoder_m);
+    pose.tail_m = pose.tip_m + tail_from_tip_m_;
+    return runtime::DeviceStatus::ok;
+}
+
+runtime::DeviceStatus SimulatedDevice::write(const glm::dvec3& force_n, const glm::dvec3&) noexcept
+{
+    const glm::dvec3 late_n = written_n_;
+    written_n_ = is_finite(force_n) ? force_n : glm::dvec3(0);
+    if (const double size_n = glm::length(written_n_); size_n > model_.force_max_n)
+        written_n_ *= model_.force_max_n / size_n;
+    acting_n_ = delay_periods_ == 0 ? written_n_ : late_n;
+    return runtime::DeviceStatus::ok;
+}
+
+void SimulatedDevice::stop() noexcept
+{
+    written_n_ = acting_n_ = glm::dvec3(0);
+}
+
+// Damping and friction are implicit, which makes sticking exact: the mass stands still when, and only when, friction
+// can hold it. The spring is symplectic, which keeps its energy.
+void SimulatedDevice::advance_period() noexcept
+{
+    hand_.advance();
+    const HandImpedance& hand = hand_.impedance();
+    const double dt = period_s_ / substeps_;
+    const double dt_by_mass = dt / (model_.mass_kg + hand.mass_kg);
+    const double damping = 1 + dt_by_mass * (model_.damping_n_s_per_m + hand.damping_n_s_per_m);
+    const double stopped_by_friction = dt_by_mass * model_.coulomb_n; // speed lost in a substep
+    const glm::dvec3 towards_aim_n = hand.damping_n_s_per_m * hand_.aim_velocity_m_per_s();
+
+    for (int i = 1; i <= substeps_; ++i) {
+        const double share = static_cast<double>(i) / substeps_;
+        const glm::dvec3 force_n = acting_n_ + hand_.push_n(share) + towards_aim_n +
+                                   hand.stiffness_n_per_m * (hand_.aim_m(share) - position_m_);
+        const glm::dvec3 driven = velocity_m_per_s_ + dt_by_mass * force_n;
+        const double speed = glm::length(driven);
+        velocity_m_per_s_ =
+            speed <= stopped_by_friction ? glm::dvec3(0) : driven * ((1 - stopped_by_friction / speed) / damping);
+        position_m_ += dt * velocity_m_per_s_;
+    }
+}
+
+} // namespace haptel::device

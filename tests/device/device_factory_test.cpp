@@ -1,0 +1,70 @@
+#include "device/device_factory.h"
+#include "device/presets.h"
+#include "tests/device/surfaces.h"
+#include "tests/support/catch.h"
+
+#include <limits>
+
+using namespace haptel::device;
+using namespace haptel::runtime;
+
+namespace {
+
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+std::string error_of(const DeviceRequest& request)
+{
+    const DeviceResult result = open_device(request);
+    REQUIRE(!result.device);
+    return result.error;
+}
+
+} // namespace
+
+TEST_CASE("every simulated device opens by its name, with its limits")
+{
+    for (const DevicePreset& preset : device_presets())
+        for (const HandPreset& hand : hand_presets()) {
+            const std::string name = "simulated:" + std::string(preset.name) + ":" + std::string(hand.name);
+            const DeviceResult opened = open_device(request_on_plane(name));
+            REQUIRE(opened.device);
+            CHECK(opened.device->info().name == name);
+            CHECK(opened.device->info().force_max_n == preset.model.force_max_n);
+            CHECK(opened.device->info().stiffness_max_n_per_m > 0);
+        }
+    CHECK(open_device(request_on_plane("simulated")).device->info().force_max_n == 8.5);
+}
+
+TEST_CASE("unknown names are answered with what was meant, or with what there is")
+{
+    CHECK(contains(error_of(request_on_plane("simulatd:premium")), "did you mean 'simulated'?"));
+    CHECK(contains(error_of(request_on_plane("simulated:premum")), "did you mean 'premium'?"));
+    CHECK(contains(error_of(request_on_plane("simulated:premium:frm")), "did you mean 'firm'?"));
+    CHECK(contains(error_of(request_on_plane("simulated:premium", "circle")), "did you mean 'circles'?"));
+    CHECK(contains(error_of(request_on_plane("teapot")), "there are simulated, replay"));
+    CHECK(contains(error_of(request_on_plane("")), "there are simulated, replay"));
+    CHECK(contains(error_of(request_on_plane("replay:")), "replay:trace.csv"));
+    CHECK(error_of(request_on_plane(std::string(1'000'000, 'x'))).size() < 300);
+}
+
+TEST_CASE("requests out of range are refused, not simulated")
+{
+    const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+    for (const double bad : {nan, infinity, -1.0, 1e9}) {
+        CAPTURE(bad);
+        for (double DeviceRequest::*const field : {&DeviceRequest::speed_m_per_s, &DeviceRequest::press_n,
+                                                   &DeviceRequest::rate_hz, &DeviceRequest::stylus_length_m}) {
+            DeviceRequest request = request_on_plane("simulated:premium");
+            request.*field = bad;
+            CHECK(!error_of(request).empty());
+        }
+    }
+    DeviceRequest request = request_on_plane("simulated:premium");
+    request.surface_below = plane_where([](double, double) { return false; });
+    CHECK(contains(error_of(request), "finds no surface"));
+    request.surface_below = nullptr;
+    CHECK(contains(error_of(request), "needs a surface"));
+}

@@ -1,0 +1,92 @@
+#include "device/device_factory.h"
+#include "runtime/recording.h"
+#include "tests/support/catch.h"
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <unistd.h>
+#include <vector>
+
+using namespace haptel::device;
+using namespace haptel::runtime;
+
+namespace {
+
+// A file that is gone when the test is over.
+struct TraceFile {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("haptel-replay-test-" + std::to_string(getpid()) + ".csv");
+    ~TraceFile() { std::filesystem::remove(path); }
+
+    void write(const std::vector<TickRecord>& records) const
+    {
+        std::ofstream out(path);
+        write_trace_header(out);
+        for (const TickRecord& record : records) write_trace_row(out, record);
+    }
+    DeviceResult open(double rate_hz = 1000) const
+    {
+        DeviceRequest request;
+        request.name = "replay:" + path.string();
+        request.rate_hz = rate_hz;
+        return open_device(request);
+    }
+};
+
+std::vector<TickRecord> spiral(std::size_t count)
+{
+    std::vector<TickRecord> records(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        const double t = static_cast<double>(i);
+        records[i].tick = i;
+        records[i].time_s = t * 1e-3;
+        records[i].tip_m = {std::sin(t) / 3, std::cos(t) * 1e-300, -0.0};
+        records[i].tail_m = records[i].tip_m + glm::dvec3(0, 1.0 / 3, std::exp(-t));
+    }
+    return records;
+}
+
+} // namespace
+
+TEST_CASE("a replay gives the recorded poses bit for bit and then has finished")
+{
+    const TraceFile file;
+    const auto records = spiral(500);
+    file.write(records);
+    const DeviceResult opened = file.open();
+    INFO(opened.error);
+    REQUIRE(opened.device);
+    DevicePose pose;
+    for (const TickRecord& record : records) {
+        REQUIRE(opened.device->read(pose) == DeviceStatus::ok);
+        REQUIRE(opened.device->write({1, 2, 3}, {}) == DeviceStatus::ok); // which changes nothing
+        REQUIRE(pose.tip_m == record.tip_m);
+        REQUIRE(std::signbit(pose.tip_m.z));
+        REQUIRE(pose.tail_m == record.tail_m);
+    }
+    CHECK(opened.device->read(pose) == DeviceStatus::finished);
+    CHECK(opened.device->read(pose) == DeviceStatus::finished);
+    CHECK(pose.tip_m == records.back().tip_m);
+}
+
+TEST_CASE("a trace that cannot be replayed is refused with the reason")
+{
+    const TraceFile file;
+    CHECK(file.open().error.find(file.path.string()) != std::string::npos); // missing
+
+    file.write({});
+    CHECK(file.open().error.find("no tick") != std::string::npos);
+
+    auto records = spiral(10);
+    file.write(records);
+    CHECK(file.open(2000).error.find("recorded at 1000 Hz") != std::string::npos);
+
+    records[4].tail_m.y = std::numeric_limits<double>::quiet_NaN();
+    file.write(records);
+    CHECK(file.open().error.find("tick 4 is not finite") != std::string::npos);
+
+    std::ofstream(file.path) << "a,b,c\n1,2,3\n";
+    CHECK(!file.open().device);
+}
