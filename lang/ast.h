@@ -202,7 +202,9 @@ struct Function {
     TypeName result;
     Name name;
     std::vector<FunctionParameter> parameters;
-    StatementPtr body; // a Scope; null after a syntax error in it
+    StatementPtr body; // a Scope; null where there is none
+    bool damaged =
+        false; // a syntax error was reported inside: what may follow from it ("no return") is better not said
     Span span;
 };
 
@@ -219,7 +221,8 @@ struct Texture {
     std::string doc;
     Name name;
     std::vector<TextureParameter> parameters;
-    StatementPtr body;
+    StatementPtr body;    // a Scope; null where there is none
+    bool damaged = false; // as in Function
     Span span;
 };
 

@@ -29,6 +29,21 @@ struct SourceFile {
     std::string text; // any bytes; need not be UTF-8
 };
 
+// Value of a byte that is no part of valid UTF-8.
+inline constexpr char32_t invalid_code_point = 0xFFFFFFFF;
+
+struct CodePoint {
+    char32_t value = 0;
+    uint32_t length = 1; // bytes; 1 for an invalid byte
+};
+
+// The code point that starts at byte `at` (< size) of `text`.
+CodePoint decode_utf8(std::string_view text, size_t at);
+
+// `text` as valid UTF-8 that is safe to print: invalid bytes, control characters (line ends too) and characters that
+// change the writing direction become U+FFFD.
+std::string printable(std::string_view text);
+
 // The files of one compilation. Indices are stable.
 class SourceSet {
 public:

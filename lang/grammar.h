@@ -1,0 +1,102 @@
+// The grammar of Haptel, one function per rule, each with its rule above it. Recursive descent; see parser.h for the
+// promise and token_cursor.h for recovery.
+#pragma once
+
+#include "lang/ast.h"
+#include "lang/foreign.h"
+#include "lang/token_cursor.h"
+
+#include <vector>
+
+namespace haptel::lang {
+
+class Grammar : private TokenCursor {
+public:
+    Grammar(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink);
+
+    ast::File parse_file();                 // parser.cpp
+    ast::FactsComment parse_facts(Span at); // parse_facts.cpp; the tokens are those of one "@facts" line
+
+private:
+    // parser.cpp
+    void top_level_name(ast::File& result);
+    void find_top_level();
+
+    using Statements = std::vector<ast::StatementPtr>;
+
+    // parse_declaration.cpp
+    void import_declaration(ast::File& result);
+    void texture(ast::File& result);
+    ast::TextureParameter texture_parameter();
+    void constants(ast::File& result);
+    void function_or_variable(ast::File& result);
+    void function(ast::File& result, ast::TypeName result_type, ast::Name name, size_t doc_token);
+    ast::FunctionParameter function_parameter();
+    void function_signature(ast::FunctionParameter& parameter);
+    ast::StatementPtr body_of(std::string_view what);
+    void skip_foreign_declaration(const ForeignWord& word);
+
+    // parse_statement.cpp
+    void statement(Statements& into);
+    ast::StatementPtr block();
+    ast::StatementPtr single_statement(std::string_view after);
+    ast::StatementPtr if_statement();
+    ast::StatementPtr for_statement();
+    ast::StatementPtr return_statement();
+    ast::StatementPtr assignment_or_expression();
+    void declarations(Statements& into);
+    void declaration_list(Statements& into);
+    ast::Declaration declarator(bool is_const, ast::TypeName type);
+    ast::ExpressionPtr initializer();
+    void foreign_statement(const ForeignWord& word, Statements& into);
+    bool at_declaration() const;
+    bool is_used_as_name() const;
+    bool at_top_level_start() const;
+    void find_footing();
+
+    // parse_expression.cpp
+    ast::ExpressionPtr expression();
+    ast::ExpressionPtr conditional();
+    ast::ExpressionPtr binary(int lowest_precedence);
+    ast::ExpressionPtr unary();
+    ast::ExpressionPtr postfix();
+    ast::ExpressionPtr primary();
+    ast::ExpressionPtr number();
+    ast::ExpressionPtr name_or_call();
+    ast::ExpressionPtr grad_call(Span first);
+    std::vector<ast::ExpressionPtr> arguments(Span opener);
+    ast::ExpressionPtr brace_list();
+
+    // Small rules that all share, parse_declaration.cpp and parse_facts.cpp
+    ast::TypeName type_name();
+    void array_suffix(ast::TypeName& type);
+    std::optional<ast::Name> name(std::string_view what); // reports if there is none
+    std::string doc_before(size_t token_index, std::optional<ast::FactsComment>* facts);
+    template <class Node>
+    ast::ExpressionPtr make(Span where, Node node);
+    template <class Node>
+    ast::StatementPtr make_statement(Span where, Node node);
+};
+
+// Names that begin a type: Haptel's own and those that other languages have.
+bool is_type_word(std::string_view word);
+
+template <class Node>
+ast::ExpressionPtr Grammar::make(Span where, Node node)
+{
+    auto result = std::make_unique<ast::Expression>();
+    result->span = where;
+    result->node = std::move(node);
+    return result;
+}
+
+template <class Node>
+ast::StatementPtr Grammar::make_statement(Span where, Node node)
+{
+    auto result = std::make_unique<ast::Statement>();
+    result->span = where;
+    result->node = std::move(node);
+    return result;
+}
+
+} // namespace haptel::lang

@@ -1,0 +1,294 @@
+#include "lang/lexer.h"
+
+#include <array>
+#include <utility>
+
+namespace haptel::lang {
+
+namespace {
+
+using Spelling = std::pair<Token, std::string_view>;
+
+constexpr Spelling symbols[] = {
+#define SYMBOL(name, spelling) {Token::name, spelling},
+#define KEYWORD(name, spelling)
+#include "lang/token.def"
+#undef SYMBOL
+#undef KEYWORD
+};
+
+constexpr Spelling keywords[] = {
+#define SYMBOL(name, spelling)
+#define KEYWORD(name, spelling) {Token::name, spelling},
+#include "lang/token.def"
+#undef SYMBOL
+#undef KEYWORD
+};
+
+// Characters that word processors and web pages put where ASCII was meant.
+struct Lookalike {
+    char32_t character;
+    std::string_view meant;
+};
+constexpr Lookalike lookalikes[] = {
+    {0x00A0, " "}, {0x00D7, "*"},  {0x00F7, "/"},  {0x2010, "-"},  {0x2011, "-"},  {0x2013, "-"}, {0x2014, "-"},
+    {0x2018, "'"}, {0x2019, "'"},  {0x201C, "\""}, {0x201D, "\""}, {0x2026, ".."}, {0x2212, "-"}, {0x2215, "/"},
+    {0x22C5, "*"}, {0x2264, "<="}, {0x2265, ">="}, {0x2260, "!="}, {0x037E, ";"},
+};
+
+constexpr uint32_t longest_file = 64u << 20;
+
+bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+bool is_name_start(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+bool is_name_part(char c)
+{
+    return is_name_start(c) || is_digit(c);
+}
+
+class Lexer {
+public:
+    Lexer(std::string_view file_text, Span part, Diagnostics& sink)
+        : text(file_text.substr(0, part.end)), file(part.file), at(part.begin), diagnostics(sink)
+    {
+    }
+
+    TokenList run()
+    {
+        skip_byte_order_mark();
+        while (at < text.size() && !diagnostics.full()) next();
+        list.tokens.push_back({Token::end, size(), size()});
+        return std::move(list);
+    }
+
+private:
+    void next()
+    {
+        const char c = text[at];
+        const uint32_t begin = at;
+        if (c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f') {
+            ++at;
+        } else if (rest().starts_with("//")) {
+            line_comment();
+        } else if (rest().starts_with("/*")) {
+            block_comment();
+        } else if (is_name_start(c)) {
+            while (is_name_part(peek())) ++at;
+            push(keyword_or_name(text.substr(begin, at - begin)), begin);
+        } else if (is_digit(c) || (c == '.' && is_digit(peek(1)))) {
+            number();
+        } else if (c == '"') {
+            string();
+        } else if (c == '#') {
+            directive();
+        } else if (!symbol()) {
+            unexpected();
+        }
+    }
+
+    std::string_view rest() const { return text.substr(at); }
+    char peek(uint32_t ahead = 0) const { return at + ahead < text.size() ? text[at + ahead] : '\0'; }
+    uint32_t size() const { return static_cast<uint32_t>(text.size()); }
+    bool at_line_end() const { return at >= text.size() || text[at] == '\n' || text[at] == '\r'; }
+
+    Span span_from(uint32_t begin) const { return {file, begin, at}; }
+    void push(Token kind, uint32_t begin) { list.tokens.push_back({kind, begin, at}); }
+
+    static Token keyword_or_name(std::string_view word)
+    {
+        for (const auto& [token, spelling] : keywords) {
+            if (word == spelling) return token;
+        }
+        return Token::name;
+    }
+
+    void skip_byte_order_mark()
+    {
+        if (at == 0 && text.starts_with("\xEF\xBB\xBF")) at = 3;
+        if (at == 0 && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))) {
+            diagnostics.error({file, 0, 2}, "not-text", "this file is UTF-16, expected UTF-8").hint =
+                "save it as UTF-8 in your editor";
+            give_up();
+        }
+    }
+
+    // The rest is not worth reading: silence the parser too.
+    void give_up()
+    {
+        const uint32_t begin = at;
+        at = size();
+        push(Token::invalid, begin);
+    }
+
+    void line_comment()
+    {
+        const uint32_t begin = at;
+        const bool doc = rest().starts_with("///") && !rest().starts_with("////");
+        while (!at_line_end()) ++at;
+        if (doc) list.docs.push_back({span_from(begin), static_cast<uint32_t>(list.tokens.size())});
+    }
+
+    void block_comment()
+    {
+        const size_t end = text.find("*/", at + 2);
+        if (end != std::string_view::npos) {
+            at = static_cast<uint32_t>(end + 2);
+            return;
+        }
+        diagnostics.error({file, at, at + 2}, "open-comment",
+                          "this comment is never closed: expected '*/' before the end of the file");
+        give_up();
+    }
+
+    // number = (digit {digit} ["." {digit}] | "." digit {digit}) [("e" | "E") ["+" | "-"] digit {digit}] [suffix]
+    //        | "0" ("x" | "X") hex_digit {hex_digit} [suffix]
+    // suffix = letter {letter | digit}, glued to the number: a unit, "f" or "u".
+    // A dot that is followed by another dot begins a range: "0..1" is 0, "..", 1.
+    void number()
+    {
+        const uint32_t begin = at;
+        const bool hex = text[at] == '0' && (peek(1) == 'x' || peek(1) == 'X');
+        if (!hex) {
+            while (is_digit(peek())) ++at;
+            if (peek() == '.' && peek(1) != '.') {
+                ++at;
+                while (is_digit(peek())) ++at;
+            }
+            const uint32_t sign = peek(1) == '+' || peek(1) == '-' ? 1 : 0;
+            if ((peek() == 'e' || peek() == 'E') && is_digit(peek(1 + sign))) {
+                at += 1 + sign;
+                while (is_digit(peek())) ++at;
+            }
+        }
+        while (is_name_part(peek()) || static_cast<unsigned char>(peek()) >= 0x80)
+            ++at; // the suffix; "µm" too, for its message
+        push(Token::number, begin);
+    }
+
+    void string()
+    {
+        const uint32_t begin = at++;
+        while (!at_line_end() && text[at] != '"') ++at;
+        if (peek() == '"' && at < text.size()) {
+            ++at;
+            push(Token::string, begin);
+            return;
+        }
+        diagnostics.error({file, begin, begin + 1}, "open-string",
+                          "this string is not closed: expected '\"' before the end of the line");
+        push(Token::invalid, begin);
+    }
+
+    // "#define", "#version" and the like of other shading languages: one message, the line is skipped.
+    void directive()
+    {
+        const uint32_t begin = at++;
+        while (is_name_part(peek())) ++at;
+        const Span word = span_from(begin);
+        while (!at_line_end()) {
+            if (text[at] == '\\') ++at; // a continued line
+            if (at < text.size() && text[at] == '\r' && peek(1) == '\n') ++at;
+            if (at < text.size()) ++at;
+        }
+        const bool define = text.substr(begin, word.end - begin) == "#define";
+        diagnostics.error(word, "preprocessor", "Haptel has no preprocessor").hint =
+            define ? "write a constant, \"const float WIDTH = 2mm;\", or a function" : "leave this line out";
+    }
+
+    bool symbol()
+    {
+        for (const auto& [token, spelling] : symbols) {
+            if (spelling[0] == text[at] && rest().starts_with(spelling)) {
+                const uint32_t begin = at;
+                at += static_cast<uint32_t>(spelling.size());
+                push(token, begin);
+                return true;
+            }
+        }
+        return false;
+    }
+
+    void unexpected()
+    {
+        const uint32_t begin = at;
+        if (text[at] == '\0') {
+            diagnostics.error({file, at, at + 1}, "not-text", "this is not text: found a zero byte");
+            give_up();
+            return;
+        }
+        const CodePoint point = decode_utf8(text, at);
+        at += point.length;
+        const Span first = span_from(begin);
+        for (const Lookalike& lookalike : lookalikes) {
+            if (point.value != lookalike.character) continue;
+            Diagnostic& found = diagnostics.error(
+                first, "unexpected-character",
+                point.value == 0xA0 ? "unexpected no-break space"
+                                    : "unexpected character '" + printable(text.substr(begin, point.length)) + "'");
+            found.hint = lookalike.meant == " " ? "write an ordinary space" : "write " + std::string(lookalike.meant);
+            found.fix = FixIt{first, std::string(lookalike.meant)};
+            push(Token::invalid, begin);
+            return;
+        }
+        // One report for a whole run: binary garbage and text in another script would drown the rest.
+        while (at < text.size() && static_cast<unsigned char>(text[at]) >= 0x80) ++at;
+        std::string message = "unexpected character '" + printable(text.substr(begin, point.length)) + "'";
+        if (point.value == invalid_code_point) message = "this is not UTF-8 text";
+        Diagnostic& found =
+            diagnostics.error(first, point.value == invalid_code_point ? "not-text" : "unexpected-character", message);
+        if (point.value < 0x80)
+            found.hint = text[begin] == '\'' || text[begin] == '`' ? "strings are written with double quotes" : "";
+        else if (point.value != invalid_code_point)
+            found.hint = "names are made of a-z, A-Z, 0-9 and _; anything may stand in comments";
+        push(Token::invalid, begin);
+    }
+
+    std::string_view text; // of the whole file up to the end of the part
+    uint32_t file;
+    uint32_t at;
+    Diagnostics& diagnostics;
+    TokenList list;
+};
+
+} // namespace
+
+std::string_view describe(Token token)
+{
+    switch (token) {
+    case Token::end: return "the end of the file";
+    case Token::invalid: return "something unreadable";
+    case Token::name: return "a name";
+    case Token::number: return "a number";
+    case Token::string: return "a string";
+#define SYMBOL(name, spelling)                                                                                         \
+    case Token::name:                                                                                                  \
+        return "'" spelling "'";
+#define KEYWORD(name, spelling) SYMBOL(name, spelling)
+#include "lang/token.def"
+#undef SYMBOL
+#undef KEYWORD
+    }
+    return {};
+}
+
+TokenList lex(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics)
+{
+    const std::string& text = sources.file(file).text;
+    if (text.size() > longest_file) {
+        diagnostics.error({file, 0, 0}, "too-large", "this file is larger than 64 MiB");
+        return {{{Token::invalid, 0, 0}, {Token::end, 0, 0}}, {}};
+    }
+    return lex(sources, {file, 0, static_cast<uint32_t>(text.size())}, diagnostics);
+}
+
+TokenList lex(const SourceSet& sources, Span part, Diagnostics& diagnostics)
+{
+    return Lexer(sources.file(part.file).text, part, diagnostics).run();
+}
+
+} // namespace haptel::lang

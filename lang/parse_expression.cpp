@@ -1,0 +1,362 @@
+// Expressions. Operators of one precedence in a row become one flat Chain.
+#include "lang/grammar.h"
+#include "lang/number.h"
+
+#include <algorithm>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+namespace {
+
+struct Operator {
+    Token token;
+    BinaryOp op;
+    int precedence; // higher binds tighter
+};
+constexpr Operator operators[] = {
+    {Token::logical_or, BinaryOp::logical_or, 1},
+    {Token::logical_xor, BinaryOp::logical_xor, 2},
+    {Token::logical_and, BinaryOp::logical_and, 3},
+    {Token::pipe, BinaryOp::bit_or, 4},
+    {Token::caret, BinaryOp::bit_xor, 5},
+    {Token::ampersand, BinaryOp::bit_and, 6},
+    {Token::equal, BinaryOp::equal, 7},
+    {Token::not_equal, BinaryOp::not_equal, 7},
+    {Token::less, BinaryOp::less, 8},
+    {Token::less_equal, BinaryOp::less_equal, 8},
+    {Token::greater, BinaryOp::greater, 8},
+    {Token::greater_equal, BinaryOp::greater_equal, 8},
+    {Token::shift_left, BinaryOp::shift_left, 9},
+    {Token::shift_right, BinaryOp::shift_right, 9},
+    {Token::plus, BinaryOp::add, 10},
+    {Token::minus, BinaryOp::subtract, 10},
+    {Token::star, BinaryOp::multiply, 11},
+    {Token::slash, BinaryOp::divide, 11},
+    {Token::percent, BinaryOp::remainder, 11},
+};
+
+const Operator* operator_of(Token token)
+{
+    const auto found =
+        std::find_if(std::begin(operators), std::end(operators), [&](const Operator& o) { return o.token == token; });
+    return found == std::end(operators) ? nullptr : found;
+}
+
+} // namespace
+
+// expression = conditional
+ExpressionPtr Grammar::expression()
+{
+    ExpressionPtr result = conditional();
+    if (at(Token::assign) && !lost) {
+        error(span(), "assignment-in-expression", "expected the end of the expression, found '='").hint =
+            "to compare, write '=='; an assignment is a statement of its own";
+    }
+    return result;
+}
+
+// conditional = binary ["?" expression ":" conditional]
+ExpressionPtr Grammar::conditional()
+{
+    ExpressionPtr condition = binary(1);
+    if (!at(Token::question)) return condition;
+    const Span question = span();
+    const Nesting nesting(*this, Nesting::bracket);
+    if (nesting.too_deep()) {
+        skip_to({Token::comma});
+        return make(condition->span, ErrorExpression{});
+    }
+    advance();
+    ExpressionPtr when_true = expression();
+    if (!accept(Token::colon)) {
+        error(span(), "syntax", "expected ':' and a value for when the condition is false" + found())
+            .related.push_back({question, "for this '?'"});
+        return make(since(condition->span), ErrorExpression{});
+    }
+    ExpressionPtr when_false = conditional();
+    const Span whole = join(condition->span, when_false->span);
+    return make(whole, Conditional{std::move(condition), std::move(when_true), std::move(when_false)});
+}
+
+// binary = unary {operator unary}, grouped by precedence: || ^^ && | ^ & (== !=) (< <= > >=) (<< >>) (+ -) (* / %)
+ExpressionPtr Grammar::binary(int lowest_precedence)
+{
+    ExpressionPtr left = unary();
+    for (;;) {
+        const Operator* first = operator_of(kind());
+        if (!first || first->precedence < lowest_precedence) return left;
+        Chain chain{std::move(left), {}};
+        Span whole = chain.first->span;
+        const Nesting nesting(*this, Nesting::operand);
+        if (nesting.too_deep()) {
+            skip_to({Token::comma});
+            return make(whole, ErrorExpression{});
+        }
+        for (const Operator* next = first; next && next->precedence == first->precedence; next = operator_of(kind())) {
+            const Span op_span = span();
+            advance();
+            ExpressionPtr operand = binary(first->precedence + 1);
+            whole = join(whole, operand->span);
+            chain.rest.push_back({next->op, op_span, std::move(operand)});
+        }
+        left = make(whole, std::move(chain));
+    }
+}
+
+// unary = ("-" | "+" | "!" | "~") unary | postfix
+ExpressionPtr Grammar::unary()
+{
+    const auto prefix = [&]() -> std::optional<UnaryOp> {
+        if (at(Token::minus)) return UnaryOp::negate;
+        if (at(Token::plus)) return UnaryOp::plus;
+        if (at(Token::bang)) return UnaryOp::logical_not;
+        if (at(Token::tilde)) return UnaryOp::bit_not;
+        return std::nullopt;
+    }();
+    if (!prefix) return postfix();
+    const Span first = span();
+    const Nesting nesting(*this, Nesting::bracket);
+    if (nesting.too_deep()) {
+        skip_to({Token::comma});
+        return make(first, ErrorExpression{});
+    }
+    advance();
+    ExpressionPtr operand = unary();
+    const Span whole = join(first, operand->span);
+    return make(whole, Unary{*prefix, std::move(operand)});
+}
+
+// postfix = primary {"." name | "[" expression "]"}
+ExpressionPtr Grammar::postfix()
+{
+    ExpressionPtr object = primary();
+    const uint32_t depth_before = depth;
+    while (at(Token::dot) || at(Token::left_bracket) || at(Token::left_paren) || at(Token::arrow)) {
+        depth += Nesting::bracket;
+        if (depth > Nesting::limit) {
+            report_too_deep();
+            skip_to({Token::comma});
+            object = make(object->span, ErrorExpression{});
+            break;
+        }
+        if (at(Token::left_bracket)) {
+            const Span opener = span();
+            advance();
+            ExpressionPtr index = expression();
+            close(Token::right_bracket, opener);
+            const Span whole = since(object->span);
+            object = make(whole, Index{std::move(object), std::move(index)});
+        } else if (at(Token::left_paren)) {
+            error(span(), "not-callable", "only a name can be called").hint =
+                "for a constant table write: const float A[3] = {1.0, 2.0, 3.0};";
+            const Span opener = span();
+            advance();
+            arguments(opener);
+            object = make(since(object->span), ErrorExpression{});
+        } else {
+            if (at(Token::arrow))
+                error(span(), "no-pointers", "there are no pointers in Haptel").hint =
+                    "write '.' to take components: q.xy";
+            advance();
+            std::optional<Name> member = name("after '.': components such as x or xyz");
+            const Span whole = since(object->span);
+            if (member)
+                object = make(whole, Member{std::move(object), std::move(*member)});
+            else
+                object = make(whole, ErrorExpression{});
+        }
+    }
+    depth = depth_before;
+    return object;
+}
+
+// primary = number | "true" | "false" | name_or_call | "(" expression ")"
+ExpressionPtr Grammar::primary()
+{
+    const Span first = span();
+    if (at(Token::number)) return number();
+    if (at(Token::name)) return name_or_call();
+    if (at(Token::kw_true) || at(Token::kw_false)) {
+        const bool value = at(Token::kw_true);
+        advance();
+        return make(first, BoolLiteral{value});
+    }
+    if (at(Token::left_paren)) {
+        const Nesting nesting(*this, Nesting::bracket);
+        if (nesting.too_deep()) {
+            skip_brackets();
+            return make(first, ErrorExpression{});
+        }
+        advance();
+        ExpressionPtr inner = expression();
+        if (at(Token::comma) && !lost) {
+            error(span(), "syntax", "expected ')', found ','").hint =
+                "a vector is made by its constructor: vec3(x, y, z)";
+            skip_to({Token::right_paren});
+        }
+        close(Token::right_paren, first);
+        inner->span = since(first);
+        return inner;
+    }
+    if (at(Token::invalid)) {
+        advance();
+        lost = true;
+        return make(first, ErrorExpression{});
+    }
+    if (at(Token::plus_plus) || at(Token::minus_minus)) {
+        error(first, "assignment-in-expression",
+              "'" + std::string(text()) + "' is a statement of its own, not part of an expression")
+            .hint = "write it on a line before";
+        advance();
+        return unary();
+    }
+    if (at(Token::left_brace)) {
+        error(first, "syntax", "braces may only stand behind '=' of a constant table");
+        return brace_list();
+    }
+    if (at(Token::ampersand) || at(Token::star)) {
+        error(first, "no-pointers", "expected an expression" + found() + "; there are no pointers in Haptel");
+        advance();
+        return unary();
+    }
+    error(first, "expected-expression", "expected an expression" + found());
+    return make(first, ErrorExpression{});
+}
+
+ExpressionPtr Grammar::number()
+{
+    const Span where = span();
+    Number read = read_number(text());
+    advance();
+    if (!read.error.empty()) {
+        diagnostics.error(where, std::string(read.code), std::move(read.error)).hint = std::move(read.hint);
+        return make(where, ErrorExpression{});
+    }
+    const auto kind_of = [](Number::Kind kind) {
+        switch (kind) {
+        case Number::Kind::real: return NumberLiteral::Kind::real;
+        case Number::Kind::integer: return NumberLiteral::Kind::integer;
+        case Number::Kind::unsigned_integer: return NumberLiteral::Kind::unsigned_integer;
+        }
+        return NumberLiteral::Kind::real;
+    };
+    return make(where, NumberLiteral{kind_of(read.kind), read.value, read.integer, std::string(read.unit),
+                                     std::string(sources.text(where))});
+}
+
+// name_or_call = name | name "(" [expression {"," expression}] ")" | grad_call
+ExpressionPtr Grammar::name_or_call()
+{
+    Name callee{std::string(text()), span()};
+    advance();
+    if (at(Token::left_bracket) && is_type_word(callee.text)) { // float[3](...), float[](...)
+        error(callee.span, "array-constructor", "arrays have no constructor in Haptel").hint =
+            "write a table: const float A[3] = {1.0, 2.0, 3.0};";
+        skip_brackets();
+        if (at(Token::left_paren)) skip_brackets();
+        return make(since(callee.span), ErrorExpression{});
+    }
+    if (!at(Token::left_paren)) return make(callee.span, NameExpression{callee.text});
+    if (callee.text == "grad") return grad_call(callee.span);
+
+    const ForeignWord* foreign = foreign_word(ForeignKind::type, callee.text);
+    if (foreign) {
+        Diagnostic& reported =
+            diagnostics.error(callee.span, "foreign-word", "'" + callee.text + "' is not a type of Haptel");
+        reported.hint = foreign->hint;
+        if (!foreign->replacement.empty()) reported.fix = FixIt{callee.span, std::string(foreign->replacement)};
+        callee.text = foreign->replacement;
+    }
+    const Span opener = span();
+    advance();
+    std::vector<ExpressionPtr> values = arguments(opener);
+    const Span whole = since(callee.span);
+    if (foreign && foreign->replacement.empty()) return make(whole, ErrorExpression{});
+    return make(whole, CallExpression{std::move(callee), std::move(values)});
+}
+
+// The rest of a call behind '(': [expression {"," expression}] ")"
+std::vector<ExpressionPtr> Grammar::arguments(Span opener)
+{
+    std::vector<ExpressionPtr> result;
+    const Nesting nesting(*this, Nesting::bracket);
+    if (nesting.too_deep()) {
+        skip_to({Token::right_paren});
+        accept(Token::right_paren);
+        return result;
+    }
+    if (accept(Token::right_paren)) return result;
+    do result.push_back(expression());
+    while (accept(Token::comma));
+    close(Token::right_paren, opener, true);
+    return result;
+}
+
+// grad_call = "grad" "(" function ")" "(" expression {"," expression} ")"     function = name | "grad" "(" function ")"
+// Behind "grad". Anything else in the first brackets is an ordinary call of a function named grad, for the checker.
+ExpressionPtr Grammar::grad_call(Span first)
+{
+    GradCall call;
+    size_t ahead = 1; // behind '('
+    while (kind(ahead) == Token::name && sources.text(span(ahead)) == "grad" && kind(ahead + 1) == Token::left_paren) {
+        ++call.order;
+        ahead += 2;
+    }
+    const bool named = kind(ahead) == Token::name;
+    bool closed = named;
+    for (uint32_t i = 0; i < call.order; ++i) closed = closed && kind(ahead + 1 + i) == Token::right_paren;
+    const Span opener = span();
+    if (!closed) {
+        advance();
+        std::vector<ExpressionPtr> values = arguments(opener);
+        if (at(Token::left_paren)) {
+            error(first, "grad", "grad takes the name of a function").hint =
+                "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)";
+            const Span second = span();
+            advance();
+            arguments(second);
+            return make(since(first), ErrorExpression{});
+        }
+        return make(since(first), CallExpression{{"grad", first}, std::move(values)});
+    }
+    call.function = {std::string(sources.text(span(ahead))), span(ahead)};
+    for (size_t i = 0; i < ahead + 1 + call.order; ++i) advance();
+    if (!at(Token::left_paren)) {
+        error(since(first), "grad", "the derivative of a function is a function: expected its arguments" + found())
+            .hint = "write grad(" + call.function.text + ")(q)";
+        return make(since(first), ErrorExpression{});
+    }
+    const Span second = span();
+    advance();
+    call.arguments = arguments(second);
+    return make(since(first), std::move(call));
+}
+
+// brace_list = "{" [expression {"," expression} [","]] "}"
+ExpressionPtr Grammar::brace_list()
+{
+    const Span opener = span();
+    BraceList list_of;
+    const Nesting nesting(*this, Nesting::bracket);
+    if (nesting.too_deep()) {
+        skip_brackets();
+        return make(since(opener), ErrorExpression{});
+    }
+    advance();
+    while (!at(Token::right_brace) && !at(Token::end)) {
+        if (at(Token::left_brace)) {
+            error(span(), "nested-table", "tables have one dimension").hint =
+                "write the rows one behind the other and index by row * columns + column";
+            brace_list();
+        } else {
+            list_of.elements.push_back(expression());
+        }
+        if (!accept(Token::comma)) break;
+    }
+    close(Token::right_brace, opener, true);
+    return make(since(opener), std::move(list_of));
+}
+
+} // namespace haptel::lang

@@ -1,0 +1,93 @@
+#include "lang/parser.h"
+
+#include "lang/grammar.h"
+
+#include <algorithm>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+File parse(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics)
+{
+    return Grammar(sources, file, lex(sources, file, diagnostics), diagnostics).parse_file();
+}
+
+Grammar::Grammar(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink)
+    : TokenCursor(all_sources, file_index, std::move(token_list), sink)
+{
+}
+
+// file = {import | constants | texture | function | ";"}
+File Grammar::parse_file()
+{
+    File result;
+    while (!at(Token::end)) {
+        lost = false;
+        depth = Nesting::bracket;
+        const size_t first_position = position;
+        if (accept(Token::semicolon)) continue;
+        if (at(Token::kw_import)) {
+            import_declaration(result);
+        } else if (at(Token::kw_const)) {
+            constants(result);
+        } else if (at(Token::kw_texture)) {
+            texture(result);
+        } else if (at(Token::name)) {
+            top_level_name(result);
+        } else {
+            error(span(), "syntax", "expected a texture, function, constant or import" + found());
+        }
+        if (lost) find_top_level();
+        if (position == first_position) advance();
+    }
+    return result;
+}
+
+// A name at the top: a function's type; or a slip.
+void Grammar::top_level_name(File& result)
+{
+    if (const ForeignWord* foreign = foreign_word(ForeignKind::declaration, text())) {
+        skip_foreign_declaration(*foreign);
+        return;
+    }
+    const std::string_view guess =
+        is_type_word(text()) ? std::string_view{} : nearest_name(text(), {"texture", "import", "const"});
+    if (!guess.empty() && kind(1) == Token::name) {
+        Diagnostic& reported = diagnostics.error(
+            span(), "syntax", "expected 'texture' or the type of a function, found '" + std::string(text()) + "'");
+        reported.hint = "did you mean '" + std::string(guess) + "'?";
+        reported.fix = FixIt{span(), std::string(guess)};
+        if (guess == "texture")
+            texture(result);
+        else
+            lost = true;
+        return;
+    }
+    if (kind(1) == Token::name || kind(1) == Token::left_bracket || is_type_word(text())) {
+        function_or_variable(result);
+        return;
+    }
+    const Span first = span();
+    Diagnostic& reported = error(first, "syntax", "expected a texture, function, constant or import" + found());
+    if (kind(1) == Token::left_paren || kind(1) == Token::assign)
+        reported.hint = "statements stand inside functions and textures";
+}
+
+// After a mistake: before the next declaration, or behind the ';' or '}' that ends this one.
+void Grammar::find_top_level()
+{
+    uint32_t open_braces = 0;
+    if (position > 0 && list.tokens[position - 1].kind == Token::right_brace) return;
+    for (; !at(Token::end) && !at(Token::kw_texture) && !at(Token::kw_import); advance()) {
+        if (at(Token::left_brace)) ++open_braces;
+        const bool closes = at(Token::right_brace) && open_braces > 0 && --open_braces == 0;
+        if (closes || (at(Token::semicolon) && open_braces == 0)) {
+            advance();
+            return;
+        }
+        if (open_braces == 0 && on_new_line() && (at(Token::kw_const) || at_top_level_start())) return;
+    }
+}
+
+} // namespace haptel::lang
