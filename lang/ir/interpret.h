@@ -4,9 +4,10 @@
 // it is the truth to about 34 digits, with branches and cells decided at that precision.
 #pragma once
 
-#include "lang/abi.h"
 #include "lang/ir/ir.h"
+#include "lang/ir/semantics.h"
 
+#include <memory>
 #include <span>
 #include <variant>
 #include <vector>
@@ -28,5 +29,26 @@ struct EntryInputs {
 template <typename T>
 std::vector<Scalar<T>> interpret(const Module& module, uint32_t function, std::span<const Scalar<T>> arguments,
                                  const EntryInputs<T>* inputs);
+
+// The same, prepared once for many evaluations of one module, which must be verified and must not change meanwhile: no
+// allocation per evaluation. For one thread.
+template <typename T>
+class Interpreter {
+public:
+    explicit Interpreter(const Module& module);
+    ~Interpreter();
+
+    // The results stay valid until the next run.
+    std::span<const Slot<T>> run(uint32_t function, std::span<const Slot<T>> arguments, const EntryInputs<T>* inputs);
+
+    // Digest of every discrete choice of the last run: comparisons, cells, sides of abs, min and max. Two points of one
+    // smooth piece of a texture have equal digests. Recorded only after watch_decisions(true).
+    void watch_decisions(bool on);
+    uint64_t decisions() const;
+
+private:
+    struct Machine;
+    std::unique_ptr<Machine> machine;
+};
 
 } // namespace haptel::ir

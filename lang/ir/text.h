@@ -1,9 +1,10 @@
 // Text form of the IR, printable and parseable: print(parse(text)) == text for printed text. Passes are tested text to
-// text. The grammar stands at the top of text.cpp.
+// text. The grammar stands at the top of parse.cpp.
 #pragma once
 
 #include "lang/ir/ir.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 

@@ -1,0 +1,277 @@
+// What the builder simplifies. Only identities that hold for every bit pattern of the operands, infinities, NaN and
+// both zeros included (any NaN equals any NaN), so that code before and after is the same function:
+//
+//   constant operands        the scalar meaning of semantics.h
+//   reals                    x*1  x/1  x+(-0)  x-(+0) -> x      x*-1  x/-1  (-0)-x -> -x       -(-x) -> x
+//                            x+(-y) -> x-y   x-(-y) -> x+y      (-x)*(-y) -> x*y   (-x)/(-y) -> x/y
+//                            (-x)*c -> x*(-c)   (-x)/c -> x/(-c)   x/2^k -> x*2^-k where both are normal
+//                            x-floor(x) -> fract(x)   min(x,x)  max(x,x) -> x   fma(x,y,-0) -> x*y   fma(1,y,z) -> y+z
+//                            |-x|  ||x|| -> |x|   a rounding of a whole number -> that number   pow(x,1) -> x  pow(x,0)
+//                            -> 1
+//   choice                   select(c,x,x) -> x   select(!c,x,y) -> select(c,y,x)   of booleans: c, !c
+//   booleans, integers       the usual ones; comparisons of x with itself, where NaN allows; casts there and back;
+//                            min, max and % that the operands' ranges decide
+//
+// Not among them: x+0 (loses -0), x*0 and x-x (lose NaN), -(x-y) -> y-x (loses -0), reassociation.
+#include "lang/ir/builder_state.h"
+#include "lang/ir/op_info.h"
+#include "lang/ir/semantics.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace haptel::ir {
+namespace {
+
+bool is_power_of_two(double value)
+{
+    int exponent = 0;
+    return std::isnormal(value) && std::isnormal(1 / value) && std::fabs(std::frexp(value, &exponent)) == 0.5;
+}
+
+bool is_rounding(Op op)
+{
+    return op == Op::floor || op == Op::ceil || op == Op::trunc || op == Op::round;
+}
+
+} // namespace
+
+// One attempt: the operands and what is known of them.
+class Builder::State::Fold {
+public:
+    Fold(Builder& maker, const Builder::State& known, Op tried, std::span<const Value> given)
+        : builder(maker), state(known), op(tried), operands(given)
+    {
+    }
+
+    std::optional<Value> run()
+    {
+        if (std::all_of(operands.begin(), operands.end(), [&](Value value) { return state.is_constant(value); }))
+            return constant();
+        if (op == Op::select) return choice();
+        switch (builder.type(operands[0])) {
+        case Type::real: return operands.size() == 1 ? real_unary() : real();
+        case Type::boolean: return boolean();
+        case Type::i32:
+        case Type::u32: return operands.size() == 1 ? cast() : integer();
+        }
+        return std::nullopt;
+    }
+
+private:
+    Builder& builder;
+    const Builder::State& state;
+    Op op;
+    std::span<const Value> operands;
+
+    Value make(Op made, std::initializer_list<Value> values) { return builder.operation(made, values); }
+    bool was(Value value, Op made) const { return state.is_operation(value, made); }
+    Value inner(Value value, size_t i = 0) const { return state.definition(value).operand[i]; }
+    bool is(Value value, double constant) const
+    {
+        std::optional<double> known = builder.real_constant(value);
+        return known && *known == constant && std::signbit(*known) == std::signbit(constant);
+    }
+    bool is_int(Value value, int64_t constant) const { return range(value) == IntRange{constant, constant}; }
+    IntRange range(Value value) const { return state.definition(value).range; }
+
+    Slot<double> slot(Value value) const
+    {
+        const Definition& made = state.definition(value);
+        return {made.real, static_cast<uint32_t>(made.range.minimum)};
+    }
+
+    Value constant()
+    {
+        Slot<double> in[4], out;
+        Type types[4];
+        for (size_t i = 0; i < operands.size(); ++i) in[i] = slot(operands[i]), types[i] = builder.type(operands[i]);
+        execute(op, out, in[0], in[1], in[2], in[3]);
+        switch (*result_type(op, {types, operands.size()})) {
+        case Type::real: return builder.real(out.real);
+        case Type::i32: return builder.i32(static_cast<int32_t>(out.bits));
+        case Type::u32: return builder.u32(out.bits);
+        case Type::boolean: return builder.boolean(out.bits != 0);
+        }
+        return {};
+    }
+
+    std::optional<Value> choice()
+    {
+        Value condition = operands[0], a = operands[1], b = operands[2];
+        if (a == b) return a;
+        if (std::optional<bool> known = builder.bool_constant(condition)) return *known ? a : b;
+        if (was(condition, Op::lnot)) return make(Op::select, {inner(condition), b, a});
+        if (auto x = builder.bool_constant(a), y = builder.bool_constant(b); x && y)
+            return *x ? condition : make(Op::lnot, {condition});
+        return std::nullopt;
+    }
+
+    std::optional<Value> real_unary()
+    {
+        Value x = operands[0];
+        if (op == Op::neg && was(x, Op::neg)) return inner(x);
+        if (op == Op::abs && was(x, Op::neg)) return make(Op::abs, {inner(x)});
+        if (op == Op::abs && was(x, Op::abs)) return x;
+        bool is_whole = was(x, Op::i_to_r) || was(x, Op::u_to_r) || was(x, Op::floor) || was(x, Op::ceil) ||
+                        was(x, Op::trunc) || was(x, Op::round);
+        if (is_rounding(op) && is_whole) return x;
+        if (op == Op::is_finite && (was(x, Op::i_to_r) || was(x, Op::u_to_r))) return builder.boolean(true);
+        if (op == Op::r_to_i && was(x, Op::i_to_r)) return inner(x);
+        if (op == Op::r_to_u && was(x, Op::u_to_r)) return inner(x);
+        return std::nullopt;
+    }
+
+    std::optional<Value> real()
+    {
+        Value x = operands[0], y = operands[1];
+        if (op == Op::add) {
+            if (is(y, -0.0)) return x;
+            if (is(x, -0.0)) return y;
+            if (was(y, Op::neg)) return make(Op::sub, {x, inner(y)});
+            if (was(x, Op::neg)) return make(Op::sub, {y, inner(x)});
+        }
+        if (op == Op::sub) {
+            if (is(y, 0.0)) return x;
+            if (is(x, -0.0)) return make(Op::neg, {y});
+            if (was(y, Op::neg)) return make(Op::add, {x, inner(y)});
+            if (was(y, Op::floor) && inner(y) == x) return make(Op::fract, {x});
+        }
+        if (op == Op::mul) {
+            if (is(y, 1)) return x;
+            if (is(x, 1)) return y;
+            if (is(y, -1)) return make(Op::neg, {x});
+            if (is(x, -1)) return make(Op::neg, {y});
+        }
+        if (op == Op::div) {
+            if (is(y, 1)) return x;
+            if (is(y, -1)) return make(Op::neg, {x});
+            if (auto c = builder.real_constant(y); c && is_power_of_two(*c))
+                return make(Op::mul, {x, builder.real(1 / *c)});
+        }
+        if (op == Op::mul || op == Op::div) {
+            if (was(x, Op::neg) && was(y, Op::neg)) return make(op, {inner(x), inner(y)});
+            if (auto c = builder.real_constant(y); c && was(x, Op::neg)) return make(op, {inner(x), builder.real(-*c)});
+            if (auto c = builder.real_constant(x); c && was(y, Op::neg)) return make(op, {builder.real(-*c), inner(y)});
+        }
+        if (op == Op::fma && is(operands[2], -0.0)) return make(Op::mul, {x, y});
+        if (op == Op::fma && is(x, 1)) return make(Op::add, {y, operands[2]});
+        if (op == Op::fma && is(y, 1)) return make(Op::add, {x, operands[2]});
+        if ((op == Op::min || op == Op::max) && x == y) return x;
+        if (op == Op::lt && x == y) return builder.boolean(false);
+        if (op == Op::pow && is(y, 1)) return x;
+        if (op == Op::pow && (is(y, 0.0) || is(y, -0.0))) return builder.real(1);
+        return std::nullopt;
+    }
+
+    std::optional<Value> boolean()
+    {
+        Value x = operands[0];
+        if (op == Op::lnot && was(x, Op::lnot)) return inner(x);
+        if (operands.size() != 2) return std::nullopt;
+        Value y = operands[1];
+        if (builder.bool_constant(x)) std::swap(x, y);
+        std::optional<bool> known = builder.bool_constant(y);
+        if (op == Op::land && (x == y || known)) return x == y || *known ? x : y;
+        if (op == Op::lor && (x == y || known)) return x == y || !*known ? x : y;
+        if (op == Op::lxor && x == y) return builder.boolean(false);
+        if (op == Op::lxor && known) return *known ? make(Op::lnot, {x}) : x;
+        return std::nullopt;
+    }
+
+    std::optional<Value> cast()
+    {
+        Value x = operands[0];
+        if (op == Op::i_as_u && was(x, Op::u_as_i)) return inner(x);
+        if (op == Op::u_as_i && was(x, Op::i_as_u)) return inner(x);
+        return std::nullopt;
+    }
+
+    std::optional<Value> integer()
+    {
+        Value x = operands[0], y = operands[1];
+        auto number = [&](int64_t value) {
+            return builder.type(x) == Type::i32 ? builder.i32(static_cast<int32_t>(value))
+                                                : builder.u32(static_cast<uint32_t>(value));
+        };
+        switch (op) {
+        case Op::iadd:
+            if (is_int(y, 0)) return x;
+            if (is_int(x, 0)) return y;
+            break;
+        case Op::isub:
+            if (is_int(y, 0)) return x;
+            if (x == y) return number(0);
+            break;
+        case Op::imul:
+            if (is_int(y, 1)) return x;
+            if (is_int(x, 1)) return y;
+            if (is_int(x, 0) || is_int(y, 0)) return number(0);
+            break;
+        case Op::idiv:
+        case Op::udiv:
+            if (is_int(y, 1)) return x;
+            break;
+        case Op::irem:
+        case Op::urem:
+            if (is_int(y, 1)) return number(0);
+            if (range(x).minimum >= 0 && range(x).maximum < range(y).minimum) return x;
+            break;
+        case Op::iand:
+            if (x == y || is_int(y, -1)) return x;
+            if (is_int(x, -1)) return y;
+            if (is_int(x, 0) || is_int(y, 0)) return number(0);
+            break;
+        case Op::ior:
+            if (x == y || is_int(y, 0)) return x;
+            if (is_int(x, 0)) return y;
+            break;
+        case Op::ixor:
+            if (x == y) return number(0);
+            if (is_int(y, 0)) return x;
+            if (is_int(x, 0)) return y;
+            break;
+        case Op::ishl:
+        case Op::ishr:
+        case Op::ushr:
+            if (is_int(y, 0)) return x;
+            break;
+        case Op::imin:
+        case Op::umin:
+            if (range(x).maximum <= range(y).minimum) return x;
+            if (range(y).maximum <= range(x).minimum) return y;
+            if (x == y) return x;
+            break;
+        case Op::imax:
+        case Op::umax:
+            if (range(x).minimum >= range(y).maximum) return x;
+            if (range(y).minimum >= range(x).maximum) return y;
+            if (x == y) return x;
+            break;
+        case Op::ilt:
+        case Op::ult:
+            if (range(x).maximum < range(y).minimum) return builder.boolean(true);
+            if (x == y || range(x).minimum >= range(y).maximum) return builder.boolean(false);
+            break;
+        case Op::ile:
+        case Op::ule:
+            if (x == y || range(x).maximum <= range(y).minimum) return builder.boolean(true);
+            if (range(x).minimum > range(y).maximum) return builder.boolean(false);
+            break;
+        case Op::ieq:
+        case Op::ueq:
+            if (x == y) return builder.boolean(true);
+            break;
+        default: break; // no other operation takes two integers
+        }
+        return std::nullopt;
+    }
+};
+
+std::optional<Value> Builder::State::fold(Builder& builder, Op op, std::span<const Value> operands) const
+{
+    return Fold(builder, *this, op, operands).run();
+}
+
+} // namespace haptel::ir

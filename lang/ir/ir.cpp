@@ -1,0 +1,131 @@
+#include "lang/ir/op_info.h"
+
+#include <algorithm>
+#include <array>
+#include <type_traits>
+
+namespace haptel::ir {
+namespace {
+
+constexpr std::string_view operands_of(std::string_view signature)
+{
+    return signature.substr(0, signature.find('>'));
+}
+
+enum Flag { none, reducing };
+
+constexpr OpInfo table[] = {
+#define OP(name, arity, signature, continuity, flag, meaning)                                                          \
+    {Op::name,                                                                                                         \
+     #name,                                                                                                            \
+     arity,                                                                                                            \
+     operands_of(signature),                                                                                           \
+     std::string_view(signature).back(),                                                                               \
+     Continuity::continuity,                                                                                           \
+     flag == reducing,                                                                                                 \
+     meaning},
+#include "lang/ir/ops.def"
+#undef OP
+};
+
+constexpr bool arities_fit_signatures()
+{
+    return std::all_of(std::begin(table), std::end(table), [](const OpInfo& info) {
+        return info.operands.size() == info.arity && info.arity <= 4 &&
+               info.operands.find_first_not_of("riub*") == std::string_view::npos;
+    });
+}
+static_assert(arities_fit_signatures());
+// Adding a function to a module must not move the blocks of the others: they are held by pointer while it is built.
+static_assert(std::is_nothrow_move_constructible_v<Function>);
+
+constexpr std::array<std::string_view, input_count> input_names = {
+    "p_x",      "p_y",      "p_z",      "n_x",      "n_y",      "n_z",      "uv_x",     "uv_y",
+    "time",     "n_dp_00",  "n_dp_01",  "n_dp_02",  "n_dp_10",  "n_dp_11",  "n_dp_12",  "n_dp_20",
+    "n_dp_21",  "n_dp_22",  "uv_dp_00", "uv_dp_01", "uv_dp_02", "uv_dp_10", "uv_dp_11", "uv_dp_12",
+    "center_x", "center_y", "center_z", "extent_x", "extent_y", "extent_z", "footprint"};
+static_assert(input_names.back() == "footprint");
+
+constexpr std::array<std::string_view, 4> type_names = {"real", "i32", "u32", "bool"};
+
+char letter(Type type)
+{
+    switch (type) {
+    case Type::real: return 'r';
+    case Type::i32: return 'i';
+    case Type::u32: return 'u';
+    case Type::boolean: return 'b';
+    }
+    return '?';
+}
+
+template <typename Enum, typename Names>
+std::optional<Enum> find_name(const Names& names, std::string_view name)
+{
+    auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end()) return std::nullopt;
+    return static_cast<Enum>(found - names.begin());
+}
+
+} // namespace
+
+const OpInfo& op_info(Op op)
+{
+    return table[static_cast<size_t>(op)];
+}
+
+std::span<const OpInfo> all_ops()
+{
+    return table;
+}
+
+std::optional<Op> op_named(std::string_view name)
+{
+    for (const OpInfo& info : table)
+        if (info.name == name) return info.op;
+    return std::nullopt;
+}
+
+std::string_view to_string(Type type)
+{
+    return type_names[static_cast<size_t>(type)];
+}
+
+std::string_view to_string(Input input)
+{
+    return input_names[static_cast<size_t>(input)];
+}
+
+std::optional<Type> type_named(std::string_view name)
+{
+    return find_name<Type>(type_names, name);
+}
+
+std::optional<Input> input_named(std::string_view name)
+{
+    return find_name<Input>(input_names, name);
+}
+
+std::optional<Type> result_type(Op op, std::span<const Type> operands)
+{
+    const OpInfo& info = op_info(op);
+    if (operands.size() != info.arity) return std::nullopt;
+    std::optional<Type> any;
+    for (size_t i = 0; i < operands.size(); ++i) {
+        if (info.operands[i] == '*') {
+            if (any && *any != operands[i]) return std::nullopt;
+            any = operands[i];
+        } else if (info.operands[i] != letter(operands[i])) {
+            return std::nullopt;
+        }
+    }
+    switch (info.result) {
+    case 'r': return Type::real;
+    case 'i': return Type::i32;
+    case 'u': return Type::u32;
+    case 'b': return Type::boolean;
+    }
+    return any;
+}
+
+} // namespace haptel::ir

@@ -1,0 +1,497 @@
+// Text to IR. Grammar (line breaks and blanks only separate; "#" starts a comment):
+//
+//   module      { table | function | texture }
+//   table       "table" string type "[" [ number { "," number } ] "]"      referred to by its position, from 0
+//   function    "function" string "(" [ value ":" type { "," value ":" type } ] ")" [ "first" count ] facts
+//               "{" { instruction } "return" [ values ] "}"
+//   facts       { "minimum" number | "maximum" number | "slope" number | "curvature" number | "continuity" count
+//               | "proven" }
+//   instruction values "=" ( operation values | "real" number | "i32" number | "u32" number | "bool" ( "true" | "false"
+//   )
+//               | "input" name | "parameter" count type | "table" count value | "call" string "(" [ values ] ")"
+//               | "if" value "{" arm "}" "else" "{" arm "}"
+//               | "for" value "max" count "(" values ")" "from" "(" [ values ] ")" "{" arm "}" )
+//   arm         { instruction } "yield" [ values ]
+//   values      value { "," value }              value  "%" name
+//   texture     "texture" string "{" [ "doc" string ]
+//               { "parameter" string type number "in" number ".." number "unit" string "offset" count [ "doc" string ]
+//               } "block" count "reads" count "writes" count [ "body" string ] [ "height" string ] [ "height_gradient"
+//               string ] "}"
+//
+// Reading checks names, types and the number of operands; everything else is verify's.
+#include "lang/ir/op_info.h"
+#include "lang/ir/text.h"
+#include "lang/ir/verify.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <map>
+
+namespace haptel::ir {
+namespace {
+
+struct Token {
+    enum class Kind { end, word, string, value, mark } kind = Kind::end; // numbers are words
+    std::string text;
+    int line = 1;
+};
+
+struct Failure {
+    std::string message;
+};
+
+std::vector<Token> tokenize(std::string_view text)
+{
+    std::vector<Token> tokens;
+    int line = 1;
+    auto is_word = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.' ||
+               c == '+' || c == '-' || c == ':';
+    };
+    for (size_t i = 0; i < text.size();) {
+        char c = text[i];
+        if (c == '\n') ++line;
+        if (c == '#')
+            while (i < text.size() && text[i] != '\n') ++i;
+        else if (c == ' ' || c == '\t' || c == '\r' || c == '\n')
+            ++i;
+        else if (c == '"') {
+            Token token{Token::Kind::string, "", line};
+            for (++i; i < text.size() && text[i] != '"'; ++i) {
+                if (text[i] == '\n') ++line;
+                if (text[i] == '\\' && i + 1 < text.size()) {
+                    ++i;
+                    token.text += text[i] == 'n' ? '\n' : text[i];
+                } else
+                    token.text += text[i];
+            }
+            ++i;
+            tokens.push_back(std::move(token));
+        } else if (c == ':' || !is_word(c)) {
+            if (c == '%') {
+                size_t end = ++i;
+                while (end < text.size() && is_word(text[end]) && text[end] != ':') ++end;
+                tokens.push_back({Token::Kind::value, std::string(text.substr(i, end - i)), line});
+                i = end;
+            } else {
+                tokens.push_back({Token::Kind::mark, std::string(1, c), line});
+                ++i;
+            }
+        } else {
+            size_t end = i;
+            while (end < text.size() && is_word(text[end])) ++end;
+            tokens.push_back({Token::Kind::word, std::string(text.substr(i, end - i)), line});
+            i = end;
+        }
+    }
+    tokens.push_back({Token::Kind::end, "", line});
+    return tokens;
+}
+
+size_t edit_distance(std::string_view a, std::string_view b)
+{
+    std::vector<size_t> row(b.size() + 1);
+    for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
+    for (size_t i = 1; i <= a.size(); ++i) {
+        size_t diagonal = row[0];
+        row[0] = i;
+        for (size_t j = 1; j <= b.size(); ++j) {
+            size_t changed = diagonal + (a[i - 1] != b[j - 1]);
+            diagonal = row[j];
+            row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+class Parser {
+public:
+    explicit Parser(std::string_view text) : tokens(tokenize(text)) {}
+
+    ParsedModule run()
+    {
+        try {
+            while (token().kind != Token::Kind::end) {
+                if (accept("table"))
+                    table();
+                else if (accept("function"))
+                    parse_function();
+                else if (accept("texture"))
+                    texture();
+                else
+                    fail("expected 'table', 'function' or 'texture', found " + found());
+            }
+        } catch (const Failure& failure) {
+            return {std::nullopt, "line " + std::to_string(token().line) + ": " + failure.message};
+        }
+        return {std::move(module), ""};
+    }
+
+private:
+    std::vector<Token> tokens;
+    size_t next = 0;
+    Module module;
+    Function function;
+    std::map<std::string, Value, std::less<>> values;
+    std::map<std::string, uint32_t, std::less<>> functions;
+
+    const Token& token() const { return tokens[next]; }
+    std::string found() const { return token().kind == Token::Kind::end ? "the end" : "'" + token().text + "'"; }
+    [[noreturn]] void fail(std::string message) const { throw Failure{std::move(message)}; }
+
+    bool is(std::string_view text) const
+    {
+        return (token().kind == Token::Kind::word || token().kind == Token::Kind::mark) && token().text == text;
+    }
+    bool accept(std::string_view text)
+    {
+        if (!is(text)) return false;
+        ++next;
+        return true;
+    }
+    void expect(std::string_view text)
+    {
+        if (!accept(text)) fail("expected '" + std::string(text) + "', found " + found());
+    }
+    std::string take(Token::Kind kind, std::string_view what)
+    {
+        if (token().kind != kind) fail("expected " + std::string(what) + ", found " + found());
+        return tokens[next++].text;
+    }
+    std::string string() { return take(Token::Kind::string, "a name in quotes"); }
+
+    template <typename Number>
+    Number number(std::string_view what)
+    {
+        if (token().kind != Token::Kind::word) fail("expected " + std::string(what) + ", found " + found());
+        const std::string& text = token().text;
+        Number value{};
+        auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error != std::errc() || end != text.data() + text.size())
+            fail("expected " + std::string(what) + ", found " + found());
+        ++next;
+        return value;
+    }
+    uint32_t count() { return number<uint32_t>("a count"); }
+    double real()
+    {
+        if (token().kind == Token::Kind::word && token().text.starts_with("nan:")) {
+            uint64_t bits = 0;
+            const std::string& text = token().text;
+            std::from_chars(text.data() + 4, text.data() + text.size(), bits, 16);
+            ++next;
+            return std::bit_cast<double>(bits);
+        }
+        return number<double>("a number");
+    }
+    uint32_t word(Type type)
+    {
+        return type == Type::i32 ? static_cast<uint32_t>(number<int32_t>("a 32-bit number"))
+                                 : number<uint32_t>("a 32-bit number");
+    }
+    Type type()
+    {
+        std::optional<Type> named = type_named(token().text);
+        if (token().kind != Token::Kind::word || !named)
+            fail("expected a type (real, i32, u32, bool), found " + found());
+        ++next;
+        return *named;
+    }
+
+    Value use()
+    {
+        if (token().kind != Token::Kind::value) fail("expected a value such as %0, found " + found());
+        auto known = values.find(token().text);
+        if (known == values.end()) fail("%" + token().text + " is not defined here");
+        ++next;
+        return known->second;
+    }
+    std::vector<Value> uses(std::string_view end = "")
+    {
+        std::vector<Value> list;
+        if (!end.empty() ? is(end) : token().kind != Token::Kind::value) return list;
+        do list.push_back(use());
+        while (accept(","));
+        return list;
+    }
+    std::vector<std::string> names()
+    {
+        std::vector<std::string> list;
+        do list.push_back(take(Token::Kind::value, "a value such as %0"));
+        while (accept(","));
+        return list;
+    }
+    Value define(const std::string& name, Type value_type)
+    {
+        function.value_types.push_back(value_type);
+        Value value{static_cast<uint32_t>(function.value_types.size() - 1)};
+        if (!values.emplace(name, value).second) fail("%" + name + " is defined twice");
+        return value;
+    }
+
+    void table()
+    {
+        Table made;
+        made.name = string();
+        made.element = type();
+        if (made.element == Type::boolean) fail("a table holds real, i32 or u32");
+        expect("[");
+        while (!is("]")) {
+            if (made.element == Type::real)
+                made.reals.push_back(real());
+            else
+                made.words.push_back(word(made.element));
+            if (!accept(",")) break;
+        }
+        expect("]");
+        module.tables.push_back(std::move(made));
+    }
+
+    void parse_function()
+    {
+        function = {};
+        values.clear();
+        function.name = string();
+        expect("(");
+        while (!is(")")) {
+            std::string name = take(Token::Kind::value, "a value such as %0");
+            expect(":");
+            function.parameters.push_back(define(name, type()));
+            if (!accept(",")) break;
+        }
+        expect(")");
+        if (accept("first")) function.first_argument_size = count();
+        facts();
+        expect("{");
+        block(function.body, "return", 0);
+        expect("}");
+        if (!functions.emplace(function.name, static_cast<uint32_t>(module.functions.size())).second)
+            fail("function \"" + function.name + "\" is defined twice");
+        module.functions.push_back(std::move(function));
+    }
+
+    void facts()
+    {
+        for (;;) {
+            if (accept("minimum"))
+                function.facts.value_minimum = real();
+            else if (accept("maximum"))
+                function.facts.value_maximum = real();
+            else if (accept("slope"))
+                function.facts.slope = real();
+            else if (accept("curvature"))
+                function.facts.curvature = real();
+            else if (accept("continuity"))
+                function.facts.continuity = count();
+            else if (accept("proven"))
+                function.facts.proven = true;
+            else
+                return;
+        }
+    }
+
+    void block(Block& block, std::string_view ending, uint32_t depth)
+    {
+        if (depth > nesting_max) fail("blocks nest deeper than " + std::to_string(nesting_max));
+        std::vector<std::string> defined;
+        while (!accept(ending)) {
+            std::vector<std::string> results = names();
+            expect("=");
+            Instruction made;
+            std::vector<Type> types = instruction(made, depth);
+            if (types.size() != results.size())
+                fail(std::to_string(types.size()) + " results, " + std::to_string(results.size()) + " names");
+            for (size_t i = 0; i < types.size(); ++i) made.results.push_back(define(results[i], types[i]));
+            defined.insert(defined.end(), results.begin(), results.end());
+            block.instructions.push_back(std::move(made));
+        }
+        block.yields = uses();
+        for (const std::string& name : defined) values.erase(name);
+    }
+
+    // Reads what stands right of "="; returns the types of the results.
+    std::vector<Type> instruction(Instruction& made, uint32_t depth)
+    {
+        if (accept("real")) {
+            made.kind = RealConstant{real()};
+            return {Type::real};
+        }
+        for (Type integer : {Type::i32, Type::u32})
+            if (accept(to_string(integer))) {
+                made.kind = IntConstant{word(integer)};
+                return {integer};
+            }
+        if (accept("bool")) {
+            bool value = accept("true");
+            if (!value) expect("false");
+            made.kind = BoolConstant{value};
+            return {Type::boolean};
+        }
+        if (accept("input")) {
+            std::optional<Input> input = input_named(token().text);
+            if (!input) fail("unknown input " + found());
+            ++next;
+            made.kind = ReadInput{*input};
+            return {Type::real};
+        }
+        if (accept("parameter")) {
+            made.kind = ReadParameter{count()};
+            return {type()};
+        }
+        if (accept("table")) {
+            uint32_t index = count();
+            if (index >= module.tables.size()) fail("there is no table " + std::to_string(index));
+            made.kind = ReadTable{index};
+            made.operands = {use()};
+            return {module.tables[index].element};
+        }
+        if (accept("call")) return call(made);
+        if (accept("if")) return choice(made, depth);
+        if (accept("for")) return loop(made, depth);
+        return operation(made);
+    }
+
+    std::vector<Type> types_of(const std::vector<Value>& list, size_t first = 0) const
+    {
+        std::vector<Type> types;
+        for (size_t i = first; i < list.size(); ++i) types.push_back(function.type(list[i]));
+        return types;
+    }
+
+    std::vector<Type> operation(Instruction& made)
+    {
+        std::optional<Op> op = op_named(token().text);
+        if (token().kind != Token::Kind::word || !op) fail("unknown operation " + found() + suggestion());
+        ++next;
+        made.kind = Operation{*op};
+        made.operands = uses();
+        std::optional<Type> result = result_type(*op, types_of(made.operands));
+        if (!result)
+            fail("operands do not fit '" + std::string(op_info(*op).name) + "': " + std::string(op_info(*op).operands) +
+                 " expected");
+        return {*result};
+    }
+
+    std::string suggestion() const
+    {
+        std::string_view best;
+        size_t best_distance = 3;
+        for (const OpInfo& info : all_ops())
+            if (size_t distance = edit_distance(token().text, info.name); distance < best_distance)
+                best = info.name, best_distance = distance;
+        return best.empty() ? "" : ", did you mean '" + std::string(best) + "'?";
+    }
+
+    std::vector<Type> call(Instruction& made)
+    {
+        auto callee = functions.find(token().text);
+        if (token().kind != Token::Kind::string || callee == functions.end())
+            fail("no function " + found() + " before this one");
+        ++next;
+        const Function& called = module.functions[callee->second];
+        made.kind = Call{callee->second};
+        expect("(");
+        made.operands = uses(")");
+        expect(")");
+        std::vector<Type> types;
+        for (Value result : called.body.yields) types.push_back(called.type(result));
+        return types;
+    }
+
+    std::vector<Type> choice(Instruction& made, uint32_t depth)
+    {
+        made.operands = {use()};
+        If arms;
+        arms.arms.resize(2);
+        expect("{");
+        block(arms.arms[0], "yield", depth + 1);
+        expect("}");
+        expect("else");
+        expect("{");
+        block(arms.arms[1], "yield", depth + 1);
+        expect("}");
+        std::vector<Type> types = types_of(arms.arms[0].yields);
+        made.kind = std::move(arms);
+        return types;
+    }
+
+    std::vector<Type> loop(Instruction& made, uint32_t depth)
+    {
+        made.operands = {use()};
+        expect("max");
+        For loop{count(), std::vector<Block>(1)};
+        expect("(");
+        std::vector<std::string> parameters = names();
+        expect(")");
+        expect("from");
+        expect("(");
+        std::vector<Value> initial = uses(")");
+        expect(")");
+        if (parameters.size() != initial.size() + 1)
+            fail(std::to_string(parameters.size()) + " parameters for the iteration and " +
+                 std::to_string(initial.size()) + " carried values");
+        made.operands.insert(made.operands.end(), initial.begin(), initial.end());
+        std::vector<Type> types = types_of(initial);
+        loop.body[0].parameters.push_back(define(parameters[0], Type::i32));
+        for (size_t i = 0; i < types.size(); ++i)
+            loop.body[0].parameters.push_back(define(parameters[i + 1], types[i]));
+        expect("{");
+        block(loop.body[0], "yield", depth + 1);
+        expect("}");
+        for (const std::string& name : parameters) values.erase(name);
+        made.kind = std::move(loop);
+        return types;
+    }
+
+    void texture()
+    {
+        Texture made;
+        made.name = string();
+        expect("{");
+        if (accept("doc")) made.doc = string();
+        while (accept("parameter")) {
+            Parameter parameter;
+            parameter.name = string();
+            parameter.type = type();
+            parameter.value = real();
+            expect("in");
+            parameter.minimum = real();
+            expect("..");
+            parameter.maximum = real();
+            expect("unit");
+            parameter.unit = string();
+            expect("offset");
+            parameter.offset = count();
+            if (accept("doc")) parameter.doc = string();
+            made.parameters.push_back(std::move(parameter));
+        }
+        expect("block");
+        made.block_size = count();
+        expect("reads");
+        made.reads = count();
+        expect("writes");
+        made.writes = count();
+        auto entry = [&](std::string_view role, uint32_t& index) {
+            if (!accept(role)) return;
+            auto known = functions.find(token().text);
+            if (known == functions.end()) fail("no function " + found());
+            ++next;
+            index = known->second;
+        };
+        entry("body", made.body);
+        entry("height", made.height);
+        entry("height_gradient", made.height_gradient);
+        expect("}");
+        module.textures.push_back(std::move(made));
+    }
+};
+
+} // namespace
+
+ParsedModule parse(std::string_view text)
+{
+    return Parser(text).run();
+}
+
+} // namespace haptel::ir

@@ -1,0 +1,300 @@
+// The meaning of every operation on numbers, once, for any real type T: the interpreter executes it, the builder folds
+// constants by it, and code generation must agree with it bit for bit over double.
+//
+// Two classes for code generation:
+//   library calls  sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp exp2 log log2 pow atan2 call the C
+//                  library's function of that name (atan2 after the test for the origin). sinturn and costurn call
+//                  sin after the reduction below.
+//   inline         everything else, in IEEE arithmetic rounded to nearest, in the order written here. fma, sqrt, floor,
+//                  ceil, trunc and round-to-even are exact or correctly rounded, so that an instruction and the library
+//                  agree.
+// Bits of a NaN are not part of the meaning: no operation can see them.
+#pragma once
+
+#include "lang/ir/ir.h"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+
+namespace haptel::ir {
+
+// One scalar of any type: `real` counts for reals, `bits` for integers (two's complement) and booleans (0 or 1).
+template <typename T>
+struct Slot {
+    T real{};
+    uint32_t bits = 0;
+};
+
+namespace semantics {
+
+template <typename T>
+bool is_nan(const T& a)
+{
+    return !(a == a);
+}
+
+template <typename T>
+bool is_finite(const T& a)
+{
+    return a - a == T(0);
+}
+
+template <typename T>
+T minimum(const T& a, const T& b)
+{
+    using std::signbit;
+    if (is_nan(a) || is_nan(b)) return a + b;
+    if (a == b) return signbit(a) ? a : b;
+    return a < b ? a : b;
+}
+
+template <typename T>
+T maximum(const T& a, const T& b)
+{
+    using std::signbit;
+    if (is_nan(a) || is_nan(b)) return a + b;
+    if (a == b) return signbit(a) ? b : a;
+    return a < b ? b : a;
+}
+
+// 0 of either sign and NaN are returned as they are.
+template <typename T>
+T sign(const T& a)
+{
+    return a > T(0) ? T(1) : a < T(0) ? T(-1) : a;
+}
+
+template <typename T>
+T round_to_even(const T& a)
+{
+    using std::copysign, std::floor;
+    T below = floor(a);
+    T rest = a - below;
+    if (!(rest == rest)) return a; // infinite or NaN
+    T half = below / T(2);
+    bool up = rest > T(0.5) || (rest == T(0.5) && floor(half) != half);
+    return copysign(up ? below + T(1) : below, a);
+}
+
+inline double round_to_even(double a)
+{
+    return std::nearbyint(a); // the rounding mode is to nearest even in every thread
+}
+
+template <typename T>
+T fused_multiply_add(const T& a, const T& b, const T& c)
+{
+    return a * b + c; // the oracle's T is so much finer that the second rounding does not matter
+}
+
+inline double fused_multiply_add(double a, double b, double c)
+{
+    return std::fma(a, b, c);
+}
+
+template <typename T>
+T two_pi()
+{
+    using std::acos;
+    static const T value = T(2) * acos(T(-1));
+    return value;
+}
+
+template <>
+inline double two_pi<double>()
+{
+    return 2 * std::numbers::pi;
+}
+
+// Scaled by a power of two only where squares could overflow or lose bits, so that the result is that of the plain
+// formula everywhere else: m = max |x_i|, s = m > 2^500 ? 2^-600 : m < 2^-500 ? 2^600 : 1,
+// sqrt(((x s)^2 + (y s)^2) + ...) (1 / s).
+template <typename T>
+T length(const T* x, int count)
+{
+    using std::fabs, std::sqrt;
+    T m = fabs(x[0]);
+    for (int i = 1; i < count; ++i) m = maximum(m, T(fabs(x[i])));
+    T scale(1), unscale(1);
+    if (m > T(0x1p500)) {
+        scale = T(0x1p-600);
+        unscale = T(0x1p600);
+    } else if (m < T(0x1p-500)) {
+        scale = T(0x1p600);
+        unscale = T(0x1p-600);
+    }
+    T first = x[0] * scale;
+    T sum = first * first;
+    for (int i = 1; i < count; ++i) {
+        T next = x[i] * scale;
+        sum = sum + next * next;
+    }
+    return sqrt(sum) * unscale;
+}
+
+// r = a - round(a) is exact; folding |r| about 1/4 keeps the argument of sin within a quarter turn, so that half turns
+// give exactly 0 and quarter turns exactly 1.
+template <typename T>
+T sine_of_turns(const T& a)
+{
+    using std::copysign, std::fabs, std::sin;
+    T r = a - round_to_even(a);
+    T folded = fabs(r);
+    if (folded > T(0.25)) folded = T(0.5) - folded;
+    return copysign(T(sin(two_pi<T>() * folded)), r);
+}
+
+template <typename T>
+T cosine_of_turns(const T& a)
+{
+    using std::fabs, std::sin;
+    T r = a - round_to_even(a);
+    return sin(two_pi<T>() * (T(0.25) - fabs(r)));
+}
+
+template <typename T>
+T angle(const T& y, const T& x)
+{
+    using std::atan2;
+    return y == T(0) && x == T(0) ? T(0) : T(atan2(y, x));
+}
+
+template <typename T>
+uint32_t to_i32(const T& a)
+{
+    if (is_nan(a)) return 0;
+    if (a <= T(-2147483648.0)) return 0x80000000u;
+    if (a >= T(2147483647.0)) return 0x7fffffffu;
+    return static_cast<uint32_t>(static_cast<int32_t>(a));
+}
+
+template <typename T>
+uint32_t to_u32(const T& a)
+{
+    if (is_nan(a) || a <= T(0)) return 0;
+    if (a >= T(4294967295.0)) return 0xffffffffu;
+    return static_cast<uint32_t>(a);
+}
+
+inline uint32_t divide(int32_t a, int32_t b)
+{
+    if (b == 0) return 0;
+    if (b == -1) return 0u - static_cast<uint32_t>(a);
+    return static_cast<uint32_t>(a / b);
+}
+
+inline uint32_t remainder(int32_t a, int32_t b)
+{
+    return b == 0 || b == -1 ? 0 : static_cast<uint32_t>(a % b);
+}
+
+} // namespace semantics
+
+// Executes `op` on up to three operands (length4: the fourth follows c in memory order a, b, c, d).
+template <typename T>
+inline void execute(Op op, Slot<T>& result, const Slot<T>& a, const Slot<T>& b, const Slot<T>& c, const Slot<T>& d)
+{
+    namespace s = semantics;
+    using std::acos, std::acosh, std::asin, std::asinh, std::atan, std::atanh, std::ceil, std::cos, std::cosh, std::exp,
+        std::exp2, std::fabs, std::floor, std::log, std::log2, std::pow, std::sin, std::sinh, std::sqrt, std::tan,
+        std::tanh, std::trunc;
+    auto i32 = [](const Slot<T>& slot) { return static_cast<int32_t>(slot.bits); };
+    switch (op) {
+    case Op::add: result.real = a.real + b.real; return;
+    case Op::sub: result.real = a.real - b.real; return;
+    case Op::mul: result.real = a.real * b.real; return;
+    case Op::div: result.real = a.real / b.real; return;
+    case Op::neg: result.real = -a.real; return;
+    case Op::fma: result.real = s::fused_multiply_add(a.real, b.real, c.real); return;
+    case Op::min: result.real = s::minimum(a.real, b.real); return;
+    case Op::max: result.real = s::maximum(a.real, b.real); return;
+    case Op::abs: result.real = fabs(a.real); return;
+    case Op::sign: result.real = s::sign(a.real); return;
+    case Op::floor: result.real = floor(a.real); return;
+    case Op::ceil: result.real = ceil(a.real); return;
+    case Op::trunc: result.real = trunc(a.real); return;
+    case Op::round: result.real = s::round_to_even(a.real); return;
+    case Op::fract: result.real = a.real - T(floor(a.real)); return;
+    case Op::mod: result.real = a.real - b.real * T(floor(T(a.real / b.real))); return;
+    case Op::sqrt: result.real = sqrt(a.real); return;
+    case Op::length2: {
+        const T x[] = {a.real, b.real};
+        result.real = s::length(x, 2);
+        return;
+    }
+    case Op::length3: {
+        const T x[] = {a.real, b.real, c.real};
+        result.real = s::length(x, 3);
+        return;
+    }
+    case Op::length4: {
+        const T x[] = {a.real, b.real, c.real, d.real};
+        result.real = s::length(x, 4);
+        return;
+    }
+    case Op::sin: result.real = sin(a.real); return;
+    case Op::cos: result.real = cos(a.real); return;
+    case Op::tan: result.real = tan(a.real); return;
+    case Op::sinturn: result.real = s::sine_of_turns(a.real); return;
+    case Op::costurn: result.real = s::cosine_of_turns(a.real); return;
+    case Op::asin: result.real = asin(a.real); return;
+    case Op::acos: result.real = acos(a.real); return;
+    case Op::atan: result.real = atan(a.real); return;
+    case Op::atan2: result.real = s::angle(a.real, b.real); return;
+    case Op::sinh: result.real = sinh(a.real); return;
+    case Op::cosh: result.real = cosh(a.real); return;
+    case Op::tanh: result.real = tanh(a.real); return;
+    case Op::asinh: result.real = asinh(a.real); return;
+    case Op::acosh: result.real = acosh(a.real); return;
+    case Op::atanh: result.real = atanh(a.real); return;
+    case Op::exp: result.real = exp(a.real); return;
+    case Op::exp2: result.real = exp2(a.real); return;
+    case Op::log: result.real = log(a.real); return;
+    case Op::log2: result.real = log2(a.real); return;
+    case Op::pow: result.real = pow(a.real, b.real); return;
+    case Op::lt: result.bits = a.real < b.real; return;
+    case Op::le: result.bits = a.real <= b.real; return;
+    case Op::eq: result.bits = a.real == b.real; return;
+    case Op::is_finite: result.bits = s::is_finite(a.real); return;
+    case Op::ilt: result.bits = i32(a) < i32(b); return;
+    case Op::ile: result.bits = i32(a) <= i32(b); return;
+    case Op::ieq: result.bits = a.bits == b.bits; return;
+    case Op::ult: result.bits = a.bits < b.bits; return;
+    case Op::ule: result.bits = a.bits <= b.bits; return;
+    case Op::ueq: result.bits = a.bits == b.bits; return;
+    case Op::land: result.bits = a.bits & b.bits; return;
+    case Op::lor: result.bits = a.bits | b.bits; return;
+    case Op::lxor: result.bits = a.bits ^ b.bits; return;
+    case Op::lnot: result.bits = a.bits ^ 1u; return;
+    case Op::select: result = a.bits ? b : c; return;
+    case Op::iadd: result.bits = a.bits + b.bits; return;
+    case Op::isub: result.bits = a.bits - b.bits; return;
+    case Op::imul: result.bits = a.bits * b.bits; return;
+    case Op::idiv: result.bits = s::divide(i32(a), i32(b)); return;
+    case Op::irem: result.bits = s::remainder(i32(a), i32(b)); return;
+    case Op::iand: result.bits = a.bits & b.bits; return;
+    case Op::ior: result.bits = a.bits | b.bits; return;
+    case Op::ixor: result.bits = a.bits ^ b.bits; return;
+    case Op::ishl: result.bits = a.bits << (b.bits & 31); return;
+    case Op::ishr: result.bits = static_cast<uint32_t>(i32(a) >> (b.bits & 31)); return;
+    case Op::imin: result.bits = i32(a) < i32(b) ? a.bits : b.bits; return;
+    case Op::imax: result.bits = i32(a) < i32(b) ? b.bits : a.bits; return;
+    case Op::udiv: result.bits = b.bits ? a.bits / b.bits : 0; return;
+    case Op::urem: result.bits = b.bits ? a.bits % b.bits : 0; return;
+    case Op::ushr: result.bits = a.bits >> (b.bits & 31); return;
+    case Op::umin: result.bits = a.bits < b.bits ? a.bits : b.bits; return;
+    case Op::umax: result.bits = a.bits < b.bits ? b.bits : a.bits; return;
+    case Op::i_to_r: result.real = T(i32(a)); return;
+    case Op::u_to_r: result.real = T(a.bits); return;
+    case Op::r_to_i: result.bits = s::to_i32(a.real); return;
+    case Op::r_to_u: result.bits = s::to_u32(a.real); return;
+    case Op::i_as_u: result.bits = a.bits; return;
+    case Op::u_as_i: result.bits = a.bits; return;
+    case Op::b_to_i: result.bits = a.bits; return;
+    case Op::detach: result.real = a.real; return;
+    }
+}
+
+} // namespace haptel::ir
