@@ -16,6 +16,7 @@
 // walked on is seen.
 #pragma once
 
+#include "runtime/proxy.h"
 #include "runtime/surface.h"
 
 #include <cstdint>
@@ -58,16 +59,23 @@ struct ContactCounters {
     uint64_t hands_held = 0; // poses that were not finite
 };
 
+// A ball that holds no triangle: while the hand is inside, there is nothing to collide with. Lattice units.
+struct Clearance {
+    glm::dvec3 centre{0};
+    double radius = 0;
+    double next_radius = 0; // to try when the hand has left the ball; 0: not tried yet
+};
+
 class PointContact {
 public:
     explicit PointContact(std::shared_ptr<const Surface> surface);
-    ~PointContact();
-    PointContact(PointContact&&) noexcept;
-    PointContact& operator=(PointContact&&) noexcept;
 
     // One tick. The first after construction or reset() puts the probe down where the hand is, wherever that is: a hand
     // that starts inside a closed object is inside it, free, and feels the wall from within.
-    const Contact& update(const glm::dvec3& hand_m, const Friction& friction = {}) noexcept;
+    const Contact& update(const glm::dvec3& hand_m, const Friction& friction = {}) noexcept
+    {
+        return update(hand_m, nullptr, friction);
+    }
     void reset() noexcept;
 
     const Contact& contact() const noexcept { return contact_; }
@@ -76,21 +84,22 @@ public:
 
 private:
     friend class StylusContact;
-    friend class Walk;
 
-    enum class Where : uint8_t { nowhere, free, face, edge, vertex };
+    const Contact& update(const glm::dvec3& hand_m, const glm::dvec3* tail, const Friction& friction) noexcept;
+    bool take(const glm::dvec3& hand_m) noexcept;
+    void move_freely(const glm::dvec3& hand) noexcept;
+    bool sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept;
+    void refresh_clearance(double step) noexcept;
+    void finish(const Friction& friction) noexcept;
+    void describe() noexcept;
 
     std::shared_ptr<const Surface> surface_;
     Contact contact_;
     ContactCounters counters_;
-    // The proxy, in lattice units. `index_` is the edge or corner of face_ that the proxy is on.
-    Where where_ = Where::nowhere;
-    uint32_t face_ = 0, side_ = 0, index_ = 0;
-    glm::dvec3 proxy_{0}, hand_{0};
-    bool sliding_ = false;
-    // A ball around clear_centre_ that holds no triangle's box, and the radius to try next.
-    glm::dvec3 clear_centre_{0};
-    double clear_radius_ = 0, clear_try_ = 0;
+    Proxy proxy_;
+    glm::dvec3 hand_{0}; // lattice units
+    bool placed_ = false;
+    Clearance clear_;
 };
 
 // The stylus of the paper: a segment from tail to tip. Its tip is tracked like a point probe; the first tick also looks

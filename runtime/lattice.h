@@ -19,7 +19,7 @@ struct Lattice {
     glm::dvec3 centre_m{0};
     double unit_m = 1; // a power of two, so that scaling is exact
 
-    // The lattice whose vertices can hold the box. The box must be finite; a box without extent gets a unit of 1 m.
+    // The lattice whose vertices can hold the box. The box must be finite; a box without extent is taken as 1 m wide.
     static Lattice around(const glm::dvec3& minimum_m, const glm::dvec3& maximum_m) noexcept;
 
     glm::dvec3 snap(const glm::dvec3& point_m) const noexcept;        // nearest point, clamped to the workspace

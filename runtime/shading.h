@@ -13,9 +13,9 @@ glm::dvec3 shading_normal(const Surface& surface, uint32_t face, uint32_t side, 
 
 struct Shading {
     glm::dvec3 normal{0, 0, 1};
-    double normal_dp[3][3] = {}; // 1/m: [i][j] = d normal_i / d p_j along the facet; 0 across it
+    glm::dmat3 normal_dp{0}; // 1/m: column j is d normal / d p_j, along the facet; 0 across it
     glm::dvec2 uv{0};
-    double uv_dp[2][3] = {}; // 1/m, likewise; 0 without texture coordinates
+    glm::dmat3x2 uv_dp{0}; // 1/m, likewise; 0 without texture coordinates
 };
 
 // All of it at once. `normal` equals shading_normal bit for bit.

@@ -77,7 +77,8 @@ struct Surface {
     std::vector<std::array<glm::dvec2, 3>> uv; // per face and corner; empty without texture coordinates
     std::vector<uint32_t> pierced_by;
     std::unique_ptr<const BoxTree> tree;
-    glm::dvec3 box_minimum_m{0}, box_maximum_m{0};
+    glm::dvec3 box_minimum{0}, box_maximum{0};     // of the vertices, lattice units
+    glm::dvec3 box_minimum_m{0}, box_maximum_m{0}; // the same, metres
 
     Surface();
     ~Surface();

@@ -1,0 +1,181 @@
+#include "runtime/contact.h"
+
+#include "runtime/box_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::runtime {
+
+namespace {
+
+bool finite(const glm::dvec3& v)
+{
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+WalkFriction checked(const Friction& friction)
+{
+    const auto coefficient = [](double mu) { return mu > 0 && std::isfinite(mu) ? mu : 0.0; };
+    const double rest = coefficient(friction.static_coefficient);
+    return {rest, std::min(coefficient(friction.dynamic_coefficient), rest)};
+}
+
+// Below this many lattice units the direction from hand to proxy is rounding.
+constexpr double direction_needs = 64;
+
+// A ball is worth looking for if the hand needs several ticks to cross it.
+constexpr double ticks_per_ball = 4;
+
+} // namespace
+
+PointContact::PointContact(std::shared_ptr<const Surface> surface) : surface_(std::move(surface)) {}
+
+void PointContact::reset() noexcept
+{
+    contact_ = {};
+    counters_ = {};
+    proxy_ = {};
+    clear_ = {};
+    placed_ = false;
+}
+
+// `tail`: the other end of a stylus, lattice units.
+const Contact& PointContact::update(const glm::dvec3& hand_m, const glm::dvec3* tail, const Friction& friction) noexcept
+{
+    if (!take(hand_m)) return contact_;
+    if (!placed_) {
+        placed_ = true;
+        proxy_.at = tail ? *tail : hand_;
+    }
+    if (proxy_.on == Proxy::On::nothing) {
+        move_freely(hand_);
+    }
+    finish(friction);
+    return contact_;
+}
+
+// Takes the pose; false if there has never been a good one.
+bool PointContact::take(const glm::dvec3& hand_m) noexcept
+{
+    ++counters_.ticks;
+    contact_.hand_held = !finite(hand_m);
+    if (contact_.hand_held) {
+        ++counters_.hands_held;
+        return placed_;
+    }
+    const Lattice& lattice = surface_->lattice;
+    hand_ = lattice.snap(hand_m);
+    contact_.hand_clamped = glm::any(glm::greaterThan(glm::abs(lattice.metres(hand_) - hand_m),
+                                                      glm::dvec3(lattice.unit_m * Lattice::vertex_spacing)));
+    return true;
+}
+
+void PointContact::move_freely(const glm::dvec3& hand) noexcept
+{
+    const double step = glm::distance(hand, proxy_.at);
+    if (step == 0 || glm::distance(hand, clear_.centre) < clear_.radius) {
+        ++counters_.skipped;
+        proxy_.at = hand;
+        return;
+    }
+    Crossing crossing;
+    if (sweep(proxy_.at, hand, crossing)) {
+        land(*surface_, proxy_, crossing, proxy_.at, hand);
+        clear_.radius = 0;
+        return;
+    }
+    proxy_.at = hand;
+    refresh_clearance(step);
+}
+
+bool PointContact::sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept
+{
+    CollisionCount count;
+    const bool hit = first_crossing(*surface_, from, to, StartsOn::nothing(), crossing, count);
+    counters_.sweeps += count.sweeps;
+    counters_.object_boxes_missed += count.object_boxes_missed;
+    counters_.triangles_tested += count.triangles_tested;
+    return hit;
+}
+
+// Tries larger balls after success and smaller ones after failure, and none while even a success would not pay.
+void PointContact::refresh_clearance(double step) noexcept
+{
+    if (clear_.next_radius == 0) clear_.next_radius = 0.25 * Lattice::extent;
+    clear_.radius = 0;
+    if (clear_.next_radius < ticks_per_ball * step) {
+        clear_.next_radius *= 1.1;
+    } else if (surface_->tree->ball_is_empty(proxy_.at, clear_.next_radius)) {
+        clear_.centre = proxy_.at;
+        clear_.radius = clear_.next_radius;
+        clear_.next_radius = std::min(1.4 * clear_.next_radius, Lattice::extent);
+    } else {
+        clear_.next_radius *= 0.5;
+    }
+}
+
+void PointContact::finish(const Friction& friction) noexcept
+{
+    if (proxy_.on != Proxy::On::nothing) {
+        WalkCount count;
+        walk(*surface_, proxy_, hand_, checked(friction), count);
+        counters_.walk_steps += count.steps;
+        counters_.walk_steps_max = std::max<uint64_t>(counters_.walk_steps_max, count.steps);
+        counters_.walks_cut += count.cut;
+        counters_.sweeps += count.collision.sweeps;
+        counters_.object_boxes_missed += count.collision.object_boxes_missed;
+        counters_.triangles_tested += count.collision.triangles_tested;
+    }
+    describe();
+    counters_.touching_ticks += contact_.touching;
+}
+
+void PointContact::describe() noexcept
+{
+    const Lattice& lattice = surface_->lattice;
+    contact_.touching = proxy_.on != Proxy::On::nothing;
+    contact_.sliding = contact_.touching && proxy_.sliding;
+    contact_.shaft_crosses = false;
+    contact_.proxy_m = lattice.metres(proxy_.at);
+    contact_.hand_m = lattice.metres(hand_);
+    contact_.depth_m = 0;
+    contact_.lag_m = glm::dvec3(0);
+    if (!contact_.touching) return;
+
+    contact_.face = proxy_.face;
+    contact_.side = proxy_.side;
+    contact_.barycentric = barycentric_of(*surface_, proxy_.face, proxy_.at);
+    contact_.facet_normal = contact_.normal = surface_->facet_normal(proxy_.face, proxy_.side);
+
+    const glm::dvec3 from_hand = proxy_.at - hand_;
+    glm::dvec3 across = from_hand; // the part that no sliding along the feature changes
+    if (proxy_.on == Proxy::On::edge) {
+        const auto& corners = surface_->faces[proxy_.face].vertex;
+        const glm::dvec3 along = glm::normalize(surface_->vertices[corners[(proxy_.index + 1) % 3]] -
+                                                surface_->vertices[corners[proxy_.index]]);
+        across -= glm::dot(across, along) * along;
+    }
+    double depth = glm::length(across);
+    if (proxy_.on != Proxy::On::face && depth > direction_needs)
+        contact_.normal = across / depth;
+    else
+        depth = std::max(0.0, glm::dot(from_hand, contact_.normal));
+    contact_.depth_m = depth * lattice.unit_m;
+    contact_.lag_m = (from_hand - depth * contact_.normal) * lattice.unit_m;
+}
+
+StylusContact::StylusContact(std::shared_ptr<const Surface> surface) : tip_(std::move(surface)) {}
+
+const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
+                                     const Friction& friction) noexcept
+{
+    if (!finite(tail_m)) return tip_.update(tip_m, friction);
+    const glm::dvec3 tail = tip_.surface().lattice.snap(tail_m);
+    tip_.update(tip_m, &tail, friction);
+    Crossing crossing;
+    if (tip_.placed_ && !tip_.contact_.touching) tip_.contact_.shaft_crosses = tip_.sweep(tail, tip_.hand_, crossing);
+    return tip_.contact_;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,30 @@
+#include "runtime/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::runtime {
+
+Lattice Lattice::around(const glm::dvec3& minimum_m, const glm::dvec3& maximum_m) noexcept
+{
+    Lattice lattice;
+    lattice.centre_m = 0.5 * minimum_m + 0.5 * maximum_m;
+    const glm::dvec3 half = maximum_m - lattice.centre_m;
+    const double largest = std::max({half.x, half.y, half.z});
+    int exponent = 0; // largest = f * 2^exponent with f in [1/2, 1)
+    if (largest > 0) std::frexp(largest, &exponent);
+    lattice.unit_m = std::ldexp(1.0, exponent - 40);
+    return lattice;
+}
+
+glm::dvec3 Lattice::snap(const glm::dvec3& point_m) const noexcept
+{
+    return glm::clamp(glm::round((point_m - centre_m) / unit_m), -workspace, workspace);
+}
+
+glm::dvec3 Lattice::snap_vertex(const glm::dvec3& point_m) const noexcept
+{
+    return glm::round((point_m - centre_m) / (unit_m * vertex_spacing)) * vertex_spacing;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,46 @@
+// The proxy's state between ticks and the walk that moves it over the surface. Lattice units.
+#pragma once
+
+#include "runtime/collision.h"
+#include "runtime/surface.h"
+
+#include <cstdint>
+
+namespace haptel::runtime {
+
+struct Proxy {
+    enum class On : uint8_t { nothing, face, edge, vertex };
+
+    On on = On::nothing;
+    uint32_t face = 0, side = 0; // of the sheet it touches; a face next to the feature it is on
+    uint32_t index = 0;          // the edge or corner of `face`
+    bool sliding = false;        // friction: it moved in the last tick
+    glm::dvec3 at{0};            // on nothing: the hand, a lattice point; else within rounding of the feature
+};
+
+struct WalkCount {
+    CollisionCount collision;
+    uint32_t steps = 0; // in this walk
+    bool cut = false;   // ended by the step limit
+};
+
+// Coulomb coefficients, checked: 0 <= dynamic <= static, finite.
+struct WalkFriction {
+    double static_coefficient = 0, dynamic_coefficient = 0;
+};
+
+// Moves a proxy that is on the surface toward the hand (a lattice point) by steepest descent of their distance, until
+// nothing nearer can be reached by sliding, friction holds, or it has left the surface and is the hand. The proxy is
+// valid at every step, so the walk may end anywhere.
+//
+// At each feature it asks for the nearest point, to the hand, of the surface around (a face, the two faces of an edge,
+// the fan of a vertex). There the sign of the hand's height says whether the hand is on the free side: if so the proxy
+// leaves, if not it slides there.
+void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction,
+          WalkCount& count) noexcept;
+
+// Puts a free proxy on the face that its way crosses.
+void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const glm::dvec3& from,
+          const glm::dvec3& to) noexcept;
+
+} // namespace haptel::runtime

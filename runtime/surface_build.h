@@ -1,0 +1,20 @@
+// The steps that make a Surface, in order. Internal to the runtime; build_surface() calls them.
+#pragma once
+
+#include "runtime/surface.h"
+
+namespace haptel::runtime {
+
+// Lattice, vertices and faces without normal or links: what is left after repair. False: no triangle left.
+bool repair(const Mesh& mesh, Surface& surface, MeshReport& report);
+
+// Face normals, and links around each edge, by exact radial order.
+void link_faces(Surface& surface, MeshReport& report);
+
+// One angle-weighted normal per fan of faces around a vertex and side.
+void make_corner_normals(Surface& surface);
+
+// For each face those that cut or touch it without sharing a corner there. Needs the tree.
+void find_piercing(Surface& surface, MeshReport& report);
+
+} // namespace haptel::runtime

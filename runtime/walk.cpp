@@ -1,0 +1,323 @@
+#include "runtime/fan.h"
+#include "runtime/proxy.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::runtime {
+
+namespace {
+
+// The only tolerances, in lattice units (below 2e-12 of the object): they cover the rounding of the proxy, which is
+// a double and no lattice point, and nothing else.
+constexpr double lift_off = 8;   // height of the hand at which the surface lets go
+constexpr double feature = 32;   // nearer to an edge or a vertex than this is on it
+constexpr double departure = 64; // least way that is worth leaving a vertex for: more than `feature`, else cycles
+constexpr double on_plane = 4;   // nearer to a neighbour's plane than this is on it
+
+constexpr uint32_t step_limit = 4096;
+
+class Walk {
+public:
+    Walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count)
+        : surface_(surface), proxy_(proxy), hand_(hand), friction_(friction), count_(count)
+    {
+    }
+
+    void run()
+    {
+        Step step = Step::again;
+        for (count_.steps = 0; step == Step::again && count_.steps < step_limit; ++count_.steps) {
+            settle();
+            switch (proxy_.on) {
+            case Proxy::On::face: step = from_face(); break;
+            case Proxy::On::edge: step = from_edge(); break;
+            case Proxy::On::vertex: step = from_vertex(); break;
+            case Proxy::On::nothing: step = Step::stop; break;
+            }
+        }
+        count_.cut = step == Step::again;
+        proxy_.sliding = moved_;
+    }
+
+private:
+    enum class Step : uint8_t { again, stop };
+
+    const glm::dvec3& vertex(uint32_t face, uint32_t corner) const
+    {
+        return surface_.vertices[surface_.faces[face].vertex[corner]];
+    }
+    glm::dvec3 edge_vector(uint32_t face, uint32_t edge) const { return vertex(face, next(edge)) - vertex(face, edge); }
+    // Within the face, at a right angle to its edge, as long as the edge.
+    glm::dvec3 inward(uint32_t face, uint32_t edge) const
+    {
+        return glm::cross(surface_.faces[face].normal, edge_vector(face, edge));
+    }
+
+    // Onto the lowest feature at the proxy's place: what may be reached next is decided there.
+    void settle()
+    {
+        if (proxy_.on == Proxy::On::face) {
+            double nearest = feature;
+            uint32_t edge = 3;
+            for (uint32_t i = 0; i < 3; ++i) {
+                const glm::dvec3 in = inward(proxy_.face, i);
+                const double distance = glm::dot(in, proxy_.at - vertex(proxy_.face, i)) / glm::length(in);
+                if (distance >= nearest) continue;
+                nearest = distance;
+                edge = i;
+            }
+            if (edge == 3) return;
+            set_on_edge(proxy_.face, proxy_.side, edge, proxy_.at);
+        } else if (proxy_.on == Proxy::On::edge) {
+            set_on_edge(proxy_.face, proxy_.side, proxy_.index, proxy_.at);
+        }
+    }
+
+    // At the point of the edge nearest to `at`, or at its end if that is close.
+    void set_on_edge(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& at)
+    {
+        const glm::dvec3 along = edge_vector(face, edge);
+        const double length = glm::length(along);
+        const double way = glm::dot(at - vertex(face, edge), along) / length;
+        const bool first = way<feature, last = way> length - feature;
+        proxy_.face = face;
+        proxy_.side = side;
+        if (first || last) {
+            proxy_.on = Proxy::On::vertex;
+            proxy_.index = first && (!last || 2 * way < length) ? edge : next(edge);
+            proxy_.at = vertex(face, proxy_.index);
+        } else {
+            proxy_.on = Proxy::On::edge;
+            proxy_.index = edge;
+            proxy_.at = vertex(face, edge) + way / length * along;
+        }
+    }
+
+    // --- what to do on a face, an edge, a vertex
+
+    Step from_face()
+    {
+        const uint32_t face = proxy_.face;
+        const double height = glm::dot(hand_ - vertex(face, 0), surface_.facet_normal(face, proxy_.side));
+        if (height < lift_off) return slide(face, proxy_.side, 3, 3);
+
+        // Deep in a sharp fold the opposite face may be nearer than rounding: then links say on which side of it
+        // the proxy is, not the sweep.
+        StartsOn start = StartsOn::on_face(face);
+        for (uint32_t i = 0; i < 3; ++i) {
+            const SideEdge link = surface_.faces[face].link[i][proxy_.side];
+            if (!touches_across(link, face, i)) continue;
+            const glm::dvec3 normal = surface_.facet_normal(link.face(), link.side());
+            if (glm::dot(hand_ - vertex(face, i), normal) >= 0) {
+                start.also(link.face());
+                continue;
+            }
+            proxy_.face = link.face();
+            proxy_.side = link.side();
+            return Step::again;
+        }
+        return leave(start);
+    }
+
+    // Whether the neighbour over a concave edge lies on the proxy within rounding.
+    bool touches_across(const SideEdge& link, uint32_t face, uint32_t edge) const
+    {
+        const uint32_t other = link.face();
+        if (other == face) return false;
+        const glm::dvec3& corner = vertex(face, edge);
+        const glm::dvec3 normal = surface_.facet_normal(other, link.side());
+        if (glm::dot(proxy_.at - corner, normal) > on_plane) return false;
+        const glm::dvec3& tip = vertex(other, previous(link.edge()));
+        if (glm::dot(tip - corner, surface_.facet_normal(face, proxy_.side)) <= 0) return false;
+        for (uint32_t i = 0; i < 3; ++i)
+            if (glm::dot(inward(other, i), proxy_.at - vertex(other, i)) < 0) return false;
+        return true;
+    }
+
+    Step from_edge()
+    {
+        const uint32_t face = proxy_.face, edge = proxy_.index;
+        const Face& data = surface_.faces[face];
+        const SideEdge link = data.link[edge][proxy_.side];
+        const glm::dvec3 to_hand = hand_ - proxy_.at;
+        const double pull_here = glm::dot(to_hand, glm::normalize(inward(face, edge)));
+        const double pull_there = glm::dot(to_hand, glm::normalize(inward(link.face(), link.edge())));
+        if (std::max(pull_here, pull_there) > 0) {
+            const SideEdge to = pull_here >= pull_there ? SideEdge(face, edge, proxy_.side) : link;
+            const glm::dvec3 normal = surface_.facet_normal(to.face(), to.side());
+            if (glm::dot(hand_ - vertex(face, edge), normal) >= lift_off) return leave(at_edge(face, edge));
+            return slide(to.face(), to.side(), to.edge(), 3);
+        }
+        if (free_of_edge(face, edge, proxy_.side)) return leave(at_edge(face, edge));
+        return slide_along(face, edge, proxy_.side);
+    }
+
+    StartsOn at_edge(uint32_t face, uint32_t edge) const
+    {
+        const auto& corners = surface_.faces[face].vertex;
+        return StartsOn::on_edge(corners[edge], corners[next(edge)]);
+    }
+
+    // Whether the hand, to which the edge is nearer than both its faces, is on the free side of it.
+    bool free_of_edge(uint32_t face, uint32_t edge, uint32_t side) const
+    {
+        const SideEdge link = surface_.faces[face].link[edge][side];
+        const glm::dvec3 to_hand = hand_ - vertex(face, edge);
+        const glm::dvec3 outward = surface_.facet_normal(face, side) + surface_.facet_normal(link.face(), link.side());
+        if (link.face() != face && glm::dot(hand_ - proxy_.at, outward) <= 0) return false;
+        const glm::dvec3 along = edge_vector(face, edge);
+        return glm::length(glm::cross(to_hand, along)) >= lift_off * glm::length(along);
+    }
+
+    Step from_vertex()
+    {
+        const glm::dvec3 to_hand = hand_ - proxy_.at;
+        double best = 0; // how far the best way goes toward the hand
+        Sector best_sector;
+        uint32_t best_edge = 3; // 3: into the sector itself
+        const Sector start{proxy_.face, proxy_.index, proxy_.side};
+        const bool closed = for_each_sector(surface_, start, [&](const Sector& sector) {
+            const auto offer = [&](double way, uint32_t edge) {
+                if (way <= best) return;
+                best = way;
+                best_sector = sector;
+                best_edge = edge;
+            };
+            const uint32_t leaving = sector.corner, arriving = previous(sector.corner);
+            const glm::dvec3& normal = surface_.faces[sector.face].normal;
+            const glm::dvec3 in_plane = to_hand - glm::dot(to_hand, normal) * normal;
+            if (glm::dot(in_plane, inward(sector.face, leaving)) >= 0 &&
+                glm::dot(in_plane, inward(sector.face, arriving)) >= 0)
+                offer(glm::length(in_plane), 3);
+            const glm::dvec3 out = edge_vector(sector.face, leaving), back = -edge_vector(sector.face, arriving);
+            offer(glm::dot(to_hand, out) / glm::length(out), leaving);
+            offer(glm::dot(to_hand, back) / glm::length(back), arriving);
+        });
+
+        const StartsOn here = StartsOn::on_vertex(surface_.faces[proxy_.face].vertex[proxy_.index]);
+        if (best == 0) {
+            const uint32_t normal = surface_.faces[proxy_.face].corner_normal[proxy_.index][proxy_.side];
+            const bool free = !closed || glm::dot(surface_.corner_normals[normal], to_hand) > 0;
+            return free && glm::length(to_hand) >= lift_off ? leave(here) : Step::stop;
+        }
+        if (best_edge == 3) {
+            const glm::dvec3 normal = surface_.facet_normal(best_sector.face, best_sector.side);
+            if (glm::dot(to_hand, normal) >= lift_off) return leave(here);
+            if (best <= departure) return Step::stop;
+            return slide(best_sector.face, best_sector.side, best_sector.corner, previous(best_sector.corner));
+        }
+        if (free_of_edge(best_sector.face, best_edge, best_sector.side)) return leave(here);
+        if (best <= departure) return Step::stop;
+        return slide_along(best_sector.face, best_edge, best_sector.side);
+    }
+
+    // --- moves
+
+    // Straight to the hand unless the object is in the way.
+    Step leave(const StartsOn& start)
+    {
+        const glm::dvec3 from = glm::round(proxy_.at);
+        Crossing crossing;
+        if (first_crossing(surface_, from, hand_, start, crossing, count_.collision)) {
+            land(surface_, proxy_, crossing, from, hand_);
+            return Step::again;
+        }
+        proxy_.on = Proxy::On::nothing;
+        proxy_.at = hand_;
+        return Step::stop;
+    }
+
+    // Friction is a way that ends early: by coefficient times depth, or does not begin. Returns the share of the
+    // way that remains; 0: it holds.
+    double share_past_friction(double way, double depth)
+    {
+        const double coefficient =
+            proxy_.sliding || moved_ ? friction_.dynamic_coefficient : friction_.static_coefficient;
+        if (way <= coefficient * depth) return 0;
+        const double remaining = way - friction_.dynamic_coefficient * depth;
+        if (remaining > 1) moved_ = true; // one lattice unit: less is rounding
+        return remaining / way;
+    }
+
+    // Over the face toward the foot of the hand on it, as far as the face goes. Edges from which the walk comes are
+    // not crossed again (3: none).
+    Step slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge)
+    {
+        const glm::dvec3 normal = surface_.facet_normal(face, side);
+        const double height = glm::dot(hand_ - vertex(face, 0), normal);
+        const glm::dvec3 way = hand_ - height * normal - proxy_.at;
+        const double share = share_past_friction(glm::length(way), std::max(0.0, -height));
+        proxy_.on = Proxy::On::face;
+        proxy_.face = face;
+        proxy_.side = side;
+        if (share == 0) return Step::stop;
+
+        const glm::dvec3 target = proxy_.at + share * way;
+        double exit_at = 1;
+        uint32_t exit = 3;
+        for (uint32_t i = 0; i < 3; ++i) {
+            if (i == from_edge || i == or_edge) continue;
+            const glm::dvec3 in = inward(face, i);
+            const double end = glm::dot(in, target - vertex(face, i));
+            if (end >= 0) continue;
+            const double begin = std::max(0.0, glm::dot(in, proxy_.at - vertex(face, i)));
+            const double at = begin / (begin - end);
+            if (at >= exit_at && exit != 3) continue;
+            exit_at = at;
+            exit = i;
+        }
+        if (exit == 3) {
+            proxy_.at = target;
+            return Step::stop;
+        }
+        set_on_edge(face, side, exit, proxy_.at + exit_at * (target - proxy_.at));
+        return Step::again;
+    }
+
+    // Along the edge toward the foot of the hand on it, at most to its end.
+    Step slide_along(uint32_t face, uint32_t edge, uint32_t side)
+    {
+        const glm::dvec3& begin = vertex(face, edge);
+        const glm::dvec3 along = edge_vector(face, edge);
+        const double length = glm::length(along);
+        const double here = glm::dot(proxy_.at - begin, along) / length;
+        const double way = glm::dot(hand_ - begin, along) / length - here;
+        const double depth = glm::length(glm::cross(hand_ - begin, along)) / length;
+        const double share = share_past_friction(std::abs(way), depth);
+        proxy_.on = Proxy::On::edge;
+        proxy_.face = face;
+        proxy_.side = side;
+        proxy_.index = edge;
+        if (share == 0) return Step::stop;
+        const double there = here + share * way;
+        set_on_edge(face, side, edge, begin + glm::clamp(there, 0.0, length) / length * along);
+        return proxy_.on == Proxy::On::vertex ? Step::again : Step::stop;
+    }
+
+    const Surface& surface_;
+    Proxy& proxy_;
+    const glm::dvec3& hand_;
+    const WalkFriction& friction_;
+    WalkCount& count_;
+    bool moved_ = false;
+};
+
+} // namespace
+
+void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction,
+          WalkCount& count) noexcept
+{
+    Walk(surface, proxy, hand, friction, count).run();
+}
+
+void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const glm::dvec3& from,
+          const glm::dvec3& to) noexcept
+{
+    proxy.on = Proxy::On::face;
+    proxy.face = crossing.face;
+    proxy.side = crossing.side;
+    proxy.at = crossing_point(surface, crossing, from, to);
+}
+
+} // namespace haptel::runtime
