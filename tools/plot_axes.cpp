@@ -86,8 +86,9 @@ std::vector<Tick> ticks(const Axis& axis, int wanted)
 Axis fitted(std::string label, double low, double high)
 {
     if (!(high > low)) { // a constant, or nothing
-        const double around = low != 0 ? std::abs(low) : 1;
-        low -= around / 2, high += around / 2;
+        const double middle = std::isfinite(low + high) ? (low + high) / 2 : 0;
+        const double around = middle != 0 ? std::abs(middle) : 1;
+        low = middle - around / 2, high = middle + around / 2;
     }
     const double step = round_step(high - low, 5);
     return {std::move(label), step * std::floor(low / step + 1e-6), step * std::ceil(high / step - 1e-6)};

@@ -1,0 +1,37 @@
+#include "tests/support/catch.h"
+#include "tools/explore_report.h"
+
+#include <limits>
+
+using namespace haptel::tools;
+
+TEST_CASE("the report holds every promised field, null where nothing was measured")
+{
+    ExploreOutcome outcome;
+    outcome.servo.force_rms_n = std::numeric_limits<double>::quiet_NaN();
+    Json json = Json::parse(to_text(to_json(outcome)));
+    for (const char* field :
+         {"seconds", "rate_hz", "ticks", "missed_deadlines", "contact_ticks", "tick_ns", "wake_late_us", "force_n",
+          "energy_j", "faults", "textures_compiled", "reloads", "allocations_in_tick", "skipped"}) {
+        CAPTURE(field);
+        CHECK(json.contains(field));
+    }
+    CHECK(json["tick_ns"].size() == 4);
+    CHECK(json["tick_ns"]["p999"].is_null());
+    CHECK(json["wake_late_us"]["max"].is_null());
+    CHECK(json["force_n"]["rms"].is_null());
+    CHECK(json["allocations_in_tick"].is_null());
+    CHECK(json["skipped"]["octaves"].is_null());
+    CHECK(json["skipped"]["free_space"] == 0);
+
+    outcome.servo.allocations_in_tick = 3;
+    outcome.servo.skipped.texture = 5;
+    for (uint64_t ns = 1; ns <= 1000; ++ns) outcome.servo.wake_late_ns.add(ns * 1000);
+    json = to_json(outcome);
+    CHECK(json["allocations_in_tick"] == 3);
+    CHECK(json["skipped"]["texture"] == 5);
+    CHECK(json["wake_late_us"]["max"] == 1000);
+    const double median_us = json["wake_late_us"]["median"];
+    CHECK((median_us > 480 && median_us < 520)); // buckets of 3 %
+    CHECK(!to_lines(outcome).empty());
+}
