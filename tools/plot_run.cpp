@@ -131,7 +131,7 @@ Picture draw_path(std::span<const TickRecord> ticks, const std::string& title, c
     }
     if (ticks.empty()) low = glm::dvec2(0), high = glm::dvec2(0);
     const glm::dvec2 middle = (low + high) / 2.0;
-    const double side_m = std::max(1.25 * std::max(high.x - low.x, high.y - low.y), 1e-3);
+    const double side_m = std::max(1.7 * std::max(high.x - low.x, high.y - low.y), 1e-3);
     const LengthUnit unit = length_unit(side_m);
     const auto axis = [&](const char* name, double center) {
         return Axis{fmt::format("{} ({})", name, unit.name), (center - side_m / 2) * unit.per_m,
@@ -193,18 +193,18 @@ Picture draw_tick_histogram(const runtime::Histogram& tick_ns, const std::string
                     right = axes.at(from_us * std::pow(10, 1.0 / bars_per_decade), 0.5);
         picture.fill({left.x + 0.5, left.y, right.x - left.x - 1, right.y - left.y}, {0.30, 0.52, 0.74});
     }
-    const auto mark = [&](double us, const std::string& name, double down, const Color& color) {
+    const auto mark = [&](double us, const std::string& name, Align align, const Color& color) {
         if (!(us > axes.x.low && us < axes.x.high)) return;
         const double x = axes.at(us, 1).x;
         picture.line({x, axes.rect.y}, {x, axes.rect.bottom()}, color, 1);
-        picture.text({x + 4, axes.rect.y + down}, name, {8, color});
+        picture.text({x + (align == Align::left ? 4 : -4), axes.rect.y + 11}, name, {8, color, align});
     };
-    mark(median_us, "median", 11, ink);
-    mark(p99_us, "p99", 22, accent_2);
-    mark(period_s * 1e6, "period", 11, quiet);
+    mark(median_us, "median", Align::right, ink);
+    mark(p99_us, "p99", Align::left, accent_2);
+    mark(period_s * 1e6, "period", Align::left, quiet);
     draw_axes(picture, axes);
     draw_title(picture, title,
-               fmt::format("tick time of {} ticks   median {:.3g} µs  ·  p99 {:.3g} µs  ·  longest {:.3g} µs",
+               fmt::format("tick time of {} ticks   median {:.1f} µs  ·  p99 {:.1f} µs  ·  longest {:.1f} µs",
                            tick_ns.count(), median_us, p99_us, max_us));
     return picture;
 }
