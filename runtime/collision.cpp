@@ -7,13 +7,6 @@
 
 namespace haptel::runtime {
 
-StartsOn StartsOn::on_face(uint32_t face)
-{
-    StartsOn start;
-    start.also(face);
-    return start;
-}
-
 StartsOn StartsOn::on_edge(uint32_t vertex0, uint32_t vertex1)
 {
     StartsOn start;

@@ -19,7 +19,7 @@ struct CollisionCount {
 class StartsOn {
 public:
     static StartsOn nothing() { return {}; }
-    static StartsOn on_face(uint32_t face);
+
     static StartsOn on_edge(uint32_t vertex0, uint32_t vertex1);
     static StartsOn on_vertex(uint32_t vertex);
     // One more face to pass over.

@@ -15,6 +15,11 @@ constexpr double feature = 32;   // nearer to an edge or a vertex than this is o
 constexpr double departure = 64; // least way that is worth leaving a vertex for: more than `feature`, else cycles
 constexpr double on_plane = 4;   // nearer to a neighbour's plane than this is on it
 
+constexpr double clear_above = 2; // height that rounding to the lattice cannot undo
+
+// Length of the sum of two unit normals below which the faces nearly fold onto each other.
+constexpr double sharp = 1.0 / 16;
+
 constexpr uint32_t step_limit = 4096;
 
 class Walk {
@@ -104,7 +109,7 @@ private:
 
         // Deep in a sharp fold the opposite face may be nearer than rounding: then links say on which side of it
         // the proxy is, not the sweep.
-        StartsOn start = StartsOn::on_face(face);
+        StartsOn start = StartsOn::nothing();
         for (uint32_t i = 0; i < 3; ++i) {
             const SideEdge link = surface_.faces[face].link[i][proxy_.side];
             if (!touches_across(link, face, i)) continue;
@@ -117,7 +122,7 @@ private:
             proxy_.side = link.side();
             return Step::again;
         }
-        return leave(start);
+        return leave(start, clear_above * surface_.facet_normal(face, proxy_.side));
     }
 
     // Whether the neighbour over a concave edge lies on the proxy within rounding.
@@ -146,17 +151,33 @@ private:
         if (std::max(pull_here, pull_there) > 0) {
             const SideEdge to = pull_here >= pull_there ? SideEdge(face, edge, proxy_.side) : link;
             const glm::dvec3 normal = surface_.facet_normal(to.face(), to.side());
-            if (glm::dot(hand_ - vertex(face, edge), normal) >= lift_off) return leave(at_edge(face, edge));
+            if (glm::dot(hand_ - vertex(face, edge), normal) >= lift_off) return leave_edge(face, edge, link);
             return slide(to.face(), to.side(), to.edge(), 3);
         }
-        if (free_of_edge(face, edge, proxy_.side)) return leave(at_edge(face, edge));
+        if (free_of_edge(face, edge, proxy_.side)) return leave_edge(face, edge, link);
         return slide_along(face, edge, proxy_.side);
     }
 
-    StartsOn at_edge(uint32_t face, uint32_t edge) const
+    // The hand is in the free wedge of the edge. The way starts above both faces if that is near, which suits any
+    // wedge; else above the one that the hand is above, if the wedge is wider than a half-space: its plane then
+    // has the way on one side and the object on the other. In a fold too sharp for that, and beside a border, the
+    // faces are passed over.
+    Step leave_edge(uint32_t face, uint32_t edge, const SideEdge& link)
     {
+        const glm::dvec3 here = surface_.facet_normal(face, proxy_.side);
+        const glm::dvec3 there = surface_.facet_normal(link.face(), link.side());
+        const glm::dvec3 between = here + there;
+        const double square = glm::dot(between, between);
+        if (square > sharp * sharp) return leave(StartsOn::nothing(), 2 * clear_above / square * between);
+
+        const glm::dvec3 to_hand = hand_ - vertex(face, edge);
+        const double above_here = glm::dot(to_hand, here), above_there = glm::dot(to_hand, there);
+        const bool border = link.face() == face;
+        const bool wide = border || glm::dot(vertex(link.face(), previous(link.edge())) - vertex(face, edge), here) < 0;
+        if (wide && std::max(above_here, above_there) >= lift_off)
+            return leave(StartsOn::nothing(), clear_above * (above_here >= above_there ? here : there));
         const auto& corners = surface_.faces[face].vertex;
-        return StartsOn::on_edge(corners[edge], corners[next(edge)]);
+        return leave(StartsOn::on_edge(corners[edge], corners[next(edge)]), glm::dvec3(0));
     }
 
     // Whether the hand, to which the edge is nearer than both its faces, is on the free side of it.
@@ -199,25 +220,26 @@ private:
         if (best == 0) {
             const uint32_t normal = surface_.faces[proxy_.face].corner_normal[proxy_.index][proxy_.side];
             const bool free = !closed || glm::dot(surface_.corner_normals[normal], to_hand) > 0;
-            return free && glm::length(to_hand) >= lift_off ? leave(here) : Step::stop;
+            return free && glm::length(to_hand) >= lift_off ? leave(here, glm::dvec3(0)) : Step::stop;
         }
         if (best_edge == 3) {
             const glm::dvec3 normal = surface_.facet_normal(best_sector.face, best_sector.side);
-            if (glm::dot(to_hand, normal) >= lift_off) return leave(here);
+            if (glm::dot(to_hand, normal) >= lift_off) return leave(here, glm::dvec3(0));
             if (best <= departure) return Step::stop;
             return slide(best_sector.face, best_sector.side, best_sector.corner, previous(best_sector.corner));
         }
-        if (free_of_edge(best_sector.face, best_edge, best_sector.side)) return leave(here);
+        if (free_of_edge(best_sector.face, best_edge, best_sector.side)) return leave(here, glm::dvec3(0));
         if (best <= departure) return Step::stop;
         return slide_along(best_sector.face, best_edge, best_sector.side);
     }
 
     // --- moves
 
-    // Straight to the hand unless the object is in the way.
-    Step leave(const StartsOn& start)
+    // Straight to the hand unless the object is in the way. The way starts on a lattice point beside the proxy, by an
+    // offset that keeps rounding from putting it below the surface: a grazing way could pass under the next face.
+    Step leave(const StartsOn& start, const glm::dvec3& offset)
     {
-        const glm::dvec3 from = glm::round(proxy_.at);
+        const glm::dvec3 from = glm::round(proxy_.at + offset);
         Crossing crossing;
         if (first_crossing(surface_, from, hand_, start, crossing, count_.collision)) {
             land(surface_, proxy_, crossing, from, hand_);
