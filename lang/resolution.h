@@ -1,10 +1,12 @@
 // What the checker finds out about names, calls and loops. The tree (ast.h) points here; lowering reads it.
 #pragma once
 
+#include "lang/ir/int_range.h"
 #include "lang/source.h"
 #include "lang/type.h"
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -24,13 +26,6 @@ struct Symbol;
 enum class InputName : uint8_t { p, n, uv, time, center, extent, footprint };
 constexpr uint32_t input_name_count = 7;
 
-// What an int or uint can be at some place: [minimum, maximum], both included.
-struct IntRange {
-    int64_t minimum = INT32_MIN, maximum = INT32_MAX;
-    bool is_constant() const { return minimum == maximum; }
-    bool operator==(const IntRange&) const = default;
-};
-
 // One component of a constant: a real number, the bits of an int or uint, or a bool. The same as ir::Scalar<double>.
 using ConstantPart = std::variant<double, uint32_t, bool>;
 
@@ -43,6 +38,19 @@ enum class SymbolKind : uint8_t {
     function,          // parameter that is a function, known when its owner is lowered; `slot` counts such parameters
 };
 
+// A parameter of something that can be called. Two are equal if overloads cannot be told apart by them.
+struct ParameterInfo {
+    Type type; // of a function: its result
+    std::string name = {};
+    bool is_function = false;
+    std::vector<Type> signature = {}; // of a function: types of its arguments
+    const Symbol* symbol = nullptr;   // inside the function that has it; null if it has no name
+    bool operator==(const ParameterInfo& other) const
+    {
+        return type == other.type && is_function == other.is_function && signature == other.signature;
+    }
+};
+
 // What a name stands for. Owned by CheckedProgram.
 struct Symbol {
     SymbolKind kind = SymbolKind::local;
@@ -51,11 +59,12 @@ struct Symbol {
     Span span; // of the name where it was declared; empty for inputs
     uint32_t slot = 0;
     InputName input = InputName::p;
-    IntRange range;                  // constants and texture parameters; of locals: only flow knows
-    std::vector<ConstantPart> value; // constants and tables
-    std::vector<Type> signature;     // function: types of its arguments
-    const char* read_only = nullptr; // why it cannot be assigned to, as a clause; null: it can
-    bool is_parameter = false;       // of a function or texture, for messages
+    std::optional<ir::IntRange>
+        range; // constants and texture parameters; nothing: of reals, and of locals, where only flow knows
+    std::vector<ConstantPart> value;       // constants and tables
+    std::vector<ParameterInfo> parameters; // of a function
+    const char* read_only = nullptr;       // why it cannot be assigned to, as a clause; null: it can
+    bool is_parameter = false;             // of a function or texture, for messages
     bool is_read = false;
 };
 
@@ -82,17 +91,6 @@ struct LoopPlan {
 
 // A function of the source.
 struct FunctionInfo {
-    struct Parameter {
-        const Symbol* symbol = nullptr; // null where the parameter has no name
-        std::string name;
-        Type type;
-        bool is_function = false;
-        std::vector<Type> signature;
-        bool operator==(const Parameter& other) const
-        {
-            return type == other.type && is_function == other.is_function && signature == other.signature;
-        }
-    };
     // A function mentioned in the body, called or passed on: an edge of the call graph.
     struct Mention {
         const FunctionInfo* function;
@@ -101,7 +99,7 @@ struct FunctionInfo {
 
     std::string name;
     Type result;
-    std::vector<Parameter> parameters;
+    std::vector<ParameterInfo> parameters;
     const ast::Function* tree = nullptr;
     uint32_t file = 0;
     bool is_library = false;

@@ -1,0 +1,163 @@
+// Checks one body: of a function, of a texture, or of a global constant. One pass over its tree, in source order, with
+// a little knowledge of flow: which variables are assigned for certain, and what the integers can be.
+//
+// check_expression.cpp, check_call.cpp, check_statement.cpp, check_loop.cpp and check_range.cpp hold the parts.
+#pragma once
+
+#include "lang/check.h"
+#include "lang/names.h"
+
+#include <optional>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace haptel::lang {
+
+// What all bodies of a compilation share.
+struct CheckContext {
+    const SourceSet& sources;
+    Diagnostics& diagnostics;
+    CheckedProgram& program;
+    std::vector<const Symbol*> inputs; // by InputName
+};
+
+// 'text', as names stand in messages.
+inline std::string quoted(std::string_view text)
+{
+    return "'" + std::string(text) + "'";
+}
+
+// The type of a name in source, or nothing if the name means no type.
+std::optional<Type> type_named(std::string_view name);
+// Reports what is no type; `what` it is for ("a parameter"). Arrays: the element, the caller looks at is_array.
+Type resolve_type(CheckContext& context, const ast::TypeName& name);
+
+class BodyChecker {
+public:
+    BodyChecker(CheckContext& context, const FileScope& scope, bool is_library);
+
+    void check_function(ast::Function& tree, FunctionInfo& info);
+    void check_texture(ast::Texture& tree, CheckedTexture& texture);
+    // A global constant or table. Null after an error in its head.
+    Symbol* check_global(ast::Declaration& declaration);
+    // A constant number or bool outside of any body; nothing once a mistake was reported.
+    std::optional<double> check_constant(ast::Expression& e, Type type, const std::string& where);
+
+private:
+    struct Variable {
+        uint8_t assigned = 0; // a bit per component
+        ir::IntRange range{INT32_MIN, INT32_MAX};
+    };
+    struct Flow {
+        std::vector<Variable> variables; // by Symbol::slot
+        bool reachable = true;
+    };
+    struct Binding {
+        Symbol* symbol;
+        size_t depth; // of the scope
+    };
+    struct Argument {
+        bool is_function = false;
+        std::vector<Candidate> functions; // that its name may mean
+    };
+
+    // ---- names
+    void open_scope() { scope_marks.push_back(declared.size()); }
+    void close_scope();
+    Symbol& declare(const ast::Name& name, SymbolKind kind, Type type);
+    Symbol* find_local(std::string_view name) const;
+    const Symbol* find(std::string_view name) const;
+    void report_unused(const Symbol& symbol);
+    void report_unknown_name(Span span, const std::string& name);
+
+    // ---- expressions: each sets and returns the type, Type::error() once something was reported
+    Type expression(ast::Expression& e);
+    Type check(ast::Expression& e, ast::ErrorExpression& node);
+    Type check(ast::Expression& e, ast::NumberLiteral& node);
+    Type check(ast::Expression& e, ast::BoolLiteral& node);
+    Type check(ast::Expression& e, ast::NameExpression& node);
+    Type check(ast::Expression& e, ast::Unary& node);
+    Type check(ast::Expression& e, ast::Chain& node);
+    Type check(ast::Expression& e, ast::Conditional& node);
+    Type check(ast::Expression& e, ast::CallExpression& node);
+    Type check(ast::Expression& e, ast::GradCall& node);
+    Type check(ast::Expression& e, ast::Member& node);
+    Type check(ast::Expression& e, ast::Index& node);
+    Type check(ast::Expression& e, ast::BraceList& node);
+    Type read(ast::Expression& e, ast::NameExpression& node, uint8_t components);
+    void check_index(const ast::Expression& index, uint32_t size, const std::string& of_what);
+    // Reports unless `e` has or becomes that type; `where` as a clause: " for 'x'".
+    bool require(ast::Expression& e, Type wanted, const std::string& where);
+    Type report_operator(ast::BinaryOp op, Span span, Type left, const ast::Expression& right);
+    std::string excerpt(const ast::Expression& e) const;
+
+    // ---- calls
+    Type constructor(ast::Expression& e, ast::CallExpression& call, Type type);
+    std::optional<Candidate> resolve(const ast::Expression& e, const ast::Name& callee,
+                                     std::vector<ast::ExpressionPtr>& arguments, CallTarget& target, Type& if_unsure);
+    Argument classify(ast::Expression& argument);
+    const Candidate* passed_function(const Argument& argument, const ParameterInfo& parameter) const;
+    std::optional<int> cost_of(const Candidate& candidate, const std::vector<ast::ExpressionPtr>& arguments,
+                               const std::vector<Argument>& classes) const;
+    void report_no_match(const ast::Expression& e, const ast::Name& callee,
+                         const std::vector<ast::ExpressionPtr>& arguments, const std::vector<Argument>& classes,
+                         const std::vector<Candidate>& candidates);
+    void report_argument(const Candidate& candidate, size_t index, const ast::Expression& argument,
+                         const Argument& argument_class);
+    void report_unknown_function(const ast::Name& callee);
+    void mention(const FunctionReference& function, Span span);
+
+    // ---- statements
+    void statement(ast::Statement& s);
+    void statements(std::vector<ast::StatementPtr>& list);
+    void body(ast::Statement& s); // in a scope of its own
+    void check(ast::Statement& s, ast::Declaration& node);
+    void check(ast::Statement& s, ast::Assignment& node);
+    void check(ast::Statement& s, ast::ExpressionStatement& node);
+    void check(ast::Statement& s, ast::Scope& node);
+    void check(ast::Statement& s, ast::If& node);
+    void check(ast::Statement& s, ast::For& node);
+    void check(ast::Statement& s, ast::Break& node);
+    void check(ast::Statement& s, ast::Return& node);
+    Symbol* table(ast::Declaration& declaration, Type element);
+    void condition(ast::ExpressionPtr& e, const char* of_what);
+    void merge(Flow& into, const Flow& other) const;
+    void whole_body(ast::StatementPtr& tree, const ast::Name& name, Type result, const char* what, bool damaged);
+
+    // What is assigned to, and which of its components.
+    struct Target {
+        Symbol* symbol = nullptr; // null: reported
+        uint8_t components = 0;
+        Type type;
+    };
+    Target target_of(ast::Expression& e);
+
+    // ---- loops
+    void plan(ast::Statement& s, ast::For& loop, Symbol& counter);
+    void forget_ranges_assigned_in(const ast::Statement& s);
+
+    // ---- integers
+    ir::IntRange range(const ast::Expression& e) const;
+
+    CheckContext& context;
+    Diagnostics& diagnostics;
+    const FileScope& scope;
+    bool is_library;
+
+    std::unordered_map<std::string_view, std::vector<Binding>> by_name;
+    std::vector<Symbol*> declared; // in order; scope_marks cut it
+    std::vector<size_t> scope_marks;
+    Flow flow;
+    uint32_t loop_depth = 0;
+    Type result_type;
+    std::string owner_name; // of the function or texture, for messages
+    uint32_t reads = 0;
+    std::vector<FunctionInfo::Mention> mentions;
+};
+
+// A parameter with its default and range as numbers; its symbol has no more than type and range, and no
+// type after an error. check_texture.cpp
+CheckedParameter check_texture_parameter(CheckContext& context, const FileScope& scope, ast::TextureParameter& tree);
+
+} // namespace haptel::lang

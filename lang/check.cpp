@@ -1,0 +1,231 @@
+// The files of a program: what each declares and sees; then every body.
+#include "lang/check.h"
+
+#include "lang/body_checker.h"
+#include "lang/call_graph.h"
+#include "lang/constant.h"
+
+#include <algorithm>
+#include <set>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+std::optional<Type> type_named(std::string_view name)
+{
+    for (Type type : {float_type, int_type, uint_type, bool_type, vec(2), vec(3), vec(4), void_type})
+        if (to_string(type) == name) return type;
+    return std::nullopt;
+}
+
+Type resolve_type(CheckContext& context, const TypeName& name)
+{
+    if (name.base.text.empty()) return Type::error(); // the parser has said why
+    if (const auto type = type_named(name.base.text)) return *type;
+    Diagnostic& reported =
+        context.diagnostics.error(name.base.span, "unknown-type", "unknown type " + quoted(name.base.text));
+    const std::string_view nearest =
+        nearest_name(name.base.text, {"float", "int", "uint", "bool", "vec2", "vec3", "vec4"});
+    if (name.base.text.starts_with("mat")) {
+        reported.hint = "there are no matrices: write the products out with dot()";
+    } else if (!nearest.empty()) {
+        reported.hint = "did you mean " + quoted(nearest) + "?";
+        reported.fix = FixIt{name.base.span, std::string(nearest)};
+    } else {
+        reported.hint = "types are float, int, uint, bool, vec2, vec3 and vec4";
+    }
+    return Type::error();
+}
+
+namespace {
+
+struct SharedInput {
+    const char* name;
+    InputName input;
+    uint8_t size;
+};
+constexpr SharedInput inputs[] = {
+    {"p", InputName::p, 3},
+    {"n", InputName::n, 3},
+    {"uv", InputName::uv, 2},
+    {"time", InputName::time, 1},
+    {"center", InputName::center, 3},
+    {"extent", InputName::extent, 3},
+    {"footprint", InputName::footprint, 1},
+};
+
+class ProgramChecker {
+public:
+    ProgramChecker(const SourceSet& sources, CheckedProgram& checked, Diagnostics& diagnostics)
+        : program(checked), context{sources, diagnostics, checked, {}}, declarations(checked.files.size())
+    {
+        for (const SharedInput& input : inputs) {
+            Symbol& symbol = program.symbols.emplace_back();
+            symbol.kind = SymbolKind::input;
+            symbol.name = input.name;
+            symbol.type = vec(input.size);
+            symbol.input = input.input;
+            symbol.read_only = "it is an input";
+            context.inputs.push_back(&symbol);
+        }
+    }
+
+    void run()
+    {
+        // The library first: its constants are used by all; then what is imported, the main file last.
+        std::vector<uint32_t> order;
+        for (uint32_t file = 0; file < program.files.size(); ++file) order.push_back(file);
+        std::stable_partition(order.begin(), order.end(),
+                              [&](uint32_t file) { return program.files[file].is_library; });
+        for (uint32_t file : order) declare_functions(file);
+        std::vector<FileScope> scopes;
+        for (uint32_t file = 0; file < program.files.size(); ++file) scopes.push_back(scope_of(file));
+        for (uint32_t file : order) check_constants(file, scopes[file]);
+        for (FunctionInfo& function : program.functions) {
+            if (context.diagnostics.full()) return;
+            const Function& tree = *function.tree;
+            BodyChecker(context, scopes[function.file], function.is_library)
+                .check_function(const_cast<Function&>(tree), function);
+        }
+        for (uint32_t file : order) check_textures(file, scopes[file]);
+        check_call_graph(program, context.diagnostics);
+    }
+
+private:
+    Declarations& declarations_of(uint32_t file)
+    {
+        return program.files[file].is_library ? library : declarations[file];
+    }
+
+    FileScope scope_of(uint32_t file)
+    {
+        FileScope scope;
+        if (!program.files[file].is_library) {
+            scope.add_layer(declarations[file]);
+            for (uint32_t imported : program.files[file].imported) scope.add_layer(declarations[imported]);
+        }
+        scope.add_layer(library);
+        return scope;
+    }
+
+    void declare_functions(uint32_t file)
+    {
+        for (Function& tree : program.files[file].tree.functions) {
+            FunctionInfo& info = program.functions.emplace_back();
+            info.name = tree.name.text;
+            info.tree = &tree;
+            info.file = file;
+            info.is_library = program.files[file].is_library;
+            info.result = value_type(tree.result, "a function returns a value");
+            if (type_named(info.name))
+                context.diagnostics.error(tree.name.span, "reserved-name",
+                                          quoted(info.name) + " is a type, expected a name of your own");
+            info.is_valid = !info.result.is_error();
+            for (const FunctionParameter& parameter : tree.parameters) {
+                ParameterInfo made{value_type(parameter.type, "a parameter holds a value"), parameter.name.text,
+                                   parameter.is_function};
+                info.is_valid = info.is_valid && !made.type.is_error();
+                for (const TypeName& type : parameter.signature) {
+                    made.signature.push_back(value_type(type, "a function takes values"));
+                    info.is_valid = info.is_valid && !made.signature.back().is_error();
+                }
+                info.parameters.push_back(std::move(made));
+            }
+            declare(info, tree);
+        }
+    }
+
+    void declare(FunctionInfo& info, const Function& tree)
+    {
+        auto& overloads = declarations_of(info.file).functions[info.name];
+        const auto same = [&](auto* other) { return std::ranges::equal(other->parameters, info.parameters); };
+        if (auto twin = std::find_if(overloads.begin(), overloads.end(), same);
+            twin != overloads.end() && info.is_valid) {
+            context.diagnostics
+                .error(tree.name.span, "duplicate-name", quoted(signature_of(info)) + " is defined twice")
+                .related.push_back({(*twin)->tree->name.span, "first defined here"});
+            return;
+        }
+        overloads.push_back(&info);
+        if (info.is_library) return;
+        const auto known = library.functions.find(info.name);
+        const auto builtins = builtin_overloads(info.name);
+        const bool replaces_library =
+            known != library.functions.end() && std::any_of(known->second.begin(), known->second.end(), same);
+        const bool replaces_builtin =
+            std::any_of(builtins.begin(), builtins.end(), [&](const BuiltinOverload& b) { return same(&b); });
+        if (replaces_library || replaces_builtin)
+            context.diagnostics.note(tree.name.span, "replaces-library",
+                                     quoted(signature_of(info)) + " replaces the " +
+                                         (replaces_library ? "library's" : "built-in") + " function in this file");
+    }
+
+    // Of a result or parameter: no table, not void.
+    Type value_type(const TypeName& name, const std::string& why)
+    {
+        const Type type = resolve_type(context, name);
+        if (type == void_type)
+            context.diagnostics.error(name.base.span, "type-mismatch", why + ", found void").hint =
+                "write float, int, vec3 ...";
+        else if (name.is_array)
+            context.diagnostics.error(name.base.span, "type-mismatch", why + ", found a table").hint =
+                "declare the table as a global const and use its elements";
+        else
+            return type;
+        return Type::error();
+    }
+
+    void check_constants(uint32_t file, const FileScope& scope)
+    {
+        for (Constant& constant : program.files[file].tree.constants) {
+            if (context.diagnostics.full()) return;
+            const Symbol* symbol =
+                BodyChecker(context, scope, program.files[file].is_library).check_global(constant.declaration);
+            if (!symbol) continue;
+            const auto [place, is_new] = declarations_of(file).constants.try_emplace(symbol->name, symbol);
+            if (!is_new)
+                context.diagnostics.error(symbol->span, "duplicate-name", quoted(symbol->name) + " is declared twice")
+                    .related.push_back({place->second->span, "first declared here"});
+        }
+    }
+
+    void check_textures(uint32_t file, const FileScope& scope)
+    {
+        std::vector<const Texture*> seen;
+        for (Texture& tree : program.files[file].tree.textures) {
+            if (context.diagnostics.full()) return;
+            const auto twin =
+                std::find_if(seen.begin(), seen.end(), [&](auto* other) { return other->name.text == tree.name.text; });
+            if (twin != seen.end())
+                context.diagnostics
+                    .error(tree.name.span, "duplicate-texture",
+                           "two textures of this file are called " + quoted(tree.name.text))
+                    .related.push_back({(*twin)->name.span, "the first is here"});
+            seen.push_back(&tree);
+            CheckedTexture texture;
+            texture.tree = &tree;
+            for (TextureParameter& parameter : tree.parameters)
+                texture.parameters.push_back(check_texture_parameter(context, scope, parameter));
+            BodyChecker(context, scope, program.files[file].is_library).check_texture(tree, texture);
+            if (file == 0) program.textures.push_back(std::move(texture));
+        }
+    }
+
+    CheckedProgram& program;
+    CheckContext context;
+    std::vector<Declarations> declarations; // by file
+    Declarations library;
+};
+
+} // namespace
+
+CheckedProgram check(const SourceSet& sources, std::vector<CheckFile> files, Diagnostics& diagnostics)
+{
+    CheckedProgram program;
+    program.files = std::move(files);
+    ProgramChecker(sources, program, diagnostics).run();
+    return program;
+}
+
+} // namespace haptel::lang

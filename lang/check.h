@@ -1,0 +1,55 @@
+// From trees to meaning: names, scopes, types, overloads, loop bounds, and what every mistake is and how to mend it.
+//
+// The checker writes its findings into the tree (resolution.h) and owns what they point to. It needs no memory of
+// order: functions may be used before they are declared. What passes is ready for lowering; what does not is in the
+// diagnostics, and then lowering must not be tried.
+#pragma once
+
+#include "lang/ast.h"
+#include "lang/diagnostic.h"
+
+#include <deque>
+#include <limits>
+#include <vector>
+
+namespace haptel::lang {
+
+// One file of the compilation as the parser left it, with the files whose names it sees.
+struct CheckFile {
+    ast::File tree;
+    bool is_library = false;        // sees the other library files, and is seen by all
+    std::vector<uint32_t> imported; // indices of files; not transitive
+};
+
+struct CheckedParameter {
+    const Symbol* symbol = nullptr;
+    const ast::TextureParameter* tree = nullptr;
+    std::string unit; // SI: "m", "rad", "s", "Hz"; empty: a plain number
+    double value = 0; // SI; int, uint and bool as numbers
+    double minimum = -std::numeric_limits<double>::infinity();
+    double maximum = std::numeric_limits<double>::infinity();
+};
+
+struct CheckedTexture {
+    const ast::Texture* tree = nullptr;
+    std::vector<CheckedParameter> parameters;
+    uint32_t slot_count = 0; // local variables
+    std::vector<FunctionInfo::Mention> mentions;
+};
+
+// Keeps the trees and everything they point to. Move it, do not copy it.
+struct CheckedProgram {
+    std::vector<CheckFile> files; // by Span::file
+    std::deque<Symbol> symbols;
+    std::deque<FunctionInfo> functions;
+    std::vector<CheckedTexture> textures; // of file 0, in source order
+
+    CheckedProgram() = default;
+    CheckedProgram(CheckedProgram&&) = default;
+    CheckedProgram& operator=(CheckedProgram&&) = default;
+    CheckedProgram(const CheckedProgram&) = delete;
+};
+
+CheckedProgram check(const SourceSet& sources, std::vector<CheckFile> files, Diagnostics& diagnostics);
+
+} // namespace haptel::lang

@@ -1,0 +1,155 @@
+#include "lang/compile.h"
+
+#include "lang/check.h"
+#include "lang/ir/verify.h"
+#include "lang/lower.h"
+#include "lang/parser.h"
+
+#include <algorithm>
+#include <map>
+
+namespace haptel::lang {
+namespace {
+
+constexpr uint32_t import_max = 256; // files
+
+std::string quoted_path(const std::string& path)
+{
+    return "\"" + printable(path) + "\"";
+}
+
+// Main file, its imports, theirs, and the library; parsed, with who imports whom.
+class Files {
+public:
+    Files(const CompileOptions& compile_options, SourceSet& all_sources, Diagnostics& sink)
+        : options(compile_options), sources(all_sources), diagnostics(sink)
+    {
+    }
+
+    void load(SourceFile main)
+    {
+        add(std::move(main));
+        // Breadth first; `files` grows as we go. Files are known by the name the loader gives them.
+        for (uint32_t file = 0; file < files.size(); ++file)
+            for (size_t i = 0; i < files[file].tree.imports.size() && !diagnostics.full(); ++i) import(file, i);
+        for (uint32_t file = 0; file < files.size(); ++file) names.push_back(sources.file(file).name);
+        report_cycles();
+        for (const SourceFile& text : options.library) files[add(text)].is_library = true;
+    }
+
+    std::vector<CheckFile> files;   // by Span::file
+    std::vector<std::string> names; // without the library
+
+private:
+    struct Edge {
+        uint32_t from, to;
+        Span span;
+    };
+
+    uint32_t add(SourceFile file)
+    {
+        const uint32_t index = sources.add(std::move(file));
+        files.push_back({parse(sources, index, diagnostics), false, {}});
+        by_name.emplace(sources.file(index).name, index);
+        return index;
+    }
+
+    void import(uint32_t file, size_t which)
+    {
+        const ast::Import import = files[file].tree.imports[which];
+        if (import.is_library) {
+            diagnostics
+                .error(import.span, "missing-import",
+                       "library '" + import.path + "' is not installed: no libraries are")
+                .hint = "import a file by its path: import \"wood/oak.haptel\";";
+            return;
+        }
+        std::optional<SourceFile> text;
+        if (options.load_import) text = options.load_import(import.path, sources.file(file).name);
+        if (!text) {
+            diagnostics.error(import.span, "missing-import", "cannot read " + quoted_path(import.path)).hint =
+                options.load_import ? "the path is relative to the file that imports"
+                                    : "this program was given no way to read other files";
+            return;
+        }
+        if (by_name.size() >= import_max) {
+            diagnostics.error(import.span, "too-large", "expected at most " + std::to_string(import_max) + " files");
+            return;
+        }
+        const auto known = by_name.find(text->name);
+        const uint32_t target = known != by_name.end() ? known->second : add(std::move(*text));
+        auto& imported = files[file].imported;
+        if (std::find(imported.begin(), imported.end(), target) == imported.end()) imported.push_back(target);
+        edges.push_back({file, target, import.span});
+    }
+
+    // An import that leads back to its own file, by the shortest way there is.
+    void report_cycles()
+    {
+        for (const Edge& edge : edges) {
+            std::vector<uint32_t> reached{edge.to}, reached_from(files.size(), UINT32_MAX);
+            for (size_t i = 0; i < reached.size() && reached_from[edge.from] == UINT32_MAX && reached[0] != edge.from;
+                 ++i)
+                for (uint32_t next : files[reached[i]].imported)
+                    if (next != edge.to && reached_from[next] == UINT32_MAX) {
+                        reached_from[next] = reached[i];
+                        reached.push_back(next);
+                    }
+            if (edge.to != edge.from && reached_from[edge.from] == UINT32_MAX) continue;
+            std::string cycle = printable(sources.file(edge.from).name);
+            for (uint32_t at = edge.from; at != edge.to; at = reached_from[at])
+                cycle = printable(sources.file(reached_from[at]).name) + " -> " + cycle;
+            diagnostics
+                .error(edge.span, "import-cycle",
+                       "this import leads back to its own file: " + printable(sources.file(edge.from).name) + " -> " +
+                           cycle)
+                .hint = "move what both need into a third file";
+            return; // the others are the same cycle, or wait
+        }
+    }
+
+    const CompileOptions& options;
+    SourceSet& sources;
+    Diagnostics& diagnostics;
+    std::map<std::string, uint32_t, std::less<>> by_name;
+    std::vector<Edge> edges;
+};
+
+} // namespace
+
+CompileResult compile(SourceFile main, const CompileOptions& options)
+{
+    CompileResult result;
+    Files files(options, result.sources, result.diagnostics);
+    files.load(std::move(main));
+    result.files = std::move(files.names);
+
+    Diagnostics& diagnostics = result.diagnostics;
+    const CheckedProgram checked = check(result.sources, std::move(files.files), diagnostics);
+    if (!options.only_texture.empty()) {
+        std::vector<std::string_view> names;
+        for (const CheckedTexture& texture : checked.textures) names.push_back(texture.tree->name.text);
+        if (std::find(names.begin(), names.end(), options.only_texture) == names.end()) {
+            Diagnostic& reported = diagnostics.error(
+                {}, "unknown-texture", "this file has no texture '" + printable(options.only_texture) + "'");
+            if (const auto nearest = nearest_name(options.only_texture, names); !nearest.empty())
+                reported.hint = "did you mean '" + std::string(nearest) + "'?";
+        }
+    }
+    if (!diagnostics.has_errors()) {
+        auto program = std::make_shared<Program>();
+        program->module = lower(checked, options.only_texture, diagnostics);
+        const std::string broken = diagnostics.has_errors() ? std::string{} : ir::verify(program->module);
+        if (!broken.empty()) // a mistake of ours; the program must not run all the same
+            diagnostics.error({}, "internal-error",
+                              "the compiler made a program that does not pass its own check: " + broken);
+        if (!diagnostics.has_errors()) {
+            program->sources = result.sources;
+            result.program = std::move(program);
+        }
+    }
+    diagnostics.sort_by_place();
+    return result;
+}
+
+} // namespace haptel::lang

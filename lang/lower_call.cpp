@@ -1,0 +1,232 @@
+// Calls, and the functions they reach.
+#include "lang/abi.h"
+#include "lang/lowering.h"
+#include "lang/names.h"
+
+#include <algorithm>
+
+namespace haptel::lang {
+
+using namespace ast;
+using ir::Value;
+
+namespace {
+
+constexpr uint32_t depth_max = 256;
+constexpr size_t function_count_max = 10'000;
+
+uint32_t reads_of(const FunctionReference& reference)
+{
+    auto source = std::get_if<const FunctionInfo*>(&reference);
+    return source ? (*source)->reads : 0;
+}
+
+const void* identity(const FunctionReference& reference)
+{
+    if (auto source = std::get_if<const FunctionInfo*>(&reference)) return *source;
+    if (auto builtin = std::get_if<const BuiltinOverload*>(&reference)) return *builtin;
+    return nullptr;
+}
+
+ir::Facts facts_of(const FactsComment& comment, bool is_library)
+{
+    ir::Facts facts;
+    facts.value_minimum = comment.value_minimum;
+    facts.value_maximum = comment.value_maximum;
+    facts.slope = comment.slope;
+    facts.curvature = comment.curvature;
+    if (comment.continuity == "jump")
+        facts.continuity = HAPTEL_CONTINUITY_JUMP;
+    else if (comment.continuity == "C0")
+        facts.continuity = HAPTEL_CONTINUITY_C0;
+    else if (!comment.continuity.empty())
+        facts.continuity = HAPTEL_CONTINUITY_C1;
+    facts.proven = is_library;
+    return facts;
+}
+
+} // namespace
+
+// ---- in a body
+
+FunctionReference BodyLowering::resolved(const FunctionReference& reference) const
+{
+    if (auto parameter = std::get_if<const Symbol*>(&reference)) return functions[(*parameter)->slot];
+    return reference;
+}
+
+Values BodyLowering::lower(const Expression& e, const CallExpression& node)
+{
+    if (node.target.is_constructor) return constructor(e, node);
+    builder.span = e.span;
+    return call(node.target, node.arguments, 0);
+}
+
+Values BodyLowering::lower(const Expression& e, const GradCall& node)
+{
+    builder.span = e.span;
+    return call(node.target, node.arguments, node.order);
+}
+
+Values BodyLowering::constructor(const Expression& e, const CallExpression& node)
+{
+    Values parts;
+    for (const ExpressionPtr& argument : node.arguments) {
+        const Values more = convert(expression(*argument), argument->type, {e.type.scalar, argument->type.size, 0});
+        parts.insert(parts.end(), more.begin(), more.end());
+    }
+    if (parts.size() == 1) parts.resize(e.type.size, parts[0]);
+    parts.resize(e.type.size);
+    return parts;
+}
+
+Values BodyLowering::call(const CallTarget& target, const std::vector<ExpressionPtr>& arguments, uint32_t order)
+{
+    const Span here = builder.span;
+    const FunctionReference callee = resolved(target.function);
+    const std::vector<ParameterInfo>& parameters = std::holds_alternative<const FunctionInfo*>(callee)
+                                                       ? std::get<const FunctionInfo*>(callee)->parameters
+                                                       : std::get<const BuiltinOverload*>(callee)->parameters;
+    std::vector<Values> values;
+    std::vector<FunctionReference> passed;
+    for (size_t i = 0; i < arguments.size(); ++i) {
+        if (parameters[i].is_function)
+            passed.push_back(resolved(target.function_arguments[i]));
+        else
+            values.push_back(converted(*arguments[i], parameters[i].type));
+    }
+    builder.span = here;
+    if (auto builtin = std::get_if<const BuiltinOverload*>(&callee); builtin && order == 0)
+        return lower_builtin(builder, **builtin, values);
+
+    const LoweredFunction function = owner.function(callee, passed, order);
+    Values flat;
+    for (const Values& value : values) flat.insert(flat.end(), value.begin(), value.end());
+    for (uint32_t name = 0; name < input_name_count; ++name) {
+        if (!(function.reads >> name & 1)) continue;
+        const Values parts = input(static_cast<InputName>(name));
+        flat.insert(flat.end(), parts.begin(), parts.end());
+    }
+    depth = std::max(depth, region_depth + 1 + function.depth);
+    if (depth > depth_max) {
+        owner.diagnostics.error(here, "too-deep",
+                                "calls, ifs and loops nest more than " + std::to_string(depth_max) + " deep here");
+        depth = 0; // once is enough
+    }
+    return builder.call(function.index, flat);
+}
+
+// ---- in the module
+
+LoweredFunction ModuleLowering::function(const FunctionReference& reference,
+                                         const std::vector<FunctionReference>& passed, uint32_t order)
+{
+    Key key{{identity(reference)}, order};
+    for (const FunctionReference& argument : passed) key.functions.push_back(identity(argument));
+    if (const auto known = functions.find(key); known != functions.end()) return known->second;
+    LoweredFunction made;
+    if (order > 0)
+        made = make_derivative(function(reference, passed, order - 1));
+    else if (auto source = std::get_if<const FunctionInfo*>(&reference))
+        made = make(**source, passed);
+    else
+        made = make(*std::get<const BuiltinOverload*>(reference));
+    if (functions.size() == function_count_max)
+        diagnostics.error({}, "too-costly",
+                          "functions as arguments make more than " + std::to_string(function_count_max) +
+                              " functions of this program");
+    functions[key] = made;
+    return made;
+}
+
+LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector<FunctionReference>& passed)
+{
+    std::string name = signature_of(info);
+    LoweredFunction made;
+    made.reads = info.reads;
+    if (!passed.empty()) {
+        std::string list;
+        for (const FunctionReference& argument : passed) {
+            list += (list.empty() ? "" : ",") + name_of(argument);
+            made.reads |= reads_of(argument);
+        }
+        name.insert(info.name.size(), "<" + list + ">");
+    }
+    BodyLowering body(*this, unique(std::move(name)), info.slot_count);
+    ir::Function& function = body.builder.function();
+    for (const ParameterInfo& parameter : info.parameters) {
+        if (parameter.is_function) continue;
+        if (function.first_argument_size == 0) function.first_argument_size = parameter.type.size;
+        body.value_parameter(parameter.type);
+    }
+    body.input_parameters(made.reads);
+    body.bind_functions(passed);
+    if (info.tree->facts) function.facts = facts_of(*info.tree->facts, info.is_library);
+    const Values results = body.whole_body(*info.tree->body, info.result);
+    made.index = body.builder.finish(results);
+    made.depth = body.depth;
+    return made;
+}
+
+// A built-in as a function, to be passed or differentiated.
+LoweredFunction ModuleLowering::make(const BuiltinOverload& overload)
+{
+    ir::Builder builder(module, unique(to_string(candidate_of(overload))));
+    std::vector<Values> arguments;
+    for (const ParameterInfo& parameter : overload.parameters) {
+        Values& parts = arguments.emplace_back();
+        for (uint8_t i = 0; i < parameter.type.size; ++i) parts.push_back(builder.parameter(ir_type(parameter.type)));
+    }
+    builder.function().first_argument_size = overload.parameters.front().type.size;
+    return {builder.finish(lower_builtin(builder, overload, arguments)), 0, 0};
+}
+
+// A function of the same parameters that returns the derivatives alone: result after result, direction after direction.
+LoweredFunction ModuleLowering::make_derivative(const LoweredFunction& of)
+{
+    const ir::Derivative derivative = differentiator.jacobian(of.index);
+    const std::vector<ir::Value> parameters = module.functions[of.index].parameters;
+    ir::Builder builder(module, unique("grad " + module.functions[of.index].name));
+    Values arguments;
+    for (ir::Value parameter : parameters)
+        arguments.push_back(builder.parameter(module.functions[of.index].type(parameter)));
+    builder.function().first_argument_size = module.functions[of.index].first_argument_size;
+    const Values results = builder.call(derivative.function, arguments);
+    size_t next = derivative.exists.size(); // behind the values
+    Values tangents;
+    for (const std::vector<bool>& row : derivative.exists)
+        for (bool exists : row) tangents.push_back(exists ? results[next++] : builder.real(0));
+    return {builder.finish(tangents), of.reads, of.depth + 1};
+}
+
+const std::vector<uint32_t>& ModuleLowering::tables(const Symbol& symbol)
+{
+    std::vector<uint32_t>& made = component_tables[&symbol];
+    if (!made.empty()) return made;
+    const Type type = symbol.type;
+    for (uint8_t component = 0; component < type.size; ++component) {
+        ir::Table table;
+        table.name = unique(type.is_vector() ? symbol.name + "." + "xyzw"[component] : symbol.name);
+        table.element = ir_type(type.element());
+        for (size_t cell = component; cell < symbol.value.size(); cell += type.size) {
+            const ConstantPart& part = symbol.value[cell];
+            if (auto real = std::get_if<double>(&part))
+                table.reals.push_back(*real);
+            else if (auto truth = std::get_if<bool>(&part))
+                table.words.push_back(*truth);
+            else
+                table.words.push_back(std::get<uint32_t>(part));
+        }
+        made.push_back(static_cast<uint32_t>(module.tables.size()));
+        module.tables.push_back(std::move(table));
+    }
+    return made;
+}
+
+std::string ModuleLowering::unique(std::string name)
+{
+    const uint32_t count = ++names[name];
+    return count == 1 ? name : name + " #" + std::to_string(count);
+}
+
+} // namespace haptel::lang

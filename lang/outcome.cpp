@@ -1,0 +1,81 @@
+#include "lang/outcome.h"
+
+#include <algorithm>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+namespace {
+
+const Symbol* assigned_symbol(const Assignment& assignment)
+{
+    const Expression* object = assignment.target.get();
+    if (auto member = std::get_if<Member>(&object->node)) object = member->object.get();
+    if (auto index = std::get_if<Index>(&object->node)) object = index->object.get();
+    return std::get<NameExpression>(object->node).symbol;
+}
+
+void collect(const Statement& s, std::vector<uint32_t>& assigned, std::vector<uint32_t>& declared)
+{
+    const auto inner = [&](const StatementPtr& statement) {
+        if (statement) collect(*statement, assigned, declared);
+    };
+    if (auto assignment = std::get_if<Assignment>(&s.node)) {
+        assigned.push_back(assigned_symbol(*assignment)->slot);
+    } else if (auto declaration = std::get_if<Declaration>(&s.node)) {
+        if (declaration->symbol->kind == SymbolKind::local) declared.push_back(declaration->symbol->slot);
+    } else if (auto scope = std::get_if<Scope>(&s.node)) {
+        for (const StatementPtr& statement : scope->statements) inner(statement);
+    } else if (auto branch = std::get_if<If>(&s.node)) {
+        for (const If::Arm& arm : branch->arms) inner(arm.body);
+    } else if (auto loop = std::get_if<For>(&s.node)) {
+        inner(loop->init);
+        inner(loop->body);
+    }
+}
+
+} // namespace
+
+Outcome outcome(const Statement& s)
+{
+    if (std::holds_alternative<Return>(s.node)) return {false, true, false};
+    if (std::holds_alternative<Break>(s.node)) return {false, false, true};
+    if (auto scope = std::get_if<Scope>(&s.node)) return outcome(scope->statements);
+    if (auto branch = std::get_if<If>(&s.node)) {
+        Outcome all{branch->arms.back().condition != nullptr, false, false}; // no else
+        for (const If::Arm& arm : branch->arms) {
+            const Outcome one = arm.body ? outcome(*arm.body) : Outcome{true, false, false};
+            all.falls_through |= one.falls_through;
+            all.returns |= one.returns;
+            all.breaks |= one.breaks;
+        }
+        return all;
+    }
+    if (auto loop = std::get_if<For>(&s.node)) return {true, loop->body && outcome(*loop->body).returns, false};
+    return {true, false, false};
+}
+
+Outcome outcome(std::span<const StatementPtr> statements)
+{
+    Outcome all{true, false, false};
+    for (const StatementPtr& s : statements) {
+        const Outcome one = outcome(*s);
+        all.falls_through = one.falls_through;
+        all.returns |= one.returns;
+        all.breaks |= one.breaks;
+        if (!all.falls_through) break;
+    }
+    return all;
+}
+
+void collect_changed(const Statement& s, std::vector<uint32_t>& slots)
+{
+    std::vector<uint32_t> assigned, declared;
+    collect(s, assigned, declared);
+    std::sort(declared.begin(), declared.end());
+    for (uint32_t slot : assigned)
+        if (!std::binary_search(declared.begin(), declared.end(), slot)) slots.push_back(slot);
+}
+
+} // namespace haptel::lang
