@@ -27,7 +27,7 @@ ModelForce model_force(ForceModel model, const TouchedSurface& surface, const Te
     double depth = 0;
     switch (model) {
     case ForceModel::displaced: depth = surface.depth_m + texture.envelope_m; break;
-    case ForceModel::paper: depth = glm::dot(surface.tip_to_surface_m, surface.normal); break;
+    case ForceModel::paper: depth = surface.depth_m * glm::dot(surface.contact_normal, surface.normal); break;
     }
     depth = std::max(depth, 0.0);
     return {stiffness * depth * perturbed, depth};

@@ -2,7 +2,8 @@
 //
 // `displaced` is the default because it is the only one that is conservative: on a flat base its force is minus the
 // gradient of K/2 (d + h - h_max)^2, so no closed path of the hand gains energy. `paper` is the founding paper's
-// k (AP . N) M, kept for comparison: it gains K times depth change times height change on a loop.
+// k (AP . N) M with AP from the tip to the proxy, kept for comparison: it gives away K times depth change times height
+// change on a loop.
 // On a curved base `displaced` neglects the factor (I - d W)^-1 of the gradient, W the shape operator (relative error
 // about depth times curvature).
 #pragma once
@@ -24,9 +25,9 @@ std::optional<ForceModel> force_model_named(std::string_view name);
 
 // The contact as a force model sees it. Any frame, as long as it is one.
 struct TouchedSurface {
-    double depth_m = 0;             // of the tip below the base surface, >= 0
-    glm::dvec3 normal{0, 0, 1};     // unit, outward, shaded
-    glm::dvec3 tip_to_surface_m{0}; // AP of the paper: from the tip to where the probe enters
+    double depth_m = 0;                 // of the tip below the proxy along contact_normal, >= 0
+    glm::dvec3 contact_normal{0, 0, 1}; // unit: the geometry's
+    glm::dvec3 normal{0, 0, 1};         // unit, shaded: the direction of the force on a smooth surface
     double stiffness_n_per_m = 0;
 };
 

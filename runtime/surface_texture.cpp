@@ -20,16 +20,18 @@ haptel_point inputs(const SurfacePoint& at, uint32_t reads)
 {
     haptel_point point = {};
     for (int i = 0; i < 3; ++i) point.p[i] = at.p_m[i];
-    if (reads & HAPTEL_READS_NORMAL)
+    if (reads & HAPTEL_READS_NORMAL) {
         for (int i = 0; i < 3; ++i) {
-            point.n[i] = at.normal[i];
-            for (int j = 0; j < 3; ++j) point.n_dp[i][j] = at.n_dp[j][i];
+            point.n[i] = at.shading.normal[i];
+            for (int j = 0; j < 3; ++j) point.n_dp[i][j] = at.shading.normal_dp[j][i];
         }
-    if (reads & HAPTEL_READS_UV)
+    }
+    if (reads & HAPTEL_READS_UV) {
         for (int i = 0; i < 2; ++i) {
-            point.uv[i] = at.uv[i];
-            for (int j = 0; j < 3; ++j) point.uv_dp[i][j] = at.uv_dp[j][i];
+            point.uv[i] = at.shading.uv[i];
+            for (int j = 0; j < 3; ++j) point.uv_dp[i][j] = at.shading.uv_dp[j][i];
         }
+    }
     if (reads & HAPTEL_READS_TIME) point.time_s = at.time_s;
     return point;
 }
@@ -69,7 +71,7 @@ TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& 
     result.height_m = sample.height_m;
     result.envelope_m = std::min(0.0, sample.height_m - binding.facts.height_max_m);
     result.surface_gradient =
-        tangential(glm::dvec3(sample.gradient[0], sample.gradient[1], sample.gradient[2]), at.normal);
+        tangential(glm::dvec3(sample.gradient[0], sample.gradient[1], sample.gradient[2]), at.shading.normal);
     result.stiffness_scale = sample.stiffness_scale;
     result.friction_scale = sample.friction_scale;
     result.faults = sample.faults;

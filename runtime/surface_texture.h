@@ -6,6 +6,7 @@
 
 #include "lang/abi.h"
 #include "lang/texture_binding.h"
+#include "runtime/shading.h"
 #include "runtime/texture_slot.h"
 
 #include <glm/glm.hpp>
@@ -19,14 +20,11 @@ enum : uint32_t {
     fault_height_above_bound = 1u << 8 // the height exceeds the binding's facts; cut off there, gradient 0
 };
 
-// Where a texture is evaluated, object space. Jacobians are those of the facet, with respect to p.
+// Where a texture is evaluated, object space. What the texture does not read need not be filled, but for the normal.
 struct SurfacePoint {
     glm::dvec3 p_m{0};
-    glm::dvec3 normal{0, 0, 1}; // unit, shaded
-    glm::dvec2 uv{0};
+    Shading shading;
     double time_s = 0;
-    glm::dmat3 n_dp{0};    // column j: dn/dp_j, 1/m
-    glm::dmat3x2 uv_dp{0}; // column j: duv/dp_j, 1/m
 };
 
 struct TextureSample {
@@ -46,7 +44,7 @@ TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& po
 // Bits of haptel_texture::reads of what is felt now: Jacobians that nobody reads need not be computed.
 uint32_t texture_reads(const TextureReader& reader) noexcept;
 
-// Part of g along the surface: g - (g . n) n for a unit normal n. Keeps the force zero-mean across a flat facet.
+// Part of g along the surface: g - (g . n) n for a unit normal n.
 inline glm::dvec3 tangential(const glm::dvec3& g, const glm::dvec3& n)
 {
     return g - glm::dot(g, n) * n;

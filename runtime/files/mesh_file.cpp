@@ -1,0 +1,87 @@
+#include "runtime/files/mesh_file.h"
+
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <exception>
+#include <limits>
+#include <system_error>
+
+namespace haptel::runtime {
+
+namespace {
+
+// Assimp reads some forty formats, many of them rarely tested; these are the ones people have.
+constexpr std::array<std::string_view, 8> extensions = {".obj", ".ply", ".stl",  ".off",
+                                                        ".3ds", ".dae", ".gltf", ".glb"};
+
+std::string lower_case(std::string text)
+{
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+void append(Mesh& mesh, const aiMesh& part, bool with_uv)
+{
+    const std::size_t first = mesh.positions_m.size();
+    for (unsigned i = 0; i < part.mNumVertices; ++i) {
+        const aiVector3D& p = part.mVertices[i];
+        mesh.positions_m.emplace_back(p.x, p.y, p.z);
+        if (with_uv) mesh.uv.emplace_back(part.mTextureCoords[0][i].x, part.mTextureCoords[0][i].y);
+    }
+    for (unsigned i = 0; i < part.mNumFaces; ++i) {
+        const aiFace& face = part.mFaces[i];
+        if (face.mNumIndices != 3) continue;
+        std::array<uint32_t, 3> triangle;
+        for (unsigned corner = 0; corner < 3; ++corner)
+            triangle[corner] = face.mIndices[corner] < part.mNumVertices
+                                   ? static_cast<uint32_t>(first + face.mIndices[corner])
+                                   : std::numeric_limits<uint32_t>::max(); // out of range stays so: it is counted when
+                                                                           // the surface is built
+        mesh.triangles.push_back(triangle);
+    }
+}
+
+MeshFileResult failed(std::string why)
+{
+    MeshFileResult result;
+    result.error = std::move(why);
+    return result;
+}
+
+} // namespace
+
+MeshFileResult load_mesh(const std::filesystem::path& file)
+try {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored))
+        return failed("there is no such file (looked for " + file.string() + ")");
+    if (!std::filesystem::is_regular_file(file, ignored)) return failed("this is not a file");
+    if (std::filesystem::file_size(file, ignored) == 0) return failed("the file is empty");
+    const std::string extension = lower_case(file.extension().string());
+    if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
+        return failed("expected a mesh of type .obj, .ply, .stl, .off, .3ds, .dae, .gltf or .glb, found " +
+                      (extension.empty() ? "no type" : extension));
+
+    Assimp::Importer importer;
+    const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
+    if (!scene) return failed("the file could not be read: " + std::string(importer.GetErrorString()));
+
+    MeshFileResult result;
+    bool with_uv = scene->mNumMeshes > 0;
+    for (unsigned i = 0; i < scene->mNumMeshes; ++i) with_uv = with_uv && scene->mMeshes[i]->HasTextureCoords(0);
+    for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(result.mesh, *scene->mMeshes[i], with_uv);
+    if (result.mesh.triangles.empty()) return failed("the file holds no triangle");
+    return result;
+} catch (const std::exception& problem) {
+    return failed(std::string("the file could not be read: ") + problem.what());
+} catch (...) {
+    return failed("the file could not be read");
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,19 @@
+// Meshes from files, by assimp. What is read is a soup that nobody has checked yet: build_surface() does.
+#pragma once
+
+#include "runtime/mesh.h"
+
+#include <filesystem>
+#include <string>
+
+namespace haptel::runtime {
+
+struct MeshFileResult {
+    Mesh mesh;         // triangles of all parts of the file, in the file's units, as if metres
+    std::string error; // why there is none, in words; empty: read
+};
+
+// Polygons are cut into triangles; points and lines are left out. Formats: OBJ, PLY, STL, OFF, 3DS, DAE, glTF.
+MeshFileResult load_mesh(const std::filesystem::path& file);
+
+} // namespace haptel::runtime

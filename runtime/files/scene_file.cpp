@@ -1,0 +1,328 @@
+#include "runtime/files/scene_file.h"
+
+#include "runtime/files/mesh_file.h"
+#include "runtime/files/table_reader.h"
+#include "runtime/shapes.h"
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <utility>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace haptel::runtime {
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Side of a built-in shape whose size the scene does not say, metres.
+constexpr double default_shape_size_m = 0.1;
+
+// What a scene file says, before anything else is opened.
+struct ObjectText {
+    std::string mesh, shape, texture;
+    double size_m = 0; // 0: as it is
+    SceneObject object;
+    std::vector<std::pair<std::string, std::string>> parameters;
+    toml::source_region mesh_at, texture_at;
+};
+
+struct SceneText {
+    ProbeSettings probe;
+    ServoSettings servo;
+    DeviceRequest device;
+    toml::source_region device_at;
+    std::vector<ObjectText> objects;
+};
+
+// A table of the scene, or an empty one where it is absent or something else.
+const toml::table& table_named(const toml::table& root, std::string_view name, FileMessages& messages)
+{
+    static const toml::table none;
+    const toml::node* node = root.get(name);
+    if (!node) return none;
+    if (const toml::table* table = node->as_table()) return *table;
+    messages.error(node->source(),
+                   "expected a table: write `[" + std::string(name) + "]` on a line of its own, its keys below");
+    return none;
+}
+
+ProbeSettings read_probe(const toml::table& root, FileMessages& messages)
+{
+    ProbeSettings probe;
+    TableReader table(table_named(root, "probe", messages), "[probe]", messages);
+    if (table.word("kind", {"point", "stylus"}) == std::size_t{1}) probe.kind = ProbeKind::stylus;
+    table.number("length_m", probe.length_m, Quantity::length, {0, 10, true});
+    double radius_m = 0;
+    table.number("radius_m", radius_m, Quantity::length, {0, 10});
+    if (radius_m > 0)
+        messages.error(table.where("radius_m"),
+                       "`radius_m` is for a sphere, but the probe is a point or a stylus: write 0");
+    table.report_unknown_keys();
+    return probe;
+}
+
+ServoSettings read_servo(const toml::table& root, FileMessages& messages)
+{
+    ServoSettings servo;
+    TableReader table(table_named(root, "servo", messages), "[servo]", messages);
+    table.number("rate_hz", servo.rate_hz, Quantity::frequency, {10, 100'000});
+    if (const auto model = table.word("force_model", {"displaced", "paper"}))
+        servo.force_model = *model == 0 ? ForceModel::displaced : ForceModel::paper;
+    table.number("force_limit_n", servo.force_limit_n, Quantity::force, {0, 100, true});
+    table.number("v_max_m_per_s", servo.v_max_m_per_s, Quantity::speed, {0, 10, true});
+    table.number("force_rise_s", servo.force_rise_s, Quantity::time, {0, 10});
+    table.report_unknown_keys();
+    return servo;
+}
+
+DeviceRequest read_device(const toml::table& root, const std::filesystem::path& folder, FileMessages& messages)
+{
+    DeviceRequest device;
+    device.name = "simulated:premium";
+    device.stroke = "circles";
+    TableReader table(table_named(root, "device", messages), "[device]", messages);
+    table.text("name", device.name);
+    static const std::vector<std::string_view> strokes = {"circles", "scan", "press", "random"};
+    if (const auto stroke = table.word("stroke", strokes)) device.stroke = strokes[*stroke];
+    table.number("speed_m_per_s", device.speed_m_per_s, Quantity::speed, {0, 10, true});
+    table.number("press_n", device.press_n, Quantity::force, {0, 100});
+    table.whole_number("seed", device.seed);
+    table.report_unknown_keys();
+
+    constexpr std::string_view replay = "replay:";
+    if (device.name.starts_with(replay))
+        device.name = std::string(replay) + (folder / device.name.substr(replay.size())).lexically_normal().string();
+    return device;
+}
+
+Material read_material(TableReader& table, FileMessages& messages)
+{
+    Material material;
+    table.number("stiffness_n_per_m", material.stiffness_n_per_m, Quantity::stiffness, {0, 1e6, true});
+    table.number("damping_n_s_per_m", material.damping_n_s_per_m, Quantity::damping, {0, 1e4});
+    table.number("static_friction", material.static_friction, Quantity::number, {0, 10});
+    table.number("dynamic_friction", material.dynamic_friction, Quantity::number, {0, 10});
+    if (material.dynamic_friction <= material.static_friction) return material;
+    // A default gives way to what is written.
+    if (!table.has("dynamic_friction"))
+        material.dynamic_friction = material.static_friction;
+    else if (!table.has("static_friction"))
+        material.static_friction = material.dynamic_friction;
+    else
+        messages.error(table.where("dynamic_friction"), "`dynamic_friction` must not exceed `static_friction`: a "
+                                                        "surface that slides harder than it sticks chatters");
+    return material;
+}
+
+ObjectText read_object(const toml::table& source, FileMessages& messages)
+{
+    ObjectText text;
+    TableReader table(source, "[[object]]", messages);
+    table.text("mesh", text.mesh);
+    if (const auto shape = table.word("shape", {shape_names.begin(), shape_names.end()}))
+        text.shape = shape_names[*shape];
+    if (table.has("mesh") == table.has("shape"))
+        messages.error(source.source(), table.has("mesh") ? "an object has either a `mesh` or a `shape`, not both"
+                                                          : "an object needs a `mesh = \"FILE\"` or a `shape`: " +
+                                                                either_of({shape_names.begin(), shape_names.end()}));
+    text.mesh_at = table.where(table.has("mesh") ? "mesh" : "shape");
+    if (!table.has("mesh")) text.size_m = default_shape_size_m;
+    table.number("size_m", text.size_m, Quantity::length, {0, 1000, true});
+
+    table.three_numbers("position_m", text.object.placement.position_m, Quantity::length, {-1000, 1000});
+    glm::dvec3 turn_deg(0);
+    table.three_numbers("rotation_deg", turn_deg, Quantity::angle_deg, {-3600, 3600});
+    glm::dmat4 rotation(1);
+    for (const int axis : {2, 1, 0}) { // about x first, then y, then z: the last factor turns first
+        glm::dvec3 direction(0);
+        direction[axis] = 1;
+        if (turn_deg[axis] != 0) rotation = glm::rotate(rotation, glm::radians(turn_deg[axis]), direction);
+    }
+    text.object.placement.rotation = glm::dmat3(rotation);
+
+    text.object.material = read_material(table, messages);
+    table.text("texture", text.texture);
+    text.texture_at = table.where("texture");
+    text.parameters = table.values_as_written("parameters");
+    if (!text.parameters.empty() && text.texture.empty() && !table.has("texture"))
+        messages.error(table.where("parameters"), "`parameters` belong to a `texture`, but this object has none");
+    table.report_unknown_keys();
+    return text;
+}
+
+SceneText read_scene(const toml::table& root, const std::filesystem::path& folder, FileMessages& messages)
+{
+    SceneText text;
+    text.probe = read_probe(root, messages);
+    text.servo = read_servo(root, messages);
+    text.device = read_device(root, folder, messages);
+
+    TableReader top(root, "", messages);
+    for (const char* name : {"probe", "servo", "device", "object"}) (void)top.has(name);
+    top.report_unknown_keys();
+    text.device_at = top.where("device");
+
+    const toml::node* objects = root.get("object");
+    const toml::array* list = objects ? objects->as_array() : nullptr;
+    if (!objects)
+        messages.error("a scene needs something to touch: add an `[[object]]` with a `mesh` or a `shape`");
+    else if (!list || !list->is_array_of_tables())
+        messages.error(objects->source(), "expected `[[object]]` in double brackets: a scene may hold several objects");
+    else
+        for (const toml::node& object : *list) text.objects.push_back(read_object(*object.as_table(), messages));
+    return text;
+}
+
+void load_geometry(ObjectText& text, const std::filesystem::path& folder, FileMessages& messages)
+{
+    Mesh mesh;
+    if (text.mesh.empty()) {
+        text.object.name = text.shape;
+        mesh = make_shape(text.shape).value_or(Mesh{});
+    } else {
+        text.object.name = text.mesh;
+        MeshFileResult read = load_mesh((folder / text.mesh).lexically_normal());
+        if (!read.error.empty()) {
+            messages.error(text.mesh_at, "mesh `" + text.mesh + "`: " + read.error);
+            return;
+        }
+        mesh = std::move(read.mesh);
+    }
+    if (text.size_m > 0) scale_to_size(mesh, text.size_m);
+    SurfaceResult built = build_surface(mesh);
+    if (!built.surface)
+        messages.error(text.mesh_at, "mesh `" + text.object.name + "`: " + built.error);
+    else if (const std::string warning = built.report.warning(); !warning.empty())
+        messages.warning(text.mesh_at, "mesh `" + text.object.name + "`: " + warning);
+    text.object.surface = std::move(built.surface);
+}
+
+void load_texture(ObjectText& text, const SceneText& scene, const std::filesystem::path& folder,
+                  const TextureResolver& textures, FileMessages& messages)
+{
+    if (text.texture.empty() || !textures) return;
+    const std::size_t colon = text.texture.rfind(':');
+    if (colon == std::string::npos || colon == 0 || colon + 1 == text.texture.size()) {
+        messages.error(
+            text.texture_at,
+            "expected a file, a colon and the name of a texture in it, such as \"rock.haptel:rock\", found \"" +
+                text.texture + "\"");
+        return;
+    }
+    TextureRequest request;
+    request.reference = std::filesystem::absolute(folder / text.texture.substr(0, colon)).lexically_normal().string() +
+                        text.texture.substr(colon);
+    request.parameters = text.parameters;
+    for (int i = 0; i < 3; ++i) {
+        request.box_minimum_m[i] = text.object.surface->box_minimum_m[i];
+        request.box_maximum_m[i] = text.object.surface->box_maximum_m[i];
+    }
+    request.footprint_m = 2 * scene.servo.v_max_m_per_s / scene.servo.rate_hz;
+
+    TextureResult result = textures(request);
+    const std::string fault = result.binding ? binding_fault(*result.binding) : "";
+    if (!result.binding || !fault.empty())
+        messages.error(text.texture_at,
+                       "texture `" + text.texture + "` cannot be used" + (fault.empty() ? "" : ": " + fault));
+    else
+        text.object.texture = std::make_shared<TextureSlot>(std::move(*result.binding));
+    messages.add(result.diagnostics);
+    text.object.request = std::move(request);
+}
+
+// First hit of the vertical line at (x, y) from above, world frame.
+std::optional<SurfaceHit> surface_below(const SceneObject& object, double x_m, double y_m, double above_m,
+                                        double below_m)
+{
+    const Placement& placement = object.placement;
+    const auto hit =
+        object.surface->first_hit(placement.to_object({x_m, y_m, above_m}), placement.to_object({x_m, y_m, below_m}));
+    if (!hit) return std::nullopt;
+    return SurfaceHit{placement.to_world(hit->point_m), placement.direction_to_world(hit->facet_normal)};
+}
+
+// What the driver needs to know of the object that is explored, the first one.
+void describe_object(DeviceRequest& request, const std::shared_ptr<const Scene>& scene)
+{
+    const SceneObject& object = scene->objects.front();
+    request.box_minimum_m = glm::dvec3(infinity);
+    request.box_maximum_m = glm::dvec3(-infinity);
+    for (const glm::dvec3& vertex : object.surface->vertices) {
+        const glm::dvec3 p = object.placement.to_world(object.surface->lattice.metres(vertex));
+        request.box_minimum_m = glm::min(request.box_minimum_m, p);
+        request.box_maximum_m = glm::max(request.box_maximum_m, p);
+    }
+    const glm::dvec3 sides = request.box_maximum_m - request.box_minimum_m;
+    const double margin_m = 0.01 * std::max({sides.x, sides.y, sides.z});
+    request.surface_below = [scene, above_m = request.box_maximum_m.z + margin_m,
+                             below_m = request.box_minimum_m.z - margin_m](double x_m, double y_m) {
+        return surface_below(scene->objects.front(), x_m, y_m, above_m, below_m);
+    };
+}
+
+LoadedScene load(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
+                 FileMessages& messages)
+{
+    LoadedScene loaded;
+    std::ifstream in(file, std::ios::binary);
+    const std::string source{std::istreambuf_iterator<char>(in), {}};
+    if (!in.is_open() || in.bad()) {
+        messages.error("the scene could not be read: is the path right?");
+        return loaded;
+    }
+    const std::filesystem::path folder = file.parent_path();
+    SceneText text;
+    try {
+        text = read_scene(toml::parse(source), folder, messages);
+    } catch (const toml::parse_error& problem) {
+        messages.error(problem.source(), std::string(problem.description()));
+    }
+    if (messages.any_error()) return loaded;
+
+    for (ObjectText& object : text.objects) load_geometry(object, folder, messages);
+    if (messages.any_error()) return loaded;
+    for (ObjectText& object : text.objects) load_texture(object, text, folder, textures, messages);
+    if (messages.any_error()) return loaded;
+
+    auto scene = std::make_shared<Scene>();
+    scene->probe = text.probe;
+    scene->servo = text.servo;
+    for (ObjectText& object : text.objects) scene->objects.push_back(std::move(object.object));
+
+    if (devices) {
+        text.device.rate_hz = scene->servo.rate_hz;
+        text.device.stylus_length_m = scene->probe.kind == ProbeKind::stylus ? scene->probe.length_m : 0;
+        describe_object(text.device, scene);
+        DeviceResult opened = devices(text.device);
+        if (!opened.device) {
+            messages.error(text.device_at, "device `" + text.device.name + "`: " + opened.error);
+            return loaded;
+        }
+        loaded.device = std::move(opened.device);
+    }
+    loaded.scene = std::move(scene);
+    return loaded;
+}
+
+} // namespace
+
+LoadedScene load_scene(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices)
+{
+    FileMessages messages(file);
+    LoadedScene loaded;
+    try {
+        loaded = load(file, textures, devices, messages);
+    } catch (const std::exception& problem) {
+        messages.error(std::string("the scene could not be loaded: ") + problem.what());
+    }
+    loaded.diagnostics = messages.text();
+    return loaded;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,28 @@
+// Scenes from TOML files. The keys are listed in the parts of scene_file.cpp, one function per table; numbers are SI,
+// or text with a unit; paths are relative to the scene.
+#pragma once
+
+#include "lang/texture_binding.h"
+#include "runtime/haptic_device.h"
+#include "runtime/scene.h"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace haptel::runtime {
+
+struct LoadedScene {
+    std::shared_ptr<const Scene> scene;   // null: see diagnostics
+    std::unique_ptr<HapticDevice> device; // null without a scene, or where no factory was given
+    // Errors (then there is no scene) and warnings, ready to print: "FILE:LINE:COLUMN: error: ...", a line each,
+    // several at once.
+    std::string diagnostics;
+};
+
+// Reads, checks, loads the meshes, asks `textures` for every texture and `devices` for the device. Either may be empty:
+// objects are then smooth, and no device is opened. Never throws.
+LoadedScene load_scene(const std::filesystem::path& file, const TextureResolver& textures,
+                       const DeviceFactory& devices);
+
+} // namespace haptel::runtime

@@ -1,0 +1,276 @@
+#include "runtime/files/table_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <numeric>
+
+namespace haptel::runtime {
+
+namespace {
+
+std::string shortest(double value)
+{
+    const double size = std::abs(value);
+    const auto format =
+        size == 0 || (size >= 1e-5 && size < 1e15) ? std::chars_format::fixed : std::chars_format::general;
+    std::array<char, 64> text;
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, format).ptr};
+}
+
+std::string in_words(const Range& range)
+{
+    if (std::isinf(range.maximum)) return (range.above_minimum ? "more than " : "at least ") + shortest(range.minimum);
+    return (range.above_minimum ? "above " : "from ") + shortest(range.minimum) +
+           (range.above_minimum ? " up to " : " to ") + shortest(range.maximum);
+}
+
+bool inside(double value, const Range& range)
+{
+    return (range.above_minimum ? value > range.minimum : value >= range.minimum) && value <= range.maximum;
+}
+
+std::string kind_of(const toml::node& node)
+{
+    switch (node.type()) {
+    case toml::node_type::none: return "nothing";
+    case toml::node_type::table: return "a table";
+    case toml::node_type::array: return "a list";
+    case toml::node_type::string: return "\"" + std::string(*node.value<std::string_view>()) + "\"";
+    case toml::node_type::integer: return std::to_string(*node.value<int64_t>());
+    case toml::node_type::floating_point: return shortest(*node.value<double>());
+    case toml::node_type::boolean: return *node.value<bool>() ? "true" : "false";
+    case toml::node_type::date:
+    case toml::node_type::time:
+    case toml::node_type::date_time: return "a date or time";
+    }
+    return "something else";
+}
+
+std::size_t edit_distance(std::string_view a, std::string_view b)
+{
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0];
+        row[0] = i + 1;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+        }
+    }
+    return row.back();
+}
+
+} // namespace
+
+std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates)
+{
+    std::optional<std::string> nearest;
+    std::size_t smallest = std::max<std::size_t>(1, word.size() / 3) + 1;
+    for (const std::string& candidate : candidates) {
+        // A key without its unit is the most common slip of all: "stiffness" for "stiffness_n_per_m".
+        const bool lacks_unit = word.size() >= 3 && candidate.starts_with(word);
+        const std::size_t distance = lacks_unit ? 1 : edit_distance(word, candidate);
+        if (distance < smallest) {
+            smallest = distance;
+            nearest = candidate;
+        }
+    }
+    return nearest;
+}
+
+std::string either_of(const std::vector<std::string_view>& words)
+{
+    std::string list;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (i > 0) list += i + 1 == words.size() ? " or " : ", ";
+        list += "\"" + std::string(words[i]) + "\"";
+    }
+    return list;
+}
+
+void FileMessages::write(toml::source_position at, std::string_view severity, const std::string& message)
+{
+    at.line = std::max<toml::source_index>(at.line, 1);
+    at.column = std::max<toml::source_index>(at.column, 1);
+    messages_.push_back({at, file_.string() + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
+                                 std::string(severity) + ": " + message + "\n"});
+}
+
+std::string FileMessages::text() const
+{
+    std::vector<Message> sorted = messages_;
+    std::stable_sort(sorted.begin(), sorted.end(), [](const Message& a, const Message& b) { return a.at < b.at; });
+    std::string all;
+    for (const Message& message : sorted) all += message.text;
+    return all + added_;
+}
+
+void FileMessages::error(const toml::source_region& where, const std::string& message)
+{
+    any_error_ = true;
+    write(where.begin, "error", message);
+}
+
+void FileMessages::error(const std::string& message)
+{
+    error(toml::source_region{}, message);
+}
+
+void FileMessages::warning(const toml::source_region& where, const std::string& message)
+{
+    write(where.begin, "warning", message);
+}
+
+void FileMessages::add(std::string_view text)
+{
+    added_ += text;
+    if (!added_.empty() && !added_.ends_with('\n')) added_ += '\n';
+}
+
+TableReader::TableReader(const toml::table& table, std::string name, FileMessages& messages)
+    : table_(table), name_(std::move(name)), messages_(messages)
+{
+}
+
+const toml::node* TableReader::find(std::string_view key)
+{
+    if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
+    return table_.get(key);
+}
+
+bool TableReader::has(std::string_view key)
+{
+    return find(key) != nullptr;
+}
+
+const toml::source_region& TableReader::where(std::string_view key) const
+{
+    const toml::node* node = table_.get(key);
+    return node ? node->source() : table_.source();
+}
+
+std::optional<double> TableReader::number_in(const toml::node& node, std::string_view key, Quantity quantity,
+                                             const Range& range)
+{
+    std::optional<double> value;
+    if (node.is_string())
+        value = parse_quantity(*node.value<std::string_view>(), quantity);
+    else if (node.is_number())
+        value = node.value<double>();
+    if (!value) {
+        const std::string units = units_of(quantity);
+        messages_.error(node.source(),
+                        "expected " + std::string(description_of(quantity)) + " for `" + std::string(key) +
+                            "`, found " + kind_of(node) +
+                            (node.is_string() && !units.empty() ? " (units that fit: " + units + ")" : ""));
+        return std::nullopt;
+    }
+    if (!inside(*value, range)) { // NaN is inside nothing
+        messages_.error(node.source(),
+                        "`" + std::string(key) + "` must be " + in_words(range) + ", found " + kind_of(node));
+        return std::nullopt;
+    }
+    return value;
+}
+
+void TableReader::number(std::string_view key, double& value, Quantity quantity, const Range& range)
+{
+    if (const toml::node* node = find(key)) value = number_in(*node, key, quantity, range).value_or(value);
+}
+
+void TableReader::three_numbers(std::string_view key, glm::dvec3& value, Quantity quantity, const Range& range)
+{
+    const toml::node* node = find(key);
+    if (!node) return;
+    const toml::array* list = node->as_array();
+    if (!list || list->size() != 3) {
+        messages_.error(node->source(), "expected three numbers, such as [0, 0, 0], for `" + std::string(key) +
+                                            "`, found " +
+                                            (list ? "a list of " + std::to_string(list->size()) : kind_of(*node)));
+        return;
+    }
+    for (int i = 0; i < 3; ++i)
+        value[i] = number_in((*list)[static_cast<std::size_t>(i)], key, quantity, range).value_or(value[i]);
+}
+
+void TableReader::text(std::string_view key, std::string& value)
+{
+    const toml::node* node = find(key);
+    if (!node) return;
+    const auto text = node->value<std::string_view>();
+    if (!node->is_string() || text->empty())
+        messages_.error(node->source(),
+                        "expected text in quotes for `" + std::string(key) + "`, found " + kind_of(*node));
+    else
+        value = *text;
+}
+
+void TableReader::whole_number(std::string_view key, uint64_t& value)
+{
+    const toml::node* node = find(key);
+    if (!node) return;
+    const auto number = node->value_exact<int64_t>();
+    if (!number || *number < 0)
+        messages_.error(node->source(),
+                        "expected a whole number from 0 on for `" + std::string(key) + "`, found " + kind_of(*node));
+    else
+        value = static_cast<uint64_t>(*number);
+}
+
+std::optional<std::size_t> TableReader::word(std::string_view key, const std::vector<std::string_view>& words)
+{
+    const toml::node* node = find(key);
+    if (!node) return std::nullopt;
+    if (const auto text = node->value_exact<std::string_view>()) {
+        const auto found = std::find(words.begin(), words.end(), *text);
+        if (found != words.end()) return static_cast<std::size_t>(found - words.begin());
+    }
+    messages_.error(node->source(),
+                    "expected " + either_of(words) + " for `" + std::string(key) + "`, found " + kind_of(*node));
+    return std::nullopt;
+}
+
+std::vector<std::pair<std::string, std::string>> TableReader::values_as_written(std::string_view key)
+{
+    std::vector<std::pair<std::string, std::string>> values;
+    const toml::node* node = find(key);
+    if (!node) return values;
+    const toml::table* table = node->as_table();
+    if (!table) {
+        messages_.error(node->source(), "expected names and values, such as { depth = \"60um\" }, for `" +
+                                            std::string(key) + "`, found " + kind_of(*node));
+        return values;
+    }
+    for (const auto& [name, value] : *table) {
+        if (value.is_string())
+            values.emplace_back(name.str(), *value.value<std::string>());
+        else if (value.is_number() || value.is_boolean())
+            values.emplace_back(name.str(), kind_of(value));
+        else
+            messages_.error(value.source(), "expected a number, true, false or text for parameter `" +
+                                                std::string(name.str()) + "`, found " + kind_of(value));
+    }
+    return values;
+}
+
+void TableReader::report_unknown_keys()
+{
+    for (const auto& [key, value] : table_) {
+        if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
+        const std::string in = name_.empty() ? "" : " in " + name_;
+        if (const auto meant = nearest_word(key.str(), known_)) {
+            messages_.error(key.source(),
+                            "unknown key `" + std::string(key.str()) + "`" + in + ": did you mean `" + *meant + "`?");
+        } else {
+            std::string all;
+            for (const std::string& known : known_) all += (all.empty() ? "" : ", ") + known;
+            messages_.error(key.source(), "unknown key `" + std::string(key.str()) + "`" + in + ": it may hold " + all);
+        }
+    }
+}
+
+} // namespace haptel::runtime

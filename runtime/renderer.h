@@ -1,0 +1,97 @@
+// One tick of haptic rendering: from the pose of the hand to the force on it.
+//
+// A function of its state, the pose and the period alone - no clock, no thread, no device - so that a run can be
+// repeated bit for bit and tested without any of them. The stages, each skipped when the one before says so: pose
+// check, contact (free-space skip, collision, proxy, friction), force shading, texture, force model, friction and
+// damping, limits. tick() allocates nothing, locks nothing, throws nothing.
+#pragma once
+
+#include "runtime/contact.h"
+#include "runtime/haptic_device.h"
+#include "runtime/scene.h"
+#include "runtime/servo_report.h"
+#include "runtime/surface_texture.h"
+#include "runtime/texture_slot.h"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <variant>
+#include <vector>
+
+namespace haptel::runtime {
+
+// Damping of a material is full from this depth on and proportional to depth above it: a touch begins without a step in
+// force, however fast the hand comes (Hunt and Crossley 1975 have the same reason for the same product).
+inline constexpr double full_damping_depth_m = 1e-3;
+
+// The hand's velocity is the backward difference of its positions through a one-pole low-pass of this cut-off.
+inline constexpr double velocity_cutoff_hz = 100;
+
+// Bits of TickResult::faults, beside those of TextureSample::faults.
+enum : uint32_t {
+    fault_pose_not_finite = 1u << 16, // force zero, contact kept as it was
+    fault_force_not_finite = 1u << 17 // force zero
+};
+
+struct TickResult {
+    double time_s = 0;
+    glm::dvec3 force_n{0};    // on the hand, world frame, after rise and limits; finite and never above the limit
+    glm::dvec3 torque_n_m{0}; // about the tip
+    glm::dvec3 unlimited_force_n{0};
+    uint32_t contacts = 0; // objects touched
+    double depth_m = 0;    // below the base surface, of the deepest object touched
+    double height_m = 0;   // of the texture there, as published
+    uint64_t binding = 0;  // serial of the texture of that object, else of the first one
+    uint32_t faults = 0;
+};
+
+class Renderer {
+public:
+    // device_force_max_n: what the motors can do; 0: unknown, the scene's limit alone holds.
+    explicit Renderer(std::shared_ptr<const Scene> scene, double device_force_max_n = 0);
+
+    // Once per period with the pose of the hand. The first pose puts the probe down where it is.
+    TickResult tick(const DevicePose& pose) noexcept;
+
+    double force_limit_n() const noexcept { return force_limit_n_; }
+    const SkippedStages& skipped() const noexcept { return skipped_; }
+    // Bindings published to the scene's slots since this renderer was made.
+    uint64_t reloads() const noexcept;
+
+private:
+    // What the servo remembers of one object.
+    struct Touched {
+        const SceneObject* object;
+        std::variant<PointContact, StylusContact> contact;
+        TextureReader texture;
+        uint64_t serial_at_start;
+        // What the texture leaves of the friction coefficients: its own scale, times the share of the depth below the
+        // base surface that is also below the texture. Of the tick before: contact comes before texture.
+        double friction_share = 0;
+    };
+    struct ObjectForce {
+        glm::dvec3 force_n{0}; // world frame
+        double height_m = 0;
+        uint32_t faults = 0;
+    };
+
+    const ContactCounters& counters(const Touched& touched) const noexcept;
+    const Contact& update_contact(Touched& touched, const DevicePose& pose) const noexcept;
+    ObjectForce force_of(Touched& touched, const Contact& contact) const noexcept;
+    void update_velocity(const glm::dvec3& tip_m) noexcept;
+
+    std::shared_ptr<const Scene> scene_;
+    std::vector<Touched> objects_;
+    double period_s_;
+    double force_limit_n_;
+    double velocity_gain_; // of the low-pass
+    uint64_t ticks_ = 0;
+    SkippedStages skipped_;
+    bool has_last_tip_ = false;
+    glm::dvec3 last_tip_m_{0};
+    glm::dvec3 velocity_m_per_s_{0};
+};
+
+} // namespace haptel::runtime

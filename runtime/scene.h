@@ -1,0 +1,70 @@
+// The scene database: what there is to touch. Immutable once made and shared by all threads; only the textures in the
+// objects' slots change, each by its own atomic pointer.
+#pragma once
+
+#include "lang/texture_binding.h"
+#include "runtime/force_model.h"
+#include "runtime/haptic_device.h"
+#include "runtime/surface.h"
+#include "runtime/texture_slot.h"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace haptel::runtime {
+
+struct Material {
+    double stiffness_n_per_m = 800; // > 0
+    double damping_n_s_per_m = 1.0; // >= 0; along the normal, full below full_damping_depth_m
+    double static_friction = 0.3;   // >= dynamic_friction: largest tangential over normal force that sticks
+    double dynamic_friction = 0.2;  // >= 0: the same while sliding
+};
+
+// Rotation and translation, nothing else: object space keeps its metres.
+struct Placement {
+    glm::dmat3 rotation{1}; // orthonormal
+    glm::dvec3 position_m{0};
+
+    glm::dvec3 to_world(const glm::dvec3& p) const { return rotation * p + position_m; }
+    glm::dvec3 direction_to_world(const glm::dvec3& v) const { return rotation * v; }
+    glm::dvec3 to_object(const glm::dvec3& p) const { return (p - position_m) * rotation; }
+    glm::dvec3 direction_to_object(const glm::dvec3& v) const { return v * rotation; }
+};
+
+struct SceneObject {
+    std::string name; // for messages: the mesh file or the shape
+    std::shared_ptr<const Surface> surface;
+    Placement placement;
+    Material material;
+    bool force_shading = true; // eq. 1; false: every facet is felt flat
+    std::shared_ptr<TextureSlot> texture = std::make_shared<TextureSlot>();
+    std::optional<TextureRequest> request; // what the texture was resolved from, for live reload
+};
+
+enum class ProbeKind : uint8_t { point, stylus };
+
+struct ProbeSettings {
+    ProbeKind kind = ProbeKind::point;
+    double length_m = 0.15; // of the stylus, tip to tail
+};
+
+struct ServoSettings {
+    double rate_hz = 1000;
+    ForceModel force_model = ForceModel::displaced;
+    double force_limit_n = 7;   // > 0; the device's own limit applies too
+    double v_max_m_per_s = 0.3; // hand speed that textures are band-limited for
+    double force_rise_s = 0.1;  // forces grow linearly from 0 over this time after start
+};
+
+struct Scene {
+    std::vector<SceneObject> objects; // the first is the one that a simulated hand explores
+    ProbeSettings probe;
+    ServoSettings servo;
+};
+
+} // namespace haptel::runtime

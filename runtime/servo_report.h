@@ -1,0 +1,49 @@
+// What a run was like: the figures of `haptel explore`.
+#pragma once
+
+#include "runtime/histogram.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace haptel::runtime {
+
+enum class ServoState : uint8_t {
+    ready, // made, not started
+    running,
+    finished, // its time or its device's stroke is over
+    stopped,  // on request
+    faulted,  // the device failed: force is zero, see stop_reason
+};
+
+// Ticks in which a stage had nothing to do. Empty: the stage cannot be skipped by this program.
+struct SkippedStages {
+    uint64_t free_space = 0; // no collision query was needed
+    std::optional<uint64_t> texture, octaves, mapping;
+};
+
+struct ServoReport {
+    ServoState state = ServoState::ready;
+    std::string stop_reason;    // in words
+    bool real_time = false;     // SCHED_FIFO and locked memory were granted
+    std::string real_time_note; // why not, or nothing
+
+    double seconds = 0; // periods that went by, missed ones included, times the period
+    double rate_hz = 0;
+    uint64_t ticks = 0;
+    uint64_t missed_deadlines = 0; // periods in which no force was sent because the tick before was late
+    uint64_t contact_ticks = 0;
+    Histogram tick_ns;                       // pose in hand to force computed
+    Histogram wake_late_ns;                  // after the deadline; empty on the virtual clock
+    double force_rms_n = 0, force_max_n = 0; // as sent, over all ticks
+    double energy_j = 0;     // that the forces gave to the hand; negative where they took more than they gave
+    uint64_t faults = 0;     // ticks with a fault of texture, pose or force
+    uint32_t fault_bits = 0; // TickFault bits seen
+    uint64_t reloads = 0;    // bindings published after start
+    std::optional<uint64_t> allocations_in_tick; // empty: not counted in this program
+    SkippedStages skipped;
+    uint64_t records_dropped = 0; // telemetry that nobody read in time
+};
+
+} // namespace haptel::runtime

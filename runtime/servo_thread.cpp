@@ -1,0 +1,185 @@
+#include "runtime/servo_thread.h"
+
+#include "runtime/real_time.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace haptel::runtime {
+
+namespace {
+
+const char* reason_of(DeviceStatus status)
+{
+    switch (status) {
+    case DeviceStatus::ok: return "";
+    case DeviceStatus::finished: return "the device's stroke or recording is over";
+    case DeviceStatus::not_ready: return "the device is not ready";
+    case DeviceStatus::disconnected: return "the device was disconnected";
+    case DeviceStatus::fault: return "the device reported a fault";
+    }
+    return "";
+}
+
+} // namespace
+
+ServoThread::ServoThread(std::shared_ptr<const Scene> scene, std::unique_ptr<HapticDevice> device,
+                         const ServoOptions& options)
+    : scene_(std::move(scene))
+    , device_(std::move(device))
+    , options_(options)
+    , renderer_(scene_, device_->info().force_max_n)
+    , telemetry_(options.telemetry_capacity)
+{
+    report_.rate_hz = scene_->servo.rate_hz;
+}
+
+ServoThread::~ServoThread()
+{
+    request_stop();
+    if (thread_.joinable()) thread_.join();
+    device_->stop();
+}
+
+void ServoThread::start()
+{
+    running_.store(true, std::memory_order_release);
+    thread_ = std::thread([this] { run(); });
+}
+
+const ServoReport& ServoThread::wait()
+{
+    if (thread_.joinable()) thread_.join();
+    return report_;
+}
+
+void ServoThread::run()
+{
+    set_exact_floating_point();
+    if (options_.clock == ServoClock::wall && options_.ask_for_real_time) {
+        RealTime real_time = ask_for_real_time();
+        report_.real_time = real_time.granted;
+        report_.real_time_note = std::move(real_time.note);
+    }
+    report_.state = ServoState::running;
+    if (options_.allocation_count) report_.allocations_in_tick = 0;
+
+    loop();
+
+    device_->stop();
+    report_.force_rms_n = report_.ticks == 0 ? 0 : std::sqrt(force_squared_sum_ / static_cast<double>(report_.ticks));
+    report_.skipped = renderer_.skipped();
+    report_.reloads = renderer_.reloads();
+    report_.records_dropped = telemetry_.dropped();
+    running_.store(false, std::memory_order_release);
+}
+
+void ServoThread::loop()
+{
+    const double rate_hz = scene_->servo.rate_hz;
+    const bool wall = options_.clock == ServoClock::wall;
+    const auto period_ns = std::max(int64_t{1}, static_cast<int64_t>(std::llround(1e9 / rate_hz)));
+    const int64_t spin_ns = report_.real_time ? std::min(int64_t{200'000}, period_ns / 5) : 0;
+    const double periods_wanted = std::ceil(options_.seconds * rate_hz - 1e-6);
+
+    int64_t deadline_ns = monotonic_ns() + period_ns;
+    uint64_t periods = 0;
+    while (report_.state == ServoState::running) {
+        if (static_cast<double>(periods) >= periods_wanted)
+            end(ServoState::finished, "the time asked for is over");
+        else if (stop_requested_.load(std::memory_order_relaxed))
+            end(ServoState::stopped, "stopped on request");
+        else {
+            if (wall) {
+                const int64_t now_ns = wait_until(deadline_ns, spin_ns);
+                report_.wake_late_ns.add(static_cast<uint64_t>(now_ns - deadline_ns));
+            } else if (options_.wait_for_reader && telemetry_.full()) {
+                std::this_thread::yield();
+                continue;
+            }
+            tick();
+            ++periods;
+            deadline_ns += period_ns;
+            if (wall) {
+                const int64_t late_ns = monotonic_ns() - deadline_ns;
+                if (late_ns >= 0) {
+                    const int64_t missed = late_ns / period_ns + 1;
+                    report_.missed_deadlines += static_cast<uint64_t>(missed);
+                    periods += static_cast<uint64_t>(missed);
+                    deadline_ns += missed * period_ns;
+                }
+            }
+        }
+    }
+    report_.seconds = static_cast<double>(periods) / rate_hz;
+}
+
+void ServoThread::tick()
+{
+    const uint64_t allocations_before = options_.allocation_count ? options_.allocation_count() : 0;
+
+    DevicePose pose;
+    const DeviceStatus read = device_->read(pose);
+    if (read == DeviceStatus::not_ready) {
+        device_->write(glm::dvec3(0), glm::dvec3(0));
+        return;
+    }
+    if (read != DeviceStatus::ok) {
+        end(read == DeviceStatus::finished ? ServoState::finished : ServoState::faulted, reason_of(read));
+        return;
+    }
+
+    const int64_t start_ns = monotonic_ns();
+    const TickResult result = renderer_.tick(pose);
+    const int64_t compute_ns = monotonic_ns() - start_ns;
+
+    const DeviceStatus written = device_->write(result.force_n, result.torque_n_m);
+    record(pose, result, static_cast<uint64_t>(compute_ns));
+    if (options_.allocation_count) *report_.allocations_in_tick += options_.allocation_count() - allocations_before;
+    if (written != DeviceStatus::ok && written != DeviceStatus::not_ready)
+        end(written == DeviceStatus::finished ? ServoState::finished : ServoState::faulted, reason_of(written));
+}
+
+void ServoThread::record(const DevicePose& pose, const TickResult& result, uint64_t compute_ns)
+{
+    if (result.faults & fault_pose_not_finite) {
+        has_last_tip_ = false;
+    } else {
+        // The force of the tick before was held while the hand came here.
+        if (has_last_tip_) report_.energy_j += glm::dot(last_force_n_, pose.tip_m - last_tip_m_);
+        last_tip_m_ = pose.tip_m;
+        last_force_n_ = result.force_n;
+        has_last_tip_ = true;
+    }
+    const double force_n = glm::length(result.force_n);
+    force_squared_sum_ += force_n * force_n;
+    report_.force_max_n = std::max(report_.force_max_n, force_n);
+    report_.contact_ticks += result.contacts > 0;
+    report_.faults += result.faults != 0;
+    report_.fault_bits |= result.faults;
+    report_.tick_ns.add(compute_ns);
+
+    TickRecord row;
+    row.tick = report_.ticks++;
+    row.time_s = result.time_s;
+    row.tip_m = pose.tip_m;
+    row.tail_m = pose.tail_m;
+    row.force_n = result.force_n;
+    row.contact = result.contacts;
+    row.depth_m = result.depth_m;
+    row.height_m = result.height_m;
+    row.compute_ns = compute_ns;
+    row.binding = result.binding;
+    row.faults = result.faults;
+    telemetry_.push(row);
+}
+
+void ServoThread::end(ServoState state, const char* reason)
+{
+    device_->write(glm::dvec3(0), glm::dvec3(0));
+    report_.state = state;
+    report_.stop_reason = reason;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,77 @@
+// The loop between device and hand: one thread per device, one tick per period.
+//
+// On the wall clock it keeps absolute deadlines: a tick that is late makes the loop skip the periods that have passed,
+// count them and go on, never catch up in a burst. Where the system lets it, it runs under SCHED_FIFO with locked
+// memory and spins over the last part of each wait (a fifth of a CPU); where not, it sleeps and says so in the report.
+// On the virtual clock it runs as fast as it can, and the same scene and device give the same forces bit for bit.
+// Whatever ends the loop - its time, a request, the device - ends it with zero force and a stopped device.
+#pragma once
+
+#include "runtime/haptic_device.h"
+#include "runtime/renderer.h"
+#include "runtime/scene.h"
+#include "runtime/servo_report.h"
+#include "runtime/telemetry.h"
+
+#include <atomic>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <thread>
+
+namespace haptel::runtime {
+
+enum class ServoClock : uint8_t { wall, virtual_time };
+
+struct ServoOptions {
+    ServoClock clock = ServoClock::wall;
+    double seconds = std::numeric_limits<double>::infinity(); // then it finishes
+    bool ask_for_real_time = true;                            // wall clock only
+    std::size_t telemetry_capacity = 1 << 14;                 // records
+    // Virtual clock only: wait while the telemetry ring is full, so that no record is lost. Somebody must read it.
+    bool wait_for_reader = false;
+    // Allocations of the calling thread so far (runtime/allocation_count.h); null: not counted.
+    uint64_t (*allocation_count)() noexcept = nullptr;
+};
+
+class ServoThread {
+public:
+    ServoThread(std::shared_ptr<const Scene> scene, std::unique_ptr<HapticDevice> device, const ServoOptions& options);
+    ~ServoThread(); // stops and waits
+
+    ServoThread(const ServoThread&) = delete;
+    ServoThread& operator=(const ServoThread&) = delete;
+
+    void start(); // once
+    void request_stop() noexcept { stop_requested_.store(true, std::memory_order_relaxed); }
+    // Waits for the end of the loop and returns what it was like. Valid until destruction.
+    const ServoReport& wait();
+    bool running() const noexcept { return running_.load(std::memory_order_acquire); }
+
+    // For one reader.
+    Telemetry& telemetry() noexcept { return telemetry_; }
+
+private:
+    void run();
+    void loop();
+    void tick();
+    void record(const DevicePose& pose, const TickResult& result, uint64_t compute_ns);
+    void end(ServoState state, const char* reason);
+
+    std::shared_ptr<const Scene> scene_;
+    std::unique_ptr<HapticDevice> device_;
+    ServoOptions options_;
+    Renderer renderer_;
+    Telemetry telemetry_;
+    ServoReport report_;
+    std::atomic<bool> stop_requested_{false};
+    std::atomic<bool> running_{false};
+    std::thread thread_;
+
+    // Of the servo thread only.
+    glm::dvec3 last_tip_m_{0}, last_force_n_{0};
+    bool has_last_tip_ = false;
+    double force_squared_sum_ = 0;
+};
+
+} // namespace haptel::runtime

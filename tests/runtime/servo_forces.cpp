@@ -1,0 +1,411 @@
+// What the hand feels: force models, friction, damping, limits, shading, fades.
+#include "runtime/force_model.h"
+#include "runtime/renderer.h"
+#include "tests/support/catch.h"
+#include "tests/support/lambda_texture.h"
+#include "tests/support/touch_scenes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+using namespace haptel;
+using namespace haptel::runtime;
+using namespace haptel::tests;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+double degrees_between(const glm::dvec3& a, const glm::dvec3& b)
+{
+    return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
+}
+
+// Work that the static force field does on a hand taken once around the rectangle in the xz plane (J).
+double loop_work_j(Renderer& renderer, double x0, double x1, double z_shallow, double z_deep, int steps)
+{
+    const std::array<glm::dvec2, 5> corners{
+        {{x0, z_shallow}, {x0, z_deep}, {x1, z_deep}, {x1, z_shallow}, {x0, z_shallow}}};
+    double work = 0;
+    for (std::size_t edge = 0; edge + 1 < corners.size(); ++edge) {
+        const glm::dvec2 along = corners[edge + 1] - corners[edge];
+        for (int i = 0; i <= steps; ++i) { // Simpson's rule
+            const double weight = (i == 0 || i == steps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) / (3.0 * steps);
+            const glm::dvec2 p = corners[edge] + along * (static_cast<double>(i) / steps);
+            const glm::dvec3 force = renderer.tick(at(p.x, 1e-3, p.y)).force_n;
+            work += weight * (force.x * along.x + force.z * along.y);
+        }
+    }
+    return work;
+}
+
+// The same, refined until it changes by less than 1e-10 J.
+double refined_loop_work_j(ForceModel model)
+{
+    constexpr double amplitude_m = 0.1e-3, wavelength_m = 2e-3;
+    Scene scene = bare_scene(plane_mesh(), sine_texture(amplitude_m, wavelength_m));
+    scene.servo.force_model = model;
+    Renderer renderer(shared(std::move(scene)));
+    renderer.tick(at(0, 1e-3, 1e-3)); // put down above
+    // From a valley to a crest and back: height changes by 0.2 mm, depth by 0.5 mm.
+    double work = 0, before = 1;
+    for (int steps = 16; std::abs(work - before) >= 1e-10 && steps <= 1 << 14; steps *= 2) {
+        before = work;
+        work = loop_work_j(renderer, -wavelength_m / 4, wavelength_m / 4, -0.3e-3, -0.8e-3, steps);
+    }
+    REQUIRE(std::abs(work - before) < 1e-10);
+    return work;
+}
+
+} // namespace
+
+TEST_CASE("displaced is conservative, paper gives energy away on a loop")
+{
+    CHECK(std::abs(refined_loop_work_j(ForceModel::displaced)) < 1e-9);
+    // K times change of depth times change of height: 1000 N/m * 0.5 mm * 0.2 mm
+    CHECK(std::abs(std::abs(refined_loop_work_j(ForceModel::paper)) - 1.0e-4) < 1e-9);
+}
+
+TEST_CASE("displaced is minus the gradient of its potential")
+{
+    constexpr double amplitude_m = 80e-6, wavelength_m = 1.5e-3, stiffness = 1000;
+    const double w = 2 * pi / wavelength_m;
+    Renderer renderer(shared(bare_scene(plane_mesh(), sine_texture(amplitude_m, wavelength_m))));
+    renderer.tick(at(0, 0.001, 1e-3));
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> x_m(-0.04, 0.04), depth_m(0, 1e-3);
+    for (int i = 0; i < 1000; ++i) {
+        const double x = x_m(random), d = depth_m(random);
+        const double felt = std::max(0.0, d + amplitude_m * std::sin(w * x) - amplitude_m);
+        const glm::dvec3 expected(-stiffness * felt * amplitude_m * w * std::cos(w * x), 0, stiffness * felt);
+        const TickResult result = renderer.tick(at(x, 0.001, -d));
+        CHECK(glm::length(result.force_n - expected) < 1e-8);
+        CHECK(std::abs(result.depth_m - d) < 1e-12);
+        CHECK(std::abs(result.height_m - amplitude_m * std::sin(w * x)) < 1e-12);
+    }
+}
+
+TEST_CASE("a textured plane is first felt from zero: at most 1.001 mN at 1 um and 1000 N/m")
+{
+    Scene scene = bare_scene(plane_mesh(), sine_texture(60e-6, 1e-3));
+    scene.objects[0].material = {1000, 1.0, 0.3, 0.2};
+    const auto touched = shared(std::move(scene));
+    double largest_n = 0;
+    for (int i = 0; i < 2000; ++i) {
+        const double x = i * 1e-6;
+        Renderer renderer(touched);
+        renderer.tick(at(x, 0.001, 1e-6));
+        renderer.tick(at(x, 0.001, 0));
+        largest_n = std::max(largest_n, glm::length(renderer.tick(at(x, 0.001, -1e-6)).force_n));
+    }
+    CHECK(largest_n <= 1.001e-3);
+    CHECK(largest_n > 0.99e-3); // on the crests it is felt at once
+}
+
+TEST_CASE("the force never exceeds the limit and keeps its direction")
+{
+    Scene scene = bare_scene(plane_mesh(), sine_texture(60e-6, 1e-3));
+    scene.servo.force_limit_n = 7;
+    const auto touched = shared(std::move(scene));
+    for (const double device_max_n : {0.0, 3.3, 50.0}) {
+        const double limit_n = device_max_n == 3.3 ? 3.3 : 7.0;
+        Renderer renderer(touched, device_max_n);
+        CHECK(renderer.force_limit_n() == limit_n);
+        renderer.tick(at(0.001, 0.002, 1e-3));
+        const TickResult deep = renderer.tick(at(0.001, 0.002, -0.1));
+        CHECK(glm::length(deep.unlimited_force_n) > 90);
+        CHECK(std::abs(glm::length(deep.force_n) - limit_n) < 1e-12);
+        CHECK(degrees_between(deep.force_n, deep.unlimited_force_n) < 1e-10);
+    }
+    const glm::dvec3 huge = limited({1e308, -1e308, 1e308}, 7);
+    CHECK(std::abs(glm::length(huge) - 7) < 1e-12);
+    CHECK(degrees_between(huge, {1, -1, 1}) < 1e-10);
+    CHECK(limited({0, 0, 0}, 7) == glm::dvec3(0));
+    CHECK(limited({0, 3, 4}, 5) == glm::dvec3(0, 3, 4));
+}
+
+TEST_CASE("a pose that is not finite gives zero force and keeps the contact")
+{
+    Scene scene = bare_scene(plane_mesh(), sine_texture(60e-6, 1e-3));
+    scene.objects[0].material = {1000, 1.0, 0.3, 0.2};
+    Renderer renderer(shared(std::move(scene)));
+    for (int i = 0; i < 50; ++i) renderer.tick(at(0.001, 0.002, 1e-3 - i * 4e-5));
+    glm::dvec3 before(0);
+    for (int i = 0; i < 200; ++i) before = renderer.tick(at(0.00105, 0.002, -0.96e-3)).force_n;
+    REQUIRE(glm::length(before) > 0.5);
+    for (const DevicePose& bad : {at(not_a_number, 0, 0), at(0, 0, std::numeric_limits<double>::infinity()),
+                                  DevicePose{{0, 0, 0}, {0, not_a_number, 0}}}) {
+        const TickResult result = renderer.tick(bad);
+        CHECK(result.force_n == glm::dvec3(0));
+        CHECK(result.faults == fault_pose_not_finite);
+    }
+    const TickResult after = renderer.tick(at(0.00105, 0.002, -0.96e-3));
+    CHECK(after.faults == 0);
+    CHECK(glm::length(after.force_n - before) < 1e-9);
+}
+
+TEST_CASE("a texture that breaks its promises stays finite, below its bound, and is told on")
+{
+    double height_m = 0, slope = 0;
+    TextureBinding rogue = lambda_texture(
+        [&](const haptel_point&, glm::dvec3& gradient) {
+            gradient = {slope, 0, 0};
+            return height_m;
+        },
+        -1e-3, 1e-3);
+    Renderer renderer(shared(bare_scene(plane_mesh(), rogue)));
+    renderer.tick(at(0.001, 0.002, 1e-3));
+    const auto press = [&](double h, double s) {
+        height_m = h;
+        slope = s;
+        return renderer.tick(at(0.001, 0.002, -2e-3));
+    };
+    CHECK(press(0, 0.1).faults == 0);
+    CHECK(press(not_a_number, 0.1).faults == HAPTEL_FAULT_HEIGHT_NOT_FINITE);
+    CHECK(press(not_a_number, 0.1).force_n == press(0, 0).force_n);
+    CHECK(press(0, not_a_number).faults == HAPTEL_FAULT_GRADIENT_NOT_FINITE);
+    CHECK(press(0, not_a_number).force_n == press(0, 0).force_n);
+    CHECK(press(5e-3, 0.1).faults == fault_height_above_bound);
+    CHECK(press(5e-3, 0.1).force_n == press(1e-3, 0).force_n);
+    CHECK(press(1e-3, 1e300).faults == 0); // huge, not infinite: only the limit stands in its way
+    CHECK(std::abs(glm::length(press(1e-3, 1e300).force_n) - 100) < 1e-9);
+    CHECK(press(1e-3, 1.7e308).faults == fault_force_not_finite);
+    CHECK(press(1e-3, 1.7e308).force_n == glm::dvec3(0));
+    CHECK(press(-1e308, 0).force_n == glm::dvec3(0));
+}
+
+TEST_CASE("the texture is given what it reads and nothing else")
+{
+    haptel_point seen = {};
+    const auto look = [&](uint32_t reads) {
+        Renderer renderer(shared(bare_scene(plane_mesh(), lambda_texture(
+                                                              [&](const haptel_point& point, glm::dvec3&) {
+                                                                  seen = point;
+                                                                  return 0.0;
+                                                              },
+                                                              0, 0, reads))));
+        renderer.tick(at(0.01, 0.02, 1e-3));
+        renderer.tick(at(0.01, 0.02, -1e-3));
+    };
+    look(HAPTEL_READS_POINT);
+    CHECK(std::abs(seen.p[0] - 0.01) < 1e-12);
+    CHECK(std::abs(seen.p[2]) < 1e-12);
+    CHECK((seen.n[2] == 0 && seen.uv[0] == 0 && seen.time_s == 0 && seen.uv_dp[0][0] == 0));
+    look(reads_everything);
+    CHECK((seen.n[0] == 0 && seen.n[1] == 0 && seen.n[2] == 1));
+    CHECK(std::abs(seen.uv[0] - 0.6) < 1e-9); // the plane of side 0.1 m has uv 0 .. 1
+    CHECK(std::abs(seen.uv_dp[0][0] - 10) < 1e-6);
+    CHECK(std::abs(seen.uv_dp[1][1] - 10) < 1e-6);
+    CHECK(std::abs(seen.uv_dp[0][1]) < 1e-6);
+    CHECK(seen.time_s == 1e-3);
+}
+
+TEST_CASE("the force turns with the object")
+{
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> part(-1, 1);
+    Scene straight = bare_scene(plane_mesh(), sine_texture(60e-6, 1e-3));
+    Scene turned = bare_scene(plane_mesh(), sine_texture(60e-6, 1e-3));
+    const glm::dvec3 axis = glm::normalize(glm::dvec3(1, 2, 3));
+    const double angle = 0.7, c = std::cos(angle), s = std::sin(angle);
+    Placement& placement = turned.objects[0].placement;
+    for (int j = 0; j < 3; ++j) { // Rodrigues
+        glm::dvec3 e(0);
+        e[j] = 1;
+        placement.rotation[j] = c * e + s * glm::cross(axis, e) + (1 - c) * glm::dot(axis, e) * axis;
+    }
+    placement.position_m = {0.3, -0.2, 0.1};
+    for (Scene* scene : {&straight, &turned}) scene->objects[0].material = {1000, 1.0, 0.3, 0.2};
+    const glm::dmat3 rotation = placement.rotation;
+    const auto to_world = [p = placement](const glm::dvec3& v) { return p.rotation * v + p.position_m; };
+    Renderer a(shared(std::move(straight))), b(shared(std::move(turned)));
+    for (int i = 0; i < 300; ++i) {
+        const glm::dvec3 tip(i * 1e-5, 0.002, i < 20 ? 1e-3 : -1e-3 + 1e-4 * part(random));
+        const glm::dvec3 here = a.tick({tip, tip}).force_n;
+        const glm::dvec3 there = b.tick({to_world(tip), to_world(tip)}).force_n;
+        CHECK(glm::length(there - rotation * here) < 1e-7);
+    }
+}
+
+TEST_CASE("friction sticks up to the static coefficient and slides with the dynamic one")
+{
+    constexpr double stiffness = 1000, depth_m = 1e-3, mu_static = 0.4, mu_dynamic = 0.25;
+    Scene scene = bare_scene(plane_mesh());
+    scene.objects[0].material = {stiffness, 0, mu_static, mu_dynamic};
+    Renderer renderer(shared(std::move(scene)));
+    renderer.tick(at(0, 0, 1e-3));
+    renderer.tick(at(0, 0, -depth_m));
+    renderer.tick(at(0, 0, -depth_m));
+    // Stick: the tangential force is the spring back to where the probe stands.
+    for (double x = 0; x < 0.99 * mu_static * depth_m; x += 1e-5) {
+        const glm::dvec3 force = renderer.tick(at(x, 0, -depth_m)).force_n;
+        CHECK(std::abs(force.x + stiffness * x) < 1e-8);
+        CHECK(std::abs(force.z - stiffness * depth_m) < 1e-8);
+    }
+    // Slide: against the motion, the dynamic coefficient times the normal force.
+    glm::dvec3 force(0);
+    for (int i = 0; i < 100; ++i) force = renderer.tick(at(1e-3 + i * 1e-4, 0, -depth_m)).force_n;
+    CHECK(std::abs(force.x + mu_dynamic * stiffness * depth_m) < 1e-8);
+    CHECK(std::abs(force.y) < 1e-8);
+}
+
+TEST_CASE("friction is proportional to what is felt of the depth, not to the depth below the base")
+{
+    constexpr double amplitude_m = 0.1e-3, depth_m = 0.3e-3, mu = 0.3;
+    Scene scene = bare_scene(plane_mesh(), lambda_texture([](const haptel_point&, glm::dvec3&) { return -amplitude_m; },
+                                                          -amplitude_m, amplitude_m));
+    scene.objects[0].material = {1000, 0, mu, mu};
+    Renderer renderer(shared(std::move(scene)));
+    renderer.tick(at(0, 0, 1e-3));
+    glm::dvec3 force(0);
+    for (int i = 0; i < 100; ++i) force = renderer.tick(at(i * 1e-4, 0, -depth_m)).force_n;
+    CHECK(std::abs(force.z - 1000 * (depth_m - 2 * amplitude_m)) < 1e-8);
+    CHECK(std::abs(force.x + mu * force.z) < 1e-8);
+}
+
+TEST_CASE("damping takes energy, begins without a step, and never pulls")
+{
+    Scene scene = bare_scene(plane_mesh());
+    scene.objects[0].material.damping_n_s_per_m = 20;
+    Renderer renderer(shared(std::move(scene)));
+    double energy_j = 0, last_z = 0;
+    TickResult last;
+    for (int i = 0; i < 400; ++i) {
+        const double z = 1e-3 * std::cos(2 * pi * i / 100.0);
+        if (i > 0) energy_j += last.force_n.z * (z - last_z);
+        last = renderer.tick(at(0, 0, z));
+        last_z = z;
+        CHECK(last.force_n.z >= 0);
+        if (z > -1e-6) CHECK(last.force_n.z < 2.1e-3); // K d + b v d / 1 mm, v = 63 mm/s
+    }
+    CHECK(energy_j < -1e-5);
+}
+
+TEST_CASE("forces rise from zero after the start")
+{
+    Scene scene = bare_scene(plane_mesh());
+    scene.servo.force_rise_s = 0.1;
+    Renderer renderer(shared(std::move(scene)));
+    renderer.tick(at(0, 0, 1e-3));
+    for (int tick = 1; tick < 200; ++tick) {
+        const TickResult result = renderer.tick(at(0, 0, -1e-3));
+        CHECK(std::abs(result.force_n.z - std::min(1.0, tick / 100.0)) < 1e-9);
+        CHECK(std::abs(result.unlimited_force_n.z - 1) < 1e-9);
+    }
+}
+
+TEST_CASE("force shading makes an icosphere of 5120 triangles a sphere")
+{
+    Mesh mesh = make_icosphere(4);
+    REQUIRE(mesh.triangles.size() == 5120);
+    scale_to_size(mesh, 2.0);
+    Renderer renderer(shared(bare_scene(mesh)));
+    const glm::dvec3 u = glm::normalize(glm::dvec3(1, 0.3, 0.2));
+    const glm::dvec3 v = glm::normalize(glm::cross(u, glm::dvec3(0.1, -0.4, 1)));
+    double largest_error_deg = 0, largest_turn_deg = 0;
+    glm::dvec3 last(0);
+    const int ticks = 20000; // 2 m of the circle of 6.3 m
+    for (int i = 0; i < ticks; ++i) {
+        const double angle = i * 0.1e-3;
+        const glm::dvec3 out = std::cos(angle) * u + std::sin(angle) * v;
+        if (i == 0) renderer.tick({1.01 * out, 1.01 * out});
+        const TickResult result = renderer.tick({0.99 * out, 0.99 * out});
+        REQUIRE(result.contacts == 1);
+        largest_error_deg = std::max(largest_error_deg, degrees_between(result.force_n, out));
+        if (i > 0) largest_turn_deg = std::max(largest_turn_deg, degrees_between(result.force_n, last));
+        last = result.force_n;
+    }
+    CAPTURE(largest_error_deg, largest_turn_deg);
+    CHECK(largest_error_deg < 1);
+    CHECK(largest_turn_deg < 0.1);
+}
+
+TEST_CASE("twin renderers give the same bits")
+{
+    const auto scene = [] {
+        Scene s = bare_scene(plane_mesh(0.1, 8), sine_texture(60e-6, 1e-3));
+        s.objects[0].material = {1000, 1.0, 0.3, 0.2};
+        return shared(std::move(s));
+    };
+    Renderer a(scene()), b(scene());
+    std::mt19937 random(1);
+    std::normal_distribution<double> step(0, 3e-5);
+    glm::dvec3 tip(0, 0, 1e-4);
+    bool equal = true;
+    for (int i = 0; i < 5000; ++i) {
+        tip += glm::dvec3(step(random), step(random), step(random) - 2e-2 * tip.z - 1e-5);
+        equal = equal && a.tick({tip, tip}).force_n == b.tick({tip, tip}).force_n;
+    }
+    CHECK(equal);
+}
+
+TEST_CASE("during a fade the force changes no faster than the textures and the fade allow")
+{
+    constexpr double stiffness = 1000, period_s = 1e-3;
+    struct Wave {
+        double amplitude_m, wavelength_m;
+        TextureBinding binding;
+    };
+    std::mt19937 random(17);
+    std::uniform_real_distribution<double> amplitude(0, 120e-6), wavelength(1e-3, 4e-3);
+    std::vector<Wave> waves;
+    for (int i = 0; i < 201; ++i) {
+        const double a = amplitude(random), l = wavelength(random);
+        waves.push_back({a, l, sine_texture(a, l)});
+    }
+    const auto make_scene = [&](const TextureBinding& binding, double friction) {
+        Scene scene = bare_scene(plane_mesh(), binding);
+        scene.objects[0].material.static_friction = scene.objects[0].material.dynamic_friction = friction;
+        return shared(std::move(scene));
+    };
+    const auto hand = [](int tick) {
+        const double t = tick * period_s;
+        return at(0.02 * std::sin(2 * pi * t), 0.01 * std::cos(pi * t), -0.6e-3 + 0.3e-3 * std::sin(3 * pi * t));
+    };
+    const auto largest_change = [&](Renderer& renderer, int ticks, const auto& allowed) {
+        glm::dvec3 last(0);
+        double largest = 0;
+        for (int i = -2; i < ticks; ++i) {
+            const TickResult result = renderer.tick(i < 0 ? at(0, 0.01, 1e-3) : hand(i));
+            const double change = glm::length(result.unlimited_force_n - last);
+            last = result.unlimited_force_n;
+            if (i <= 0) continue; // the hand jumps onto the surface
+            largest = std::max(largest, change);
+            allowed(i, result, change);
+        }
+        return largest;
+    };
+    for (const double friction : {0.0, 0.3}) {
+        double without_edits = 0;
+        for (const Wave& wave : waves) {
+            Renderer renderer(make_scene(wave.binding, friction));
+            without_edits =
+                std::max(without_edits, largest_change(renderer, 2000, [](int, const TickResult&, double) {}));
+        }
+        const auto scene = make_scene(waves[0].binding, friction);
+        Renderer renderer(scene);
+        uint64_t from = 1, to = 1;
+        std::size_t published = 1;
+        double worst_share = 0;
+        largest_change(renderer, 20000, [&](int tick, const TickResult& result, double change) {
+            if (result.binding != to) {
+                from = to;
+                to = result.binding;
+            }
+            const Wave &a = waves[from - 1], &b = waves[to - 1];
+            // |A sin - B sin| with any phases comes as near to A + B as wanted on a long enough line.
+            const double fade_n = 2 * stiffness * (a.amplitude_m + b.amplitude_m) * period_s / fade_s;
+            worst_share = std::max(worst_share, change / (without_edits + fade_n));
+            if (tick % 97 == 0 && published < waves.size())
+                scene->objects[0].texture->publish(waves[published++].binding);
+        });
+        CHECK(published == waves.size());
+        CAPTURE(friction, without_edits, worst_share);
+        CHECK(worst_share <= 1);
+    }
+}

@@ -1,0 +1,408 @@
+// Scenes from files: what they mean, and what is said about those that are wrong.
+#include "runtime/files/quantity.h"
+#include "runtime/files/scene_file.h"
+#include "tests/support/catch.h"
+#include "tests/support/lambda_texture.h"
+#include "tests/support/touch_scenes.h"
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <unistd.h>
+
+using namespace haptel;
+using namespace haptel::runtime;
+using namespace haptel::tests;
+using namespace std::string_view_literals;
+
+namespace {
+
+// A folder of its own, gone afterwards.
+class Folder {
+public:
+    Folder() : path_(std::filesystem::temp_directory_path() / ("haptel_scene_test_" + std::to_string(::getpid())))
+    {
+        std::filesystem::remove_all(path_);
+        std::filesystem::create_directories(path_);
+    }
+    ~Folder() { std::filesystem::remove_all(path_); }
+
+    std::filesystem::path write(const std::string& name, std::string_view text) const
+    {
+        std::ofstream(path_ / name, std::ios::binary) << text;
+        return path_ / name;
+    }
+    const std::filesystem::path& path() const { return path_; }
+
+private:
+    std::filesystem::path path_;
+};
+
+// One right-angled triangle with legs of 3 and 4 units.
+constexpr std::string_view triangle_obj = "v 0 0 0\nv 4 0 0\nv 0 3 0\nf 1 2 3\n";
+
+TextureResult resolve_flat(const TextureRequest&)
+{
+    return {flat_texture(0), ""};
+}
+
+DeviceResult open_scripted(const DeviceRequest&)
+{
+    return {std::make_unique<ScriptedDevice>([](uint64_t, DevicePose&) { return DeviceStatus::ok; }), ""};
+}
+
+// What is said about a scene, with the folder's name taken out.
+std::string diagnostics_of(std::string_view toml, const TextureResolver& textures = resolve_flat,
+                           const DeviceFactory& devices = open_scripted)
+{
+    const Folder folder;
+    folder.write("triangle.obj", triangle_obj);
+    folder.write("empty.obj", "");
+    folder.write("garbage.obj", "\0\1\2\xff\xfe garbage \n\n f f f"sv);
+    folder.write("points.obj", "v 0 0 0\nv 1 0 0\n");
+    folder.write("note.txt", "hello");
+    const LoadedScene loaded = load_scene(folder.write("scene.toml", toml), textures, devices);
+    std::string text = loaded.diagnostics;
+    const std::string name = folder.path().string() + "/";
+    for (std::size_t at; (at = text.find(name)) != std::string::npos;) text.erase(at, name.size());
+    CHECK((loaded.scene == nullptr) == (text.find(": error: ") != std::string::npos));
+    CHECK((loaded.device == nullptr) == (loaded.scene == nullptr));
+    return text;
+}
+
+LoadedScene load(const Folder& folder, std::string_view toml, const TextureResolver& textures = resolve_flat,
+                 const DeviceFactory& devices = open_scripted)
+{
+    folder.write("triangle.obj", triangle_obj);
+    LoadedScene loaded = load_scene(folder.write("scene.toml", toml), textures, devices);
+    INFO(loaded.diagnostics);
+    REQUIRE(loaded.scene);
+    return loaded;
+}
+
+} // namespace
+
+TEST_CASE("quantities are numbers in SI or text with a unit, to the last bit")
+{
+    CHECK(parse_quantity("0.15m", Quantity::length) == 0.15);
+    CHECK(parse_quantity(" 60 um ", Quantity::length) == 60e-6);
+    CHECK(parse_quantity("60um", Quantity::length) == 60e-6);
+    CHECK(parse_quantity("15cm", Quantity::length) == 0.15);
+    CHECK(parse_quantity("+0.7mm", Quantity::length) == 0.7e-3);
+    CHECK(parse_quantity("-3", Quantity::length) == -3);
+    CHECK(parse_quantity("1kHz", Quantity::frequency) == 1000);
+    CHECK(parse_quantity("0.8 N/mm", Quantity::stiffness) == 800);
+    CHECK(parse_quantity("100mm/s", Quantity::speed) == 0.1);
+    CHECK(std::abs(*parse_quantity("3.141592653589793rad", Quantity::angle_deg) - 180) < 1e-12);
+    for (const char* wrong : {"", "m", "1 m m", "1kg", "1Hz", "1,5m", "0x10", "1e", "1 M", "--1"})
+        CHECK_FALSE(parse_quantity(wrong, Quantity::length).has_value());
+    CHECK_FALSE(parse_quantity("1m", Quantity::number).has_value());
+}
+
+TEST_CASE("a whole scene is read")
+{
+    const Folder folder;
+    std::optional<DeviceRequest> device;
+    std::optional<TextureRequest> texture;
+    const LoadedScene loaded = load(
+        folder, R"(
+[probe]
+kind = "stylus"
+length_m = "12cm"
+radius_m = 0.0
+[servo]
+rate_hz = "2kHz"
+force_model = "paper"
+force_limit_n = 5
+v_max_m_per_s = 0.5
+[device]
+name = "replay:runs/trace.csv"
+stroke = "scan"
+speed_m_per_s = "50mm/s"
+press_n = 2
+seed = 7
+[[object]]
+mesh = "triangle.obj"
+size_m = 0.04
+position_m = [1, "20cm", 3]
+rotation_deg = [90, 0, 90]
+stiffness_n_per_m = 900
+damping_n_s_per_m = 2.5
+static_friction = 0.5
+dynamic_friction = 0.25
+texture = "sub/rock.haptel:rock"
+parameters = { depth = "60um", octaves = 5, sharp = true, gain = 0.5 }
+[[object]]
+shape = "icosphere"
+)",
+        [&](const TextureRequest& request) {
+            texture = request;
+            return TextureResult{flat_texture(1e-3), "rock.haptel:1:1: warning: harmless"};
+        },
+        [&](const DeviceRequest& request) {
+            device = request;
+            return open_scripted(request);
+        });
+    CHECK(loaded.diagnostics == "rock.haptel:1:1: warning: harmless\n");
+
+    const Scene& scene = *loaded.scene;
+    CHECK(scene.probe.kind == ProbeKind::stylus);
+    CHECK(scene.probe.length_m == 0.12);
+    CHECK(scene.servo.rate_hz == 2000);
+    CHECK(scene.servo.force_model == ForceModel::paper);
+    CHECK(scene.servo.force_limit_n == 5);
+    CHECK(scene.servo.v_max_m_per_s == 0.5);
+    REQUIRE(scene.objects.size() == 2);
+
+    const SceneObject& triangle = scene.objects[0];
+    CHECK(triangle.name == "triangle.obj");
+    CHECK(triangle.material.stiffness_n_per_m == 900);
+    CHECK(triangle.material.damping_n_s_per_m == 2.5);
+    CHECK(triangle.material.static_friction == 0.5);
+    CHECK(triangle.material.dynamic_friction == 0.25);
+    CHECK(triangle.texture->newest_serial() == 1);
+    CHECK(glm::length(triangle.surface->box_maximum_m - glm::dvec3(0.04, 0.03, 0)) < 1e-9);
+    // about x by 90 degrees: y to z; then about z by 90 degrees: x to y
+    CHECK(glm::length(triangle.placement.to_world({0.04, 0, 0}) - glm::dvec3(1, 0.24, 3)) < 1e-12);
+    CHECK(glm::length(triangle.placement.to_world({0, 0.03, 0}) - glm::dvec3(1, 0.2, 3.03)) < 1e-12);
+    CHECK(glm::length(triangle.placement.to_object({1, 0.24, 3}) - glm::dvec3(0.04, 0, 0)) < 1e-12);
+    CHECK(scene.objects[1].name == "icosphere");
+    CHECK(std::abs(scene.objects[1].surface->box_maximum_m.z - 0.05) < 1e-3);
+    CHECK(scene.objects[1].material.stiffness_n_per_m == 800);
+    CHECK_FALSE(scene.objects[1].request.has_value());
+
+    REQUIRE(texture);
+    CHECK(texture->reference == (folder.path() / "sub/rock.haptel").string() + ":rock");
+    CHECK(texture->parameters == std::vector<std::pair<std::string, std::string>>{
+                                     {"depth", "60um"}, {"gain", "0.5"}, {"octaves", "5"}, {"sharp", "true"}});
+    CHECK(std::abs(texture->box_maximum_m[0] - 0.04) < 1e-9);
+    CHECK(texture->footprint_m == 2 * 0.5 / 2000);
+    CHECK(triangle.request->reference == texture->reference);
+
+    REQUIRE(device);
+    CHECK(device->name == "replay:" + (folder.path() / "runs/trace.csv").string());
+    CHECK(device->stroke == "scan");
+    CHECK(device->speed_m_per_s == 0.05);
+    CHECK(device->press_n == 2);
+    CHECK(device->seed == 7);
+    CHECK(device->rate_hz == 2000);
+    CHECK(device->stylus_length_m == 0.12);
+    CHECK(glm::length(device->box_minimum_m - glm::dvec3(1, 0.2, 3)) < 1e-9);
+    CHECK(glm::length(device->box_maximum_m - glm::dvec3(1, 0.24, 3.03)) < 1e-9);
+}
+
+TEST_CASE("a scene of one line has the defaults of the documentation")
+{
+    const Folder folder;
+    std::optional<DeviceRequest> device;
+    const LoadedScene loaded =
+        load(folder, "[[object]]\nshape = \"plane\"\n", resolve_flat, [&](const DeviceRequest& r) {
+            device = r;
+            return open_scripted(r);
+        });
+    CHECK(loaded.diagnostics.empty());
+    const Scene& scene = *loaded.scene;
+    CHECK(scene.probe.kind == ProbeKind::point);
+    CHECK(scene.servo.rate_hz == 1000);
+    CHECK(scene.servo.force_model == ForceModel::displaced);
+    CHECK(scene.servo.force_limit_n == 7);
+    CHECK(scene.servo.v_max_m_per_s == 0.3);
+    const Material& material = scene.objects[0].material;
+    CHECK(material.stiffness_n_per_m == 800);
+    CHECK(material.damping_n_s_per_m == 1);
+    CHECK(material.static_friction == 0.3);
+    CHECK(material.dynamic_friction == 0.2);
+    REQUIRE(device);
+    CHECK(device->name == "simulated:premium");
+    CHECK(device->stroke == "circles");
+    CHECK(device->speed_m_per_s == 0.1);
+    CHECK(device->press_n == 1);
+    CHECK(device->stylus_length_m == 0);
+}
+
+TEST_CASE("the surface below a point is the first hit from above, wherever the object is put")
+{
+    const Folder folder;
+    std::optional<DeviceRequest> device;
+    load(folder,
+         "[[object]]\nshape = \"icosphere\"\nsize_m = 0.2\nposition_m = [0.5, 0, 1]\nrotation_deg = [30, 40, 50]\n",
+         resolve_flat, [&](const DeviceRequest& request) {
+             device = request;
+             return open_scripted(request);
+         });
+    REQUIRE(device);
+    const auto hit = device->surface_below(0.53, 0.04);
+    REQUIRE(hit);
+    const double expected_z = 1 + std::sqrt(0.1 * 0.1 - 0.03 * 0.03 - 0.04 * 0.04);
+    CHECK(std::abs(hit->point_m.x - 0.53) < 1e-9);
+    CHECK(std::abs(hit->point_m.y - 0.04) < 1e-9);
+    CHECK(std::abs(hit->point_m.z - expected_z) < 2e-4); // facets
+    CHECK(glm::dot(hit->facet_normal, glm::dvec3(0.3, 0.4, std::sqrt(0.75))) > 0.998);
+    CHECK_FALSE(device->surface_below(0.61, 0.0).has_value());
+}
+
+TEST_CASE("what is wrong with a scene is said where it is, all at once")
+{
+    struct Case {
+        const char* toml;
+        const char* said;
+    };
+    const Case cases[] = {
+        {"",
+         "scene.toml:1:1: error: a scene needs something to touch: add an `[[object]]` with a `mesh` or a `shape`\n"},
+        {"[[object]\nshape = 1", nullptr},
+        {"[[object]]\nshape = \"plane\"\nstifness_n_per_m = 3\n",
+         "scene.toml:3:1: error: unknown key `stifness_n_per_m` in [[object]]: did you mean `stiffness_n_per_m`?\n"},
+        {"[[object]]\nshape = \"plane\"\nstiffness = 3\n",
+         "scene.toml:3:1: error: unknown key `stiffness` in [[object]]: did you mean `stiffness_n_per_m`?\n"},
+        {"[servo]\nrate = 3\nqqqqqqqq = 1\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:1: error: unknown key `rate` in [servo]: did you mean `rate_hz`?\n"
+         "scene.toml:3:1: error: unknown key `qqqqqqqq` in [servo]: it may hold rate_hz, force_model, force_limit_n, "
+         "v_max_m_per_s, force_rise_s\n"},
+        {"[[objects]]\nshape = \"plane\"\n",
+         "scene.toml:1:1: error: a scene needs something to touch: add an `[[object]]` with a `mesh` or a `shape`\n"
+         "scene.toml:1:3: error: unknown key `objects`: did you mean `object`?\n"},
+        {"[object]\nshape = \"plane\"\n",
+         "scene.toml:1:1: error: expected `[[object]]` in double brackets: a scene may hold several objects\n"},
+        {"probe = 3\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:1:9: error: expected a table: write `[probe]` on a line of its own, its keys below\n"},
+        {"[probe]\nkind = \"sphere\"\nradius_m = 0.01\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:8: error: expected \"point\" or \"stylus\" for `kind`, found \"sphere\"\n"
+         "scene.toml:3:12: error: `radius_m` is for a sphere, but the probe is a point or a stylus: write 0\n"},
+        {"[servo]\nforce_model = \"ho99\"\nrate_hz = 0\nforce_limit_n = -1\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:15: error: expected \"displaced\" or \"paper\" for `force_model`, found \"ho99\"\n"
+         "scene.toml:3:11: error: `rate_hz` must be from 10 to 100000, found 0\n"
+         "scene.toml:4:17: error: `force_limit_n` must be above 0 up to 100, found -1\n"},
+        {"[[object]]\nshape = \"plane\"\nsize_m = \"15kg\"\n",
+         "scene.toml:3:10: error: expected a length in metres, such as 0.15 or \"15cm\" for `size_m`, found \"15kg\" "
+         "(units that fit: m, cm, mm, um, nm)\n"},
+        {"[[object]]\nshape = \"plane\"\nsize_m = nan\nstiffness_n_per_m = inf\n",
+         "scene.toml:3:10: error: `size_m` must be above 0 up to 1000, found nan\n"
+         "scene.toml:4:21: error: `stiffness_n_per_m` must be above 0 up to 1000000, found inf\n"},
+        {"[[object]]\nshape = \"plane\"\nposition_m = [0, 1]\nrotation_deg = 3\n",
+         "scene.toml:3:14: error: expected three numbers, such as [0, 0, 0], for `position_m`, found a list of 2\n"
+         "scene.toml:4:16: error: expected three numbers, such as [0, 0, 0], for `rotation_deg`, found 3\n"},
+        {"[[object]]\nshape = \"cube\"\n", "scene.toml:2:9: error: expected \"plane\", \"box\", \"sphere\", "
+                                           "\"icosphere\" or \"torus\" for `shape`, found "
+                                           "\"cube\"\n"},
+        {"[[object]]\nsize_m = 1\n",
+         "scene.toml:1:1: error: an object needs a `mesh = \"FILE\"` or a `shape`: \"plane\", \"box\", \"sphere\", "
+         "\"icosphere\" or \"torus\"\n"},
+        {"[[object]]\nshape = \"plane\"\nmesh = \"triangle.obj\"\n",
+         "scene.toml:1:1: error: an object has either a `mesh` or a `shape`, not both\n"},
+        {"[[object]]\nshape = \"plane\"\nstatic_friction = 0.1\ndynamic_friction = 0.5\n",
+         "scene.toml:4:20: error: `dynamic_friction` must not exceed `static_friction`: a surface that slides harder "
+         "than it sticks chatters\n"},
+        {"[[object]]\nshape = \"plane\"\nparameters = { a = 1 }\n",
+         "scene.toml:3:14: error: `parameters` belong to a `texture`, but this object has none\n"},
+        {"[[object]]\nshape = \"plane\"\ntexture = \"a.haptel:b\"\nparameters = { a = [1] }\n",
+         "scene.toml:4:20: error: expected a number, true, false or text for parameter `a`, found a list\n"},
+        {"[[object]]\nshape = \"plane\"\ntexture = \"rock.haptel\"\n",
+         "scene.toml:3:11: error: expected a file, a colon and the name of a texture in it, such as "
+         "\"rock.haptel:rock\", found \"rock.haptel\"\n"},
+        {"[[object]]\nmesh = \"bunny.obj\"\n", nullptr},
+        {"[[object]]\nmesh = \"empty.obj\"\n", "scene.toml:2:8: error: mesh `empty.obj`: the file is empty\n"},
+        {"[[object]]\nmesh = \"points.obj\"\n", nullptr},
+        {"[[object]]\nmesh = \"garbage.obj\"\n", nullptr},
+        {"[[object]]\nmesh = \"note.txt\"\n",
+         "scene.toml:2:8: error: mesh `note.txt`: expected a mesh of type .obj, .ply, .stl, .off, .3ds, .dae, .gltf or "
+         ".glb, found .txt\n"},
+        {"[device]\nseed = -1\nstroke = \"zigzag\"\npress_n = true\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:8: error: expected a whole number from 0 on for `seed`, found -1\n"
+         "scene.toml:3:10: error: expected \"circles\", \"scan\", \"press\" or \"random\" for `stroke`, found "
+         "\"zigzag\"\n"
+         "scene.toml:4:11: error: expected a force in newtons, such as 7 or \"500mN\" for `press_n`, found true\n"},
+    };
+    for (const Case& bad : cases) {
+        CAPTURE(bad.toml);
+        const std::string said = diagnostics_of(bad.toml);
+        if (bad.said)
+            CHECK(said == bad.said);
+        else
+            CHECK(said.find("scene.toml:") == 0);
+    }
+}
+
+TEST_CASE("friction of which only one half is written stays possible")
+{
+    const Folder folder;
+    const auto material = [&](const std::string& line) {
+        return load(folder, "[[object]]\nshape = \"plane\"\n" + line + "\n").scene->objects[0].material;
+    };
+    CHECK(material("static_friction = 0.1").dynamic_friction == 0.1);
+    CHECK(material("dynamic_friction = 0.6").static_friction == 0.6);
+    CHECK(material("static_friction = 0").dynamic_friction == 0);
+}
+
+TEST_CASE("a scene that is no text is reported, not crashed on")
+{
+    CHECK(diagnostics_of("\0\1\2\xff\xfe\xfd"sv).starts_with("scene.toml:1:"));
+    CHECK(diagnostics_of(std::string(20000, '[')).starts_with("scene.toml:1:"));
+    CHECK(diagnostics_of("a = " + std::string(20000, '[')).starts_with("scene.toml:1:"));
+    const LoadedScene missing = load_scene("/nowhere/at/all.toml", resolve_flat, open_scripted);
+    CHECK_FALSE(missing.scene);
+    CHECK(missing.diagnostics == "/nowhere/at/all.toml:1:1: error: the scene could not be read: is the path right?\n");
+    CHECK_FALSE(load_scene(std::filesystem::temp_directory_path(), resolve_flat, open_scripted).scene);
+}
+
+TEST_CASE("what textures and devices say reaches the user")
+{
+    const char* toml = "[device]\nname = \"falcon\"\n[[object]]\nshape = \"plane\"\ntexture = \"a.haptel:b\"\n";
+    CHECK(diagnostics_of(toml, [](const TextureRequest&) {
+              return TextureResult{std::nullopt, "a.haptel:3:4: error: what?"};
+          }) == "scene.toml:5:11: error: texture `a.haptel:b` cannot be used\na.haptel:3:4: error: what?\n");
+    CHECK(diagnostics_of(toml,
+                         [](const TextureRequest&) {
+                             TextureResult result{flat_texture(0), ""};
+                             result.binding->facts.height_max_m = INFINITY;
+                             return result;
+                         })
+              .starts_with("scene.toml:5:11: error: texture `a.haptel:b` cannot be used: the range of the texture's "
+                           "height is not"));
+    CHECK(diagnostics_of(toml, resolve_flat, [](const DeviceRequest&) {
+              return DeviceResult{nullptr, "not plugged in"};
+          }) == "scene.toml:1:1: error: device `falcon`: not plugged in\n");
+    CHECK(diagnostics_of(toml, [](const TextureRequest&) -> TextureResult { throw std::runtime_error("oops"); }) ==
+          "scene.toml:1:1: error: the scene could not be loaded: oops\n");
+}
+
+TEST_CASE("a mended mesh is a warning, with what was mended")
+{
+    const Folder folder;
+    folder.write("mended.obj", "v 0 0 0\nv 4 0 0\nv 0 3 0\nv 0 0 0\nv nan 0 0\nf 1 2 3\nf 1 2 2\nf 1 2 5\nf 4 2 3\n");
+    const LoadedScene loaded =
+        load_scene(folder.write("scene.toml", "[[object]]\nmesh = \"mended.obj\"\n"), resolve_flat, open_scripted);
+    INFO(loaded.diagnostics);
+    REQUIRE(loaded.scene);
+    CHECK(loaded.scene->objects[0].surface->faces.size() == 1);
+    CHECK(loaded.diagnostics.find("scene.toml:2:8: warning: mesh `mended.obj`: ") != std::string::npos);
+}
+
+TEST_CASE("a mesh is read from every common format")
+{
+    const Folder folder;
+    folder.write("a.obj", triangle_obj);
+    folder.write(
+        "b.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face "
+        "1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n4 0 0\n0 3 0\n3 0 1 2\n");
+    folder.write("c.stl", "solid t\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 4 0 0\nvertex 0 3 "
+                          "0\nendloop\nendfacet\nendsolid "
+                          "t\n");
+    folder.write("d.off", "OFF\n3 1 0\n0 0 0\n4 0 0\n0 3 0\n3 0 1 2\n");
+    for (const char* name : {"a.obj", "b.ply", "c.stl", "d.off"}) {
+        CAPTURE(name);
+        const LoadedScene loaded =
+            load_scene(folder.write("scene.toml", "[[object]]\nmesh = \"" + std::string(name) + "\"\n"), resolve_flat,
+                       open_scripted);
+        INFO(loaded.diagnostics);
+        REQUIRE(loaded.scene);
+        REQUIRE(loaded.scene->objects[0].surface->faces.size() == 1);
+        CHECK(glm::length(loaded.scene->objects[0].surface->box_maximum_m - glm::dvec3(4, 3, 0)) < 1e-6);
+    }
+}
