@@ -1,0 +1,45 @@
+// Which values can have a tangent, found from structure alone before any code is made: loops and the two arms of an
+// `if` must agree on what they yield.
+#pragma once
+
+#include "lang/ir/ir.h"
+
+#include <vector>
+
+namespace haptel::ir {
+
+// One bit per value of a function and direction.
+class Activity {
+public:
+    Activity(size_t values, size_t directions) : width(directions), bits(values * directions, false) {}
+    size_t directions() const { return width; }
+    bool operator()(Value value, size_t direction) const { return bits[value.index * width + direction]; }
+    bool any(Value value) const;
+    // True if that is new.
+    bool set(Value value, size_t direction);
+    bool add(Value value, Value from);
+
+private:
+    size_t width;
+    std::vector<bool> bits;
+};
+
+// dependence[result][parameter]: may the derivative of the result with respect to the parameter differ from zero?
+using Dependence = std::vector<std::vector<bool>>;
+
+// The dependences of all functions of a module, worked out as they are asked for.
+class Dependences {
+public:
+    explicit Dependences(const Module& whole) : module(whole) {}
+    const Dependence& of(uint32_t function);
+
+private:
+    const Module& module;
+    std::vector<Dependence> known; // by function
+};
+
+// Spreads what is set (parameters) to all values; inputs of the point are active where `input_directions` says so.
+using InputActivity = bool (*)(Input input, size_t direction);
+void propagate(const Function& function, Dependences& callees, InputActivity input_is_active, Activity& activity);
+
+} // namespace haptel::ir
