@@ -256,7 +256,7 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
         return;
     }
     made.trip_max = static_cast<uint32_t>(trips);
-    made.difference_may_wrap = nearest < INT32_MIN / 2; // far from where adding the stride could matter
+    made.difference_may_wrap = nearest < INT32_MIN;
     loop.plan = made;
     ir::IntRange inside = up ? ir::IntRange{from.minimum, to.maximum - (inclusive ? 0 : 1)}
                              : ir::IntRange{to.minimum + (inclusive ? 0 : 1), from.maximum};

@@ -19,10 +19,12 @@ namespace {
 
 constexpr uint32_t region_max = 256;
 
-void sort_unique(std::vector<uint32_t>& slots)
+std::vector<const Statement*> listed(const Statement* first, std::span<const StatementPtr> rest)
 {
-    std::sort(slots.begin(), slots.end());
-    slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
+    std::vector<const Statement*> all;
+    if (first) all.push_back(first);
+    for (const StatementPtr& s : rest) all.push_back(s.get());
+    return all;
 }
 
 } // namespace
@@ -49,6 +51,14 @@ Values BodyLowering::whole_body(const Statement& body, Type result)
 }
 
 // ---- flow
+
+BodyLowering::Slots BodyLowering::changed_slots(const std::vector<const Statement*>& statements, Outcome ends) const
+{
+    Slots slots = changed_in(statements);
+    if (ends.returns) slots.insert(slots.end(), {returned_slot(), result_slot()});
+    if (ends.breaks) slots.push_back(broken_slot());
+    return slots;
+}
 
 Values BodyLowering::gather(const Slots& slots) const
 {
@@ -112,9 +122,7 @@ void BodyLowering::sequence(Statements statements)
             if (going_on == 1) return statement(s, rest);
         }
         statement(s, {});
-        Slots changed{returned_slot(), result_slot(), broken_slot()};
-        for (const StatementPtr& later : rest) collect_changed(*later, changed);
-        sort_unique(changed);
+        const Slots changed = changed_slots(listed(nullptr, rest), outcome(rest));
         return choose(
             left(), changed, [] {}, [&] { sequence(rest); });
     }
@@ -133,12 +141,9 @@ void BodyLowering::statement(const Statement& s, Statements rest)
     } else if (auto scope = std::get_if<ast::Scope>(&s.node)) {
         sequence(scope->statements);
     } else if (auto branch_node = std::get_if<If>(&s.node)) {
-        Slots changed;
-        collect_changed(s, changed);
-        for (const StatementPtr& later : rest) collect_changed(*later, changed);
-        if (outcome(s).may_leave() || outcome(rest).may_leave())
-            changed.insert(changed.end(), {returned_slot(), result_slot(), broken_slot()});
-        sort_unique(changed);
+        const Outcome own = outcome(s), later = outcome(rest);
+        const Outcome either{true, own.returns || later.returns, own.breaks || later.breaks};
+        const Slots changed = changed_slots(listed(&s, rest), either);
         branch(*branch_node, 0, rest, changed);
     } else if (auto loop = std::get_if<For>(&s.node)) {
         lower(*loop);
@@ -228,11 +233,8 @@ void BodyLowering::lower(const For& node)
         trips = builder.operation(Op::select, {beyond, builder.i32(0), trips});
     }
 
-    Slots changed;
-    if (node.body) collect_changed(*node.body, changed);
     const Outcome ends = node.body ? outcome(*node.body) : Outcome{};
-    if (ends.may_leave()) changed.insert(changed.end(), {returned_slot(), result_slot(), broken_slot()});
-    sort_unique(changed);
+    const Slots changed = node.body ? changed_slots(listed(node.body.get(), {}), ends) : Slots{};
     if (region_depth >= region_max)
         return choose(
             builder.boolean(true), {}, [] {}, [] {}); // which reports it

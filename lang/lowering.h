@@ -7,6 +7,7 @@
 #include "lang/check.h"
 #include "lang/ir/builder.h"
 #include "lang/ir/differentiate.h"
+#include "lang/outcome.h"
 
 #include <functional>
 #include <map>
@@ -126,6 +127,8 @@ private:
     void branch(const ast::If& node, size_t arm, Statements rest, const Slots& changed);
     void choose(ir::Value condition, const Slots& changed, const std::function<void()>& then_arm,
                 const std::function<void()>& else_arm);
+    // Variables that the statements change, and what of the flow they can change.
+    Slots changed_slots(const std::vector<const ast::Statement*>& statements, Outcome ends) const;
     Values gather(const Slots& slots) const;
     void scatter(const Slots& slots, std::span<const ir::Value> parts);
     ir::Value left();

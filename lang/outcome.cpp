@@ -1,6 +1,7 @@
 #include "lang/outcome.h"
 
 #include <algorithm>
+#include <iterator>
 
 namespace haptel::lang {
 
@@ -69,13 +70,18 @@ Outcome outcome(std::span<const StatementPtr> statements)
     return all;
 }
 
-void collect_changed(const Statement& s, std::vector<uint32_t>& slots)
+std::vector<uint32_t> changed_in(std::span<const Statement* const> statements)
 {
     std::vector<uint32_t> assigned, declared;
-    collect(s, assigned, declared);
-    std::sort(declared.begin(), declared.end());
-    for (uint32_t slot : assigned)
-        if (!std::binary_search(declared.begin(), declared.end(), slot)) slots.push_back(slot);
+    for (const Statement* s : statements) collect(*s, assigned, declared);
+    for (std::vector<uint32_t>* slots : {&assigned, &declared}) {
+        std::sort(slots->begin(), slots->end());
+        slots->erase(std::unique(slots->begin(), slots->end()), slots->end());
+    }
+    std::vector<uint32_t> changed;
+    std::set_difference(assigned.begin(), assigned.end(), declared.begin(), declared.end(),
+                        std::back_inserter(changed));
+    return changed;
 }
 
 } // namespace haptel::lang

@@ -16,7 +16,7 @@ struct Outcome {
 Outcome outcome(const ast::Statement& s);
 Outcome outcome(std::span<const ast::StatementPtr> statements);
 
-// Slots of variables that are assigned in a statement and declared outside of it; appended.
-void collect_changed(const ast::Statement& s, std::vector<uint32_t>& slots);
+// Slots of variables that are assigned in statements that follow each other, and declared outside of them; sorted.
+std::vector<uint32_t> changed_in(std::span<const ast::Statement* const> statements);
 
 } // namespace haptel::lang
