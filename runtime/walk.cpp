@@ -1,5 +1,6 @@
 #include "runtime/fan.h"
 #include "runtime/proxy.h"
+#include "runtime/walls.h"
 
 #include <algorithm>
 #include <cmath>
@@ -73,30 +74,34 @@ private:
                 edge = i;
             }
             if (edge == 3) return;
-            set_on_edge(proxy_.face, proxy_.side, edge, proxy_.at);
+            const Proxy lower = on_edge(proxy_.face, proxy_.side, edge, proxy_.at);
+            if (Crossing wall; !blocked(surface_, proxy_.face, proxy_.at, lower.at, wall)) proxy_ = lower;
         } else if (proxy_.on == Proxy::On::edge) {
-            set_on_edge(proxy_.face, proxy_.side, proxy_.index, proxy_.at);
+            proxy_ = on_edge(proxy_.face, proxy_.side, proxy_.index, proxy_.at);
         }
     }
 
-    // At the point of the edge nearest to `at`, or at its end if that is close.
-    void set_on_edge(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& at)
+    // The proxy at the point of the edge nearest to `at`, or at an end of the edge that is close.
+    Proxy on_edge(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& at) const
     {
         const glm::dvec3 along = edge_vector(face, edge);
         const double length = glm::length(along);
         const double way = glm::dot(at - vertex(face, edge), along) / length;
-        const bool first = way<feature, last = way> length - feature;
-        proxy_.face = face;
-        proxy_.side = side;
-        if (first || last) {
-            proxy_.on = Proxy::On::vertex;
-            proxy_.index = first && (!last || 2 * way < length) ? edge : next(edge);
-            proxy_.at = vertex(face, proxy_.index);
+        const bool near_begin = way < feature;
+        const bool near_end = length - way < feature;
+        Proxy proxy = proxy_;
+        proxy.face = face;
+        proxy.side = side;
+        if (near_begin || near_end) {
+            proxy.on = Proxy::On::vertex;
+            proxy.index = near_begin && (!near_end || 2 * way < length) ? edge : next(edge);
+            proxy.at = vertex(face, proxy.index);
         } else {
-            proxy_.on = Proxy::On::edge;
-            proxy_.index = edge;
-            proxy_.at = vertex(face, edge) + way / length * along;
+            proxy.on = Proxy::On::edge;
+            proxy.index = edge;
+            proxy.at = vertex(face, edge) + way / length * along;
         }
+        return proxy;
     }
 
     // --- what to do on a face, an edge, a vertex
@@ -274,8 +279,12 @@ private:
         proxy_.face = face;
         proxy_.side = side;
         if (share == 0) return Step::stop;
+        return go_within(face, side, proxy_.at + share * way, from_edge, or_edge);
+    }
 
-        const glm::dvec3 target = proxy_.at + share * way;
+    // Over the face to the target in its plane, at most to its edges or to the first wall.
+    Step go_within(uint32_t face, uint32_t side, const glm::dvec3& target, uint32_t from_edge, uint32_t or_edge)
+    {
         double exit_at = 1;
         uint32_t exit = 3;
         for (uint32_t i = 0; i < 3; ++i) {
@@ -289,12 +298,35 @@ private:
             exit_at = at;
             exit = i;
         }
+        const glm::dvec3 end = exit == 3 ? target : proxy_.at + exit_at * (target - proxy_.at);
+        if (Crossing wall; blocked(surface_, face, proxy_.at, end, wall)) return go_to_wall(face, target, end, wall);
         if (exit == 3) {
-            proxy_.at = target;
+            proxy_.at = end;
             return Step::stop;
         }
-        set_on_edge(face, side, exit, proxy_.at + exit_at * (target - proxy_.at));
+        proxy_ = on_edge(face, side, exit, end);
         return Step::again;
+    }
+
+    // Up to the wall, then along it as far as that leads toward the target and within the face. What is left is for the
+    // next tick.
+    Step go_to_wall(uint32_t face, const glm::dvec3& target, const glm::dvec3& end, const Crossing& wall)
+    {
+        go_if_open(face, proxy_.at + share_before(surface_, wall, end - proxy_.at) * (end - proxy_.at));
+        const glm::dvec3 along = along_crease(surface_, face, wall, target - proxy_.at);
+        double within = 1;
+        for (uint32_t i = 0; i < 3; ++i) {
+            const glm::dvec3 in = inward(face, i);
+            const double begin = glm::dot(in, proxy_.at - vertex(face, i)), change = glm::dot(in, along);
+            if (change < 0) within = std::min(within, std::max(0.0, begin) / -change);
+        }
+        go_if_open(face, proxy_.at + within * along);
+        return Step::stop;
+    }
+
+    void go_if_open(uint32_t face, const glm::dvec3& end)
+    {
+        if (Crossing wall; !blocked(surface_, face, proxy_.at, end, wall)) proxy_.at = end;
     }
 
     // Along the edge toward the foot of the hand on it, at most to its end.
@@ -313,7 +345,15 @@ private:
         proxy_.index = edge;
         if (share == 0) return Step::stop;
         const double there = here + share * way;
-        set_on_edge(face, side, edge, begin + glm::clamp(there, 0.0, length) / length * along);
+        const glm::dvec3 end = begin + glm::clamp(there, 0.0, length) / length * along;
+        Crossing wall;
+        if (blocked(surface_, face, proxy_.at, end, wall) ||
+            blocked(surface_, surface_.faces[face].link[edge][side].face(), proxy_.at, end, wall)) {
+            const glm::dvec3 open = end - proxy_.at;
+            proxy_.at += share_before(surface_, wall, open) * open;
+            return Step::stop;
+        }
+        proxy_ = on_edge(face, side, edge, end);
         return proxy_.on == Proxy::On::vertex ? Step::again : Step::stop;
     }
 
@@ -339,7 +379,7 @@ void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const 
     proxy.on = Proxy::On::face;
     proxy.face = crossing.face;
     proxy.side = crossing.side;
-    proxy.at = crossing_point(surface, crossing, from, to);
+    proxy.at = off_walls(surface, crossing.face, from, crossing_point(surface, crossing, from, to));
 }
 
 } // namespace haptel::runtime
