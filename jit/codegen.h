@@ -1,0 +1,42 @@
+// IR to LLVM IR, f64, one point at a time.
+//
+// Every operation means what lang/ir/semantics.h says, bit for bit: no fast-math flags, no contraction, elementary
+// functions by calls to the C library under names that LLVM does not know, so that it cannot rewrite them. Functions
+// that an entry reaches become internal LLVM functions; tables become constant globals. The module must be verified
+// (lang/ir/verify.h): table indices and trip counts are trusted here.
+#pragma once
+
+#include "lang/ir/ir.h"
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace llvm {
+class LLVMContext;
+class Module;
+} // namespace llvm
+
+namespace haptel::jit {
+
+// A C function that generated code may call. There are no others: the whole list is code_library().
+struct LibraryFunction {
+    const char* name; // in generated code
+    void* address;
+};
+std::span<const LibraryFunction> code_library();
+
+// One entry point to be emitted: a haptel_entry of this name.
+struct EntryPoint {
+    enum class Kind : uint8_t { height, height_gradient };
+    std::string name;
+    const ir::Texture* texture;
+    Kind kind;
+};
+
+// Data layout and triple are the caller's to set before optimisation.
+std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const EntryPoint> entries,
+                                       llvm::LLVMContext& context);
+
+} // namespace haptel::jit

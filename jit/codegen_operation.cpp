@@ -1,0 +1,273 @@
+#include "jit/codegen_operation.h"
+
+#include "jit/codegen.h"
+
+#include <cmath>
+#include <cstring>
+#include <numbers>
+#include <string>
+
+namespace haptel::jit {
+
+namespace {
+
+using llvm::Value;
+using Unary = double (*)(double);
+using Binary = double (*)(double, double);
+
+void* address(Unary function)
+{
+    return reinterpret_cast<void*>(function);
+}
+void* address(Binary function)
+{
+    return reinterpret_cast<void*>(function);
+}
+
+// Operands, in the order of ops.def, are a, b, c, d.
+class Emitter {
+public:
+    Emitter(llvm::IRBuilder<>& to, std::span<Value* const> from) : builder(to), operands(from) {}
+
+    Value* emit(ir::Op op);
+
+private:
+    llvm::IRBuilder<>& builder;
+    std::span<Value* const> operands;
+
+    Value* a() const { return operands[0]; }
+    Value* b() const { return operands[1]; }
+
+    Value* real(double value) { return llvm::ConstantFP::get(builder.getDoubleTy(), value); }
+    Value* word(uint32_t value) { return builder.getInt32(value); }
+    Value* intrinsic(llvm::Intrinsic::ID id, Value* x) { return builder.CreateUnaryIntrinsic(id, x); }
+    Value* intrinsic(llvm::Intrinsic::ID id, Value* x, Value* y) { return builder.CreateBinaryIntrinsic(id, x, y); }
+    Value* absolute(Value* x) { return intrinsic(llvm::Intrinsic::fabs, x); }
+    Value* floor(Value* x) { return intrinsic(llvm::Intrinsic::floor, x); }
+    Value* choose(Value* condition, Value* x, Value* y) { return builder.CreateSelect(condition, x, y); }
+
+    Value* call(const char* name, std::initializer_list<Value*> arguments);
+    Value* sign();
+    Value* length();
+    Value* remainder_of_turn() { return builder.CreateFSub(a(), intrinsic(llvm::Intrinsic::roundeven, a())); }
+    Value* sine_of_turns();
+    Value* cosine_of_turns();
+    Value* angle();
+    Value* divide(bool want_remainder);
+    Value* divide_unsigned(bool want_remainder);
+    Value* shift_count() { return builder.CreateAnd(b(), word(31)); }
+    Value* saturate(llvm::Intrinsic::ID id);
+};
+
+// Pure and total: may be moved, shared or dropped.
+Value* Emitter::call(const char* name, std::initializer_list<Value*> arguments)
+{
+    llvm::Module* module = builder.GetInsertBlock()->getModule();
+    const std::vector<llvm::Type*> types(arguments.size(), builder.getDoubleTy());
+    auto* type = llvm::FunctionType::get(builder.getDoubleTy(), types, false);
+    auto* function = llvm::cast<llvm::Function>(module->getOrInsertFunction(name, type).getCallee());
+    function->setDoesNotThrow();
+    function->setDoesNotAccessMemory();
+    function->setWillReturn();
+    return builder.CreateCall(function, std::vector<Value*>(arguments));
+}
+
+Value* Emitter::sign()
+{
+    Value* negative = choose(builder.CreateFCmpOLT(a(), real(0)), real(-1), a());
+    return choose(builder.CreateFCmpOGT(a(), real(0)), real(1), negative);
+}
+
+Value* Emitter::length()
+{
+    Value* largest = absolute(operands[0]);
+    for (Value* x : operands.subspan(1)) largest = intrinsic(llvm::Intrinsic::maximum, largest, absolute(x));
+    Value* huge = builder.CreateFCmpOGT(largest, real(0x1p500));
+    Value* tiny = builder.CreateFCmpOLT(largest, real(0x1p-500));
+    Value* scale = choose(huge, real(0x1p-600), choose(tiny, real(0x1p600), real(1)));
+    Value* unscale = choose(huge, real(0x1p600), choose(tiny, real(0x1p-600), real(1)));
+    Value* sum = nullptr;
+    for (Value* x : operands) {
+        Value* scaled = builder.CreateFMul(x, scale);
+        Value* square = builder.CreateFMul(scaled, scaled);
+        sum = sum ? builder.CreateFAdd(sum, square) : square;
+    }
+    return builder.CreateFMul(intrinsic(llvm::Intrinsic::sqrt, sum), unscale);
+}
+
+Value* Emitter::sine_of_turns()
+{
+    Value* rest = remainder_of_turn();
+    Value* size = absolute(rest);
+    Value* folded = choose(builder.CreateFCmpOGT(size, real(0.25)), builder.CreateFSub(real(0.5), size), size);
+    Value* sine = call("haptel_sin", {builder.CreateFMul(real(2 * std::numbers::pi), folded)});
+    return intrinsic(llvm::Intrinsic::copysign, sine, rest);
+}
+
+Value* Emitter::cosine_of_turns()
+{
+    Value* from_zero = builder.CreateFSub(real(0.25), absolute(remainder_of_turn()));
+    return call("haptel_sin", {builder.CreateFMul(real(2 * std::numbers::pi), from_zero)});
+}
+
+Value* Emitter::angle()
+{
+    Value* at_origin = builder.CreateAnd(builder.CreateFCmpOEQ(a(), real(0)), builder.CreateFCmpOEQ(b(), real(0)));
+    return choose(at_origin, real(0), call("haptel_atan2", {a(), b()}));
+}
+
+// The processor's division traps at 0 and at INT_MIN / -1: it gets a divisor of 1 there.
+Value* Emitter::divide(bool want_remainder)
+{
+    Value* by_zero = builder.CreateICmpEQ(b(), word(0));
+    Value* by_minus_one = builder.CreateICmpEQ(b(), word(~0u));
+    Value* divisor = choose(builder.CreateOr(by_zero, by_minus_one), word(1), b());
+    if (want_remainder) return builder.CreateSRem(a(), divisor); // 0 for divisor 1
+    Value* quotient = choose(by_minus_one, builder.CreateNeg(a()), builder.CreateSDiv(a(), divisor));
+    return choose(by_zero, word(0), quotient);
+}
+
+Value* Emitter::divide_unsigned(bool want_remainder)
+{
+    Value* by_zero = builder.CreateICmpEQ(b(), word(0));
+    Value* divisor = choose(by_zero, word(1), b());
+    if (want_remainder) return builder.CreateURem(a(), divisor);
+    return choose(by_zero, word(0), builder.CreateUDiv(a(), divisor));
+}
+
+Value* Emitter::saturate(llvm::Intrinsic::ID id)
+{
+    return builder.CreateIntrinsic(id, {builder.getInt32Ty(), builder.getDoubleTy()}, {a()});
+}
+
+Value* Emitter::emit(ir::Op op)
+{
+    using ir::Op;
+    namespace in = llvm::Intrinsic;
+    switch (op) {
+    case Op::add: return builder.CreateFAdd(a(), b());
+    case Op::sub: return builder.CreateFSub(a(), b());
+    case Op::mul: return builder.CreateFMul(a(), b());
+    case Op::div: return builder.CreateFDiv(a(), b());
+    case Op::neg: return builder.CreateFNeg(a());
+    case Op::fma: return builder.CreateIntrinsic(in::fma, {builder.getDoubleTy()}, {a(), b(), operands[2]});
+    case Op::min: return intrinsic(in::minimum, a(), b());
+    case Op::max: return intrinsic(in::maximum, a(), b());
+    case Op::abs: return absolute(a());
+    case Op::sign: return sign();
+    case Op::floor: return floor(a());
+    case Op::ceil: return intrinsic(in::ceil, a());
+    case Op::trunc: return intrinsic(in::trunc, a());
+    case Op::round: return intrinsic(in::roundeven, a());
+    case Op::fract: return builder.CreateFSub(a(), floor(a()));
+    case Op::mod: return builder.CreateFSub(a(), builder.CreateFMul(b(), floor(builder.CreateFDiv(a(), b()))));
+    case Op::sqrt: return intrinsic(in::sqrt, a());
+    case Op::length2:
+    case Op::length3:
+    case Op::length4: return length();
+    case Op::sin: return call("haptel_sin", {a()});
+    case Op::cos: return call("haptel_cos", {a()});
+    case Op::tan: return call("haptel_tan", {a()});
+    case Op::sinturn: return sine_of_turns();
+    case Op::costurn: return cosine_of_turns();
+    case Op::asin: return call("haptel_asin", {a()});
+    case Op::acos: return call("haptel_acos", {a()});
+    case Op::atan: return call("haptel_atan", {a()});
+    case Op::atan2: return angle();
+    case Op::sinh: return call("haptel_sinh", {a()});
+    case Op::cosh: return call("haptel_cosh", {a()});
+    case Op::tanh: return call("haptel_tanh", {a()});
+    case Op::asinh: return call("haptel_asinh", {a()});
+    case Op::acosh: return call("haptel_acosh", {a()});
+    case Op::atanh: return call("haptel_atanh", {a()});
+    case Op::exp: return call("haptel_exp", {a()});
+    case Op::exp2: return call("haptel_exp2", {a()});
+    case Op::log: return call("haptel_log", {a()});
+    case Op::log2: return call("haptel_log2", {a()});
+    case Op::pow: return call("haptel_pow", {a(), b()});
+    case Op::lt: return builder.CreateFCmpOLT(a(), b());
+    case Op::le: return builder.CreateFCmpOLE(a(), b());
+    case Op::eq: return builder.CreateFCmpOEQ(a(), b());
+    case Op::is_finite: return builder.CreateFCmpOLT(absolute(a()), real(HUGE_VAL));
+    case Op::ilt: return builder.CreateICmpSLT(a(), b());
+    case Op::ile: return builder.CreateICmpSLE(a(), b());
+    case Op::ieq: return builder.CreateICmpEQ(a(), b());
+    case Op::ult: return builder.CreateICmpULT(a(), b());
+    case Op::ule: return builder.CreateICmpULE(a(), b());
+    case Op::ueq: return builder.CreateICmpEQ(a(), b());
+    case Op::land: return builder.CreateAnd(a(), b());
+    case Op::lor: return builder.CreateOr(a(), b());
+    case Op::lxor: return builder.CreateXor(a(), b());
+    case Op::lnot: return builder.CreateNot(a());
+    case Op::select: return choose(a(), b(), operands[2]);
+    case Op::iadd: return builder.CreateAdd(a(), b());
+    case Op::isub: return builder.CreateSub(a(), b());
+    case Op::imul: return builder.CreateMul(a(), b());
+    case Op::idiv: return divide(false);
+    case Op::irem: return divide(true);
+    case Op::iand: return builder.CreateAnd(a(), b());
+    case Op::ior: return builder.CreateOr(a(), b());
+    case Op::ixor: return builder.CreateXor(a(), b());
+    case Op::ishl: return builder.CreateShl(a(), shift_count());
+    case Op::ishr: return builder.CreateAShr(a(), shift_count());
+    case Op::imin: return intrinsic(in::smin, a(), b());
+    case Op::imax: return intrinsic(in::smax, a(), b());
+    case Op::udiv: return divide_unsigned(false);
+    case Op::urem: return divide_unsigned(true);
+    case Op::ushr: return builder.CreateLShr(a(), shift_count());
+    case Op::umin: return intrinsic(in::umin, a(), b());
+    case Op::umax: return intrinsic(in::umax, a(), b());
+    case Op::i_to_r: return builder.CreateSIToFP(a(), builder.getDoubleTy());
+    case Op::u_to_r: return builder.CreateUIToFP(a(), builder.getDoubleTy());
+    case Op::r_to_i: return saturate(in::fptosi_sat);
+    case Op::r_to_u: return saturate(in::fptoui_sat);
+    case Op::i_as_u:
+    case Op::u_as_i:
+    case Op::detach: return a();
+    case Op::b_to_i: return builder.CreateZExt(a(), builder.getInt32Ty());
+    }
+    return nullptr;
+}
+
+} // namespace
+
+llvm::Value* emit_operation(llvm::IRBuilder<>& builder, ir::Op op, std::span<llvm::Value* const> operands)
+{
+    return Emitter(builder, operands).emit(op);
+}
+
+std::span<const LibraryFunction> code_library()
+{
+    static const LibraryFunction functions[] = {
+        {"haptel_sin", address(Unary(std::sin))},
+        {"haptel_cos", address(Unary(std::cos))},
+        {"haptel_tan", address(Unary(std::tan))},
+        {"haptel_asin", address(Unary(std::asin))},
+        {"haptel_acos", address(Unary(std::acos))},
+        {"haptel_atan", address(Unary(std::atan))},
+        {"haptel_atan2", address(Binary(std::atan2))},
+        {"haptel_sinh", address(Unary(std::sinh))},
+        {"haptel_cosh", address(Unary(std::cosh))},
+        {"haptel_tanh", address(Unary(std::tanh))},
+        {"haptel_asinh", address(Unary(std::asinh))},
+        {"haptel_acosh", address(Unary(std::acosh))},
+        {"haptel_atanh", address(Unary(std::atanh))},
+        {"haptel_exp", address(Unary(std::exp))},
+        {"haptel_exp2", address(Unary(std::exp2))},
+        {"haptel_log", address(Unary(std::log))},
+        {"haptel_log2", address(Unary(std::log2))},
+        {"haptel_pow", address(Binary(std::pow))},
+        // What the instruction selector calls by itself where the processor has no such instruction. All are exact or
+        // correctly rounded.
+        {"floor", address(Unary(std::floor))},
+        {"ceil", address(Unary(std::ceil))},
+        {"trunc", address(Unary(std::trunc))},
+        {"roundeven", address(Unary(std::nearbyint))},
+        {"fma", reinterpret_cast<void*>(static_cast<double (*)(double, double, double)>(std::fma))},
+        {"memcpy", reinterpret_cast<void*>(&std::memcpy)},
+        {"memset", reinterpret_cast<void*>(&std::memset)},
+    };
+    return functions;
+}
+
+} // namespace haptel::jit

@@ -1,0 +1,55 @@
+// Machine code in this process: one LLJIT, one JITDylib per program, freed when its last owner lets go.
+//
+// Code may call the functions of code_library() and nothing else of the process. It is compiled for the host's
+// processor, every feature of it, but no multiplication and addition are ever fused: the same program gives the same
+// bits whatever the effort. Compiling is serialised; running needs no lock.
+#pragma once
+
+#include "jit/codegen.h"
+#include "lang/abi.h"
+
+#include <map>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace haptel::jit {
+
+// Time spent against speed of the code; never a difference in any bit of a result.
+enum class Effort : uint8_t {
+    quick, // callable soon: what a hand waits for
+    full   // all of LLVM's -O2: what a long exploration deserves
+};
+
+// Time from IR to callable, by stage, seconds.
+struct CompileTimes {
+    double generate_s = 0, optimise_s = 0, select_s = 0, link_s = 0;
+};
+
+// Owns the machine code of one program.
+class Code {
+public:
+    virtual ~Code() = default;
+    // Of an entry point by its name; null if there is none.
+    haptel_entry* entry(const std::string& name) const;
+    CompileTimes times;
+
+protected:
+    std::map<std::string, haptel_entry*> entries;
+};
+
+struct CodeResult {
+    std::shared_ptr<const Code> code;
+    std::string error; // names the stage that failed; empty if there is code
+};
+
+// `module` must be verified.
+CodeResult compile_code(const ir::Module& module, std::span<const EntryPoint> entries, Effort effort = Effort::quick);
+
+// Programs whose code is in memory now.
+size_t programs_alive();
+
+// "LLVM 19.1.7 x86_64-pc-linux-gnu skylake-avx512": for reports.
+std::string engine_name();
+
+} // namespace haptel::jit

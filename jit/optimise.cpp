@@ -1,0 +1,48 @@
+#include "jit/optimise.h"
+
+#include <llvm/Passes/PassBuilder.h>
+#include <llvm/Transforms/IPO/AlwaysInliner.h>
+#include <llvm/Transforms/IPO/GlobalDCE.h>
+#include <llvm/Transforms/IPO/ModuleInliner.h>
+#include <llvm/Transforms/InstCombine/InstCombine.h>
+#include <llvm/Transforms/Scalar/EarlyCSE.h>
+#include <llvm/Transforms/Scalar/LICM.h>
+#include <llvm/Transforms/Scalar/LoopPassManager.h>
+#include <llvm/Transforms/Scalar/SimplifyCFG.h>
+
+namespace haptel::jit {
+
+namespace {
+
+llvm::ModulePassManager short_list()
+{
+    llvm::ModulePassManager passes;
+    passes.addPass(llvm::ModuleInlinerWrapperPass(llvm::getInlineParams(250)));
+    passes.addPass(llvm::GlobalDCEPass());
+    llvm::FunctionPassManager in_function;
+    in_function.addPass(llvm::SimplifyCFGPass());
+    in_function.addPass(llvm::EarlyCSEPass());
+    passes.addPass(llvm::createModuleToFunctionPassAdaptor(std::move(in_function)));
+    return passes;
+}
+
+} // namespace
+
+void optimise(llvm::Module& module, llvm::TargetMachine& machine, Effort effort)
+{
+    llvm::LoopAnalysisManager loops;
+    llvm::FunctionAnalysisManager functions;
+    llvm::CGSCCAnalysisManager components;
+    llvm::ModuleAnalysisManager modules;
+    llvm::PassBuilder passes(&machine);
+    passes.registerModuleAnalyses(modules);
+    passes.registerCGSCCAnalyses(components);
+    passes.registerFunctionAnalyses(functions);
+    passes.registerLoopAnalyses(loops);
+    passes.crossRegisterProxies(loops, functions, components, modules);
+    llvm::ModulePassManager list =
+        effort == Effort::quick ? short_list() : passes.buildPerModuleDefaultPipeline(llvm::OptimizationLevel::O2);
+    list.run(module, modules);
+}
+
+} // namespace haptel::jit

@@ -1,0 +1,11 @@
+// LLVM's passes over generated code: a short list for quick compilation, the standard pipeline for full effort.
+#pragma once
+
+#include "jit/engine.h"
+#include "jit/llvm.h"
+
+namespace haptel::jit {
+
+void optimise(llvm::Module& module, llvm::TargetMachine& machine, Effort effort);
+
+} // namespace haptel::jit
