@@ -1,0 +1,29 @@
+// The frame of the command: help, version, misuse.
+#include "tests/support/catch.h"
+#include "tests/tools/run_command.h"
+
+using namespace haptel::test;
+
+TEST_CASE("help and version go to standard output with exit code 0")
+{
+    const Ran version = run_command("--version");
+    CHECK(version.code == 0);
+    CHECK(contains(version.out, "haptel 0."));
+    CHECK(version.err.empty());
+
+    const Ran help = run_command("--help");
+    CHECK(help.code == 0);
+    CHECK(contains(help.out, "--version"));
+    CHECK(help.err.empty());
+}
+
+TEST_CASE("misuse is exit code 2, said on standard error, with nothing on standard output")
+{
+    for (const std::string line : {"", "paint", "--colour", "-x"}) {
+        CAPTURE(line);
+        const Ran ran = run_command(line);
+        CHECK(ran.code == 2);
+        CHECK(ran.out.empty());
+        CHECK(contains(ran.err, "--help"));
+    }
+}
