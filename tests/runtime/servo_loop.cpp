@@ -255,6 +255,7 @@ TEST_CASE("a tick that takes three periods is counted as missed deadlines and no
     ServoOptions options;
     options.seconds = 0.1;
     options.ask_for_real_time = false;
+    const int64_t start_ns = monotonic_ns();
     const ServoReport report = run(std::make_unique<ScriptedDevice>([](uint64_t tick, DevicePose& pose) {
                                        if (tick == 10) {
                                            const int64_t until = monotonic_ns() + 3'500'000;
@@ -267,6 +268,8 @@ TEST_CASE("a tick that takes three periods is counted as missed deadlines and no
     CHECK(report.missed_deadlines >= 3);
     CHECK(report.ticks <= 97);
     CHECK(report.seconds >= 0.1);
+    // Its periods are those of the wall clock, none counted twice.
+    CHECK(report.seconds < 1e-9 * static_cast<double>(monotonic_ns() - start_ns) + 1e-3);
 }
 
 #if defined(__SSE2__)
