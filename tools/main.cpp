@@ -1,13 +1,17 @@
 // The haptel command: finds the subcommand, turns its outcome into the exit code, and nothing else.
+#include "lang/diagnostic.h"
 #include "tools/command.h"
 #include "tools/terminal.h"
 
-#include <cstdio>
+#include <algorithm>
 #include <exception>
+#include <fmt/format.h>
 #include <iostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
+using namespace haptel;
 using namespace haptel::tools;
 
 namespace {
@@ -21,6 +25,21 @@ std::vector<Command> add_commands([[maybe_unused]] CLI::App& app)
     };
 }
 
+// A better answer than the parser's to a first word that is no command; empty if it is one, or an option.
+std::string unknown_command(const CLI::App& app, int argc, char** argv)
+{
+    if (argc < 2 || argv[1][0] == '-') return {};
+    const std::string word = argv[1];
+    std::vector<std::string_view> names;
+    for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+        names.push_back(command->get_name());
+    if (std::find(names.begin(), names.end(), word) != names.end()) return {};
+    const std::string_view meant = lang::nearest_name(word, names);
+    const std::string advice =
+        meant.empty() ? "haptel --help lists them all" : fmt::format("did you mean '{}'?", meant);
+    return fmt::format("there is no command '{}': {}", word, advice);
+}
+
 ExitCode run(int argc, char** argv)
 {
     CLI::App app("Textures you can touch, written like shaders.", "haptel");
@@ -28,6 +47,10 @@ ExitCode run(int argc, char** argv)
     app.require_subcommand(1);
     app.get_formatter()->column_width(36);
     const std::vector<Command> commands = add_commands(app);
+    if (const std::string unknown = unknown_command(app, argc, argv); !unknown.empty()) {
+        say_error(unknown);
+        return ExitCode::misuse;
+    }
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
