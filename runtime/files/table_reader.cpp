@@ -87,7 +87,7 @@ std::string either_of(const std::vector<std::string_view>& words)
     std::string list;
     for (std::size_t i = 0; i < words.size(); ++i) {
         if (i > 0) list += i + 1 == words.size() ? " or " : ", ";
-        list += "\"" + std::string(words[i]) + "\"";
+        list.append("\"").append(words[i]).append("\"");
     }
     return list;
 }
