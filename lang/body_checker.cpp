@@ -30,6 +30,11 @@ const Symbol* BodyChecker::find(std::string_view name) const
     return nullptr;
 }
 
+void BodyChecker::mark_read(std::string_view name)
+{
+    if (Symbol* local = find_local(name)) local->is_read = true;
+}
+
 Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
 {
     if (type_named(name.text)) {
@@ -37,6 +42,7 @@ Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
     }
     const size_t depth = scope_marks.size();
     if (const Symbol* other = find_local(name.text); other && by_name.find(name.text)->second.back().depth == depth) {
+        mark_read(name.text);
         diagnostics.error(name.span, "duplicate-name", quoted(name.text) + " is declared twice in one block")
             .related.push_back({other->span, "first declared here"});
     }
@@ -45,6 +51,7 @@ Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
     symbol.name = name.text;
     symbol.type = type;
     symbol.span = name.span;
+    symbol.is_read = type_named(name.text).has_value();
     if (kind == SymbolKind::local) {
         symbol.slot = static_cast<uint32_t>(flow.variables.size());
         Variable& variable = flow.variables.emplace_back();
@@ -78,6 +85,10 @@ void BodyChecker::report_unused(const Symbol& symbol)
 void BodyChecker::report_unknown_name(Span span, const std::string& name)
 {
     Diagnostic& reported = diagnostics.error(span, "unknown-name", "unknown name " + quoted(name));
+    if (scope.declares_constant_later(name)) {
+        reported.hint = "it is declared further down: a constant is known from its declaration on";
+        return;
+    }
     std::vector<std::string_view> names;
     for (const auto& [local, bindings] : by_name)
         if (!bindings.empty()) names.push_back(local);
@@ -87,6 +98,7 @@ void BodyChecker::report_unknown_name(Span span, const std::string& name)
     if (const std::string_view nearest = nearest_name(name, names); !nearest.empty()) {
         reported.hint = "did you mean " + quoted(nearest) + "?";
         reported.fix = FixIt{span, std::string(nearest)};
+        mark_read(nearest); // if it was meant, it is read
     } else if (name == "PI" || name == "M_PI" || name == "pi") {
         reported.hint = "write const float PI = 3.141592653589793; or use sinturn and costurn, which count full turns";
     }

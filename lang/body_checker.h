@@ -68,6 +68,7 @@ private:
     Symbol& declare(const ast::Name& name, SymbolKind kind, Type type);
     Symbol* find_local(std::string_view name) const;
     const Symbol* find(std::string_view name) const;
+    void mark_read(std::string_view name);
     void report_unused(const Symbol& symbol);
     void report_unknown_name(Span span, const std::string& name);
 

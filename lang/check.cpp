@@ -178,6 +178,8 @@ private:
 
     void check_constants(uint32_t file, const FileScope& scope)
     {
+        for (const Constant& constant : program.files[file].tree.constants)
+            declarations_of(file).constant_names.insert(constant.declaration.name.text);
         for (Constant& constant : program.files[file].tree.constants) {
             if (context.diagnostics.full()) return;
             const Symbol* symbol =

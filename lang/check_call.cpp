@@ -70,10 +70,11 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
         const Type found = expression(argument);
         damaged |= found.is_error();
         if (!damaged && components >= type.size) {
-            diagnostics
-                .error(argument.span, "wrong-argument-count",
-                       to_string(type) + " has all its " + count_of(type.size, "component") + " before this argument")
-                .hint = "leave it out";
+            const std::string full = type.is_vector()
+                                         ? "has all its " + count_of(type.size, "component") + " before this argument"
+                                         : "is made of one value";
+            diagnostics.error(argument.span, "wrong-argument-count", to_string(type) + " " + full).hint =
+                "leave this argument out";
             damaged = true;
         }
         components += found.size;
@@ -303,10 +304,10 @@ void BodyChecker::report_argument(const Candidate& candidate, size_t index, cons
 void BodyChecker::report_unknown_function(const Name& callee)
 {
     if (const Symbol* variable = find(callee.text)) {
-        diagnostics
-            .error(callee.span, "not-a-function",
-                   quoted(callee.text) + " is a " + to_string(variable->type) + ", expected a function before '('")
-            .hint = "to multiply, write " + callee.text + " * (...)";
+        mark_read(callee.text);
+        const std::string found = quoted(callee.text) + " is a " + to_string(variable->type);
+        diagnostics.error(callee.span, "not-a-function", found + ", expected a function").hint =
+            "to multiply, write " + callee.text + " * (...)";
         return;
     }
     Diagnostic& reported =

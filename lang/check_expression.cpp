@@ -64,7 +64,7 @@ std::string operator_hint(BinaryOp op, Type left, Type right)
         if (vectors) return "compare components, a.x < b.x, or length(a) < length(b)";
         return "join comparisons with &&";
     case equal:
-    case not_equal: return "both sides must be of one kind";
+    case not_equal: return vectors ? "vectors must have the same size" : "both sides must be of one kind";
     case logical_and:
     case logical_or:
     case logical_xor: return "compare first, for example x != 0.0";
@@ -157,7 +157,7 @@ Type BodyChecker::read(Expression& e, NameExpression& node, uint8_t components)
         return Type::error();
     }
     node.symbol = symbol;
-    if (Symbol* local = find_local(node.name)) local->is_read = true;
+    mark_read(node.name);
     switch (symbol->kind) {
     case SymbolKind::input: reads |= 1u << static_cast<uint32_t>(symbol->input); break;
     case SymbolKind::function:

@@ -76,6 +76,7 @@ void BodyChecker::check(Statement&, Declaration& node)
     const bool is_constant = node.is_const && fits && !first_not_constant(value);
     Symbol& symbol = declare(node.name, is_constant ? SymbolKind::constant : SymbolKind::local, type);
     node.symbol = &symbol;
+    symbol.is_read = !fits; // that it is not used is then not worth saying
     if (node.is_const) symbol.read_only = "it is constant";
     if (is_constant) {
         symbol.value = evaluate_constant(value, type);
@@ -115,10 +116,12 @@ Symbol* BodyChecker::table(Declaration& node, Type element)
     if (node.type.array_size && !element.is_error()) {
         Expression& size = *node.type.array_size;
         const Type found = expression(size);
-        const ir::IntRange wanted = found == int_type || found == uint_type ? range(size) : ir::IntRange{};
-        if (!found.is_error() && !wanted.is_constant()) {
+        const bool is_int = found == int_type || found == uint_type;
+        const ir::IntRange wanted = range(size);
+        if (!found.is_error() && !(is_int && wanted.is_constant())) {
             diagnostics.error(size.span, "not-constant",
-                              "expected a constant int as the size of a table, found " + to_string(found));
+                              "expected a constant int as the size of a table, found " +
+                                  (is_int ? std::string("one that varies") : to_string(found)));
         } else if (!found.is_error() && wanted.minimum != static_cast<int64_t>(count)) {
             diagnostics
                 .error(size.span, "table-size",
@@ -174,7 +177,7 @@ BodyChecker::Target BodyChecker::target_of(Expression& e)
     Symbol* local = find_local(name->name);
     const Symbol* symbol = find(name->name);
     if (!symbol) {
-        report_unknown_name(object->span, name->name);
+        expression(*object); // says what the name is, if anything
         return {};
     }
     name->symbol = symbol;

@@ -78,13 +78,6 @@ CheckedParameter check_texture_parameter(CheckContext& context, const FileScope&
     }
     BodyChecker checker(context, scope, true);
     const Type type = symbol.type;
-    if (!tree.value && !type.is_error()) {
-        diagnostics.error(tree.name.span, "missing-value", "parameter " + name + " of a texture needs a default").hint =
-            "write " + to_string(type) + " " + tree.name.text +
-            (type == bool_type    ? " = true"
-             : type == float_type ? " = 1.0 in 0.0 .. 2.0"
-                                  : " = 4 in 1 .. 8");
-    }
     const auto value =
         tree.value ? checker.check_constant(*tree.value, type, " as the default of " + name) : std::nullopt;
     if (tree.value) made.unit = unit_in(*tree.value);

@@ -66,6 +66,11 @@ const Symbol* FileScope::constant(std::string_view name) const
     return nullptr;
 }
 
+bool FileScope::declares_constant_later(std::string_view name) const
+{
+    return std::any_of(layers.begin(), layers.end(), [&](auto* layer) { return layer->constant_names.contains(name); });
+}
+
 bool FileScope::is_function(std::string_view name) const
 {
     const auto declared = [&](const Declarations* layer) { return layer->functions.contains(name); };

@@ -5,6 +5,7 @@
 #include "lang/resolution.h"
 
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,7 +16,8 @@ namespace haptel::lang {
 // Global names of one file, or of the whole library.
 struct Declarations {
     std::map<std::string, std::vector<FunctionInfo*>, std::less<>> functions;
-    std::map<std::string, const Symbol*, std::less<>> constants;
+    std::map<std::string, const Symbol*, std::less<>> constants; // those above the place that is being checked
+    std::set<std::string, std::less<>> constant_names;           // all, for a hint
 };
 
 // A function that a call may mean.
@@ -43,6 +45,7 @@ public:
     void add_layer(const Declarations& declarations) { layers.push_back(&declarations); }
 
     const Symbol* constant(std::string_view name) const;
+    bool declares_constant_later(std::string_view name) const; // asked where constant(name) has found none
     bool is_function(std::string_view name) const;
     // Every function of that name; of equal signatures only the nearest, so that a file may replace what it imports.
     std::vector<Candidate> functions(std::string_view name) const;
