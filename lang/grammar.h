@@ -19,8 +19,9 @@ public:
 
 private:
     // parser.cpp
-    void top_level_name(ast::File& result);
-    void find_top_level();
+    bool top_level_name(ast::File& result);
+    void report_stray();
+    void find_top_level(bool strayed);
 
     using Statements = std::vector<ast::StatementPtr>;
 
@@ -39,6 +40,7 @@ private:
     // parse_statement.cpp
     void statement(Statements& into);
     ast::StatementPtr block();
+    ast::StatementPtr rest_of_block(Span opener);
     ast::StatementPtr single_statement(std::string_view after);
     ast::StatementPtr if_statement();
     ast::StatementPtr for_statement();
@@ -61,6 +63,7 @@ private:
     ast::ExpressionPtr unary();
     ast::ExpressionPtr postfix();
     ast::ExpressionPtr primary();
+    ast::ExpressionPtr behind_stray_operator();
     ast::ExpressionPtr number();
     ast::ExpressionPtr name_or_call();
     ast::ExpressionPtr grad_call(Span first);
@@ -78,7 +81,8 @@ private:
     ast::StatementPtr make_statement(Span where, Node node);
 };
 
-// Names that begin a type: Haptel's own and those that other languages have.
+bool is_own_type(std::string_view word);
+// Those of other languages too.
 bool is_type_word(std::string_view word);
 
 template <class Node>

@@ -42,6 +42,7 @@ struct Decimal {
 Decimal times_degree(Decimal decimal)
 {
     constexpr size_t digits_that_count = 800;
+    decimal.digits.erase(0, decimal.digits.find_first_not_of('0'));
     if (decimal.digits.size() > digits_that_count) {
         decimal.power += static_cast<int64_t>(decimal.digits.size() - digits_that_count);
         decimal.digits.resize(digits_that_count);

@@ -7,12 +7,16 @@ namespace haptel::lang {
 
 using namespace ast;
 
-bool is_type_word(std::string_view word)
+bool is_own_type(std::string_view word)
 {
     constexpr std::string_view words[] = {"float", "int",  "uint", "bool", "vec2",  "vec3",
                                           "vec4",  "mat2", "mat3", "mat4", "image", "void"};
-    return std::find(std::begin(words), std::end(words), word) != std::end(words) ||
-           foreign_word(ForeignKind::type, word);
+    return std::find(std::begin(words), std::end(words), word) != std::end(words);
+}
+
+bool is_type_word(std::string_view word)
+{
+    return is_own_type(word) || foreign_word(ForeignKind::type, word);
 }
 
 std::optional<Name> Grammar::name(std::string_view what)
@@ -210,13 +214,17 @@ void Grammar::function_signature(FunctionParameter& parameter)
 
 StatementPtr Grammar::body_of(std::string_view what)
 {
+    if (lost) { // in the brackets before
+        skip_to({Token::left_brace});
+        while (accept(Token::right_paren)) skip_to({Token::left_brace});
+    }
     lost = false;
     if (!at(Token::left_brace)) {
         error(span(), "syntax", "expected '{' and the body of " + std::string(what) + found());
-        return nullptr;
+        if (at(Token::semicolon) || at(Token::end) || at(Token::invalid) || at_top_level_start()) return nullptr;
     }
     depth = 0;
-    StatementPtr body = block();
+    StatementPtr body = at(Token::left_brace) ? block() : rest_of_block(span()); // the brace was forgotten
     depth = Nesting::bracket;
     return body;
 }

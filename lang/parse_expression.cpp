@@ -209,8 +209,7 @@ ExpressionPtr Grammar::primary()
         error(first, "assignment-in-expression",
               "'" + std::string(text()) + "' is a statement of its own, not part of an expression")
             .hint = "write it on a line before";
-        advance();
-        return unary();
+        return behind_stray_operator();
     }
     if (at(Token::left_brace)) {
         error(first, "syntax", "braces may only stand behind '=' of a constant table");
@@ -218,11 +217,23 @@ ExpressionPtr Grammar::primary()
     }
     if (at(Token::ampersand) || at(Token::star)) {
         error(first, "no-pointers", "expected an expression" + found() + "; there are no pointers in Haptel");
-        advance();
-        return unary();
+        return behind_stray_operator();
     }
     error(first, "expected-expression", "expected an expression" + found());
     return make(first, ErrorExpression{});
+}
+
+// After the report of an operator that cannot stand here: the operand may be sound.
+ExpressionPtr Grammar::behind_stray_operator()
+{
+    const Span where = span();
+    const Nesting nesting(*this, Nesting::bracket);
+    if (nesting.too_deep()) {
+        skip_to({Token::comma});
+        return make(where, ErrorExpression{});
+    }
+    advance();
+    return unary();
 }
 
 ExpressionPtr Grammar::number()

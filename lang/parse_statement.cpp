@@ -96,6 +96,10 @@ void Grammar::find_footing()
 {
     if (position > 0 && list.tokens[position - 1].kind == Token::right_brace && !at(Token::semicolon)) return;
     skip_to({Token::left_brace});
+    while (at(Token::right_paren) || at(Token::right_bracket)) { // of a bracket that was never opened
+        advance();
+        skip_to({Token::left_brace});
+    }
     if (at(Token::left_brace)) skip_brackets();
     accept(Token::semicolon);
 }
@@ -103,7 +107,7 @@ void Grammar::find_footing()
 // A function or texture begins here: a '}' must be missing above.
 bool Grammar::at_top_level_start() const
 {
-    if (at(Token::kw_texture) || at(Token::kw_import)) return true;
+    if (at_texture_or_import()) return true;
     if (kind() != Token::name || kind(1) != Token::name || kind(2) != Token::left_paren) return false;
     size_t open = 0;
     constexpr size_t longest_head = 1000; // tokens; keeps the whole parse linear
@@ -127,6 +131,12 @@ StatementPtr Grammar::block()
         return make_statement(since(opener), Scope{});
     }
     advance();
+    return rest_of_block(opener);
+}
+
+// Behind '{'.
+StatementPtr Grammar::rest_of_block(Span opener)
+{
     Scope scope;
     while (!at(Token::right_brace) && !at(Token::end) && !at_top_level_start()) statement(scope.statements);
     if (!accept(Token::right_brace)) {
@@ -147,7 +157,7 @@ StatementPtr Grammar::single_statement(std::string_view after)
     }
     const Nesting nesting(*this, Nesting::bracket);
     if (nesting.too_deep()) {
-        while (!at(Token::right_brace) && !at(Token::end) && !at(Token::kw_texture)) {
+        while (!at(Token::right_brace) && !at(Token::end) && !at_texture_or_import()) {
             if (at(Token::left_brace))
                 skip_brackets();
             else
@@ -173,7 +183,10 @@ StatementPtr Grammar::if_statement()
             const Span opener = span();
             const bool opened = expect(Token::left_paren, "after 'if'");
             arm.condition = expression();
-            if (opened) close(Token::right_paren, opener);
+            if (opened)
+                close(Token::right_paren, opener);
+            else
+                accept(Token::right_paren);
         }
         arm.body = single_statement(conditional_arm ? "the condition" : "'else'");
         result.arms.push_back(std::move(arm));
@@ -279,7 +292,7 @@ bool Grammar::at_declaration() const
         while (kind(ahead) == Token::number || kind(ahead) == Token::name) ++ahead;
         return kind(ahead) == Token::right_bracket && kind(ahead + 1) == Token::name;
     }
-    return is_type_word(text()) && kind(1) != Token::left_paren && kind(1) != Token::dot;
+    return is_own_type(text()) && kind(1) != Token::left_paren && kind(1) != Token::dot;
 }
 
 // declaration = ["const"] type declarator {"," declarator} ";"

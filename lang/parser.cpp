@@ -27,6 +27,7 @@ File Grammar::parse_file()
         depth = Nesting::bracket;
         const size_t first_position = position;
         if (accept(Token::semicolon)) continue;
+        bool strayed = false;
         if (at(Token::kw_import)) {
             import_declaration(result);
         } else if (at(Token::kw_const)) {
@@ -34,22 +35,32 @@ File Grammar::parse_file()
         } else if (at(Token::kw_texture)) {
             texture(result);
         } else if (at(Token::name)) {
-            top_level_name(result);
+            strayed = !top_level_name(result);
         } else {
-            error(span(), "syntax", "expected a texture, function, constant or import" + found());
+            strayed = true;
         }
-        if (lost) find_top_level();
+        if (strayed) report_stray();
+        if (lost) find_top_level(strayed);
         if (position == first_position) advance();
     }
     return result;
 }
 
-// A name at the top: a function's type; or a slip.
-void Grammar::top_level_name(File& result)
+// Statements outside of any body: a '}' too many above, or a slip.
+void Grammar::report_stray()
+{
+    const bool statement_like = kind() >= Token::kw_if || at(Token::name) || at(Token::right_brace);
+    Diagnostic& reported = error(span(), "syntax", "expected a texture, function, constant or import" + found());
+    if (statement_like)
+        reported.hint = "statements stand inside functions and textures; is there a '}' too many above?";
+}
+
+// A name at the top: a function's type; or a slip. False if nothing at all can begin like this.
+bool Grammar::top_level_name(File& result)
 {
     if (const ForeignWord* foreign = foreign_word(ForeignKind::declaration, text())) {
         skip_foreign_declaration(*foreign);
-        return;
+        return true;
     }
     const std::string_view guess =
         is_type_word(text()) ? std::string_view{} : nearest_name(text(), {"texture", "import", "const"});
@@ -62,27 +73,23 @@ void Grammar::top_level_name(File& result)
             texture(result);
         else
             lost = true;
-        return;
+        return true;
     }
-    if (kind(1) == Token::name || kind(1) == Token::left_bracket || is_type_word(text())) {
-        function_or_variable(result);
-        return;
-    }
-    const Span first = span();
-    Diagnostic& reported = error(first, "syntax", "expected a texture, function, constant or import" + found());
-    if (kind(1) == Token::left_paren || kind(1) == Token::assign)
-        reported.hint = "statements stand inside functions and textures";
+    if (kind(1) != Token::name && kind(1) != Token::left_bracket && !is_type_word(text())) return false;
+    function_or_variable(result);
+    return true;
 }
 
-// After a mistake: before the next declaration, or behind the ';' or '}' that ends this one.
-void Grammar::find_top_level()
+// After a mistake: before the next declaration, or behind the ';' or '}' that ends this one; but statements that have
+// strayed here have many of those, and end only where a declaration begins.
+void Grammar::find_top_level(bool strayed)
 {
     uint32_t open_braces = 0;
-    if (position > 0 && list.tokens[position - 1].kind == Token::right_brace) return;
-    for (; !at(Token::end) && !at(Token::kw_texture) && !at(Token::kw_import); advance()) {
+    if (!strayed && position > 0 && list.tokens[position - 1].kind == Token::right_brace) return;
+    for (; !at(Token::end) && !at_texture_or_import(); advance()) {
         if (at(Token::left_brace)) ++open_braces;
         const bool closes = at(Token::right_brace) && open_braces > 0 && --open_braces == 0;
-        if (closes || (at(Token::semicolon) && open_braces == 0)) {
+        if (!strayed && (closes || (at(Token::semicolon) && open_braces == 0))) {
             advance();
             return;
         }

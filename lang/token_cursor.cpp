@@ -19,8 +19,8 @@ bool is_closer(Token kind)
 // Words that only ever begin something: a bracket left open does not reach across them.
 bool begins_anew(Token kind)
 {
-    constexpr Token words[] = {Token::kw_texture, Token::kw_import, Token::kw_if,     Token::kw_else,
-                               Token::kw_for,     Token::kw_break,  Token::kw_return, Token::end};
+    constexpr Token words[] = {Token::kw_if,    Token::kw_else,   Token::kw_for,
+                               Token::kw_break, Token::kw_return, Token::end};
     return std::find(std::begin(words), std::end(words), kind) != std::end(words);
 }
 
@@ -110,6 +110,12 @@ Diagnostic& TokenCursor::error(Span where, std::string code, std::string message
     return reported;
 }
 
+bool TokenCursor::at_texture_or_import() const
+{
+    return (at(Token::kw_texture) && kind(1) == Token::name) ||
+           (at(Token::kw_import) && (kind(1) == Token::name || kind(1) == Token::string));
+}
+
 bool TokenCursor::on_new_line() const
 {
     return sources.text({file, previous_span().end, span().begin}).find_first_of("\r\n") != std::string_view::npos;
@@ -129,7 +135,7 @@ void TokenCursor::skip_to(std::initializer_list<Token> stops)
     for (;; advance()) {
         const Token here = kind();
         if (begins_anew(here) && open_braces == 0) return;
-        if (here == Token::end || here == Token::kw_texture || here == Token::kw_import) return;
+        if (here == Token::end || at_texture_or_import()) return;
         if (here == Token::semicolon && open_braces == 0) return;
         if (open == 0 && std::find(stops.begin(), stops.end(), here) != stops.end()) return;
         if (is_opener(here)) {
@@ -150,7 +156,7 @@ void TokenCursor::skip_brackets()
                          : opener == Token::left_bracket ? Token::right_bracket
                                                          : Token::right_brace;
     uint32_t open = 0;
-    for (; !at(Token::end) && !at(Token::kw_texture) && !at(Token::kw_import); advance()) {
+    for (; !at(Token::end) && !at_texture_or_import(); advance()) {
         if (at(opener)) ++open;
         if (at(closer) && --open == 0) {
             advance();

@@ -40,7 +40,9 @@ protected:
     // Silent while lost and beside an invalid token; lost afterwards.
     Diagnostic& error(Span where, std::string code, std::string message);
     std::string found() const; // ", found 'x'"
-    bool on_new_line() const;  // a line ends between what was last taken and here
+    // "texture wood" or "import wood": never inside a body, so that a bracket left open does not reach across.
+    bool at_texture_or_import() const;
+    bool on_new_line() const; // a line ends between what was last taken and here
 
     // Skips to the first of `stops` outside brackets opened on the way; stops at ';' (unless inside braces opened on
     // the way), at a closing bracket of the surroundings and at the end.

@@ -1,0 +1,133 @@
+#include "lang/diagnostic.h"
+#include "tests/support/catch.h"
+
+using namespace haptel::lang;
+
+namespace {
+
+SourceSet one(std::string text)
+{
+    SourceSet sources;
+    sources.add({"t.haptel", std::move(text)});
+    return sources;
+}
+
+std::string rendered(std::string text, uint32_t begin, uint32_t end)
+{
+    Diagnostic diagnostic;
+    diagnostic.code = "code";
+    diagnostic.span = {0, begin, end};
+    diagnostic.message = "message";
+    return render(diagnostic, one(std::move(text)));
+}
+
+} // namespace
+
+TEST_CASE("a finding shows its line, the whole span underlined, further places and a hint")
+{
+    const SourceSet sources = one("texture t(\n    float a = 1,\n    return depth * sin(p.x);\n");
+    Diagnostics diagnostics;
+    Diagnostic& d = diagnostics.error({0, 47, 55}, "dimension", "sin() expects a plain number, got a length");
+    d.hint = "divide by a wavelength";
+    d.related.push_back({{0, 9, 10}, "it was opened here"});
+    CHECK(render(diagnostics.all(), sources) ==
+          "t.haptel:3:20: error: sin() expects a plain number, got a length [dimension]\n"
+          "   3 |     return depth * sin(p.x);\n"
+          "     |                    ^~~~~~~~\n"
+          "t.haptel:1:10: note: it was opened here\n"
+          "   1 | texture t(\n"
+          "     |          ^\n"
+          "     = hint: divide by a wavelength\n");
+}
+
+TEST_CASE("an empty span, also at the end of a line, is one caret")
+{
+    CHECK(rendered("ab\ncd", 2, 2) == "t.haptel:1:3: error: message [code]\n   1 | ab\n     |   ^\n");
+    CHECK(rendered("ab\ncd", 5, 5) == "t.haptel:2:3: error: message [code]\n   2 | cd\n     |   ^\n");
+    CHECK(rendered("", 0, 0) == "t.haptel:1:1: error: message [code]\n   1 | \n     | ^\n");
+    CHECK(rendered("ab", 900, 900) == "t.haptel:1:3: error: message [code]\n   1 | ab\n     |   ^\n");
+}
+
+TEST_CASE("a span of several lines is underlined to the end of its first")
+{
+    CHECK(rendered("a (b\nc) d", 2, 7) == "t.haptel:1:3: error: message [code]\n   1 | a (b\n     |   ^~\n");
+}
+
+TEST_CASE("the underline stands below tabs, wide and combined characters")
+{
+    CHECK(rendered("\tab", 1, 3) == "t.haptel:1:2: error: message [code]\n   1 |     ab\n     |     ^~\n");
+    CHECK(rendered("\xE6\x9C\xA8x", 3, 4) == "t.haptel:1:2: error: message [code]\n   1 | \xE6\x9C\xA8x\n     |   ^\n");
+    CHECK(rendered("e\xCC\x81x", 3, 4) == "t.haptel:1:3: error: message [code]\n   1 | e\xCC\x81x\n     |  ^\n");
+}
+
+TEST_CASE("what is shown is always text")
+{
+    CHECK(rendered("a\xFF\033b", 0, 1) == "t.haptel:1:1: error: message [code]\n   1 | a\xEF\xBF\xBD\xEF\xBF\xBD"
+                                          "b\n     | ^\n");
+}
+
+TEST_CASE("a long line is cut around the finding")
+{
+    const std::string out =
+        rendered(std::string(5'000'000, 'a') + "b" + std::string(5'000'000, 'c'), 5'000'000, 5'000'001);
+    CHECK(out == "t.haptel:1:5000001: error: message [code]\n   1 | ..." + std::string(25, 'a') + "b" +
+                     std::string(74, 'c') + "...\n     | " + std::string(28, ' ') + "^\n");
+    CHECK(rendered(std::string(300, 'x'), 0, 300).size() < 300);
+}
+
+TEST_CASE("one error per place, a bounded number of them, the rest goes nowhere")
+{
+    Diagnostics diagnostics;
+    diagnostics.error({0, 5, 6}, "a", "first");
+    diagnostics.error({0, 5, 9}, "b", "second at the same place").hint = "lost";
+    CHECK(diagnostics.all().size() == 1);
+    CHECK(diagnostics.all()[0].hint.empty());
+    diagnostics.warning({0, 5, 6}, "w", "warnings stand beside errors");
+    diagnostics.warning({0, 5, 6}, "w", "but not twice");
+    CHECK(diagnostics.all().size() == 2);
+    for (uint32_t i = 0; i < 1000; ++i) diagnostics.error({0, 10 + i, 11 + i}, "c", "more");
+    CHECK(diagnostics.full());
+    CHECK(diagnostics.all().size() == 51);
+    for (uint32_t i = 0; i < 1000; ++i) diagnostics.note({0, i, i + 1}, "n", "more");
+    CHECK(diagnostics.all().size() == 250);
+}
+
+TEST_CASE("findings are sorted by file and place")
+{
+    Diagnostics diagnostics;
+    diagnostics.error({1, 0, 1}, "c", "");
+    diagnostics.warning({0, 9, 10}, "b", "");
+    diagnostics.error({0, 2, 3}, "a", "");
+    diagnostics.sort_by_place();
+    CHECK(diagnostics.all()[0].code == "a");
+    CHECK(diagnostics.all()[1].code == "b");
+    CHECK(diagnostics.all()[2].code == "c");
+}
+
+TEST_CASE("colour wraps label and underline and changes no text")
+{
+    Diagnostic diagnostic;
+    diagnostic.severity = Severity::warning;
+    diagnostic.code = "code";
+    diagnostic.span = {0, 0, 1};
+    diagnostic.message = "message";
+    std::string colored = render(diagnostic, one("a"), true);
+    CHECK(colored.find("\033[1;35mwarning: \033[0m") != std::string::npos);
+    for (size_t at; (at = colored.find('\033')) != std::string::npos;)
+        colored.erase(at, colored.find('m', at) - at + 1);
+    CHECK(colored == render(diagnostic, one("a"), false));
+}
+
+TEST_CASE("the nearest name, if it is near enough")
+{
+    const std::vector<std::string_view> names = {"octaves", "depth", "pitch", "fbm", "p"};
+    CHECK(nearest_name("octave", names) == "octaves");
+    CHECK(nearest_name("Depth", names) == "depth");
+    CHECK(nearest_name("dpeth", names) == "depth");
+    CHECK(nearest_name("fmb", names) == "fbm");
+    CHECK(nearest_name("width", names) == "");
+    CHECK(nearest_name("x", names) == "");
+    CHECK(nearest_name("", names) == "");
+    CHECK(nearest_name(std::string(1000, 'a'), names) == "");
+    CHECK(nearest_name("pitch", {}) == "");
+}
