@@ -40,16 +40,19 @@ void PointContact::reset() noexcept
     placed_ = false;
 }
 
-// `tail`: the other end of a stylus, lattice units.
+// `tail`: the other end of a stylus, lattice units. A stylus is put down from its tail: a shaft that enters the object
+// by a front side touches there. One that comes out of it does not touch: its tail is inside.
 const Contact& PointContact::update(const glm::dvec3& hand_m, const glm::dvec3* tail, const Friction& friction) noexcept
 {
     if (!take(hand_m)) return contact_;
-    if (!placed_) {
-        placed_ = true;
-        proxy_.at = tail ? *tail : hand_;
-    }
-    if (proxy_.on == Proxy::On::nothing) {
+    if (placed_ && proxy_.on == Proxy::On::nothing) {
         move_freely(hand_);
+    } else if (!placed_) {
+        placed_ = true;
+        proxy_.at = hand_;
+        Crossing crossing;
+        if (tail && sweep(*tail, hand_, crossing) && crossing.side == 0)
+            land(*surface_, proxy_, crossing, *tail, hand_);
     }
     finish(friction);
     return contact_;

@@ -353,8 +353,9 @@ private:
             proxy_.at += share_before(surface_, wall, open) * open;
             return Step::stop;
         }
+        const glm::dvec3 before = proxy_.at;
         proxy_ = on_edge(face, side, edge, end);
-        return proxy_.on == Proxy::On::vertex ? Step::again : Step::stop;
+        return proxy_.on == Proxy::On::vertex && proxy_.at != before ? Step::again : Step::stop;
     }
 
     const Surface& surface_;

@@ -1,0 +1,221 @@
+#include "runtime/surface.h"
+
+#include "runtime/fan.h"
+#include "runtime/shapes.h"
+#include "tests/runtime/meshes.h"
+#include "tests/support/catch.h"
+
+#include <cmath>
+#include <set>
+
+using namespace haptel::runtime;
+using namespace haptel::test;
+using glm::dvec3;
+
+namespace {
+
+// Half-planes that share the z axis as their edge, at the given angles (degrees), wound at random.
+Mesh make_book(const std::vector<double>& angles)
+{
+    Mesh mesh;
+    mesh.positions_m = {{0, 0, 0}, {0, 0, 1}};
+    for (size_t i = 0; i < angles.size(); ++i) {
+        const double angle = glm::radians(angles[i]);
+        const uint32_t tip = uint32_t(mesh.positions_m.size());
+        mesh.positions_m.emplace_back(std::cos(angle), std::sin(angle), 0.3 + 0.1 * double(i));
+        if (i % 2)
+            mesh.triangles.push_back({0, 1, tip});
+        else
+            mesh.triangles.push_back({tip, 1, 0});
+    }
+    return mesh;
+}
+
+double signed_volume(const Surface& s)
+{
+    double volume = 0;
+    for (uint32_t f = 0; f < s.faces.size(); ++f)
+        volume += glm::dot(s.vertex_m(f, 0), glm::cross(s.vertex_m(f, 1), s.vertex_m(f, 2))) / 6;
+    return volume;
+}
+
+} // namespace
+
+TEST_CASE("built-in shapes are closed, face outward and have the promised size")
+{
+    const double pi = 3.141592653589793;
+    const struct {
+        const char* name;
+        double volume; // of the smooth shape
+        int euler;     // vertices - edges + faces
+    } shapes[] = {{"box", 1, 2},
+                  {"sphere", pi / 6, 2},
+                  {"icosphere", pi / 6, 2},
+                  {"torus", 2 * pi * pi * (0.5 / 1.4) * (0.2 / 1.4) * (0.2 / 1.4), 0}};
+    for (const auto& shape : shapes) {
+        CAPTURE(shape.name);
+        const Mesh mesh = make_shape(shape.name).value();
+        const SurfaceResult built = build_surface(mesh);
+        REQUIRE(built.surface);
+        const Surface& s = *built.surface;
+        CHECK(built.report.border_edges == 0);
+        CHECK(built.report.nonmanifold_edges == 0);
+        CHECK(built.report.pierced == 0);
+        CHECK(int(s.vertices.size()) - int(s.faces.size()) / 2 == shape.euler);
+        CHECK(signed_volume(s) > 0.98 * shape.volume);
+        CHECK(signed_volume(s) < 1.0000001 * shape.volume);
+        const dvec3 sides = s.box_maximum_m - s.box_minimum_m;
+        CHECK(std::abs(std::max({sides.x, sides.y, sides.z}) - 1) < 2e-3); // an icosphere's vertices miss the poles
+    }
+    const SurfaceResult plane = build_surface(make_plane(4));
+    CHECK(plane.report.border_edges == 16);
+    CHECK(plane.surface->faces.size() == 32);
+    for (const Face& face : plane.surface->faces) CHECK(face.normal == dvec3(0, 0, 1));
+    CHECK_FALSE(make_shape("cube").has_value());
+
+    Mesh scaled = make_torus();
+    scale_to_size(scaled, 0.15);
+    const dvec3 sides = surface_of(scaled)->box_maximum_m - surface_of(scaled)->box_minimum_m;
+    CHECK(std::abs(sides.x - 0.15) < 1e-11);
+}
+
+TEST_CASE("a mesh is repaired, and says what was wrong")
+{
+    Mesh mesh = make_box();
+    mesh.positions_m.push_back({NAN, 0, 0});
+    mesh.positions_m.push_back({0, INFINITY, 0});
+    mesh.positions_m.push_back({0, 0, 1e200});
+    const uint32_t bad = uint32_t(mesh.positions_m.size());
+    mesh.triangles.push_back({0, 1, bad});
+    mesh.triangles.push_back({0, 1, ~0u});
+    mesh.triangles.push_back({0, 1, bad - 1});
+    mesh.triangles.push_back({0, 1, bad - 2});
+    mesh.triangles.push_back({0, 1, bad - 3});
+    mesh.triangles.push_back({0, 0, 1});
+    mesh.triangles.push_back({mesh.triangles[0][1], mesh.triangles[0][2], mesh.triangles[0][0]});
+    mesh.triangles.push_back({mesh.triangles[0][2], mesh.triangles[0][1], mesh.triangles[0][0]});
+    mesh.uv = {{0.5, 0.5}}; // too few: as if absent
+
+    const SurfaceResult built = build_surface(mesh);
+    REQUIRE(built.surface);
+    CHECK(built.report.triangles_given == 20);
+    CHECK(built.report.triangles_kept == 12);
+    CHECK(built.report.indices_out_of_range == 2);
+    CHECK(built.report.not_finite == 3);
+    CHECK(built.report.degenerate == 1);
+    CHECK(built.report.duplicate == 2);
+    CHECK(built.report.vertices_welded == 16);
+    CHECK(built.report.border_edges == 0);
+    CHECK(built.report.repaired());
+    CHECK(built.report.warning() ==
+          "dropped triangles: 2 with a vertex index that does not exist, 3 with a coordinate that is not finite, "
+          "1 without area, 2 given twice (of 20)");
+    CHECK(built.surface->uv.empty());
+    CHECK(build_surface(make_box()).report.warning().empty());
+}
+
+TEST_CASE("a mesh without one good triangle is an error that says why")
+{
+    Mesh mesh;
+    CHECK(build_surface(mesh).error == "the mesh has no triangle to touch");
+    mesh.positions_m = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {NAN, 0, 0}};
+    mesh.triangles = {{0, 1, 2}, {0, 1, 3}};
+    const SurfaceResult built = build_surface(mesh);
+    CHECK_FALSE(built.surface);
+    CHECK(built.error ==
+          "the mesh has no triangle to touch: dropped triangles: 1 with a coordinate that is not finite, "
+          "1 without area (of 2)");
+}
+
+TEST_CASE("links pair every side of every edge")
+{
+    for (const Mesh& mesh :
+         {make_icosphere(2), make_plane(3), make_book({10, 40, 100, 200, 300}), make_crossing_boxes()}) {
+        const auto s = surface_of(mesh);
+        for (uint32_t f = 0; f < s->faces.size(); ++f)
+            for (uint32_t e = 0; e < 3; ++e)
+                for (uint32_t side = 0; side < 2; ++side) {
+                    const SideEdge link = s->faces[f].link[e][side];
+                    CHECK(s->faces[link.face()].link[link.edge()][link.side()] == SideEdge(f, e, side));
+                    const auto ends = [&](uint32_t face, uint32_t edge) {
+                        return std::set{s->faces[face].vertex[edge], s->faces[face].vertex[next(edge)]};
+                    };
+                    CHECK(ends(f, e) == ends(link.face(), link.edge()));
+                    if (s->is_border(f, e)) CHECK(link == SideEdge(f, e, 1 - side));
+                }
+    }
+}
+
+TEST_CASE("around a non-manifold edge each side is linked to the next face in space")
+{
+    for (const std::vector<double>& angles : {std::vector<double>{0, 90, 200},
+                                              {5, 350, 120, 60},
+                                              {0, 180, 90, 270},
+                                              {30, 31, 32, 210, 211, 100},
+                                              {0, 1e-7, 180}}) {
+        const auto s = surface_of(make_book(angles));
+        REQUIRE(s->faces.size() == angles.size());
+        for (uint32_t f = 0; f < s->faces.size(); ++f)
+            for (uint32_t side = 0; side < 2; ++side) {
+                uint32_t edge = 0;
+                while (s->faces[f].vertex[edge] > 1 || s->faces[f].vertex[next(edge)] > 1) ++edge;
+                const SideEdge link = s->faces[f].link[edge][side];
+                // Turning away from this side: counter-clockwise if the side's normal points that way around z.
+                const double angle = glm::radians(angles[f]);
+                const dvec3 turning(-std::sin(angle), std::cos(angle), 0);
+                const double direction = glm::dot(s->facet_normal(f, side), turning) > 0 ? 1 : -1;
+                double nearest = 1e9;
+                uint32_t expected = f;
+                for (uint32_t g = 0; g < angles.size(); ++g) {
+                    if (g == f) continue;
+                    double turn = std::fmod(direction * (angles[g] - angles[f]), 360.0);
+                    if (turn < 0) turn += 360;
+                    if (turn < nearest) nearest = turn, expected = g;
+                }
+                CAPTURE(f, side, angles.size());
+                CHECK(link.face() == expected);
+                // And it arrives on the side that looks back.
+                const double there = glm::radians(angles[expected]);
+                const dvec3 back = -direction * dvec3(-std::sin(there), std::cos(there), 0);
+                CHECK(glm::dot(s->facet_normal(link.face(), link.side()), back) > 0);
+            }
+    }
+}
+
+TEST_CASE("vertex normals are weighted by angle, whatever the triangulation and winding")
+{
+    // At a box's corner the three sides meet at right angles: however the squares are cut, each counts alike.
+    const double third = 1 / std::sqrt(3.0);
+    Mesh box = make_box();
+    for (size_t i = 0; i < box.triangles.size(); i += 3) std::swap(box.triangles[i][0], box.triangles[i][1]);
+    const auto s = surface_of(box);
+    for (uint32_t f = 0; f < s->faces.size(); ++f) {
+        const dvec3 middle = s->vertex_m(f, 0) + s->vertex_m(f, 1) + s->vertex_m(f, 2);
+        const uint32_t outside = glm::dot(s->faces[f].normal, middle) > 0 ? 0 : 1;
+        for (uint32_t i = 0; i < 3; ++i) {
+            const dvec3 outward = glm::sign(s->vertex_m(f, i)) * third;
+            const dvec3& out = s->corner_normals[s->faces[f].corner_normal[i][outside]];
+            const dvec3& in = s->corner_normals[s->faces[f].corner_normal[i][1 - outside]];
+            CHECK(glm::length(out - outward) < 1e-12);
+            CHECK(glm::length(in + outward) < 1e-12);
+        }
+    }
+}
+
+TEST_CASE("faces that pierce each other are found, and only those")
+{
+    const SurfaceResult boxes = build_surface(make_crossing_boxes());
+    CHECK(boxes.report.pierced > 0);
+    CHECK(boxes.report.warning().find("cut or touch others") != std::string::npos);
+
+    // Two triangles, one stuck through the other's middle.
+    Mesh cross;
+    cross.positions_m = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {-3, 1, 1}};
+    cross.triangles = {{0, 1, 2}, {3, 4, 5}};
+    CHECK(build_surface(cross).report.pierced == 2);
+    cross.positions_m[3].z = 0.5; // now it stays above
+    CHECK(build_surface(cross).report.pierced == 0);
+    CHECK(build_surface(make_star(3)).report.pierced == 0);
+    CHECK(build_surface(make_stairs()).report.pierced == 0);
+    CHECK(build_surface(make_stairs()).report.border_edges == 0);
+}

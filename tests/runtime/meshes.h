@@ -1,0 +1,34 @@
+// Meshes that several tests touch, and an independent opinion on what is inside them.
+#pragma once
+
+#include "runtime/shapes.h"
+#include "runtime/surface.h"
+
+#include <memory>
+
+namespace haptel::test {
+
+// A smooth sphere of radius 1 with bumps of 0.02: near-coplanar facets, shallow creases.
+double bumpy_radius(const glm::dvec3& direction);
+runtime::Mesh make_bumpy_sphere(uint32_t subdivisions);
+
+// An icosphere whose vertices are pulled to random radii between 0.3 and 1: needles and deep creases.
+runtime::Mesh make_star(uint32_t subdivisions);
+
+// A prism of height 4 over a profile with steps and a groove, on whole coordinates, so that much is exactly coplanar.
+runtime::Mesh make_stairs();
+
+// Boxes that overlap without sharing edges.
+runtime::Mesh make_crossing_boxes();
+
+std::shared_ptr<const runtime::Surface> surface_of(const runtime::Mesh& mesh);
+
+// Winding number of a closed surface around a point by solid angles (van Oosterom and Strackee), and the distance to
+// it.
+struct Winding {
+    double number = 0;
+    double distance_m = 0;
+};
+Winding winding(const runtime::Surface& surface, const glm::dvec3& point_m);
+
+} // namespace haptel::test
