@@ -1,0 +1,147 @@
+#include "jit/facts.h"
+#include "jit/texture.h"
+#include "lang/value.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace haptel::jit {
+
+namespace {
+
+// What a binding points into.
+struct BindingStorage {
+    std::shared_ptr<const CompiledProgram> program;
+    std::vector<uint64_t> block; // of 8 bytes for its alignment
+};
+
+// Everything wrong with a request, one line each.
+class Complaints {
+public:
+    void add(const std::string& error, const std::string& hint = {})
+    {
+        text += "error: " + error + "\n";
+        if (!hint.empty()) text += "  hint: " + hint + "\n";
+    }
+    std::string text;
+};
+
+template <typename Item>
+std::string list_of(const Item& items)
+{
+    std::string list;
+    for (const auto& item : items) list += (list.empty() ? "" : ", ") + std::string(item.name);
+    return list;
+}
+
+template <typename Items>
+std::string did_you_mean(std::string_view name, const Items& items, const std::string& kind)
+{
+    std::vector<std::string_view> names;
+    for (const auto& item : items) names.push_back(item.name);
+    if (names.empty()) return "it has no " + kind;
+    const std::string_view nearest = lang::nearest_name(name, names);
+    if (!nearest.empty()) return "did you mean '" + std::string(nearest) + "'?";
+    return "it has " + kind + " " + list_of(items);
+}
+
+const haptel_texture* choose(const CompiledProgram& program, std::string_view name, Complaints& complaints)
+{
+    if (name.empty()) {
+        if (program.textures().size() == 1) return &program.textures()[0];
+        complaints.add(program.textures().empty() ? "this file has no texture" : "which texture of this file is meant?",
+                       program.textures().empty() ? "" : "it has " + list_of(program.textures()) + ": write FILE:NAME");
+        return nullptr;
+    }
+    const haptel_texture* texture = program.find(name);
+    if (!texture)
+        complaints.add("this file has no texture '" + lang::printable(name) + "'",
+                       did_you_mean(name, program.textures(), "the textures"));
+    return texture;
+}
+
+// Values by Texture::parameters: the defaults, then what the request says.
+std::vector<double> values_of(const ir::Texture& texture, const TextureRequest& request, Complaints& complaints)
+{
+    std::vector<double> values;
+    for (const ir::Parameter& parameter : texture.parameters) values.push_back(parameter.value);
+    for (const auto& [name, text] : request.parameters) {
+        size_t i = 0;
+        while (i < values.size() && texture.parameters[i].name != name) ++i;
+        if (i == values.size()) {
+            complaints.add("texture '" + texture.name + "' has no parameter '" + lang::printable(name) + "'",
+                           did_you_mean(name, texture.parameters, "the parameters"));
+            continue;
+        }
+        const lang::ParameterValue parsed = lang::parse_value(text, texture.parameters[i]);
+        if (!parsed.error.empty())
+            complaints.add("parameter '" + name + "' of texture '" + texture.name + "': " + parsed.error, parsed.hint);
+        values[i] = parsed.value;
+    }
+    return values;
+}
+
+haptel_block_head head_of(const TextureRequest& request, Complaints& complaints)
+{
+    haptel_block_head head{};
+    for (size_t i = 0; i < 3; ++i) {
+        const double low = request.box_minimum_m[i], high = request.box_maximum_m[i];
+        if (!(std::isfinite(low) && std::isfinite(high) && low <= high)) {
+            complaints.add("the object's box is not a box: " + std::to_string(low) + " .. " + std::to_string(high));
+            break;
+        }
+        head.center[i] = low / 2 + high / 2;
+        head.extent[i] = high - low;
+    }
+    if (!(request.footprint_m >= 0 && std::isfinite(request.footprint_m)))
+        complaints.add("the footprint is not a length: " + std::to_string(request.footprint_m) + " m");
+    head.footprint_m = request.footprint_m;
+    return head;
+}
+
+void write(std::vector<uint64_t>& block, const ir::Parameter& parameter, double value)
+{
+    char* place = reinterpret_cast<char*>(block.data()) + parameter.offset;
+    const auto put = [&](auto held) { std::memcpy(place, &held, sizeof held); };
+    switch (parameter.type) {
+    case ir::Type::real: put(value); break;
+    case ir::Type::i32: put(static_cast<int32_t>(value)); break;
+    case ir::Type::u32: put(static_cast<uint32_t>(value)); break;
+    case ir::Type::boolean: put(static_cast<int32_t>(value != 0)); break;
+    }
+}
+
+} // namespace
+
+TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program, std::string_view name,
+                           const TextureRequest& request, Unbounded unbounded)
+{
+    Complaints complaints;
+    const haptel_texture* texture = choose(*program, name, complaints);
+    if (!texture) return {std::nullopt, complaints.text};
+    const ir::Texture& source = program->source_of(*texture);
+    const std::vector<double> values = values_of(source, request, complaints);
+    const haptel_block_head head = head_of(request, complaints);
+    if (!complaints.text.empty()) return {std::nullopt, complaints.text};
+
+    const haptel_facts facts = facts_over_box(program->module(), source, values, head);
+    const bool is_bounded = std::isfinite(facts.height_min_m) && std::isfinite(facts.height_max_m);
+    if (!is_bounded && unbounded == Unbounded::refused) {
+        complaints.add("the height of texture '" + source.name +
+                           "' is not bounded over this object, and a hand cannot "
+                           "be kept above a surface of unknown height",
+                       "bound it where it grows, for example return clamp(height, -1mm, 1mm); or give its parameters "
+                       "ranges");
+        return {std::nullopt, complaints.text};
+    }
+
+    auto storage = std::make_shared<BindingStorage>();
+    storage->program = program;
+    storage->block.resize((texture->block_size + 7) / 8);
+    std::memcpy(storage->block.data(), &head, sizeof head);
+    for (size_t i = 0; i < values.size(); ++i) write(storage->block, source.parameters[i], values[i]);
+    const void* block = storage->block.data();
+    return {TextureBinding{std::move(storage), texture, block, facts}, {}};
+}
+
+} // namespace haptel::jit

@@ -1,0 +1,45 @@
+// A point and a block as the interpreter takes them, for any real type.
+#pragma once
+
+#include "lang/abi.h"
+#include "lang/ir/interpret.h"
+
+#include <cstring>
+
+namespace haptel::jit {
+
+// ir::Input counts the doubles of haptel_point, then those of haptel_block_head.
+inline constexpr size_t point_inputs = sizeof(haptel_point) / sizeof(double);
+static_assert(point_inputs == static_cast<size_t>(ir::Input::center_x));
+
+template <typename T>
+void set_point(ir::EntryInputs<T>& inputs, const haptel_point& point)
+{
+    double values[point_inputs];
+    std::memcpy(values, &point, sizeof values);
+    for (size_t i = 0; i < point_inputs; ++i) inputs.input[i] = T(values[i]);
+}
+
+template <typename T>
+void set_block(ir::EntryInputs<T>& inputs, const ir::Texture& texture, const void* block)
+{
+    double head[sizeof(haptel_block_head) / sizeof(double)];
+    std::memcpy(head, block, sizeof head);
+    for (size_t i = 0; i < std::size(head); ++i) inputs.input[point_inputs + i] = T(head[i]);
+    inputs.parameters.clear();
+    for (const ir::Parameter& parameter : texture.parameters) {
+        const char* place = static_cast<const char*>(block) + parameter.offset;
+        double real = 0;
+        uint32_t word = 0;
+        std::memcpy(parameter.type == ir::Type::real ? static_cast<void*>(&real) : &word, place,
+                    parameter.type == ir::Type::real ? sizeof real : sizeof word);
+        switch (parameter.type) {
+        case ir::Type::real: inputs.parameters.emplace_back(T(real)); break;
+        case ir::Type::i32:
+        case ir::Type::u32: inputs.parameters.emplace_back(word); break;
+        case ir::Type::boolean: inputs.parameters.emplace_back(word != 0); break;
+        }
+    }
+}
+
+} // namespace haptel::jit

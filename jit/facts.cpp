@@ -1,0 +1,82 @@
+#include "jit/facts.h"
+
+#include "lang/ir/bounds.h"
+#include "lang/ir/verify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace haptel::jit {
+
+namespace {
+
+using ir::Input;
+using ir::Interval;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// Evaluations of the interval machine: bounds over a box decide what a hand feels, bounds over ranges are for
+// information.
+constexpr uint32_t evaluations_over_ranges = 16;
+constexpr uint32_t evaluations_over_box = 512;
+
+// Three neighbouring inputs (a vector) from `first` on.
+void set(ir::BoundsBox& box, Input first, const double (&minimum)[3], const double (&maximum)[3])
+{
+    for (size_t i = 0; i < 3; ++i) box.input[static_cast<size_t>(first) + i] = {minimum[i], maximum[i]};
+}
+
+// Anything, but what a normal and a time cannot be.
+ir::BoundsBox anywhere()
+{
+    ir::BoundsBox box;
+    std::fill(std::begin(box.input), std::end(box.input), Interval{-infinity, infinity});
+    set(box, Input::n_x, {-1, -1, -1}, {1, 1, 1});
+    set(box, Input::extent_x, {0, 0, 0}, {infinity, infinity, infinity});
+    for (Input input : {Input::time, Input::footprint}) box.input[static_cast<size_t>(input)] = {0, infinity};
+    return box;
+}
+
+haptel_facts facts(const ir::Module& module, const ir::Texture& texture, const ir::BoundsBox& box, uint32_t evaluations)
+{
+    const Interval height = ir::height_bounds(module, texture, box, evaluations);
+    const uint32_t entry = texture.height_gradient != UINT32_MAX ? texture.height_gradient : texture.height;
+    const uint64_t operations = ir::operations_max(module, entry);
+    return {height.minimum,
+            height.maximum,
+            infinity,
+            infinity,
+            HAPTEL_CONTINUITY_UNKNOWN,
+            static_cast<uint32_t>(std::min<uint64_t>(operations, UINT32_MAX))};
+}
+
+} // namespace
+
+haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& texture)
+{
+    ir::BoundsBox box = anywhere();
+    for (const ir::Parameter& parameter : texture.parameters)
+        box.parameters.push_back(parameter.type == ir::Type::boolean ? Interval{0, 1}
+                                                                     : Interval{parameter.minimum, parameter.maximum});
+    return facts(module, texture, box, evaluations_over_ranges);
+}
+
+haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,
+                            const haptel_block_head& head)
+{
+    ir::BoundsBox box = anywhere();
+    for (size_t i = 0; i < 3; ++i) {
+        // A contact lies on the surface but for rounding: a billionth of the box more on each side.
+        const double half = head.extent[i] / 2;
+        const double margin = 1e-9 * (half + std::fabs(head.center[i]));
+        box.input[i] = {head.center[i] - half - margin, head.center[i] + half + margin};
+    }
+    set(box, Input::center_x, head.center, head.center);
+    set(box, Input::extent_x, head.extent, head.extent);
+    box.input[static_cast<size_t>(Input::footprint)] = {head.footprint_m, head.footprint_m};
+    for (double value : values) box.parameters.push_back({value, value});
+    return facts(module, texture, box, evaluations_over_box);
+}
+
+} // namespace haptel::jit

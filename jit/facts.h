@@ -1,0 +1,18 @@
+// What is proven about a texture, as the C interface carries it. Slope, curvature and continuity are unknown for now.
+#pragma once
+
+#include "lang/abi.h"
+#include "lang/ir/ir.h"
+
+#include <span>
+
+namespace haptel::jit {
+
+// For every point and all values within the parameters' ranges.
+haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& texture);
+
+// For points of the box, these values (by Texture::parameters, SI) and this footprint.
+haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,
+                            const haptel_block_head& head);
+
+} // namespace haptel::jit

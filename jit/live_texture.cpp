@@ -1,0 +1,184 @@
+#include "jit/live_texture.h"
+
+#include "jit/call_time.h"
+#include "jit/compile_thread.h"
+#include "jit/source_file.h"
+#include "lang/value.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+namespace haptel::jit {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+// Between deleting the old file and making the new one, some editors take a while.
+constexpr auto absence_forgiven = std::chrono::milliseconds(500);
+
+std::string microseconds(double seconds)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g us", seconds * 1e6);
+    return text;
+}
+
+bool is_unreadable(const CompiledTextures& compiled)
+{
+    const auto& findings = compiled.diagnostics.all();
+    return std::any_of(findings.begin(), findings.end(),
+                       [](const lang::Diagnostic& finding) { return finding.code == "unreadable-file"; });
+}
+
+} // namespace
+
+class LiveTexture::Client final : public CompileThread::Client {
+public:
+    Client(TextureRequest asked, LiveCallbacks called, LiveOptions chosen)
+        : request(std::move(asked))
+        , reference(split_reference(request.reference))
+        , callbacks(std::move(called))
+        , options(std::move(chosen))
+        , in_hand(options.cache->known(reference.file))
+        , thread(CompileThread::shared())
+    {
+        thread->add(this);
+    }
+    ~Client() override { thread->remove(this); }
+
+    void set_parameter(std::string name, std::string value)
+    {
+        {
+            const std::lock_guard lock(edits_mutex);
+            edits.emplace_back(std::move(name), std::move(value));
+        }
+        thread->wake();
+    }
+
+    void update() override;
+    std::set<std::string> files() const override { return watched; }
+
+private:
+    TextureRequest request;
+    const TextureReference reference;
+    const LiveCallbacks callbacks;
+    const LiveOptions options;
+
+    std::shared_ptr<const CompiledTextures> in_hand; // what was looked at last; broken ones too
+    std::shared_ptr<const CompiledTextures> usable;  // the last one that has a program
+    std::optional<Clock::time_point> absent_since;
+    std::string reported; // the last report, not to be repeated
+    std::set<std::string> watched = {reference.file};
+
+    std::mutex edits_mutex;
+    std::vector<std::pair<std::string, std::string>> edits;
+
+    const std::shared_ptr<CompileThread> thread;
+
+    bool take_edits();
+    TextureRequest request_for(const CompiledProgram& program, std::string& notes) const;
+    void make_and_publish(const CompiledTextures& compiled);
+    void report(std::string text)
+    {
+        if (text == reported) return;
+        reported = text;
+        if (callbacks.report && !text.empty()) callbacks.report(text);
+    }
+};
+
+// True if a value was set. The newest value of a name counts.
+bool LiveTexture::Client::take_edits()
+{
+    const std::lock_guard lock(edits_mutex);
+    const bool any = !edits.empty();
+    for (auto& [name, value] : edits) {
+        auto known = std::find_if(request.parameters.begin(), request.parameters.end(),
+                                  [&, &sought = name](const auto& parameter) { return parameter.first == sought; });
+        if (known == request.parameters.end())
+            request.parameters.emplace_back(std::move(name), std::move(value));
+        else
+            known->second = std::move(value);
+    }
+    edits.clear();
+    return any;
+}
+
+// The request without values that do not fit this program; each is noted.
+TextureRequest LiveTexture::Client::request_for(const CompiledProgram& program, std::string& notes) const
+{
+    TextureRequest fitting = request;
+    const haptel_texture* texture = reference.texture.empty() && program.textures().size() == 1
+                                        ? &program.textures()[0]
+                                        : program.find(reference.texture);
+    if (!texture) return fitting; // make_binding says so
+    const std::vector<ir::Parameter>& known = program.source_of(*texture).parameters;
+    std::erase_if(fitting.parameters, [&, &file = reference.file](const auto& parameter) {
+        const auto& [name, value] = parameter;
+        const auto found = std::find_if(known.begin(), known.end(),
+                                        [&, &sought = name](const ir::Parameter& one) { return one.name == sought; });
+        const std::string fault =
+            found == known.end() ? "there is no such parameter now" : lang::parse_value(value, *found).error;
+        if (!fault.empty())
+            notes += lang::printable(file) + ": note: the value " + lang::printable(value) + " of '" +
+                     lang::printable(name) + "' is set aside: " + fault + "\n";
+        return !fault.empty();
+    });
+    return fitting;
+}
+
+void LiveTexture::Client::make_and_publish(const CompiledTextures& compiled)
+{
+    std::string said = compiled.rendered();
+    const TextureRequest fitting = request_for(*compiled.program, said);
+    TextureResult result = make_binding(compiled.program, reference.texture, fitting);
+    if (!result.binding) return report(said + lang::printable(reference.file) + ": " + result.diagnostics);
+    const double call_s = median_call_s(*result.binding, request.box_minimum_m, request.box_maximum_m);
+    if (call_s > options.share_of_period_max * options.servo_period_s)
+        return report(said + lang::printable(reference.file) + ": error: texture '" + result.binding->texture->name +
+                      "' takes " + microseconds(call_s) + " per call (median), more than the " +
+                      microseconds(options.share_of_period_max * options.servo_period_s) + " that a servo period of " +
+                      microseconds(options.servo_period_s) +
+                      " leaves for it; the old texture stays\n  hint: fewer octaves or terms\n");
+    callbacks.publish(std::move(*result.binding));
+    report(std::move(said));
+}
+
+void LiveTexture::Client::update()
+{
+    const bool edited = take_edits();
+    const auto compiled = options.cache->load(reference.file);
+    watched.insert(compiled->files.begin(), compiled->files.end());
+    watched.insert(reference.file);
+    if (compiled->program) {
+        absent_since.reset();
+        const bool changed = compiled != in_hand;
+        in_hand = usable = compiled;
+        if (changed || edited) make_and_publish(*usable);
+        return;
+    }
+    in_hand = compiled;
+    if (edited && usable) make_and_publish(*usable); // a slider works on while the file is broken
+    if (is_unreadable(*compiled)) {
+        if (!absent_since) absent_since = Clock::now();
+        if (Clock::now() - *absent_since < absence_forgiven) return;
+    }
+    report(compiled->rendered());
+}
+
+LiveTexture::LiveTexture(TextureRequest request, LiveCallbacks callbacks, LiveOptions options)
+    : client(std::make_unique<Client>(std::move(request), std::move(callbacks), std::move(options)))
+{
+}
+
+LiveTexture::~LiveTexture() = default;
+
+void LiveTexture::set_parameter(std::string name, std::string value)
+{
+    client->set_parameter(std::move(name), std::move(value));
+}
+
+} // namespace haptel::jit

@@ -1,0 +1,78 @@
+#include "jit/source_file.h"
+
+#include "lang/diagnostic.h"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+namespace haptel::jit {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// A texture file of nearly that name in the same folder.
+std::string did_you_mean(const fs::path& path)
+{
+    std::error_code ignored;
+    std::vector<std::string> names;
+    for (fs::directory_iterator entry(path.has_parent_path() ? path.parent_path() : ".", ignored), end;
+         !ignored && entry != end && names.size() < 1000; entry.increment(ignored))
+        if (entry->path().extension() == ".haptel") names.push_back(entry->path().filename());
+    const std::string wanted = path.filename();
+    const std::string_view nearest = lang::nearest_name(wanted, {names.begin(), names.end()});
+    return nearest.empty() ? std::string{} : "did you mean '" + lang::printable(nearest) + "'?";
+}
+
+bool is_name(std::string_view text)
+{
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    if (text.empty() || !is_letter(text[0])) return false;
+    for (char c : text)
+        if (!is_letter(c) && !(c >= '0' && c <= '9')) return false;
+    return true;
+}
+
+} // namespace
+
+SourceText read_source(const std::string& path)
+{
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found)
+        return {{}, "cannot read this file: it does not exist", did_you_mean(path)};
+    if (error) return {{}, "cannot read this file: " + error.message(), {}};
+    if (fs::is_directory(status))
+        return {{}, "cannot read this file: it is a folder", "name a texture file inside it: FILE.haptel"};
+    if (!fs::is_regular_file(status)) return {{}, "cannot read this file: it is not a regular file", {}};
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return {{}, std::string("cannot read this file: ") + std::strerror(errno), {}};
+    SourceText result;
+    if (fs::file_size(path, error) <= source_bytes_max && !error)
+        result.text.assign(std::istreambuf_iterator<char>(file), {});
+    else
+        return {{}, "this file is larger than any texture: at most 16 MiB are read", {}};
+    if (file.bad()) return {{}, "cannot read this file: the disk reports an error", {}};
+    return result;
+}
+
+std::optional<lang::SourceFile> load_beside(std::string_view path, std::string_view importer)
+{
+    const fs::path full = (fs::path(importer).parent_path() / fs::path(path)).lexically_normal();
+    SourceText source = read_source(full);
+    if (!source.error.empty()) return std::nullopt;
+    return lang::SourceFile{full, std::move(source.text)};
+}
+
+TextureReference split_reference(std::string_view reference)
+{
+    const size_t colon = reference.rfind(':');
+    if (colon == reference.npos || !is_name(reference.substr(colon + 1))) return {std::string(reference), {}};
+    return {std::string(reference.substr(0, colon)), std::string(reference.substr(colon + 1))};
+}
+
+} // namespace haptel::jit

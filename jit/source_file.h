@@ -1,0 +1,31 @@
+// Texture files on disk. lang performs no I/O: this is where text comes from.
+#pragma once
+
+#include "lang/compile.h"
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace haptel::jit {
+
+struct SourceText {
+    std::string text;
+    std::string error; // why there is no text; empty: there is
+    std::string hint;
+};
+
+// Whole text of a regular file of at most source_bytes_max.
+SourceText read_source(const std::string& path);
+inline constexpr size_t source_bytes_max = 16u << 20;
+
+// lang::ImportLoader: `path` is relative to the file that imports it.
+std::optional<lang::SourceFile> load_beside(std::string_view path, std::string_view importer);
+
+// "rock.haptel:rock" taken apart; `texture` is empty where the reference is a path alone.
+struct TextureReference {
+    std::string file, texture;
+};
+TextureReference split_reference(std::string_view reference);
+
+} // namespace haptel::jit

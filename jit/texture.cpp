@@ -1,0 +1,115 @@
+#include "jit/texture.h"
+
+#include "jit/facts.h"
+#include "jit/source_file.h"
+#include "lang/ir/verify.h"
+#include "stdlib/stdlib.h"
+
+#include <algorithm>
+
+namespace haptel::jit {
+
+namespace {
+
+constexpr char with_gradient = '\''; // h' of the texture h, among the names of entry points
+
+haptel_parameter described(const ir::Parameter& parameter)
+{
+    uint32_t type = HAPTEL_FLOAT;
+    switch (parameter.type) {
+    case ir::Type::real: type = HAPTEL_FLOAT; break;
+    case ir::Type::i32: type = HAPTEL_INT; break;
+    case ir::Type::u32: type = HAPTEL_UINT; break;
+    case ir::Type::boolean: type = HAPTEL_BOOL; break;
+    }
+    return {parameter.name.c_str(), parameter.unit.c_str(), parameter.doc.c_str(), type,
+            parameter.offset,       parameter.value,        parameter.minimum,     parameter.maximum};
+}
+
+std::vector<EntryPoint> entry_points(const ir::Module& module, Entries wanted)
+{
+    std::vector<EntryPoint> entries;
+    for (const ir::Texture& texture : module.textures) {
+        if (texture.height != UINT32_MAX && wanted == Entries::both)
+            entries.push_back({texture.name, &texture, EntryPoint::Kind::height});
+        if (texture.height_gradient != UINT32_MAX)
+            entries.push_back({texture.name + with_gradient, &texture, EntryPoint::Kind::height_gradient});
+    }
+    return entries;
+}
+
+lang::CompileOptions language_options(const TextureOptions& options)
+{
+    lang::CompileOptions language;
+    if (options.standard_library)
+        for (const stdlib::LibraryFile& file : stdlib::library())
+            language.library.push_back({std::string(file.name), std::string(file.text)});
+    language.load_import = options.load_import;
+    language.only_texture = options.only_texture;
+    return language;
+}
+
+} // namespace
+
+CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, std::shared_ptr<const Code> machine_code)
+    : program(std::move(checked)), code(std::move(machine_code))
+{
+    parameters.reserve(module().textures.size());
+    for (const ir::Texture& texture : module().textures) {
+        std::vector<haptel_parameter>& list = parameters.emplace_back();
+        for (const ir::Parameter& parameter : texture.parameters) list.push_back(described(parameter));
+        table.push_back({HAPTEL_ABI_VERSION, sizeof(haptel_texture), texture.reads, texture.writes, texture.block_size,
+                         static_cast<uint32_t>(list.size()), texture.name.c_str(), list.data(),
+                         facts_over_ranges(module(), texture), code->entry(texture.name),
+                         code->entry(texture.name + with_gradient)});
+    }
+}
+
+const haptel_texture* CompiledProgram::find(std::string_view name) const
+{
+    const auto found =
+        std::find_if(table.begin(), table.end(), [&](const haptel_texture& texture) { return texture.name == name; });
+    return found == table.end() ? nullptr : &*found;
+}
+
+const ir::Texture& CompiledProgram::source_of(const haptel_texture& texture) const
+{
+    return module().textures[static_cast<size_t>(&texture - table.data())];
+}
+
+CompiledTextures compile_texture(std::string_view text, const TextureOptions& options)
+{
+    lang::CompileResult checked = lang::compile({options.name, std::string(text)}, language_options(options));
+    CompiledTextures result{nullptr, std::move(checked.diagnostics), std::move(checked.sources),
+                            std::move(checked.files)};
+    if (!checked.program) return result;
+    // lang has verified it too; a servo trusts whoever hands out the pointer.
+    std::string fault = ir::verify(checked.program->module);
+    CodeResult code;
+    if (fault.empty()) {
+        code = compile_code(checked.program->module, entry_points(checked.program->module, options.entries),
+                            options.effort);
+        fault = code.error;
+    }
+    if (!fault.empty()) {
+        result.diagnostics.error({}, "no-code", "no machine code could be made: " + fault);
+        return result;
+    }
+    result.program = std::make_shared<CompiledProgram>(std::move(checked.program), std::move(code.code));
+    return result;
+}
+
+CompiledTextures compile_texture_file(const std::string& path, TextureOptions options)
+{
+    options.name = path;
+    options.load_import = load_beside;
+    SourceText source = read_source(path);
+    if (source.error.empty()) return compile_texture(source.text, options);
+    CompiledTextures result;
+    result.files = {path};
+    result.sources.add({path, {}});
+    result.diagnostics.error({}, "unreadable-file", source.error).hint = source.hint;
+    return result;
+}
+
+} // namespace haptel::jit

@@ -1,0 +1,83 @@
+// Source text to textures that can be called: the front door of the compiler for applications.
+//
+// compile_texture() says what there is to say about the text as data; make_binding() gives one texture its parameter
+// values and what is proven about the two over an object. Nothing here throws or prints, whatever the text. A program
+// is verified (lang/ir/verify.h) before a pointer into it is handed out.
+#pragma once
+
+#include "jit/engine.h"
+#include "lang/compile.h"
+#include "lang/texture_binding.h"
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace haptel::jit {
+
+// The textures of one file with their code. Immutable; the code lives as long as the program.
+class CompiledProgram {
+public:
+    CompiledProgram(std::shared_ptr<const lang::Program> checked, std::shared_ptr<const Code> machine_code);
+    CompiledProgram(const CompiledProgram&) = delete;
+    CompiledProgram& operator=(const CompiledProgram&) = delete;
+
+    // In the order of the source. Their facts hold over the parameters' ranges and any point.
+    std::span<const haptel_texture> textures() const { return table; }
+    // Null if there is none of that name.
+    const haptel_texture* find(std::string_view name) const;
+
+    // What the texture was compiled from, for evaluators other than code.
+    const ir::Module& module() const { return program->module; }
+    const ir::Texture& source_of(const haptel_texture& texture) const;
+
+    const CompileTimes& times() const { return code->times; }
+
+private:
+    std::shared_ptr<const lang::Program> program;
+    std::shared_ptr<const Code> code;
+    std::vector<std::vector<haptel_parameter>> parameters; // by texture
+    std::vector<haptel_texture> table;
+};
+
+// Which entries of each texture become code. A servo calls height_gradient alone.
+enum class Entries : uint8_t { height_gradient, both };
+
+struct TextureOptions {
+    std::string name = "texture.haptel"; // of the text, in messages
+    Entries entries = Entries::both;
+    bool standard_library = true;
+    lang::ImportLoader load_import; // empty: imports are errors
+    std::string only_texture;       // compile this one alone; empty: all
+    Effort effort = Effort::quick;
+};
+
+struct CompiledTextures {
+    std::shared_ptr<const CompiledProgram> program; // null if there was an error
+    lang::Diagnostics diagnostics;
+    lang::SourceSet sources;
+    std::vector<std::string> files; // the text's own name, then its imports
+
+    std::string rendered(bool color = false) const { return lang::render(diagnostics.all(), sources, color); }
+};
+
+CompiledTextures compile_texture(std::string_view text, const TextureOptions& options = {});
+
+// The same of a file; imports are read beside the files that name them. A file that cannot be read is an error at 1:1.
+// `options.name` and `options.load_import` are set from `path`.
+CompiledTextures compile_texture_file(const std::string& path, TextureOptions options = {});
+
+// What becomes of a texture whose height is not bounded over the box: a hand needs a bound, pictures and figures do
+// not.
+enum class Unbounded : uint8_t { refused, allowed };
+
+// One texture of a program (empty name: its only one) with the request's parameters, box and footprint; the request's
+// reference is not looked at. Refused, with a message that says how to mend it: a name that does not exist, a value
+// that does not fit, a height that is not bounded over the box.
+TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program, std::string_view texture,
+                           const TextureRequest& request, Unbounded unbounded = Unbounded::refused);
+
+} // namespace haptel::jit
