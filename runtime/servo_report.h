@@ -39,7 +39,7 @@ struct ServoReport {
     double force_rms_n = 0, force_max_n = 0; // as sent, over all ticks
     double energy_j = 0;     // that the forces gave to the hand; negative where they took more than they gave
     uint64_t faults = 0;     // ticks with a fault of texture, pose or force
-    uint32_t fault_bits = 0; // TickFault bits seen
+    uint32_t fault_bits = 0; // bits of TickResult::faults seen
     uint64_t reloads = 0;    // bindings published after start
     std::optional<uint64_t> allocations_in_tick; // empty: not counted in this program
     SkippedStages skipped;

@@ -24,7 +24,7 @@ struct TickRecord {
     double height_m = 0;     // of its texture, as published (not shifted to the envelope)
     uint64_t compute_ns = 0; // pose in hand to force computed
     uint64_t binding = 0;    // serial of the texture that is felt, or that is being faded in
-    uint32_t faults = 0;     // bits of TickFault
+    uint32_t faults = 0;     // bits of TickResult::faults
 };
 
 // Lock-free ring of one writer and one reader.
