@@ -96,7 +96,8 @@ private:
     // ---- calls
     Type constructor(ast::Expression& e, ast::CallExpression& call, Type type);
     std::optional<Candidate> resolve(const ast::Expression& e, const ast::Name& callee,
-                                     std::vector<ast::ExpressionPtr>& arguments, CallTarget& target, Type& if_unsure);
+                                     std::vector<ast::ExpressionPtr>& arguments, uint32_t order, CallTarget& target,
+                                     Type& if_unsure);
     Argument classify(ast::Expression& argument);
     const Candidate* passed_function(const Argument& argument, const ParameterInfo& parameter) const;
     std::optional<int> cost_of(const Candidate& candidate, const std::vector<ast::ExpressionPtr>& arguments,
@@ -107,7 +108,6 @@ private:
     void report_argument(const Candidate& candidate, size_t index, const ast::Expression& argument,
                          const Argument& argument_class);
     void report_unknown_function(const ast::Name& callee);
-    void mention(const FunctionReference& function, Span span);
 
     // ---- statements
     void statement(ast::Statement& s);

@@ -7,10 +7,12 @@ namespace haptel::lang {
 namespace {
 
 constexpr uint32_t chain_max = 128;
+constexpr uint32_t order_max = 4; // each order multiplies the code by the number of its directions
 
 struct Node {
     enum class Mark : uint8_t { unseen, open, done } mark = Mark::unseen;
     uint32_t length = 1; // of the longest chain of calls that starts here
+    uint32_t order = 0;  // derivatives of derivatives that it takes, at most
 };
 
 struct Visit {
@@ -42,6 +44,7 @@ public:
                 continue;
             }
             const FunctionInfo::Mention& mention = visit.function->mentions[visit.next_mention++];
+            if (!mention.function) continue;
             Node& callee = nodes[mention.function];
             if (callee.mark == Node::Mark::open) report_cycle(path, mention);
             if (callee.mark != Node::Mark::unseen) continue;
@@ -50,26 +53,43 @@ public:
         }
     }
 
-private:
-    void close(FunctionInfo& function)
+    // Reports chains and derivatives that are too deep.
+    void measure(const std::vector<FunctionInfo::Mention>& mentions, Node& node)
     {
-        Node& node = nodes[&function];
-        node.mark = Node::Mark::done;
-        const FunctionInfo::Mention* longest = nullptr;
-        for (const FunctionInfo::Mention& mention : function.mentions) {
-            const Node& callee = nodes[mention.function];
-            if (callee.mark != Node::Mark::done) continue; // part of a cycle, reported
-            function.reads |= mention.function->reads;
-            if (callee.length + 1 > node.length) {
-                node.length = callee.length + 1;
-                longest = &mention;
+        for (const FunctionInfo::Mention& mention : mentions) {
+            const uint32_t length = 1 + node_of(mention.function).length;
+            const uint32_t order = mention.order + node_of(mention.function).order + node_of(mention.through).order;
+            if (length > chain_max) {
+                diagnostics.error(mention.span, "too-deep",
+                                  "functions call each other more than " + std::to_string(chain_max) + " deep here");
+            } else if (order > order_max) {
+                diagnostics.error(mention.span, "too-deep",
+                                  "derivatives of derivatives of order " + std::to_string(order) +
+                                      " are taken here, expected at most " + std::to_string(order_max));
+            } else {
+                node.length = std::max(node.length, length);
+                node.order = std::max(node.order, order);
             }
         }
-        if (node.length > chain_max) {
-            diagnostics.error(longest->span, "too-deep",
-                              "functions call each other more than " + std::to_string(chain_max) + " deep here");
-            node.length = 1; // once is enough
-        }
+    }
+
+private:
+    // Of what is built in, and of what is part of a cycle, which has been reported: nothing.
+    Node node_of(const FunctionInfo* function)
+    {
+        const auto found = nodes.find(function);
+        const bool known = found != nodes.end() && found->second.mark == Node::Mark::done;
+        return known ? found->second : Node{Node::Mark::done, 0, 0};
+    }
+
+    void close(FunctionInfo& function)
+    {
+        Node measured;
+        measure(function.mentions, measured);
+        measured.mark = Node::Mark::done;
+        nodes[&function] = measured;
+        for (const FunctionInfo::Mention& mention : function.mentions)
+            if (mention.function) function.reads |= mention.function->reads;
     }
 
     void report_cycle(const std::vector<Visit>& path, const FunctionInfo::Mention& mention)
@@ -100,6 +120,10 @@ void check_call_graph(CheckedProgram& program, Diagnostics& diagnostics)
 {
     Walk walk(program, diagnostics);
     for (FunctionInfo& function : program.functions) walk.from(function);
+    for (const CheckedTexture& texture : program.textures) {
+        Node unused;
+        walk.measure(texture.mentions, unused);
+    }
 }
 
 } // namespace haptel::lang

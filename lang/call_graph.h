@@ -1,5 +1,5 @@
 // Who calls whom. Functions that call themselves, even round corners, would not end; chains of calls are kept short
-// enough for every later stage to walk them by recursion.
+// enough for every later stage to walk them by recursion, and derivatives of derivatives few enough to be written out.
 #pragma once
 
 #include "lang/check.h"

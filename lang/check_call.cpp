@@ -11,8 +11,6 @@ using namespace ast;
 
 namespace {
 
-constexpr uint32_t grad_order_max = 4; // each order multiplies the code
-
 std::string count_of(size_t count, const char* thing)
 {
     return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
@@ -44,6 +42,12 @@ bool is_valid(const Candidate& candidate)
     return !source || (*source)->is_valid;
 }
 
+const FunctionInfo* source_of(const FunctionReference& function)
+{
+    auto source = std::get_if<const FunctionInfo*>(&function);
+    return source ? *source : nullptr;
+}
+
 bool is_literal_for(const Expression& argument, Type wanted)
 {
     return argument.type == int_type && wanted == uint_type && std::holds_alternative<NumberLiteral>(argument.node);
@@ -55,7 +59,7 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
 {
     if (const auto type = type_named(call.callee.text)) return constructor(e, call, *type);
     Type if_unsure;
-    const auto chosen = resolve(e, call.callee, call.arguments, call.target, if_unsure);
+    const auto chosen = resolve(e, call.callee, call.arguments, 0, call.target, if_unsure);
     return chosen ? chosen->result : if_unsure;
 }
 
@@ -99,7 +103,7 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
 Type BodyChecker::check(Expression& e, GradCall& call)
 {
     Type if_unsure;
-    const auto chosen = resolve(e, call.function, call.arguments, call.target, if_unsure);
+    const auto chosen = resolve(e, call.function, call.arguments, call.order, call.target, if_unsure);
     if (!chosen) return Type::error();
     const auto first = std::find_if(chosen->parameters.begin(), chosen->parameters.end(),
                                     [](const ParameterInfo& p) { return !p.is_function; });
@@ -121,12 +125,6 @@ Type BodyChecker::check(Expression& e, GradCall& call)
             .hint = "the function is " + to_string(*chosen);
         return Type::error();
     }
-    if (call.order > grad_order_max) {
-        diagnostics.error(e.span, "too-deep",
-                          "grad is applied " + std::to_string(call.order) + " times, expected at most " +
-                              std::to_string(grad_order_max));
-        return Type::error();
-    }
     if (!argument.is_vector())
         return chosen->result; // a derivative by a number has the shape of what is differentiated
     if (!chosen->result.is_vector() && call.order == 1) return argument;
@@ -144,7 +142,7 @@ Type BodyChecker::check(Expression& e, GradCall& call)
 // The function that the call means. On success arguments have the parameters' types or convert to them, and `target`
 // is filled in. Otherwise the reason is reported; `if_unsure` is the result if all that could be meant agree on it.
 std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& callee,
-                                              std::vector<ExpressionPtr>& arguments, CallTarget& target,
+                                              std::vector<ExpressionPtr>& arguments, uint32_t order, CallTarget& target,
                                               Type& if_unsure)
 {
     std::vector<Argument> classes;
@@ -191,11 +189,12 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
         return std::nullopt;
     }
     target.function = best->function;
-    mention(best->function, callee.span);
+    const FunctionInfo* source = source_of(best->function);
+    if (source || order > 0) mentions.push_back({source, callee.span, order, nullptr});
     for (size_t i = 0; i < arguments.size(); ++i) {
         const Candidate* passed = passed_function(classes[i], best->parameters[i]);
         target.function_arguments.push_back(passed ? passed->function : FunctionReference{});
-        if (passed) mention(passed->function, arguments[i]->span);
+        if (passed) mentions.push_back({source_of(passed->function), arguments[i]->span, order, source});
         if (!passed && is_literal_for(*arguments[i], best->parameters[i].type)) arguments[i]->type = uint_type;
     }
     return *best;
@@ -323,11 +322,6 @@ void BodyChecker::report_unknown_function(const Name& callee)
         reported.hint = "did you mean " + quoted(nearest) + "?";
         reported.fix = FixIt{callee.span, std::string(nearest)};
     }
-}
-
-void BodyChecker::mention(const FunctionReference& function, Span span)
-{
-    if (auto source = std::get_if<const FunctionInfo*>(&function)) mentions.push_back({*source, span});
 }
 
 } // namespace haptel::lang

@@ -98,7 +98,7 @@ void ModuleLowering::texture(const CheckedTexture& texture)
                 .hint = "loops inside loops multiply: lower their bounds";
         return count > ir::operations_limit;
     };
-    if (refuse_costly(made.body)) return;
+    if (is_too_large(texture.tree->name.span) || refuse_costly(made.body)) return;
     differentiator.make_entries(made);
     if (refuse_costly(made.height_gradient)) return;
     module.textures.push_back(std::move(made));

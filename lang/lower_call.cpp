@@ -13,7 +13,7 @@ using ir::Value;
 namespace {
 
 constexpr uint32_t depth_max = 256;
-constexpr size_t function_count_max = 10'000;
+constexpr size_t value_count_max = 250'000;
 
 uint32_t reads_of(const FunctionReference& reference)
 {
@@ -59,13 +59,13 @@ Values BodyLowering::lower(const Expression& e, const CallExpression& node)
 {
     if (node.target.is_constructor) return constructor(e, node);
     builder.span = e.span;
-    return call(node.target, node.arguments, 0);
+    return call(e, node.target, node.arguments, 0);
 }
 
 Values BodyLowering::lower(const Expression& e, const GradCall& node)
 {
     builder.span = e.span;
-    return call(node.target, node.arguments, node.order);
+    return call(e, node.target, node.arguments, node.order);
 }
 
 Values BodyLowering::constructor(const Expression& e, const CallExpression& node)
@@ -80,7 +80,8 @@ Values BodyLowering::constructor(const Expression& e, const CallExpression& node
     return parts;
 }
 
-Values BodyLowering::call(const CallTarget& target, const std::vector<ExpressionPtr>& arguments, uint32_t order)
+Values BodyLowering::call(const Expression& e, const CallTarget& target, const std::vector<ExpressionPtr>& arguments,
+                          uint32_t order)
 {
     const Span here = builder.span;
     const FunctionReference callee = resolved(target.function);
@@ -99,6 +100,7 @@ Values BodyLowering::call(const CallTarget& target, const std::vector<Expression
     if (auto builtin = std::get_if<const BuiltinOverload*>(&callee); builtin && order == 0)
         return lower_builtin(builder, **builtin, values);
 
+    if (owner.is_too_large(here)) return zeros(e.type);
     const LoweredFunction function = owner.function(callee, passed, order);
     Values flat;
     for (const Values& value : values) flat.insert(flat.end(), value.begin(), value.end());
@@ -118,6 +120,19 @@ Values BodyLowering::call(const CallTarget& target, const std::vector<Expression
 
 // ---- in the module
 
+bool ModuleLowering::is_too_large(Span span)
+{
+    for (; counted_functions < module.functions.size(); ++counted_functions)
+        value_count += module.functions[counted_functions].value_types.size();
+    if (value_count <= value_count_max) return false;
+    if (!reported_size)
+        diagnostics
+            .error(span, "too-large", "this program grows beyond " + std::to_string(value_count_max) + " values here")
+            .hint = "a function is made anew for each function that is passed to it and each derivative of it";
+    reported_size = true;
+    return true;
+}
+
 LoweredFunction ModuleLowering::function(const FunctionReference& reference,
                                          const std::vector<FunctionReference>& passed, uint32_t order)
 {
@@ -131,10 +146,6 @@ LoweredFunction ModuleLowering::function(const FunctionReference& reference,
         made = make(**source, passed);
     else
         made = make(*std::get<const BuiltinOverload*>(reference));
-    if (functions.size() == function_count_max)
-        diagnostics.error({}, "too-costly",
-                          "functions as arguments make more than " + std::to_string(function_count_max) +
-                              " functions of this program");
     functions[key] = made;
     return made;
 }

@@ -48,6 +48,9 @@ public:
     // One table per component of the elements.
     const std::vector<uint32_t>& tables(const Symbol& symbol);
 
+    // Derivatives and functions as arguments can multiply code: reports, once, when there is too much.
+    bool is_too_large(Span span);
+
     ir::Module& module;
     Diagnostics& diagnostics;
     uint32_t nesting = 0; // of the lowering itself, over all bodies under work
@@ -66,6 +69,8 @@ private:
     std::map<Key, LoweredFunction> functions;
     std::map<const Symbol*, std::vector<uint32_t>> component_tables;
     std::map<std::string, uint32_t> names;
+    size_t value_count = 0, counted_functions = 0; // of those made so far
+    bool reported_size = false;
     ir::Differentiator differentiator;
 };
 
@@ -111,7 +116,8 @@ private:
     bool too_deep(Span span);
 
     // ---- calls
-    Values call(const CallTarget& target, const std::vector<ast::ExpressionPtr>& arguments, uint32_t order);
+    Values call(const ast::Expression& e, const CallTarget& target, const std::vector<ast::ExpressionPtr>& arguments,
+                uint32_t order);
     Values constructor(const ast::Expression& e, const ast::CallExpression& node);
     FunctionReference resolved(const FunctionReference& reference) const;
 

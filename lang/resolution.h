@@ -93,8 +93,10 @@ struct LoopPlan {
 struct FunctionInfo {
     // A function mentioned in the body, called or passed on: an edge of the call graph.
     struct Mention {
-        const FunctionInfo* function;
+        const FunctionInfo* function = nullptr; // null: built in, or a parameter
         Span span;
+        uint32_t order = 0;                    // how often grad is applied to it
+        const FunctionInfo* through = nullptr; // the function it is passed to, which may differentiate it
     };
 
     std::string name;
