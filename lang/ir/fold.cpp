@@ -195,76 +195,44 @@ private:
             return builder.type(x) == Type::i32 ? builder.i32(static_cast<int32_t>(value))
                                                 : builder.u32(static_cast<uint32_t>(value));
         };
-        switch (op) {
-        case Op::iadd:
+        const IntRange rx = range(x), ry = range(y);
+        if (op == Op::iadd || op == Op::ior || op == Op::ixor) {
             if (is_int(y, 0)) return x;
             if (is_int(x, 0)) return y;
-            break;
-        case Op::isub:
-            if (is_int(y, 0)) return x;
-            if (x == y) return number(0);
-            break;
-        case Op::imul:
-            if (is_int(y, 1)) return x;
-            if (is_int(x, 1)) return y;
-            if (is_int(x, 0) || is_int(y, 0)) return number(0);
-            break;
-        case Op::idiv:
-        case Op::udiv:
-            if (is_int(y, 1)) return x;
-            break;
-        case Op::irem:
-        case Op::urem:
-            if (is_int(y, 1)) return number(0);
-            if (range(x).minimum >= 0 && range(x).maximum < range(y).minimum) return x;
-            break;
-        case Op::iand:
-            if (x == y || is_int(y, -1)) return x;
-            if (is_int(x, -1)) return y;
-            if (is_int(x, 0) || is_int(y, 0)) return number(0);
-            break;
-        case Op::ior:
-            if (x == y || is_int(y, 0)) return x;
-            if (is_int(x, 0)) return y;
-            break;
-        case Op::ixor:
-            if (x == y) return number(0);
-            if (is_int(y, 0)) return x;
-            if (is_int(x, 0)) return y;
-            break;
-        case Op::ishl:
-        case Op::ishr:
-        case Op::ushr:
-            if (is_int(y, 0)) return x;
-            break;
-        case Op::imin:
-        case Op::umin:
-            if (range(x).maximum <= range(y).minimum) return x;
-            if (range(y).maximum <= range(x).minimum) return y;
-            if (x == y) return x;
-            break;
-        case Op::imax:
-        case Op::umax:
-            if (range(x).minimum >= range(y).maximum) return x;
-            if (range(y).minimum >= range(x).maximum) return y;
-            if (x == y) return x;
-            break;
-        case Op::ilt:
-        case Op::ult:
-            if (range(x).maximum < range(y).minimum) return builder.boolean(true);
-            if (x == y || range(x).minimum >= range(y).maximum) return builder.boolean(false);
-            break;
-        case Op::ile:
-        case Op::ule:
-            if (x == y || range(x).maximum <= range(y).minimum) return builder.boolean(true);
-            if (range(x).minimum > range(y).maximum) return builder.boolean(false);
-            break;
-        case Op::ieq:
-        case Op::ueq:
-            if (x == y) return builder.boolean(true);
-            break;
-        default: break; // no other operation takes two integers
         }
+        if (op == Op::isub || op == Op::ishl || op == Op::ishr || op == Op::ushr)
+            if (is_int(y, 0)) return x;
+        if ((op == Op::isub || op == Op::ixor) && x == y) return number(0);
+        if (op == Op::imul && is_int(y, 1)) return x;
+        if (op == Op::imul && is_int(x, 1)) return y;
+        if ((op == Op::idiv || op == Op::udiv) && is_int(y, 1)) return x;
+        if (op == Op::irem || op == Op::urem) {
+            if (is_int(y, 1)) return number(0);
+            if (rx.minimum >= 0 && rx.maximum < ry.minimum) return x;
+        }
+        if (op == Op::iand && is_int(y, -1)) return x;
+        if (op == Op::iand && is_int(x, -1)) return y;
+        if ((op == Op::imul || op == Op::iand) && (is_int(x, 0) || is_int(y, 0))) return number(0);
+        if ((op == Op::iand || op == Op::ior || op == Op::imin || op == Op::imax || op == Op::umin || op == Op::umax) &&
+            x == y)
+            return x;
+        if (op == Op::imin || op == Op::umin) {
+            if (rx.maximum <= ry.minimum) return x;
+            if (ry.maximum <= rx.minimum) return y;
+        }
+        if (op == Op::imax || op == Op::umax) {
+            if (rx.minimum >= ry.maximum) return x;
+            if (ry.minimum >= rx.maximum) return y;
+        }
+        if (op == Op::ilt || op == Op::ult) {
+            if (rx.maximum < ry.minimum) return builder.boolean(true);
+            if (x == y || rx.minimum >= ry.maximum) return builder.boolean(false);
+        }
+        if (op == Op::ile || op == Op::ule) {
+            if (x == y || rx.maximum <= ry.minimum) return builder.boolean(true);
+            if (rx.minimum > ry.maximum) return builder.boolean(false);
+        }
+        if ((op == Op::ieq || op == Op::ueq) && x == y) return builder.boolean(true);
         return std::nullopt;
     }
 };

@@ -346,7 +346,8 @@ TEST_CASE("derivative: random programs keep their values bit for bit and have th
             std::vector<Slot<double>> before, after;
             for (const auto& slot : machine.run(original, point, nullptr)) before.push_back(slot);
             for (const auto& slot : machine.run(made.derivative.function, point, nullptr)) after.push_back(slot);
-            for (size_t i = 0; i < before.size(); ++i) CHECK(same(made.module.functions[original], i, before[i], after[i]));
+            for (size_t i = 0; i < before.size(); ++i)
+                CHECK(same(made.module.functions[original], i, before[i], after[i]));
             compared += compare(made, original, point, 1e-9);
         }
     }

@@ -226,7 +226,9 @@ std::vector<Slot<double>> random_arguments(const Function& function, uint32_t se
                                                              : std::uniform_real_distribution(-1.5, 1.5)(random);
             break;
         case Type::i32:
-        case Type::u32: slot.bits = below(2) ? special_words[below(std::size(special_words))] : static_cast<uint32_t>(below(9)); break;
+        case Type::u32:
+            slot.bits = below(2) ? special_words[below(std::size(special_words))] : static_cast<uint32_t>(below(9));
+            break;
         case Type::boolean: slot.bits = static_cast<uint32_t>(below(2)); break;
         }
         arguments.push_back(slot);

@@ -1,0 +1,30 @@
+// Interval arithmetic over the operations of the IR: where a result must lie if the operands lie in theirs.
+//
+// An end that rounding moved is moved outward by one unit in the last place, that of an elementary function by four;
+// exact ends stay, so that squares do not fall below 0.
+#pragma once
+
+#include "lang/ir/ir.h"
+
+#include <span>
+
+namespace haptel::ir {
+
+// Closed; no value at all where minimum > maximum. Integers and booleans as numbers.
+struct Interval {
+    double minimum, maximum;
+    bool may_be_nan = false; // or, in a final result, infinite: the entry turns both into 0
+
+    bool is_empty() const { return !(minimum <= maximum); }
+    bool is_point() const { return minimum == maximum; }
+    bool contains(double value) const { return minimum <= value && value <= maximum; }
+    bool is_finite() const; // and never NaN
+};
+
+Interval everything(Type type);
+Interval join(const Interval& a, const Interval& b);
+Interval intersect(const Interval& a, const Interval& b); // of what is known by two ways: NaN only if both allow it
+
+Interval evaluate(Op op, std::span<const Interval> operands);
+
+} // namespace haptel::ir

@@ -1,0 +1,256 @@
+// Intervals hold every value, and are not needlessly wide.
+#include "lang/ir/bounds.h"
+#include "lang/ir/differentiate.h"
+#include "lang/ir/op_info.h"
+#include "tests/lang/ir_random.h"
+#include "tests/lang/ir_support.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+using namespace ir_test;
+
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+// A slot's value as intervals see it.
+double number(Type type, const Slot<double>& slot)
+{
+    if (type == Type::real) return slot.real;
+    return type == Type::i32 ? static_cast<double>(static_cast<int32_t>(slot.bits)) : static_cast<double>(slot.bits);
+}
+Slot<double> slot(Type type, double value)
+{
+    if (type == Type::real) return {value, 0};
+    return {0, type == Type::i32 ? static_cast<uint32_t>(static_cast<int32_t>(value)) : static_cast<uint32_t>(value)};
+}
+
+bool holds(const Interval& interval, double value)
+{
+    return value != value ? interval.may_be_nan : interval.contains(value);
+}
+
+class Sampler {
+public:
+    explicit Sampler(uint32_t seed) : random(seed) {}
+
+    Interval interval(Type type)
+    {
+        if (type == Type::boolean) {
+            double a = below(2), b = below(2);
+            return {std::min(a, b), std::max(a, b)};
+        }
+        double a = edge(type), b = below(3) ? edge(type) : a;
+        return {std::min(a, b), std::max(a, b)};
+    }
+    double inside(const Interval& interval, Type type)
+    {
+        const uint32_t how = below(5);
+        if (how == 0) return interval.minimum;
+        if (how == 1) return interval.maximum;
+        const double low = std::max(interval.minimum, -1e6), high = std::min(interval.maximum, 1e6);
+        if (low > high) return interval.minimum;
+        double value = std::uniform_real_distribution(low, std::nextafter(high, infinity))(random);
+        if (type != Type::real) value = std::floor(value);
+        if (type == Type::real && how == 2 && low <= std::round(value) && std::round(value) <= high)
+            value = std::round(value);
+        return std::clamp(value, interval.minimum, interval.maximum);
+    }
+    uint32_t below(uint32_t limit) { return static_cast<uint32_t>(random() % limit); }
+
+private:
+    std::mt19937 random;
+
+    double edge(Type type)
+    {
+        if (type == Type::real) {
+            const double edges[] = {0.0, -0.0, 1,      -1,      0.5,   2,        -2.5,     3,
+                                    100, -1e5, 1e-310, -5e-324, 1e300, infinity, -infinity};
+            return below(3) ? std::uniform_real_distribution(-4.0, 4.0)(random) : edges[below(std::size(edges))];
+        }
+        const Interval all = everything(type);
+        const double edges[] = {all.minimum, all.maximum, 0, 1, -1, 2, 7, 31, 100};
+        return std::clamp(edges[below(std::size(edges))], all.minimum, all.maximum);
+    }
+};
+
+Interval height(const std::string& functions, const std::string& body, Interval p, Interval k = {1, 4})
+{
+    Module module = parsed(functions + "function \"body\" () {\n" + body + R"(
+        }
+        texture "t" {
+          parameter "k" i32 2 in 1 .. 4 unit "" offset 56
+          block 64 reads 0 writes 0
+          body "body"
+        })");
+    REQUIRE(verify(module) == "");
+    BoundsBox box;
+    for (size_t i = 0; i < 3; ++i) box.input[i] = p;
+    box.parameters = {k};
+    return height_bounds(module, module.textures[0], box);
+}
+
+} // namespace
+
+TEST_CASE("intervals: every operation stays inside, whatever the operands hold")
+{
+    Sampler sampler(11);
+    for (const OpInfo& info : all_ops()) {
+        CAPTURE(info.name);
+        auto type_of = [](char kind) {
+            return kind == 'i' ? Type::i32 : kind == 'u' ? Type::u32 : kind == 'b' ? Type::boolean : Type::real;
+        };
+        const Type result_type = type_of(info.result);
+        for (int round = 0; round < 1500; ++round) {
+            std::vector<Interval> operands;
+            for (char kind : info.operands) operands.push_back(sampler.interval(type_of(kind)));
+            const Interval claimed = evaluate(info.op, operands);
+            for (int sample = 0; sample < 12; ++sample) {
+                Slot<double> in[4], out;
+                for (size_t i = 0; i < operands.size(); ++i)
+                    in[i] = slot(type_of(info.operands[i]), sampler.inside(operands[i], type_of(info.operands[i])));
+                execute(info.op, out, in[0], in[1], in[2], in[3]);
+                const double value = number(result_type, out);
+                if (holds(claimed, value)) continue;
+                CAPTURE(operands[0].minimum, operands[0].maximum, operands.back().minimum, operands.back().maximum);
+                CAPTURE(in[0].real, in[1].real, in[0].bits, in[1].bits, claimed.minimum, claimed.maximum, value);
+                FAIL("outside");
+            }
+        }
+    }
+}
+
+TEST_CASE("intervals: random programs stay inside")
+{
+    int decided = 0;
+    for (uint32_t seed = 1; seed <= 800; ++seed) {
+        CAPTURE(seed);
+        const Flavour flavour = seed % 2 ? Flavour::tame : Flavour::wild;
+        Module module = random_module(seed, flavour);
+        const auto last = static_cast<uint32_t>(module.functions.size() - 1);
+        const Function& function = module.functions[last];
+        Sampler sampler(seed);
+        std::vector<Interval> arguments;
+        for (Value parameter : function.parameters) arguments.push_back(sampler.interval(function.type(parameter)));
+        const std::vector<Interval> claimed = function_bounds(module, last, arguments);
+        decided += claimed[0].is_finite();
+        Interpreter<double> machine(module);
+        for (int sample = 0; sample < 40; ++sample) {
+            std::vector<Slot<double>> point;
+            for (size_t i = 0; i < arguments.size(); ++i) {
+                Type type = function.type(function.parameters[i]);
+                point.push_back(slot(type, sampler.inside(arguments[i], type)));
+            }
+            auto results = machine.run(last, point, nullptr);
+            for (size_t r = 0; r < results.size(); ++r) {
+                const double value = number(function.type(function.body.yields[r]), results[r]);
+                if (holds(claimed[r], value)) continue;
+                CAPTURE(r, value, claimed[r].minimum, claimed[r].maximum);
+                FAIL("outside");
+            }
+        }
+    }
+    CHECK(decided > 100);
+}
+
+TEST_CASE("bounds: exact where the operations are")
+{
+    Interval square = height("", "%x = input p_x %h = mul %x, %x return %h", {-0.5, 0.25});
+    CHECK((square.minimum == 0 && square.maximum == 0.25 && !square.may_be_nan));
+    // x - x^2 on [0, 1]: natural evaluation says [-1, 1]; cutting tells [0, 1/4]
+    Interval hill = height("", "%x = input p_x %s = mul %x, %x %h = sub %x, %s return %h", {0, 1});
+    CHECK((hill.minimum <= 0 && hill.minimum > -0.02));
+    CHECK((hill.maximum >= 0.25 && hill.maximum < 0.26));
+    // the entry turns what is not finite into 0
+    Interval log = height("", "%x = input p_x %h = log %x return %h", {2, 3});
+    CHECK((!log.may_be_nan && log.minimum > 0.69 && log.maximum < 1.1));
+    Interval edge =
+        height("", "%x = input p_x %t = real 3 %y = add %x, %t %l = log %y %h = add %l, %t return %h", {-4, -1});
+    CHECK((edge.may_be_nan && edge.minimum == -infinity && edge.maximum >= 3.69));
+}
+
+TEST_CASE("bounds: a condition narrows what it compares, and a decided one leaves out an arm")
+{
+    const char* guarded = R"(
+        %x = input p_x
+        %tenth = real 0.1
+        %c = lt %x, %tenth
+        %h = if %c { %zero = real 0 yield %zero } else { %one = real 1 %q = div %one, %x yield %q }
+        return %h)";
+    Interval whole = height("", guarded, {-1, 1});
+    CHECK((!whole.may_be_nan && whole.minimum == 0 && whole.maximum >= 10 && whole.maximum < 10.001));
+    Interval left = height("", guarded, {-1, 0.05});
+    CHECK((left.minimum == 0 && left.maximum == 0));
+}
+
+TEST_CASE("bounds: facts bound each octave of a sum over a parameter's range")
+{
+    // facts that the body alone would not give: the callee is a wave of height 1 that says 0.5, over many periods
+    const std::string noise = R"(
+        function "noise" (%a: real, %b: real, %c: real) first 3 minimum -0.5 maximum 0.5 slope 3 proven {
+          %s = add %a, %b
+          %t = add %s, %c
+          %w = sin %t
+          %half = real 0.5
+          %r = mul %w, %half
+          return %r
+        })";
+    const std::string fbm = R"(
+        %x = input p_x  %y = input p_y  %z = input p_z
+        %n = parameter 0 i32
+        %four = i32 4
+        %trips = imin %n, %four
+        %one = real 1  %zero = real 0  %two = real 2  %half = real 0.5
+        %sum, %amplitude, %frequency = for %trips max 4 (%i, %s, %a, %f) from (%zero, %one, %one) {
+          %u = mul %x, %f  %v = mul %y, %f  %w = mul %z, %f
+          %h = call "noise" (%u, %v, %w)
+          %d = mul %h, %a
+          %t = add %s, %d
+          %b = mul %a, %half  %g = mul %f, %two
+          yield %t, %b, %g
+        }
+        return %sum)";
+    Interval all = height(noise, fbm, {-100, 100});
+    CHECK((!all.may_be_nan && all.maximum >= 0.5 * 1.875 && all.maximum < 0.5 * 1.875 + 1e-12));
+    Interval two = height(noise, fbm, {-100, 100}, {1, 2});
+    CHECK((two.maximum >= 0.75 && two.maximum < 0.75 + 1e-12));
+    Interval unbounded = height(noise, fbm, {-infinity, infinity});
+    CHECK((unbounded.maximum >= 0.9375 && unbounded.maximum < 0.9376 && unbounded.minimum > -0.9376));
+    // near one point the slope says more than the range does: sin is close to 0 there
+    Interval near = height(noise, fbm, {-1e-4, 1e-4});
+    CHECK((near.maximum < 0.01 && near.minimum > -0.01));
+}
+
+TEST_CASE("bounds: the range of a table's cells within the index")
+{
+    Module module = parsed(R"(
+        table "T" real [5, 1, 2, 9]
+        function "f" (%i: i32) {
+          %low = i32 0  %high = i32 3
+          %a = imax %i, %low
+          %b = imin %a, %high
+          %r = table 0 %b
+          return %r
+        })");
+    const Interval middle{1, 2}, all{-5, 100};
+    Interval some = function_bounds(module, 0, {&middle, 1})[0];
+    CHECK((some.minimum == 1 && some.maximum == 2));
+    Interval every = function_bounds(module, 0, {&all, 1})[0];
+    CHECK((every.minimum == 1 && every.maximum == 9));
+}
+
+TEST_CASE("bounds: work is limited, whatever the program asks for")
+{
+    Interval costly = height("", R"(
+        %x = input p_x
+        %n = i32 2000
+        %r = for %n max 2000 (%i, %a) from (%x) {
+          %s = for %n max 2000 (%j, %b) from (%a) { %t = sin %b yield %t }
+          yield %s
+        }
+        return %r)",
+                             {-1, 1});
+    CHECK((costly.may_be_nan && costly.minimum == -infinity && costly.maximum == infinity));
+}
