@@ -154,6 +154,7 @@ TEST_CASE("derivative: conventions at kinks, ties and where the true derivative 
         {Op::pow, 0, 1, 1, 0},
         {Op::pow, 0, 2, 0, 0},
         {Op::pow, 0, 0, 0, 0},
+        {Op::pow, 5e-324, 0, 0, std::log(5e-324)}, // 5e-324^-1 overflows, times 0
         {Op::pow, 3, 0, 0, std::log(3.0)},
         {Op::pow, -3, 2, -6, not_a_number}, // a power of a negative number exists at whole exponents only
         {Op::detach, 3, 0, 0, 0},
