@@ -53,4 +53,16 @@ bool for_each_sector(const Surface& surface, const Sector& start, Visit&& visit)
     return false;
 }
 
+// The point of a fan, its sectors taken as endless, that is nearest to where a vector from the vertex leads.
+struct NearestInFan {
+    static constexpr uint32_t into_sector = 3;
+
+    double way = 0; // from the vertex to that point; 0: it is the vertex itself
+    Sector sector;
+    uint32_t edge = into_sector; // or the edge of the sector that the point is on
+
+    // Takes in one more fan; equal ways go to the first. Returns whether the fan is closed.
+    bool consider(const Surface& surface, const Sector& start, const glm::dvec3& to) noexcept;
+};
+
 } // namespace haptel::runtime

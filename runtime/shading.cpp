@@ -11,7 +11,7 @@ struct CornerNormals {
     glm::dvec3 n[3];
     CornerNormals(const Surface& surface, uint32_t face, uint32_t side)
     {
-        for (int i = 0; i < 3; ++i) n[i] = surface.corner_normals[surface.faces[face].corner_normal[size_t(i)][side]];
+        for (int i = 0; i < 3; ++i) n[i] = surface.fans[surface.faces[face].fan[size_t(i)][side]].normal;
     }
     glm::dvec3 at(const glm::dvec3& w) const { return w.x * n[0] + w.y * n[1] + w.z * n[2]; }
 };

@@ -39,7 +39,7 @@ SurfaceResult build_surface(const Mesh& mesh)
         return result;
     }
     link_faces(*surface, result.report);
-    make_corner_normals(*surface);
+    make_fans(*surface);
     surface->tree = BoxTree::build(surface->vertices, surface->faces, result.error);
     if (!surface->tree) return result;
     find_piercing(*surface, result.report);

@@ -51,10 +51,19 @@ struct SideEdge {
 
 struct Face {
     std::array<uint32_t, 3> vertex;
-    std::array<std::array<SideEdge, 2>, 3> link;          // [edge][side]
-    std::array<std::array<uint32_t, 2>, 3> corner_normal; // [corner][side]: index into Surface::corner_normals
-    glm::dvec3 normal;                                    // unit, front
-    uint32_t pierced_begin = 0, pierced_end = 0;          // range in Surface::pierced_by
+    std::array<std::array<SideEdge, 2>, 3> link; // [edge][side]
+    std::array<std::array<uint32_t, 2>, 3> fan;  // [corner][side]: index into Surface::fans
+    glm::dvec3 normal;                           // unit, front
+    uint32_t pierced_begin = 0, pierced_end = 0; // range in Surface::pierced_by
+};
+
+// The faces around a vertex that are linked with each other on one side.
+struct Fan {
+    glm::dvec3 normal;           // weighted by angle, unit, toward that side; zero where they cancel
+    uint32_t face, corner, side; // one of its corners
+    // Fans of separate sheets that meet in this vertex only and bound the same free space, in a circle; itself if
+    // alone.
+    uint32_t next;
 };
 
 struct SegmentHit {
@@ -71,9 +80,7 @@ struct Surface {
     Lattice lattice;
     std::vector<glm::dvec3> vertices;
     std::vector<Face> faces;
-    // Angle-weighted normal of each fan of faces around a vertex, unit, toward the side it belongs to; zero where the
-    // fan has none (a sheet folded flat).
-    std::vector<glm::dvec3> corner_normals;
+    std::vector<Fan> fans;
     std::vector<std::array<glm::dvec2, 3>> uv; // per face and corner; empty without texture coordinates
     std::vector<uint32_t> pierced_by;
     std::unique_ptr<const BoxTree> tree;

@@ -11,8 +11,8 @@ bool repair(const Mesh& mesh, Surface& surface, MeshReport& report);
 // Face normals, and links around each edge, by exact radial order.
 void link_faces(Surface& surface, MeshReport& report);
 
-// One angle-weighted normal per fan of faces around a vertex and side.
-void make_corner_normals(Surface& surface);
+// Fans with their angle-weighted normals, and which of them meet in a vertex.
+void make_fans(Surface& surface);
 
 // For each face those that cut or touch it without sharing a corner there. Needs the tree.
 void find_piercing(Surface& surface, MeshReport& report);

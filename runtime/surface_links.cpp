@@ -93,29 +93,4 @@ void link_faces(Surface& surface, MeshReport& report)
     }
 }
 
-void make_corner_normals(Surface& surface)
-{
-    constexpr uint32_t unset = ~0u;
-    for (Face& face : surface.faces) face.corner_normal = {{{unset, unset}, {unset, unset}, {unset, unset}}};
-
-    for (uint32_t f = 0; f < surface.faces.size(); ++f)
-        for (uint32_t corner = 0; corner < 3; ++corner)
-            for (uint32_t side = 0; side < 2; ++side) {
-                if (surface.faces[f].corner_normal[corner][side] != unset) continue;
-                const uint32_t index = uint32_t(surface.corner_normals.size());
-                glm::dvec3 sum{0};
-                for_each_sector(surface, {f, corner, side}, [&](const Sector& sector) {
-                    Face& face = surface.faces[sector.face];
-                    const glm::dvec3& at = surface.vertices[face.vertex[sector.corner]];
-                    const glm::dvec3 a = surface.vertices[face.vertex[next(sector.corner)]] - at;
-                    const glm::dvec3 b = surface.vertices[face.vertex[previous(sector.corner)]] - at;
-                    const double angle = std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-                    sum += angle * surface.facet_normal(sector.face, sector.side);
-                    face.corner_normal[sector.corner][sector.side] = index;
-                });
-                const double length = glm::length(sum);
-                surface.corner_normals.push_back(length > 1e-9 ? sum / length : glm::dvec3(0));
-            }
-}
-
 } // namespace haptel::runtime

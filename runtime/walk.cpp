@@ -199,43 +199,29 @@ private:
     Step from_vertex()
     {
         const glm::dvec3 to_hand = hand_ - proxy_.at;
-        double best = 0; // how far the best way goes toward the hand
-        Sector best_sector;
-        uint32_t best_edge = 3; // 3: into the sector itself
-        const Sector start{proxy_.face, proxy_.index, proxy_.side};
-        const bool closed = for_each_sector(surface_, start, [&](const Sector& sector) {
-            const auto offer = [&](double way, uint32_t edge) {
-                if (way <= best) return;
-                best = way;
-                best_sector = sector;
-                best_edge = edge;
-            };
-            const uint32_t leaving = sector.corner, arriving = previous(sector.corner);
-            const glm::dvec3& normal = surface_.faces[sector.face].normal;
-            const glm::dvec3 in_plane = to_hand - glm::dot(to_hand, normal) * normal;
-            if (glm::dot(in_plane, inward(sector.face, leaving)) >= 0 &&
-                glm::dot(in_plane, inward(sector.face, arriving)) >= 0)
-                offer(glm::length(in_plane), 3);
-            const glm::dvec3 out = edge_vector(sector.face, leaving), back = -edge_vector(sector.face, arriving);
-            offer(glm::dot(to_hand, out) / glm::length(out), leaving);
-            offer(glm::dot(to_hand, back) / glm::length(back), arriving);
-        });
+        NearestInFan nearest;
+        bool free_of_vertex = true;
+        const uint32_t own = surface_.faces[proxy_.face].fan[proxy_.index][proxy_.side];
+        uint32_t fan = own;
+        do { // the fan walked on, and others that it meets in this vertex
+            const Fan& data = surface_.fans[fan];
+            const Sector start =
+                fan == own ? Sector{proxy_.face, proxy_.index, proxy_.side} : Sector{data.face, data.corner, data.side};
+            const bool closed = nearest.consider(surface_, start, to_hand);
+            free_of_vertex = free_of_vertex && (!closed || glm::dot(data.normal, to_hand) > 0);
+            fan = data.next;
+        } while (fan != own);
 
+        const auto [face, corner, side] = nearest.sector;
         const StartsOn here = StartsOn::on_vertex(surface_.faces[proxy_.face].vertex[proxy_.index]);
-        if (best == 0) {
-            const uint32_t normal = surface_.faces[proxy_.face].corner_normal[proxy_.index][proxy_.side];
-            const bool free = !closed || glm::dot(surface_.corner_normals[normal], to_hand) > 0;
-            return free && glm::length(to_hand) >= lift_off ? leave(here, glm::dvec3(0)) : Step::stop;
+        if (nearest.way == 0)
+            return free_of_vertex && glm::length(to_hand) >= lift_off ? leave(here, glm::dvec3(0)) : Step::stop;
+        if (nearest.edge == NearestInFan::into_sector) {
+            if (glm::dot(to_hand, surface_.facet_normal(face, side)) >= lift_off) return leave(here, glm::dvec3(0));
+            return nearest.way > departure ? slide(face, side, corner, previous(corner)) : Step::stop;
         }
-        if (best_edge == 3) {
-            const glm::dvec3 normal = surface_.facet_normal(best_sector.face, best_sector.side);
-            if (glm::dot(to_hand, normal) >= lift_off) return leave(here, glm::dvec3(0));
-            if (best <= departure) return Step::stop;
-            return slide(best_sector.face, best_sector.side, best_sector.corner, previous(best_sector.corner));
-        }
-        if (free_of_edge(best_sector.face, best_edge, best_sector.side)) return leave(here, glm::dvec3(0));
-        if (best <= departure) return Step::stop;
-        return slide_along(best_sector.face, best_edge, best_sector.side);
+        if (free_of_edge(face, nearest.edge, side)) return leave(here, glm::dvec3(0));
+        return nearest.way > departure ? slide_along(face, nearest.edge, side) : Step::stop;
     }
 
     // --- moves

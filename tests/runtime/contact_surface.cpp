@@ -187,6 +187,9 @@ TEST_CASE("vertex normals are weighted by angle, whatever the triangulation and 
     // At a box's corner the three sides meet at right angles: however the squares are cut, each counts alike.
     const double third = 1 / std::sqrt(3.0);
     Mesh box = make_box();
+    const std::array<uint32_t, 3> first = box.triangles[0], second = box.triangles[1]; // {a, b, d}, {a, d, c}
+    box.triangles[0] = {first[0], first[1], second[2]};
+    box.triangles[1] = {first[1], first[2], second[2]};
     for (size_t i = 0; i < box.triangles.size(); i += 3) std::swap(box.triangles[i][0], box.triangles[i][1]);
     const auto s = surface_of(box);
     for (uint32_t f = 0; f < s->faces.size(); ++f) {
@@ -194,8 +197,8 @@ TEST_CASE("vertex normals are weighted by angle, whatever the triangulation and 
         const uint32_t outside = glm::dot(s->faces[f].normal, middle) > 0 ? 0 : 1;
         for (uint32_t i = 0; i < 3; ++i) {
             const dvec3 outward = glm::sign(s->vertex_m(f, i)) * third;
-            const dvec3& out = s->corner_normals[s->faces[f].corner_normal[i][outside]];
-            const dvec3& in = s->corner_normals[s->faces[f].corner_normal[i][1 - outside]];
+            const dvec3& out = s->fans[s->faces[f].fan[i][outside]].normal;
+            const dvec3& in = s->fans[s->faces[f].fan[i][1 - outside]].normal;
             CHECK(glm::length(out - outward) < 1e-12);
             CHECK(glm::length(in + outward) < 1e-12);
         }
@@ -212,6 +215,8 @@ TEST_CASE("faces that pierce each other are found, and only those")
     Mesh cross;
     cross.positions_m = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, -1}, {1, 1, 1}, {-3, 1, 1}};
     cross.triangles = {{0, 1, 2}, {3, 4, 5}};
+    CHECK(build_surface(cross).report.pierced == 2);
+    cross.positions_m[3].z = 0; // now it only touches
     CHECK(build_surface(cross).report.pierced == 2);
     cross.positions_m[3].z = 0.5; // now it stays above
     CHECK(build_surface(cross).report.pierced == 0);
