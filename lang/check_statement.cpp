@@ -71,12 +71,14 @@ void BodyChecker::check(Statement&, Declaration& node)
         return;
     }
     Expression& value = *node.initializer;
+    const uint32_t reports = diagnostics.reports();
     expression(value);
     const bool fits = require(value, type, " for " + quoted(node.name.text));
-    const bool is_constant = node.is_const && fits && !first_not_constant(value);
+    const bool is_sound = fits && diagnostics.reports() == reports;
+    const bool is_constant = node.is_const && is_sound && !first_not_constant(value);
     Symbol& symbol = declare(node.name, is_constant ? SymbolKind::constant : SymbolKind::local, type);
     node.symbol = &symbol;
-    symbol.is_read = !fits; // that it is not used is then not worth saying
+    symbol.is_read = !is_sound; // that it is not used is then not worth saying
     if (node.is_const) symbol.read_only = "it is constant";
     if (is_constant) {
         symbol.value = evaluate_constant(value, type);
@@ -137,21 +139,24 @@ Symbol* BodyChecker::table(Declaration& node, Type element)
         element = Type::error();
     }
     std::vector<ConstantPart> value;
+    bool is_sound = true; // of no type after an error: nothing more is said about it
     for (size_t i = 0; list && i < count; ++i) {
         Expression& cell = *list->elements[i];
+        const uint32_t reports = diagnostics.reports();
         expression(cell);
-        if (!require(cell, element, " for an element of " + quoted(node.name.text))) {
-            if (cell.type.is_error()) element = Type::error();
-            continue;
-        }
-        if (const Expression* culprit = first_not_constant(cell)) {
+        const bool fits = require(cell, element, " for an element of " + quoted(node.name.text));
+        if (!fits || diagnostics.reports() != reports) {
+            is_sound = false;
+        } else if (const Expression* culprit = first_not_constant(cell)) {
+            is_sound = false;
             diagnostics.error(culprit->span, "not-constant",
                               "a table is constant, expected a value known when the texture is compiled");
-            continue;
+        } else {
+            const auto parts = evaluate_constant(cell, element);
+            value.insert(value.end(), parts.begin(), parts.end());
         }
-        const auto parts = evaluate_constant(cell, element);
-        value.insert(value.end(), parts.begin(), parts.end());
     }
+    if (!is_sound) element = Type::error();
     Type type = element;
     if (!type.is_error()) type.array_size = static_cast<uint32_t>(count);
     Symbol& symbol = declare(node.name, SymbolKind::table, type);

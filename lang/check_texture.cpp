@@ -44,8 +44,9 @@ std::string with_unit(const SourceSet& sources, const Expression& e)
 
 std::optional<double> BodyChecker::check_constant(Expression& e, Type type, const std::string& where)
 {
+    const uint32_t reports = diagnostics.reports();
     expression(e);
-    if (!require(e, type, where)) return std::nullopt;
+    if (!require(e, type, where) || diagnostics.reports() != reports) return std::nullopt;
     if (const Expression* culprit = first_not_constant(e)) {
         diagnostics.error(culprit->span, "not-constant", "expected a value known when the texture is compiled" + where)
             .hint = "literals, global constants and built-in functions of them are";

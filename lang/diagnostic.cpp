@@ -50,6 +50,7 @@ Diagnostic& Diagnostics::add(Severity severity, Span span, std::string code, std
 {
     Diagnostic diagnostic{severity, std::move(code), span, std::move(message), {}, {}, {}};
     const bool is_error = severity == Severity::error;
+    if (is_error) ++report_count;
     const auto same_place = [&](const Diagnostic& other) {
         if (other.span.file != span.file || other.span.begin != span.begin) return false;
         return is_error ? other.severity == Severity::error

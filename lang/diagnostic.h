@@ -43,6 +43,7 @@ public:
 
     bool has_errors() const { return error_count > 0; }
     bool full() const { return error_count >= error_limit; } // front-end stages may stop early
+    uint32_t reports() const { return report_count; }            // errors so far, those that were dropped included
     const std::vector<Diagnostic>& all() const { return items; }
     void sort_by_place(); // file, line, column; called once before showing
 
@@ -52,7 +53,7 @@ private:
     Diagnostic& add(Severity severity, Span span, std::string code, std::string message);
     std::vector<Diagnostic> items;
     Diagnostic scratch;
-    uint32_t error_count = 0;
+    uint32_t error_count = 0, report_count = 0;
 };
 
 // "file:line:col: error: message [code]", the source line, an underline of the whole span, related places, hint.
