@@ -1,0 +1,199 @@
+// The facts that the library states about itself. Those of the noises are compared with the supremum over all tables of
+// unit vectors, found by search: each corner contributes at most the length of what its vector is multiplied by.
+#include "tests/stdlib/field.h"
+#include "tests/support/catch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+using namespace haptel;
+using namespace haptel::test;
+
+namespace {
+
+struct Weight {
+    double value, first, second;
+};
+Weight cubic(double t)
+{
+    return {t * t * (3 - 2 * t), 6 * t * (1 - t), 6 - 12 * t};
+}
+Weight quintic(double t)
+{
+    return {t * t * t * (t * (6 * t - 15) + 10), 30 * t * t * (1 - t) * (1 - t), 60 * t * (2 * t - 1) * (t - 1)};
+}
+
+struct Norms {
+    double value, slope, curvature; // of N, of its derivative along e, of its second derivative along e
+};
+
+// Largest possible at x for unit vectors at the corners: N = sum w (G . d), so N' = sum G . (w e + w' d) and
+// N'' = sum G . (2 w' e + w'' d), derivatives along e.
+Norms largest_at(Weight (*weight)(double), size_t dimensions, const Vec3& x, const Vec3& e)
+{
+    Norms sum{};
+    for (size_t corner = 0; corner < size_t(1) << dimensions; ++corner) {
+        double w = 1, first = 0, second = 0; // of the product of the weights, by the product rule, factor by factor
+        Vec3 d{};
+        for (size_t a = 0; a < dimensions; ++a) {
+            const bool far = corner >> a & 1;
+            const Weight far_weight = weight(x[a]);
+            const double sign = far ? 1 : -1;
+            const double f = far ? far_weight.value : 1 - far_weight.value;
+            const double f1 = sign * far_weight.first * e[a], f2 = sign * far_weight.second * e[a] * e[a];
+            second = second * f + 2 * first * f1 + w * f2;
+            first = first * f + w * f1;
+            w *= f;
+            d[a] = x[a] - (far ? 1 : 0);
+        }
+        double value = 0, slope = 0, curvature = 0;
+        for (size_t a = 0; a < dimensions; ++a) {
+            value += w * d[a] * w * d[a];
+            slope += (w * e[a] + first * d[a]) * (w * e[a] + first * d[a]);
+            curvature += (2 * first * e[a] + second * d[a]) * (2 * first * e[a] + second * d[a]);
+        }
+        sum.value += std::sqrt(value);
+        sum.slope += std::sqrt(slope);
+        sum.curvature += std::sqrt(curvature);
+    }
+    return sum;
+}
+
+// Random starts, random steps that shrink while nothing gets better.
+double supremum(double Norms::*which, Weight (*weight)(double), size_t dimensions)
+{
+    std::mt19937_64 random(5);
+    const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
+    const auto unit = [&](Vec3 v) {
+        const double length = std::hypot(v[0], v[1], v[2]);
+        return Vec3{v[0] / length, v[1] / length, v[2] / length};
+    };
+    double best = 0;
+    for (int start = 0; start < 40; ++start) {
+        Vec3 x{}, e{};
+        for (size_t a = 0; a < dimensions; ++a) {
+            x[a] = uniform();
+            e[a] = uniform() - 0.5;
+        }
+        e = unit(e);
+        double found = largest_at(weight, dimensions, x, e).*which;
+        for (double step = 0.3; step > 1e-7;) {
+            bool better = false;
+            for (int attempt = 0; attempt < 30; ++attempt) {
+                Vec3 y = x, f = e;
+                for (size_t a = 0; a < dimensions; ++a) {
+                    y[a] = std::clamp(x[a] + step * (2 * uniform() - 1), 0.0, 1.0);
+                    f[a] += step * (2 * uniform() - 1);
+                }
+                f = unit(f);
+                const double there = largest_at(weight, dimensions, y, f).*which;
+                if (there > found) {
+                    found = there;
+                    x = y;
+                    e = f;
+                    better = true;
+                }
+            }
+            if (!better) step /= 2;
+        }
+        best = std::max(best, found);
+    }
+    return best;
+}
+
+// Facts of a library function as the compiler knows them: "noise(vec3,int)".
+ir::Facts facts_of(const std::string& function, const std::string& call)
+{
+    const jit::CompiledTextures compiled =
+        jit::compile_texture("texture t() { vec3 q = p / 1m; return 1m * " + call + "; }");
+    REQUIRE(compiled.program);
+    for (const ir::Function& candidate : compiled.program->module().functions) {
+        if (candidate.name == function) return candidate.facts;
+    }
+    FAIL("no function " << function);
+    return {};
+}
+
+void check_facts(const std::string& name, Weight (*weight)(double), size_t dimensions)
+{
+    const std::string type = dimensions == 3 ? "vec3" : "vec2", argument = dimensions == 3 ? "q" : "q.xy";
+    const double value = supremum(&Norms::value, weight, dimensions),
+                 slope = supremum(&Norms::slope, weight, dimensions),
+                 curvature = supremum(&Norms::curvature, weight, dimensions);
+    for (const bool seeded : {false, true}) {
+        const ir::Facts facts =
+            facts_of(name + "(" + type + (seeded ? ",int)" : ")"), name + "(" + argument + (seeded ? ", 3)" : ")"));
+        REQUIRE((facts.value_maximum && facts.value_minimum && facts.slope && facts.curvature));
+        const auto just_above = [](double fact, double truth) { return fact > truth && fact < truth * 1.0001; };
+        CAPTURE(name, type, value, slope, curvature);
+        CHECK(just_above(*facts.value_maximum, value));
+        CHECK(*facts.value_minimum == -*facts.value_maximum);
+        CHECK(just_above(*facts.slope, slope));
+        CHECK(just_above(*facts.curvature, curvature));
+        CHECK(facts.proven);
+    }
+}
+
+double length(const Vec3& v)
+{
+    return std::hypot(v[0], v[1], v[2]);
+}
+
+// Value, slope, and change of the gradient over short steps, at many points.
+void check_never_exceeded(const std::string& call, const ir::Facts& facts, double size, int count = 20'000)
+{
+    CAPTURE(call);
+    const Field field(call);
+    double least = INFINITY, most = -INFINITY, slope = 0, curvature = 0;
+    const double step = 1e-4;
+    for (const Vec3& q : points_within(size, count)) {
+        const FieldSample here = field(q), beside = field({q[0] + step, q[1] - step, q[2] + step});
+        least = std::min(least, here.value);
+        most = std::max(most, here.value);
+        slope = std::max(slope, length(here.gradient));
+        const Vec3 change{beside.gradient[0] - here.gradient[0], beside.gradient[1] - here.gradient[1],
+                          beside.gradient[2] - here.gradient[2]};
+        curvature = std::max(curvature, length(change) / (step * std::sqrt(3.0)));
+    }
+    CHECK((!facts.value_minimum || least >= *facts.value_minimum));
+    CHECK((!facts.value_maximum || most <= *facts.value_maximum));
+    CHECK((!facts.slope || slope <= *facts.slope));
+    CHECK((!facts.curvature || curvature <= *facts.curvature * (1 + 1e-9)));
+}
+
+} // namespace
+
+TEST_CASE("the facts of the noises are the supremum over all unit tables, rounded up")
+{
+    check_facts("noise", cubic, 3);
+    check_facts("noise", cubic, 2);
+    check_facts("perlin", quintic, 3);
+    check_facts("perlin", quintic, 2);
+}
+
+TEST_CASE("no fact is exceeded anywhere")
+{
+    const auto check = [](const std::string& function, const std::string& call, double size) {
+        check_never_exceeded(call, facts_of(function, call), size);
+    };
+    check("noise(vec3)", "noise(q)", 50);
+    check("noise(vec2)", "noise(q.xy)", 50);
+    check("perlin(vec3)", "perlin(q)", 50);
+    check("perlin(vec2)", "perlin(q.xy)", 50);
+    for (const std::string octaves : {"1", "4", "16"}) {
+        check("fbm(vec3,int)", "fbm(q, " + octaves + ")", 50);
+        check("fbm(vec2,int)", "fbm(q.xy, " + octaves + ")", 50);
+        check("turbulence(vec3,int)", "turbulence(q, " + octaves + ")", 50);
+        check("turbulence(vec2,int)", "turbulence(q.xy, " + octaves + ")", 50);
+        check("ridged(vec3,int)", "ridged(q, " + octaves + ")", 50);
+        check("ridged(vec2,int)", "ridged(q.xy, " + octaves + ")", 50);
+        check("fourier(vec2,int)", "fourier(q.xy, " + octaves + ")", 5);
+    }
+    check("wave(float)", "wave(q.x)", 5);
+    check("grating(float,float,float)", "grating(q.x, 0.4, 0.2)", 5);
+    check("bumps(vec2,float)", "bumps(q.xy, 0.4)", 5);
+    check("smoothabs(float,float)", "smoothabs(q.x, 0.3)", 2);
+    check("smoothmin(float,float,float)", "smoothmin(q.x, 0.4, 0.3)", 2);
+    check("smoothmax(float,float,float)", "smoothmax(q.x, 0.4, 0.3)", 2);
+}

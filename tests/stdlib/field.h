@@ -1,0 +1,38 @@
+// A library expression as a field over q, a point in plain numbers: compiled, then called.
+#pragma once
+
+#include "jit/texture.h"
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace haptel::test {
+
+using Vec3 = std::array<double, 3>;
+
+struct FieldSample {
+    double value;
+    Vec3 gradient;
+};
+
+class Field {
+public:
+    // `expression` in q (vec3); `declarations` are functions it may use. What does not compile fails the test.
+    explicit Field(const std::string& expression, const std::string& declarations = {});
+    FieldSample operator()(const Vec3& q) const; // a fault fails the test
+    uint32_t faults(const Vec3& q) const;
+
+private:
+    std::shared_ptr<const jit::CompiledProgram> program;
+    std::vector<double> block;
+};
+
+// Cells of a constant table of the library, read from its text.
+std::vector<double> library_table(const std::string& name);
+
+// `count` points, uniform within -size .. size in each coordinate, the same on every machine.
+std::vector<Vec3> points_within(double size, int count, uint32_t seed = 1);
+
+} // namespace haptel::test

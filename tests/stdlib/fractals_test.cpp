@@ -1,0 +1,134 @@
+#include "tests/stdlib/field.h"
+#include "tests/support/catch.h"
+
+#include <cmath>
+
+using namespace haptel::test;
+
+namespace {
+
+const std::string own_basis = "float basis(vec3 q) { return sin(q.x) * cos(q.y) + 0.5 * sin(q.z); }\n"
+                              "float flat_basis(vec2 q) { return sin(q.x) * cos(q.y); }\n";
+
+// The definition, over a basis that is differentiated by hand.
+FieldSample expected_sum(double (*shape)(double), double (*shape_slope)(double), const Vec3& q, int octaves,
+                         double lacunarity, double gain)
+{
+    FieldSample sum{};
+    double frequency = 1, amplitude = 1;
+    for (int i = 0; i < octaves; ++i) {
+        const double x = q[0] * frequency + 17.375 * i, y = q[1] * frequency + 41.625 * i,
+                     z = q[2] * frequency + 29.1875 * i;
+        const double b = std::sin(x) * std::cos(y) + 0.5 * std::sin(z), outer = amplitude * frequency * shape_slope(b);
+        sum.value += amplitude * shape(b);
+        sum.gradient[0] += outer * std::cos(x) * std::cos(y);
+        sum.gradient[1] -= outer * std::sin(x) * std::sin(y);
+        sum.gradient[2] += outer * 0.5 * std::cos(z);
+        frequency *= lacunarity;
+        amplitude *= gain;
+    }
+    return sum;
+}
+
+void check_definition(const std::string& name, double (*shape)(double), double (*shape_slope)(double))
+{
+    CAPTURE(name);
+    const Field field(name + "(basis, q, 6, 1.9, 0.6)", own_basis);
+    for (const Vec3& q : points_within(3, 500)) {
+        const FieldSample expected = expected_sum(shape, shape_slope, q, 6, 1.9, 0.6), found = field(q);
+        CHECK(std::abs(found.value - expected.value) < 1e-13);
+        for (size_t a = 0; a < 3; ++a) CHECK(std::abs(found.gradient[a] - expected.gradient[a]) < 1e-12);
+    }
+}
+
+void check_same(const std::string& a, const std::string& b)
+{
+    CAPTURE(a, b);
+    const Field first(a, own_basis), second(b, own_basis);
+    for (const Vec3& q : points_within(20, 50)) {
+        CHECK(first(q).value == second(q).value);
+        CHECK(first(q).gradient == second(q).gradient);
+    }
+}
+
+double correlation(const Field& a, const Field& b)
+{
+    double ab = 0, aa = 0, bb = 0, mean_a = 0, mean_b = 0;
+    const std::vector<Vec3> points = points_within(60, 10'000);
+    for (const Vec3& q : points) {
+        mean_a += a(q).value / static_cast<double>(points.size());
+        mean_b += b(q).value / static_cast<double>(points.size());
+    }
+    for (const Vec3& q : points) {
+        const double x = a(q).value - mean_a, y = b(q).value - mean_b;
+        ab += x * y;
+        aa += x * x;
+        bb += y * y;
+    }
+    return ab / std::sqrt(aa * bb);
+}
+
+} // namespace
+
+TEST_CASE("fractals are what their comments say, and so are their gradients")
+{
+    check_definition(
+        "fbm", [](double b) { return b; }, [](double) { return 1.0; });
+    check_definition(
+        "turbulence", [](double b) { return std::abs(b); }, [](double b) { return b < 0 ? -1.0 : 1.0; });
+    check_definition(
+        "ridged", [](double b) { return (1 - std::abs(b)) * (1 - std::abs(b)); },
+        [](double b) { return (b < 0 ? 2 : -2) * (1 - std::abs(b)); });
+}
+
+TEST_CASE("short forms are the long ones with perlin, 2, 0.5 and seed 0")
+{
+    for (const std::string name : {"fbm", "turbulence", "ridged"}) {
+        for (const std::string q : {"q", "q.xy"}) {
+            check_same(name + "(" + q + ", 5)", name + "(perlin, " + q + ", 5, 2.0, 0.5)");
+            check_same(name + "(" + q + ", 5)", name + "(" + q + ", 5, 0)");
+            check_same(name + "(" + q + ", 5, 9)", name + "(perlin, " + q + ", 5, 2.0, 0.5, 9)");
+            check_same(name + "(" + q + ", 16)", name + "(" + q + ", 17)");
+            check_same(name + "(" + q + ", 0)", "0.0 * q.x");
+            check_same(name + "(" + q + ", -1)", "0.0 * q.x");
+        }
+        check_same(name + "(flat_basis, q.xy, 3, 2.0, 0.5)", name + "(flat_basis, q.xy, 3, 2.0, 0.5, 0)");
+    }
+    check_same("fbm(q, 1)", "perlin(q)");
+    check_same("fbm(noise, q.xy, 1, 2.0, 0.5)", "noise(q.xy)");
+}
+
+TEST_CASE("an octave more leaves the scale of the rest")
+{
+    const Field four("fbm(q, 4)"), five("fbm(q, 5)");
+    for (const Vec3& q : points_within(20, 2000)) CHECK(std::abs(five(q).value - four(q).value) <= 0.866026 / 16);
+}
+
+TEST_CASE("octaves do not vanish together at the origin")
+{
+    const Field fbm("fbm(q, 5)");
+    int zeros = 0;
+    for (int i = -3; i <= 3; ++i) zeros += std::abs(fbm({1.0 * i, 2.0 * i, -1.0 * i}).value) < 0.01;
+    CHECK(zeros <= 2);
+}
+
+TEST_CASE("seeds give unrelated fractals, of any basis")
+{
+    // Folded fields have something in common wherever two lattices happen to lie near each other: one pair of seeds may
+    // agree by a tenth, many pairs may not.
+    for (const std::string name : {"fbm", "turbulence", "ridged"}) {
+        for (const std::string arguments : {"q, 4, ", "q.xy, 4, ", "noise, q.xy, 4, 2.0, 0.5, "}) {
+            CAPTURE(name, arguments);
+            double sum = 0;
+            Field before(name + "(" + arguments + "0)");
+            for (int seed = 1; seed <= 5; ++seed) {
+                const Field field(name + "(" + arguments + std::to_string(seed) + ")");
+                const double agreement = std::abs(correlation(before, field));
+                CHECK(agreement < (name == "fbm" ? 0.06 : 0.15));
+                sum += agreement;
+                before = field;
+            }
+            CHECK(sum / 5 < (name == "fbm" ? 0.03 : 0.08));
+        }
+    }
+}

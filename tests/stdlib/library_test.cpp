@@ -1,0 +1,120 @@
+// The library as a whole: what it offers is documented, tried and right.
+#include "jit/check_gradient.h"
+#include "jit/texture.h"
+#include "lang/parser.h"
+#include "stdlib/stdlib.h"
+#include "tests/support/catch.h"
+
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+using namespace haptel;
+
+namespace {
+
+std::string read(const std::filesystem::path& path)
+{
+    std::ifstream file(path, std::ios::binary);
+    std::stringstream text;
+    text << file.rdbuf();
+    return text.str();
+}
+
+std::vector<std::filesystem::path> textures_in(const std::string& folder)
+{
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(std::string(HAPTEL_SOURCE_DIR) + "/" + folder)) {
+        if (entry.path().extension() == ".haptel") files.push_back(entry.path());
+    }
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+lang::ast::File parsed(const std::string& name, std::string text)
+{
+    lang::SourceSet sources;
+    lang::Diagnostics diagnostics;
+    sources.add({name, std::move(text)});
+    lang::ast::File file = lang::parse(sources, 0, diagnostics);
+    INFO(lang::render(diagnostics.all(), sources));
+    REQUIRE(diagnostics.all().empty());
+    return file;
+}
+
+std::string signature(const lang::ast::Function& function)
+{
+    std::string text = function.name.text + "(";
+    for (const lang::ast::FunctionParameter& parameter : function.parameters) {
+        if (text.back() != '(') text += ",";
+        text += parameter.type.base.text + (parameter.is_function ? "()" : "");
+    }
+    return text + ")";
+}
+
+} // namespace
+
+TEST_CASE("the embedded text is the text of the files")
+{
+    CHECK(stdlib::library().size() == textures_in("stdlib").size());
+    for (const stdlib::LibraryFile& file : stdlib::library()) {
+        CAPTURE(file.name);
+        CHECK(file.text == read(std::string(HAPTEL_SOURCE_DIR) + "/stdlib/" + std::string(file.name)));
+    }
+}
+
+TEST_CASE("every documented function of the library is called by a texture of stdlib/tests")
+{
+    // The functions that the textures' modules hold: what is called, and what that calls.
+    std::set<std::string> called;
+    for (const std::filesystem::path& path : textures_in("stdlib/tests")) {
+        const jit::CompiledTextures compiled = jit::compile_texture_file(path.string());
+        INFO(compiled.rendered());
+        REQUIRE(compiled.program);
+        CHECK(compiled.diagnostics.all().empty());
+        for (const ir::Function& function : compiled.program->module().functions)
+            called.insert(function.name.substr(0, function.name.find('<')) + " ");
+    }
+    std::string all;
+    for (const std::string& name : called) all += name + "\n";
+    size_t documented = 0;
+    for (const stdlib::LibraryFile& file : stdlib::library()) {
+        const lang::ast::File tree = parsed(std::string(file.name), std::string(file.text));
+        for (const lang::ast::Function& function : tree.functions) {
+            if (function.doc.empty()) continue;
+            ++documented;
+            INFO(signature(function) << " in\n" << all);
+            CHECK((called.count(signature(function) + " ") || called.count(function.name.text + " ")));
+            CHECK(function.doc.size() > 10);
+        }
+    }
+    CHECK(documented > 40);
+}
+
+TEST_CASE("library and examples: gradients are those of the heights, heights stay within their bounds")
+{
+    for (const std::string folder : {"stdlib/tests", "examples/textures"}) {
+        for (const std::filesystem::path& path : textures_in(folder)) {
+            const jit::CompiledTextures compiled = jit::compile_texture_file(path.string());
+            INFO(compiled.rendered());
+            REQUIRE(compiled.program);
+            for (const haptel_texture& texture : compiled.program->textures()) {
+                CAPTURE(path.filename().string(), texture.name);
+                jit::CheckBox box;
+                TextureRequest request;
+                for (int a = 0; a < 3; ++a) {
+                    request.box_minimum_m[a] = box.minimum_m[a];
+                    request.box_maximum_m[a] = box.maximum_m[a];
+                }
+                const TextureResult result = jit::make_binding(compiled.program, texture.name, request);
+                INFO(result.diagnostics);
+                REQUIRE(result.binding);
+                const jit::GradientCheck check = jit::check_gradient(compiled.program, *result.binding, box, 40);
+                std::string failures;
+                for (const std::string& failure : check.failures) failures += failure + "\n";
+                CHECK(failures == "");
+            }
+        }
+    }
+}
