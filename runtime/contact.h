@@ -11,9 +11,9 @@
 // One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
 // sequence of poses. Everything is in the object's space, metres: transform the hand into it first.
 //
-// Known limits: where faces pierce each other without sharing edges the proxy slides along one or two of the sheets at
-// a time and may need several ticks to settle; at a vertex where separate fans touch in one point only the fan being
-// walked on is seen.
+// Known limits: where faces pierce each other without sharing edges (walls.h) the proxy goes from crease to crease, one
+// a tick, and in a corner of three sheets it may rest before the nearest point. A crack between two borders is open: the
+// proxy can slip through it.
 #pragma once
 
 #include "runtime/proxy.h"

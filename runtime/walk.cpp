@@ -366,7 +366,7 @@ void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const 
     proxy.on = Proxy::On::face;
     proxy.face = crossing.face;
     proxy.side = crossing.side;
-    proxy.at = off_walls(surface, crossing.face, from, crossing_point(surface, crossing, from, to));
+    proxy.at = off_walls(surface, crossing, from, to, crossing_point(surface, crossing, from, to));
 }
 
 } // namespace haptel::runtime

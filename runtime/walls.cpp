@@ -48,14 +48,19 @@ glm::dvec3 along_crease(const Surface& surface, uint32_t face, const Crossing& w
     return square > 0 ? glm::dot(way, crease) / square * crease : glm::dvec3(0);
 }
 
-glm::dvec3 off_walls(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& point) noexcept
+glm::dvec3 off_walls(const Surface& surface, const Crossing& landing, const glm::dvec3& from, const glm::dvec3& to,
+                     const glm::dvec3& point) noexcept
 {
-    const Face& data = surface.faces[face];
+    const Face& data = surface.faces[landing.face];
     glm::dvec3 moved = point;
     for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {
         const uint32_t wall = surface.pierced_by[k];
         const glm::dvec3 &a = corner(surface, wall, 0), &b = corner(surface, wall, 1), &c = corner(surface, wall, 2);
-        const glm::dvec3 normal = double(side_of_plane(a, b, c, from)) * surface.faces[wall].normal;
+        // The way may have passed the wall's plane beside the wall.
+        Crossing passing;
+        passing.face = wall;
+        const bool passed = crosses_plane(from, to, a, b, c, passing) && earlier(passing, landing);
+        const glm::dvec3 normal = double(side_of_plane(a, b, c, passed ? to : from)) * surface.faces[wall].normal;
         const double away = glm::dot(moved - a, normal);
         const glm::dvec3 within = normal - glm::dot(normal, data.normal) * data.normal;
         const double square = glm::dot(within, within);

@@ -23,8 +23,9 @@ double share_before(const Surface& surface, const Crossing& wall, const glm::dve
 // Part of the way along the crease of face and wall.
 glm::dvec3 along_crease(const Surface& surface, uint32_t face, const Crossing& wall, const glm::dvec3& way) noexcept;
 
-// A point of the face that a straight way from `from` has just reached, moved within the face off the walls beside it,
-// to the side that the way came from.
-glm::dvec3 off_walls(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& point) noexcept;
+// The point where the way from `from` to `to` lands on a face, moved within the face off the walls beside it, to the
+// side on which the way arrives. Both ends must be lattice points.
+glm::dvec3 off_walls(const Surface& surface, const Crossing& landing, const glm::dvec3& from, const glm::dvec3& to,
+                     const glm::dvec3& point) noexcept;
 
 } // namespace haptel::runtime

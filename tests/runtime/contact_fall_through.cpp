@@ -153,10 +153,18 @@ Mesh far_away(Mesh mesh)
 
 TEST_CASE("a wild hand never falls through a closed mesh")
 {
-    const Mesh meshes[] = {make_icosphere(2), make_bumpy_sphere(3),    far_away(make_icosphere(2)),
-                           make_star(2),      make_torus(0.4, 24, 12), make_sphere(24, 12),
-                           make_box(),        make_box({1, 1, 2e-6}),  make_box({1, 1, 2e-10}),
-                           make_stairs()};
+    const Mesh meshes[] = {make_icosphere(2),
+                           make_bumpy_sphere(3),
+                           far_away(make_icosphere(2)),
+                           make_star(2),
+                           make_torus(0.4, 24, 12),
+                           make_sphere(24, 12),
+                           make_box(),
+                           make_box({1, 1, 2e-6}),
+                           make_box({1, 1, 2e-10}),
+                           make_stairs(),
+                           make_touching_cubes(Touching::edges),
+                           make_touching_cubes(Touching::corners)};
     for (const Mesh& mesh : meshes)
         for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}}) {
             const Verdict verdict = abuse(surface_of(mesh), 6000, 31, friction, 16);
@@ -182,6 +190,8 @@ TEST_CASE("a wild hand never falls through a closed mesh: long run", "[.long]")
                   {"plate 2e-6", make_box({1, 1, 2e-6})},
                   {"plate 2e-10", make_box({1, 1, 2e-10})},
                   {"stairs", make_stairs()},
+                  {"cubes sharing edges", make_touching_cubes(Touching::edges)},
+                  {"cubes sharing corners", make_touching_cubes(Touching::corners)},
                   {"crossing boxes", make_crossing_boxes()}};
     int ticks = 0, through = 0;
     for (const auto& [name, mesh] : meshes) {

@@ -56,6 +56,23 @@ Mesh make_stairs()
     return mesh;
 }
 
+Mesh make_touching_cubes(Touching touching)
+{
+    Mesh mesh;
+    for (int x = 0; x < 3; ++x)
+        for (int y = 0; y < 3; ++y)
+            for (int z = 0; z < 3; ++z) {
+                const bool even = (x + y + z) % 2 == 0, level = x % 2 == y % 2 && y % 2 == z % 2;
+                if (touching == Touching::edges ? !even : !level) continue;
+                const Mesh cube = runtime::make_box();
+                const uint32_t first = uint32_t(mesh.positions_m.size());
+                for (const dvec3& p : cube.positions_m) mesh.positions_m.push_back(p + dvec3(x, y, z));
+                for (const auto& [a, b, c] : cube.triangles)
+                    mesh.triangles.push_back({a + first, b + first, c + first});
+            }
+    return mesh;
+}
+
 Mesh make_crossing_boxes()
 {
     Mesh mesh;

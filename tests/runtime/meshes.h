@@ -18,6 +18,10 @@ runtime::Mesh make_star(uint32_t subdivisions);
 // A prism of height 4 over a profile with steps and a groove, on whole coordinates, so that much is exactly coplanar.
 runtime::Mesh make_stairs();
 
+// Cubes of a 3 x 3 x 3 grid that touch each other in edges and corners, or in corners only.
+enum class Touching { edges, corners };
+runtime::Mesh make_touching_cubes(Touching touching);
+
 // Boxes that overlap without sharing edges.
 runtime::Mesh make_crossing_boxes();
 
