@@ -50,8 +50,8 @@ struct TextureOptions {
     std::string name = "texture.haptel"; // of the text, in messages
     Entries entries = Entries::both;
     bool standard_library = true;
-    lang::ImportLoader load_import; // empty: imports are errors
-    std::string only_texture;       // compile this one alone; empty: all
+    lang::ImportLoader load_import = {}; // empty: imports are errors
+    std::string only_texture = {};       // compile this one alone; empty: all
     Effort effort = Effort::quick;
 };
 

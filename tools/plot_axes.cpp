@@ -144,8 +144,13 @@ void draw_axes(Picture& picture, const Axes& axes, const AxesStyle& style)
 
 void draw_title(Picture& picture, std::string_view title, std::string_view subtitle)
 {
-    picture.text({16, 23}, title, {12, ink, Align::left, true});
-    picture.text({16, 38}, subtitle, {8.5, quiet});
+    const auto fitting = [&](double y, std::string_view text, TextStyle style) {
+        const double room = picture.width() - 32, width = picture.text_width(text, style);
+        if (width > room) style.size *= room / width;
+        picture.text({16, y}, text, style);
+    };
+    fitting(23, title, {12, ink, Align::left, true});
+    fitting(38, subtitle, {8.5, quiet});
 }
 
 void draw_color_bar(Picture& picture, const Rect& rect, const Axis& axis, ColorMap map)

@@ -112,16 +112,16 @@ Parsed<glm::dvec2> parse_vector2(std::string_view text)
 }
 
 CLI::Option* add_length(CLI::App& app, const std::string& names, double& metres, const std::string& description,
-                        double more_than_m)
+                        LengthRange range)
 {
     return app
         .add_option_function<std::string>(
             names,
-            [&metres, more_than_m](const std::string& text) {
+            [&metres, range](const std::string& text) {
                 const Parsed<double> length = parse_length(text);
                 if (!length) throw CLI::ValidationError(length.error);
-                if (!(length.value > more_than_m))
-                    throw CLI::ValidationError(fmt::format("'{}' must be more than {} m", text, more_than_m));
+                if (length.value < 0 || (length.value == 0 && range == LengthRange::positive))
+                    throw CLI::ValidationError(fmt::format("a length of '{}' makes no sense here", text));
                 metres = length.value;
             },
             description)

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <glm/glm.hpp>
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -26,8 +27,10 @@ Parsed<glm::dvec3> parse_point(std::string_view text);   // "x,y,z", three lengt
 Parsed<glm::dvec3> parse_vector(std::string_view text);  // "x,y,z", three plain numbers
 Parsed<glm::dvec2> parse_vector2(std::string_view text); // "u,v"
 
-// An option that takes a length; its text is refused as misuse where it is none, or not above `more_than_m`.
+enum class LengthRange : uint8_t { positive, not_negative };
+
+// An option that takes a length; text that is none, or out of range, is misuse.
 CLI::Option* add_length(CLI::App& app, const std::string& names, double& metres, const std::string& description,
-                        double more_than_m = 0.0);
+                        LengthRange range = LengthRange::positive);
 
 } // namespace haptel::tools

@@ -46,11 +46,11 @@ struct Ran {
     std::string out, err;
 };
 
-// `arguments` as in a shell: quote what needs it.
-inline Ran run_command(const std::string& arguments)
+// `arguments` as in a shell: quote what needs it. `before` stands in front of the command: "timeout 5".
+inline Ran run_command(const std::string& arguments, const std::string& before = "")
 {
     const Folder folder;
-    const std::string line = std::string("'" HAPTEL_COMMAND "' ") + arguments + " 2>'" + folder.file("err") + "'";
+    const std::string line = before + " '" HAPTEL_COMMAND "' " + arguments + " 2>'" + folder.file("err") + "'";
     Ran ran;
     FILE* pipe = popen(line.c_str(), "r");
     if (!pipe) return ran;

@@ -1,0 +1,186 @@
+// The main job end to end: scene file, texture file, compiler, servo, simulated device, report.
+#include "tests/support/catch.h"
+#include "tests/tools/png.h"
+#include "tests/tools/run_command.h"
+#include "tools/json.h"
+
+#include <sstream>
+#include <vector>
+
+using namespace haptel::test;
+using haptel::tools::Json;
+
+namespace {
+
+constexpr const char* grooves = R"(
+texture grooves(float pitch = 2mm in 0.5mm .. 5mm, float depth = 60um in 0um .. 200um)
+{
+    return depth * sin(6.283185307179586 * p.x / pitch);
+}
+)";
+
+// A folder with a texture and a scene that touches it.
+struct Stage {
+    Folder folder;
+    std::string scene;
+
+    explicit Stage(const std::string& device = "", const std::string& object = "")
+    {
+        folder.write("grooves.haptel", grooves);
+        scene = folder.write(
+            "scene.toml", "[probe]\nkind = \"stylus\"\n[device]\n" + device +
+                              "\n[[object]]\nshape = \"sphere\"\nsize_m = 0.1\ntexture = \"grooves.haptel:grooves\"\n" +
+                              object);
+    }
+    std::string out(const std::string& name) const { return folder.file(name); }
+};
+
+// The rows of a trace without the one column that is about time and not about touch.
+std::vector<std::string> felt(const std::string& folder)
+{
+    std::istringstream in(read_file(folder + "/trace.csv"));
+    std::vector<std::string> rows;
+    for (std::string line; std::getline(in, line);) {
+        std::string row, cell;
+        std::istringstream cells(line);
+        for (int column = 0; std::getline(cells, cell, ','); ++column)
+            if (column != 14) row += cell + ","; // compute_ns
+        rows.push_back(row);
+    }
+    return rows;
+}
+
+Json json_of(const Ran& ran)
+{
+    INFO(ran.out << ran.err);
+    return Json::parse(ran.out);
+}
+
+} // namespace
+
+TEST_CASE("explore feels a scene and reports it as promised")
+{
+    const Stage stage;
+    const Ran ran =
+        run_command("explore " + stage.scene + " --seconds 3 --clock virtual --json --out " + stage.out("run"));
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+    const Json json = json_of(ran);
+    CHECK(json["ticks"] == 3000);
+    CHECK(json["seconds"] == 3.0);
+    CHECK(json["rate_hz"] == 1000.0);
+    CHECK(json["missed_deadlines"] == 0);
+    CHECK(json["contact_ticks"] > 1500);
+    CHECK(json["faults"] == 0);
+    CHECK(json["textures_compiled"] == 1);
+    CHECK(json["reloads"] == 0);
+    CHECK((json["allocations_in_tick"] == 0 || json["allocations_in_tick"].is_null()));
+    CHECK(json["force_n"]["max"] > 0.3);
+    CHECK(json["force_n"]["max"] <= 7.0);
+    CHECK(json["tick_ns"]["median"] > 0);
+    CHECK(json["tick_ns"]["p99"] >= json["tick_ns"]["median"]);
+    CHECK(json["wake_late_us"]["median"].is_null()); // no deadlines on the virtual clock
+
+    CHECK(Json::parse(read_file(stage.out("run") + "/report.json")) == json);
+    const auto rows = felt(stage.out("run"));
+    CHECK(rows.size() == 3001);
+    CHECK(contains(
+        rows[0],
+        "tick,time_s,x_m,y_m,z_m,tail_x_m,tail_y_m,tail_z_m,fx_n,fy_n,fz_n,contact,depth_m,height_m,binding,"));
+    for (const char* picture : {"force.png", "path.png", "tick_time.png"}) {
+        CAPTURE(picture);
+        CHECK(png_size(stage.out("run") + "/" + picture).first > 500);
+    }
+}
+
+TEST_CASE("the report for people names the same things")
+{
+    const Stage stage;
+    const Ran ran = run_command("explore " + stage.scene + " --seconds 1 --clock virtual");
+    CHECK(ran.code == 0);
+    CHECK(contains(ran.out, "scene.toml with simulated:premium"));
+    CHECK(contains(ran.out, "1000 ticks at 1000 Hz"));
+    CHECK(ran.err.empty()); // no terminal, no status
+}
+
+TEST_CASE("twin runs on the virtual clock and a replay feel the same, bit for bit")
+{
+    // A hand that presses harder than the touch device can hold: its saturation is part of what must repeat.
+    for (const std::string device : {"stroke = \"random\"", "name = \"simulated:touch\"\npress_n = 9"}) {
+        CAPTURE(device);
+        const Stage stage(device);
+        const std::string explore = "explore " + stage.scene + " --clock virtual --out ";
+        REQUIRE(run_command(explore + stage.out("one") + " --seconds 2").code == 0);
+        REQUIRE(run_command(explore + stage.out("two") + " --seconds 2").code == 0);
+        REQUIRE(
+            run_command(explore + stage.out("replay") + " --device replay:" + stage.out("one") + "/trace.csv").code ==
+            0);
+        const auto one = felt(stage.out("one"));
+        CHECK(one.size() == 2001);
+        CHECK(one == felt(stage.out("two")));
+        CHECK(one == felt(stage.out("replay")));
+    }
+}
+
+TEST_CASE("what is wrong with a scene is said, with its place, and is exit code 1")
+{
+    const auto refused = [](const Stage& stage, const std::string& arguments = "") {
+        const Ran ran = run_command("explore " + stage.scene + " --seconds 1 --clock virtual --json " + arguments);
+        CHECK(ran.code == 1);
+        CHECK(ran.out.empty());
+        return ran.err;
+    };
+    CHECK(contains(refused(Stage("", "colour = 3\n")), "colour"));
+    CHECK(contains(refused(Stage("", "stifness_n_per_m = 3\n")), "stiffness_n_per_m"));
+    CHECK(contains(refused(Stage("name = \"simulated:premum\"")), "premium"));
+    CHECK(contains(refused(Stage(), "--device replay:/no/such/trace.csv"), "/no/such/trace.csv"));
+    CHECK(contains(refused(Stage(), "--device teapot"), "teapot"));
+    CHECK(contains(refused(Stage("", "parameters = { depht = \"1um\" }\n")), "depth"));
+
+    const Stage broken;
+    broken.folder.write("grooves.haptel", "texture grooves() { return 1mm * sinn(p.x); }");
+    CHECK(contains(refused(broken), "grooves.haptel:1:"));
+    CHECK(run_command("explore /no/such/scene.toml").code == 1);
+}
+
+TEST_CASE("a folder that cannot be written is an error before anything runs")
+{
+    const Stage stage;
+    const Ran ran =
+        run_command("explore " + stage.scene + " --seconds 1 --clock virtual --out " + stage.scene + "/run");
+    CHECK(ran.code == 1);
+    CHECK(contains(ran.err, "trace.csv"));
+}
+
+TEST_CASE("misuse of explore is exit code 2")
+{
+    const Stage stage;
+    for (const std::string arguments : {"", "--seconds", "--seconds -1", "--seconds nan", "--clock slow", "--jason"}) {
+        CAPTURE(arguments);
+        CHECK(run_command("explore " + (arguments.empty() ? "" : stage.scene + " " + arguments)).code == 2);
+    }
+}
+
+TEST_CASE("an interrupt ends the run cleanly, with its report")
+{
+    const Stage stage;
+    const Ran ran = run_command("explore " + stage.scene + " --json", "timeout --preserve-status -s INT 1");
+    CHECK(ran.code == 0);
+    CHECK(json_of(ran)["state"] == "stopped");
+}
+
+TEST_CASE("a texture that is edited is felt without a restart; a broken edit is explained and not felt")
+{
+    const Stage stage;
+    stage.folder.write("deeper.haptel", std::string(grooves) + "// edited\n");
+    const std::string edit = "(sleep 0.5; cp " + stage.folder.file("deeper.haptel") + " " +
+                             stage.folder.file("grooves.haptel") + "; sleep 1; echo 'texture grooves() { return' > " +
+                             stage.folder.file("grooves.haptel") + ") & ";
+    const Ran ran = run_command("explore " + stage.scene + " --seconds 3 --json", edit);
+    CHECK(ran.code == 0);
+    const Json json = json_of(ran);
+    CHECK(json["reloads"] == 1);
+    CHECK(json["textures_compiled"] == 2);
+    CHECK(contains(ran.err, "reloaded"));
+    CHECK(contains(ran.err, "grooves.haptel:1:"));
+}

@@ -1,0 +1,212 @@
+#include "tools/check_report.h"
+
+#include "lang/abi.h"
+#include "lang/ir/bounds.h"
+#include "lang/ir/verify.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <limits>
+#include <tuple>
+
+namespace haptel::tools {
+
+namespace {
+
+using ir::Input;
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+const char* name_of(lang::Severity severity)
+{
+    switch (severity) {
+    case lang::Severity::error: return "error";
+    case lang::Severity::warning: return "warning";
+    case lang::Severity::note: return "note";
+    }
+    return "";
+}
+
+const char* name_of(ir::Type type)
+{
+    switch (type) {
+    case ir::Type::real: return "float";
+    case ir::Type::i32: return "int";
+    case ir::Type::u32: return "uint";
+    case ir::Type::boolean: return "bool";
+    }
+    return "";
+}
+
+std::vector<std::string> inputs_of(const ir::Texture& texture)
+{
+    constexpr const char* names[] = {"p", "n", "uv", "time", "center", "extent", "footprint"}; // by bit
+    std::vector<std::string> read;
+    for (size_t bit = 0; bit < std::size(names); ++bit)
+        if (texture.reads >> bit & 1) read.emplace_back(names[bit]);
+    return read;
+}
+
+Json number_of(const ir::Parameter& parameter, double value)
+{
+    if (!std::isfinite(value)) return nullptr; // no range
+    if (parameter.type == ir::Type::boolean) return value != 0;
+    if (parameter.type == ir::Type::real) return value;
+    return static_cast<int64_t>(value);
+}
+
+Json to_json(const ir::Parameter& parameter)
+{
+    return {{"name", parameter.name},
+            {"type", name_of(parameter.type)},
+            {"default", number_of(parameter, parameter.value)},
+            {"minimum", number_of(parameter, parameter.minimum)},
+            {"maximum", number_of(parameter, parameter.maximum)},
+            {"unit", parameter.unit},
+            {"doc", parameter.doc}};
+}
+
+Json to_json(const ir::Interval& height_m)
+{
+    return {{"minimum", finite_or_null(height_m.minimum)}, {"maximum", finite_or_null(height_m.maximum)}};
+}
+
+Json to_json(const CheckFinding& finding)
+{
+    return {{"severity", name_of(finding.severity)},
+            {"code", finding.code},
+            {"message", finding.message},
+            {"file", finding.file},
+            {"line", finding.begin.line},
+            {"column", finding.begin.column},
+            {"end_line", finding.end.line},
+            {"end_column", finding.end.column},
+            {"hint", finding.hint}};
+}
+
+uint64_t operations_of(const CheckedTexture& checked)
+{
+    return ir::operations_max(checked.program->module, checked.texture->height_gradient);
+}
+
+Json to_json(const CheckedTexture& checked)
+{
+    Json parameters = Json::array();
+    for (const ir::Parameter& parameter : checked.texture->parameters) parameters.push_back(to_json(parameter));
+    return {{"file", checked.file},
+            {"name", checked.texture->name},
+            {"doc", checked.texture->doc},
+            {"parameters", std::move(parameters)},
+            {"inputs", inputs_of(*checked.texture)},
+            {"height_m", to_json(checked.height_m)},
+            {"slope_max", nullptr}, // null: not analysed
+            {"curvature_max_per_m", nullptr},
+            {"over_ranges",
+             {{"height_m", to_json(checked.height_over_ranges_m)},
+              {"slope_max", nullptr},
+              {"curvature_max_per_m", nullptr}}},
+            {"continuity", nullptr},
+            {"operations_max", operations_of(checked)},
+            {"stability", nullptr}};
+}
+
+// "-60 um": three digits in the unit that suits the size.
+std::string shown_length(double metres)
+{
+    if (!std::isfinite(metres)) return metres < 0 ? "-unbounded" : "unbounded";
+    const double size = std::fabs(metres);
+    if (size == 0) return "0";
+    if (size < 1e-6) return fmt::format("{:.3g} nm", metres * 1e9);
+    if (size < 1e-3) return fmt::format("{:.3g} um", metres * 1e6);
+    if (size < 1) return fmt::format("{:.3g} mm", metres * 1e3);
+    return fmt::format("{:.3g} m", metres);
+}
+
+// The cube, and wherever else the contact may be: any uv, any time.
+ir::BoundsBox cube(double side_m)
+{
+    ir::BoundsBox box;
+    const auto set = [&](Input first, size_t count, ir::Interval interval) {
+        std::fill_n(box.input + static_cast<size_t>(first), count, interval);
+    };
+    set(Input::p_x, 3, {-side_m / 2, side_m / 2});
+    set(Input::n_x, 3, {-1, 1});
+    set(Input::uv_x, 2, {-infinity, infinity});
+    set(Input::time, 1, {0, infinity});
+    set(Input::center_x, 3, {0, 0});
+    set(Input::extent_x, 3, {side_m, side_m});
+    set(Input::footprint, 1, {0, 0});
+    return box;
+}
+
+} // namespace
+
+CheckedTexture check_heights(std::string file, std::shared_ptr<const lang::Program> program, const ir::Texture& texture,
+                             const std::vector<double>& values, double box_m)
+{
+    ir::BoundsBox at_values = cube(box_m), over_ranges = cube(box_m);
+    for (size_t i = 0; i < values.size(); ++i) {
+        const ir::Parameter& parameter = texture.parameters[i];
+        at_values.parameters.push_back({values[i], values[i]});
+        if (parameter.type == ir::Type::boolean)
+            over_ranges.parameters.push_back({0, 1});
+        else if (std::isfinite(parameter.minimum))
+            over_ranges.parameters.push_back(
+                {std::min(parameter.minimum, values[i]), std::max(parameter.maximum, values[i])});
+        else
+            over_ranges.parameters.push_back({values[i], values[i]});
+    }
+    CheckedTexture checked{std::move(file), std::move(program), &texture, {}, {}};
+    checked.height_m = ir::height_bounds(checked.program->module, texture, at_values);
+    checked.height_over_ranges_m = ir::height_bounds(checked.program->module, texture, over_ranges);
+    return checked;
+}
+
+size_t CheckReport::count(lang::Severity severity) const
+{
+    return static_cast<size_t>(
+        std::count_if(findings.begin(), findings.end(), [&](const CheckFinding& f) { return f.severity == severity; }));
+}
+
+void CheckReport::add(CheckFinding finding)
+{
+    const auto key = [](const CheckFinding& f) {
+        return std::tie(f.file, f.begin.line, f.begin.column, f.code, f.message);
+    };
+    const bool known =
+        std::any_of(findings.begin(), findings.end(), [&](const CheckFinding& f) { return key(f) == key(finding); });
+    if (!known) findings.push_back(std::move(finding));
+}
+
+void CheckReport::add(const lang::CompileResult& result)
+{
+    for (const lang::Diagnostic& said : result.diagnostics.all())
+        add({said.severity, said.code, said.message, said.hint, result.sources.file(said.span.file).name,
+             result.sources.position(said.span.file, said.span.begin),
+             result.sources.position(said.span.file, said.span.end)});
+}
+
+Json CheckReport::to_json() const
+{
+    Json diagnostics = Json::array(), all = Json::array();
+    for (const CheckFinding& finding : findings) diagnostics.push_back(tools::to_json(finding));
+    for (const CheckedTexture& checked : textures) all.push_back(tools::to_json(checked));
+    return {{"diagnostics", std::move(diagnostics)}, {"textures", std::move(all)}};
+}
+
+std::string CheckReport::to_text() const
+{
+    std::string text;
+    for (const CheckedTexture& checked : textures) {
+        const std::vector<std::string> inputs = inputs_of(*checked.texture);
+        text += fmt::format("{}:{}: height {} .. {} in a cube of {}, at most {} operations, reads {}\n", checked.file,
+                            checked.texture->name, shown_length(checked.height_m.minimum),
+                            shown_length(checked.height_m.maximum), shown_length(box_m), operations_of(checked),
+                            inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")));
+    }
+    return text;
+}
+
+} // namespace haptel::tools

@@ -1,0 +1,197 @@
+// haptel eval: height and gradient of a texture at points, by any engine.
+#include "jit/oracle.h"
+#include "jit/program_cache.h"
+#include "tools/command.h"
+#include "tools/eval_table.h"
+#include "tools/json.h"
+#include "tools/terminal.h"
+#include "tools/texture_argument.h"
+
+#include <fmt/format.h>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace haptel::tools {
+
+namespace {
+
+struct EvalOptions {
+    TextureArgument texture;
+    ParameterTexts parameters;
+    std::optional<glm::dvec3> at_m;
+    std::string points;
+    glm::dvec3 normal{0, 0, 1};
+    glm::dvec2 uv{0};
+    double footprint_m = 0, box_m = 0.2;
+    std::string engine = "jit", precision = "f64";
+    bool json = false;
+};
+
+// What one engine says of one point: numbers as they are to be printed.
+struct Evaluated {
+    std::string height_m, gradient[3];
+    uint32_t faults = 0;
+};
+
+using Engine = std::function<Evaluated(const haptel_point&)>;
+
+std::string shortest(double value)
+{
+    return fmt::format("{}", value);
+}
+
+Evaluated shown(const haptel_sample& sample)
+{
+    return {shortest(sample.height_m),
+            {shortest(sample.gradient[0]), shortest(sample.gradient[1]), shortest(sample.gradient[2])},
+            sample.faults};
+}
+
+Engine make_engine(const std::string& name, const std::shared_ptr<const jit::CompiledProgram>& program,
+                   const TextureBinding& binding)
+{
+    if (name == "interpreter")
+        return [=](const haptel_point& point) { return shown(jit::interpret_sample(*program, binding, point)); };
+    if (name == "oracle")
+        return [oracle = std::make_shared<jit::Oracle>(program, binding)](const haptel_point& point) -> Evaluated {
+            const jit::OracleSample sample = oracle->sample(point);
+            const auto& g = sample.gradient_digits;
+            return {sample.height_digits, {g[0], g[1], g[2]}, sample.faults};
+        };
+    return [=](const haptel_point& point) {
+        haptel_sample sample{};
+        binding.texture->height_gradient(&point, binding.block, &sample);
+        return shown(sample);
+    };
+}
+
+haptel_point point_at(const EvalOptions& options, const glm::dvec3& p_m)
+{
+    haptel_point point{};
+    for (int axis = 0; axis < 3; ++axis) {
+        point.p[axis] = p_m[axis];
+        point.n[axis] = options.normal[axis];
+    }
+    for (int axis = 0; axis < 2; ++axis) point.uv[axis] = options.uv[axis];
+    return point;
+}
+
+// The texture, compiled and bound to a cube round the origin. Says what is wrong.
+Engine open_engine(const EvalOptions& options)
+{
+    const auto compiled = jit::ProgramCache::shared()->load(options.texture.file);
+    fmt::print(stderr, "{}", compiled->rendered(stderr_has_color()));
+    if (!compiled->program) return nullptr;
+    TextureRequest request;
+    request.parameters = options.parameters;
+    request.footprint_m = options.footprint_m;
+    for (int axis = 0; axis < 3; ++axis) {
+        request.box_minimum_m[axis] = -options.box_m / 2;
+        request.box_maximum_m[axis] = options.box_m / 2;
+    }
+    TextureResult bound = jit::make_binding(compiled->program, options.texture.name, request, jit::Unbounded::allowed);
+    fmt::print(stderr, "{}", bound.diagnostics);
+    return bound.binding ? make_engine(options.engine, compiled->program, *bound.binding) : nullptr;
+}
+
+// Written by hand because the oracle's numbers have more digits than a JSON library's.
+void print_point(const EvalOptions& options, const Evaluated& point)
+{
+    if (!options.json) {
+        fmt::print("height_m {}\ngradient {} {} {}\nfaults {}\n", point.height_m, point.gradient[0], point.gradient[1],
+                   point.gradient[2], point.faults);
+        return;
+    }
+    fmt::print("{{\n  \"file\": {},\n  \"name\": {},\n  \"engine\": \"{}\",\n  \"height_m\": {},\n"
+               "  \"gradient\": [{}, {}, {}],\n  \"faults\": {}\n}}\n",
+               to_text(options.texture.file), to_text(options.texture.name), options.engine, point.height_m,
+               point.gradient[0], point.gradient[1], point.gradient[2], point.faults);
+}
+
+ExitCode run(const EvalOptions& options)
+{
+    if (options.precision != "f64") {
+        say_error(fmt::format("precision {} is not built yet: only f64 is", options.precision));
+        return ExitCode::misuse;
+    }
+    PointTable table;
+    if (!options.points.empty()) {
+        table = read_points(options.points);
+        if (!table.error.empty()) {
+            say_error(table.error);
+            return ExitCode::findings;
+        }
+    }
+    const Engine engine = open_engine(options);
+    if (!engine) return ExitCode::findings;
+    if (options.at_m) {
+        print_point(options, engine(point_at(options, *options.at_m)));
+        return ExitCode::fine;
+    }
+    fmt::print("{},height_m,gx,gy,gz\n", table.header);
+    for (const PointTable::Row& row : table.rows) {
+        const Evaluated found = engine(point_at(options, row.p_m));
+        fmt::print("{},{},{},{},{}\n", row.text, found.height_m, found.gradient[0], found.gradient[1],
+                   found.gradient[2]);
+    }
+    return ExitCode::fine;
+}
+
+template <typename T>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, const std::string& type,
+                        Parsed<T> (*parse)(std::string_view), std::function<void(const T&)> set,
+                        const std::string& description)
+{
+    return app
+        .add_option_function<std::string>(
+            name,
+            [parse, set = std::move(set)](const std::string& text) {
+                const Parsed<T> parsed = parse(text);
+                if (!parsed) throw CLI::ValidationError(parsed.error);
+                set(parsed.value);
+            },
+            description)
+        ->type_name(type);
+}
+
+} // namespace
+
+Command eval_command(CLI::App& app)
+{
+    const auto options = std::make_shared<EvalOptions>();
+    CLI::App* command = app.add_subcommand("eval", "Height and gradient of a texture at one point or many");
+    add_texture(*command, options->texture);
+    auto* where = command->add_option_group("Points");
+    auto* at = add_parsed<glm::dvec3>(
+        *where, "--at", "X,Y,Z", parse_point, [options](const glm::dvec3& p_m) { options->at_m = p_m; }, "One point");
+    where
+        ->add_option("--points", options->points, "CSV with the columns x,y,z in metres; results go to standard output")
+        ->type_name("FILE.csv");
+    where->require_option(1);
+    add_parameters(*command, options->parameters);
+    add_parsed<glm::dvec3>(
+        *command, "--normal", "X,Y,Z", parse_vector, [options](const glm::dvec3& n) { options->normal = n; },
+        "The input n [0,0,1]");
+    add_parsed<glm::dvec2>(
+        *command, "--uv", "U,V", parse_vector2, [options](const glm::dvec2& uv) { options->uv = uv; },
+        "The input uv [0,0]");
+    add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]", LengthRange::not_negative);
+    add_length(*command, "--box", options->box_m, "Side of the cube that center and extent describe [0.2m]");
+    command
+        ->add_option("--engine", options->engine,
+                     "jit: machine code; interpreter: the same bits, slowly; oracle: 113 bits, 36 digits")
+        ->check(CLI::IsMember({"jit", "interpreter", "oracle"}))
+        ->capture_default_str();
+    command->add_option("--precision", options->precision, "Of the code")
+        ->check(CLI::IsMember({"f64", "mixed", "f32"}))
+        ->capture_default_str();
+    command->add_flag("--json", options->json, "One JSON object on standard output")->needs(at);
+    set_examples(*command, "  haptel eval rock.haptel:rock --at 1mm,2mm,0\n"
+                           "  haptel eval rock.haptel:rock --at 0,0,0 --set octaves=3 --engine oracle --json\n"
+                           "  haptel eval rock.haptel:rock --points scan.csv > scan_with_heights.csv");
+    return {command, [options] { return run(*options); }};
+}
+
+} // namespace haptel::tools

@@ -1,0 +1,79 @@
+#include "tools/eval_table.h"
+
+#include "tools/quantity.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fmt/format.h>
+#include <fstream>
+#include <string_view>
+
+namespace haptel::tools {
+
+namespace {
+
+std::string_view trimmed(std::string_view text)
+{
+    const size_t first = text.find_first_not_of(" \t\r");
+    return first == text.npos ? std::string_view{} : text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
+}
+
+std::vector<std::string_view> cells_of(std::string_view line)
+{
+    std::vector<std::string_view> cells;
+    for (;;) {
+        const size_t comma = line.find(',');
+        cells.push_back(trimmed(line.substr(0, comma)));
+        if (comma == line.npos) return cells;
+        line.remove_prefix(comma + 1);
+    }
+}
+
+} // namespace
+
+PointTable read_points(const std::string& file)
+{
+    PointTable table;
+    std::ifstream in(file);
+    if (!in) {
+        table.error = fmt::format("cannot read {}: {}", file, std::strerror(errno));
+        return table;
+    }
+    std::array<size_t, 3> columns = {0, 1, 2};
+    std::string line;
+    for (size_t number = 1; std::getline(in, line); ++number) {
+        const std::string_view text = trimmed(line);
+        if (text.empty()) continue;
+        const std::vector<std::string_view> cells = cells_of(text);
+        if (table.header.empty()) {
+            const bool is_header = !parse_number(cells[0]);
+            table.header = is_header ? std::string(text) : "x,y,z";
+            for (size_t axis = 0; is_header && axis < 3; ++axis) {
+                const auto found = std::find(cells.begin(), cells.end(), std::string_view("xyz").substr(axis, 1));
+                if (found == cells.end()) {
+                    table.error = fmt::format("{}:{}: expected the columns x,y,z, found '{}'", file, number, text);
+                    return table;
+                }
+                columns[axis] = static_cast<size_t>(found - cells.begin());
+            }
+            if (is_header) continue;
+        }
+        PointTable::Row row{std::string(text), {}};
+        for (int axis = 0; axis < 3; ++axis) {
+            const size_t column = columns[static_cast<size_t>(axis)];
+            const Parsed<double> value = parse_number(column < cells.size() ? cells[column] : std::string_view{});
+            if (!value) {
+                table.error = fmt::format("{}:{}: column {}: {}", file, number, column + 1, value.error);
+                return table;
+            }
+            row.p_m[axis] = value.value;
+        }
+        table.rows.push_back(std::move(row));
+    }
+    if (table.header.empty()) table.error = fmt::format("{}: there are no points in it", file);
+    return table;
+}
+
+} // namespace haptel::tools
