@@ -115,6 +115,12 @@ private:
     std::vector<Edge> edges;
 };
 
+bool holds_nothing(const CheckFile& file)
+{
+    const ast::File& tree = file.tree;
+    return tree.imports.empty() && tree.constants.empty() && tree.functions.empty() && tree.textures.empty();
+}
+
 } // namespace
 
 CompileResult compile(SourceFile main, const CompileOptions& options)
@@ -125,6 +131,9 @@ CompileResult compile(SourceFile main, const CompileOptions& options)
     result.files = std::move(files.names);
 
     Diagnostics& diagnostics = result.diagnostics;
+    if (holds_nothing(files.files.front()) && !diagnostics.has_errors())
+        diagnostics.warning({}, "empty-file", "expected a texture, found an empty file").hint =
+            "the smallest one is: texture flat() { return 0.0; }";
     const CheckedProgram checked = check(result.sources, std::move(files.files), diagnostics);
     if (!options.only_texture.empty()) {
         std::vector<std::string_view> names;
