@@ -150,7 +150,7 @@ TEST_CASE("no entry returns what is not finite: it is 0 and a fault")
     REQUIRE(bound.binding);
     const haptel_sample outside = sample_at(*bound.binding, {-0.01, 0, 0});
     CHECK((outside.height_m == 0 && outside.gradient[0] == 0));
-    CHECK(outside.faults == HAPTEL_FAULT_HEIGHT_NOT_FINITE);
+    CHECK((outside.faults & HAPTEL_FAULT_HEIGHT_NOT_FINITE));
     CHECK(sample_at(*bound.binding, {0.01, 0, 0}).faults == 0);
 }
 
@@ -237,8 +237,8 @@ TEST_CASE("the resolver finds textures by reference, and explains what it does n
     const test::Folder folder;
     folder.write("rock.haptel", "texture rock(float depth = 60um) { return depth; }");
     folder.write("two.haptel",
-                 "import \"parts.haptel\"; texture a() { return half(2mm); } texture b() { return 1mm; }");
-    folder.write("parts.haptel", "float half(float x) { return x / 2.0; }");
+                 "import \"parts.haptel\"; texture a() { return halve(2mm); } texture b() { return 1mm; }");
+    folder.write("parts.haptel", "float halve(float x) { return x / 2.0; }");
     folder.write("broken.haptel", "texture t() { return ; }");
     const TextureResolver resolve = jit::make_resolver(std::make_shared<jit::ProgramCache>());
     const auto ask = [&](const std::string& reference) {
@@ -246,13 +246,19 @@ TEST_CASE("the resolver finds textures by reference, and explains what it does n
         request.reference = folder.file(reference);
         return resolve(request);
     };
+    const auto height = [&](const std::string& reference) {
+        const TextureResult result = ask(reference);
+        INFO(result.diagnostics);
+        REQUIRE(result.binding);
+        return sample_at(*result.binding, {0, 0, 0}).height_m;
+    };
     const size_t before = jit::programs_alive();
     const TextureResult rock = ask("rock.haptel:rock"), rock_again = ask("rock.haptel");
     REQUIRE((rock.binding && rock_again.binding));
     CHECK(rock.binding->texture == rock_again.binding->texture); // compiled once
     CHECK(jit::programs_alive() == before + 1);
     CHECK(sample_at(*rock.binding, {0, 0, 0}).height_m == 60e-6);
-    CHECK(sample_at(*ask("two.haptel:a").binding, {0, 0, 0}).height_m == 1e-3);
+    CHECK(height("two.haptel:a") == 1e-3);
 
     const std::vector<std::pair<const char*, const char*>> table = {
         {"two.haptel", "it has a, b: write FILE:NAME"},
@@ -268,6 +274,6 @@ TEST_CASE("the resolver finds textures by reference, and explains what it does n
         CHECK(contains(result.diagnostics, message));
     }
 
-    folder.write("parts.haptel", "float half(float x) { return x / 4.0; }"); // an import changes the program too
-    CHECK(sample_at(*ask("two.haptel:a").binding, {0, 0, 0}).height_m == 0.5e-3);
+    folder.write("parts.haptel", "float halve(float x) { return x / 4.0; }"); // an import changes the program too
+    CHECK(height("two.haptel:a") == 0.5e-3);
 }
