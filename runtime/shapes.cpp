@@ -77,12 +77,18 @@ Mesh make_box(const glm::dvec3& sides_m)
 Mesh make_sphere(uint32_t longitudes, uint32_t latitudes)
 {
     const uint32_t around = std::max(longitudes, 3u), down = std::max(latitudes, 2u);
-    return make_grid(around, down, [=](uint32_t c, uint32_t r) {
+    Mesh mesh = make_grid(around, down, [=](uint32_t c, uint32_t r) {
         if (r == 0 || r == down) return glm::dvec3(0, 0, r == 0 ? -0.5 : 0.5);
         const Turn meridian = turn(c, around);
         const double polar = pi * double(r) / double(down);
         return 0.5 * glm::dvec3(std::sin(polar) * meridian.cosine, std::sin(polar) * meridian.sine, -std::cos(polar));
     });
+    // At the poles a cell of the grid is one triangle; its other half has no area.
+    std::erase_if(mesh.triangles, [&](const std::array<uint32_t, 3>& corner) {
+        const auto same = [&](int i, int j) { return mesh.positions_m[corner[i]] == mesh.positions_m[corner[j]]; };
+        return same(0, 1) || same(1, 2) || same(2, 0);
+    });
+    return mesh;
 }
 
 Mesh make_icosphere(uint32_t subdivisions)

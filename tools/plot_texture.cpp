@@ -130,11 +130,16 @@ Color lit(double gx, double gy)
     return {0.90 * shade + 0.10 * gloss, 0.83 * shade + 0.10 * gloss, 0.73 * shade + 0.10 * gloss};
 }
 
-// Slopes of fine textures are too small to see: they are drawn 1, 2, 5, 10 ... times as steep, and the picture says so.
+// Slopes of fine textures are too small to see: they are drawn 1, 2, 5, 10 ... times as steep, as long as they stay
+// within reason, and the picture says so.
 double exaggeration_for(double slope_rms)
 {
     double factor = 1;
-    for (int i = 0; slope_rms * factor < 0.22 && i < 15; ++i) factor *= i % 3 == 1 ? 2.5 : 2;
+    for (int i = 0; i < 15; ++i) {
+        const double steeper = factor * (i % 3 == 1 ? 2.5 : 2);
+        if (slope_rms * steeper > 0.3) break;
+        factor = steeper;
+    }
     return factor;
 }
 

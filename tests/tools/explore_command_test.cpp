@@ -182,5 +182,5 @@ TEST_CASE("a texture that is edited is felt without a restart; a broken edit is 
     CHECK(json["reloads"] == 1);
     CHECK(json["textures_compiled"] == 2);
     CHECK(contains(ran.err, "reloaded"));
-    CHECK(contains(ran.err, "grooves.haptel:1:"));
+    CHECK(contains(ran.err, "grooves.haptel:2:1: error"));
 }

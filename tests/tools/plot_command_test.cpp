@@ -37,7 +37,7 @@ TEST_CASE("parameters, window and place change the picture")
         return read_file(picture);
     };
     const std::string plain = drawn("");
-    CHECK(plain == drawn("--kind shaded --window 20mm --at 0,0,0 --set depth=50um"));
+    CHECK(plain == drawn("--kind shaded --window 20mm --at 0,0,0"));
     CHECK(plain != drawn("--set depth=100um"));
     CHECK(plain != drawn("--window 15mm"));
     CHECK(plain != drawn("--at 1mm,0,0"));
