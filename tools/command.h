@@ -25,7 +25,7 @@ struct Command {
 // Text of --help after the options: how the command is used, one example per line.
 inline void set_examples(CLI::App& app, const std::string& lines)
 {
-    app.footer("\nExamples:\n" + lines);
+    app.footer("Examples:\n" + lines);
 }
 
 #define HAPTEL_COMMAND(name) Command name##_command(CLI::App& app);

@@ -176,7 +176,7 @@ Command explore_command(CLI::App& app)
         ->capture_default_str();
     command->add_option("--out", options->out, "Folder for trace.csv, report.json and pictures")->type_name("DIR");
     command->add_flag("--json", options->json, "Report as JSON on standard output");
-    set_examples(*command, "  haptel explore examples/scenes/bunny.toml\n"
+    set_examples(*command, "  haptel explore examples/scenes/rock.toml\n"
                            "  haptel explore scene.toml --seconds 10 --out run --json\n"
                            "  haptel explore scene.toml --device replay:run/trace.csv --clock virtual");
     return {command, [options] { return explore(*options); }};

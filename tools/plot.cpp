@@ -122,9 +122,9 @@ Command plot_command(CLI::App& app)
     add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
                LengthRange::not_negative);
     add_parameters(*command, options->parameters);
-    set_examples(*command, "  haptel plot rock.haptel:rock --out rock.png\n"
-                           "  haptel plot rock.haptel:rock --kind section --window 5mm --out section.png\n"
-                           "  haptel plot wood.haptel:oak --set rings=3mm --kind spectrum --size 1024 --out oak.png");
+    set_examples(*command, "  haptel plot examples/textures/rock.haptel:rock --out rock.png\n"
+                           "  haptel plot dimples.haptel:dimples --kind section --window 5mm --out section.png\n"
+                           "  haptel plot wood.haptel:wood --set ring=3mm --kind spectrum --size 1024 --out wood.png");
     return {command, [options] { return draw(*options); }};
 }
 

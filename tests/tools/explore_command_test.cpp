@@ -29,7 +29,7 @@ struct Stage {
         folder.write("grooves.haptel", grooves);
         scene = folder.write(
             "scene.toml", "[probe]\nkind = \"stylus\"\n[device]\n" + device +
-                              "\n[[object]]\nshape = \"sphere\"\nsize_m = 0.1\ntexture = \"grooves.haptel:grooves\"\n" +
+                              "\n[[object]]\nshape = \"icosphere\"\nsize_m = 0.1\ntexture = \"grooves.haptel:grooves\"\n" +
                               object);
     }
     std::string out(const std::string& name) const { return folder.file(name); }
