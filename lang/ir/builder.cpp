@@ -19,12 +19,12 @@ bool commutes(Op op)
            op == Op::umax;
 }
 
-enum KeyKind : uint32_t { operation, real, integer, boolean_, input_, parameter_, table_, call_ };
+enum KeyKind : uint32_t { operation, real, integer, boolean_, input_, parameter_, table_, call_, link };
 
 InstructionKey key_of(KeyKind kind, uint64_t payload, std::span<const Value> operands)
 {
-    InstructionKey key{kind, static_cast<uint32_t>(payload), static_cast<uint32_t>(payload >> 32)};
-    for (Value operand : operands) key.push_back(operand.index);
+    InstructionKey key{kind, payload};
+    for (size_t i = 0; i < operands.size(); ++i) key.operand[i] = operands[i].index;
     return key;
 }
 
@@ -38,8 +38,8 @@ IntRange constant_range(Type type, uint32_t bits)
 
 size_t InstructionKeyHash::operator()(const InstructionKey& key) const
 {
-    uint64_t hash = 0x9E3779B97F4A7C15u;
-    for (uint32_t word : key) hash = (hash ^ word) * 0xBF58476D1CE4E5B9u, hash ^= hash >> 31;
+    uint64_t hash = key.kind ^ key.payload * 0x9E3779B97F4A7C15u;
+    for (uint32_t word : key.operand) hash = (hash ^ word) * 0xBF58476D1CE4E5B9u, hash ^= hash >> 31;
     return static_cast<size_t>(hash);
 }
 
@@ -57,16 +57,29 @@ Value Builder::State::new_value(Type type)
     return new_value(type, unknown);
 }
 
-std::vector<Value> Builder::State::emit(InstructionKey key, Instruction instruction, std::span<const Type> types,
-                                        const Definition* made)
+Value Builder::State::emit(const InstructionKey& key, Instruction instruction, std::span<const Type> types,
+                           const Definition* made)
 {
-    auto [entry, is_new] = known.try_emplace(std::move(key));
-    if (!is_new) return entry->second;
+    auto [entry, is_new] = known.try_emplace(key, static_cast<uint32_t>(definitions.size()));
+    if (!is_new) return {entry->second};
     for (Type type : types) instruction.results.push_back(made ? new_value(type, *made) : new_value(type));
-    entry->second = instruction.results;
     scopes.back().keys.push_back(&entry->first);
     append(std::move(instruction));
-    return entry->second;
+    return {entry->second};
+}
+
+uint32_t Builder::State::list(std::span<const Value> values)
+{
+    uint32_t number = 0;
+    for (Value value : values) {
+        auto [entry, is_new] = known.try_emplace(key_of(KeyKind::link, number, {&value, 1}), lists + 1);
+        if (is_new) {
+            ++lists;
+            scopes.back().keys.push_back(&entry->first);
+        }
+        number = entry->second;
+    }
+    return number;
 }
 
 void Builder::State::append(Instruction instruction)
@@ -120,7 +133,7 @@ Value Builder::real(double value)
     made.real = value;
     const Type type = Type::real;
     return state->emit(key_of(KeyKind::real, std::bit_cast<uint64_t>(value), {}), {RealConstant{value}, {}, {}, span},
-                       {&type, 1}, &made)[0];
+                       {&type, 1}, &made);
 }
 
 Value Builder::i32(int32_t value)
@@ -130,7 +143,7 @@ Value Builder::i32(int32_t value)
     made.range = {value, value};
     const Type type = Type::i32;
     auto bits = static_cast<uint32_t>(value);
-    return state->emit(key_of(KeyKind::integer, bits, {}), {IntConstant{bits}, {}, {}, span}, {&type, 1}, &made)[0];
+    return state->emit(key_of(KeyKind::integer, bits, {}), {IntConstant{bits}, {}, {}, span}, {&type, 1}, &made);
 }
 
 Value Builder::u32(uint32_t value)
@@ -140,7 +153,7 @@ Value Builder::u32(uint32_t value)
     made.range = {value, value};
     const Type type = Type::u32;
     return state->emit(key_of(KeyKind::integer, value | uint64_t{1} << 32, {}), {IntConstant{value}, {}, {}, span},
-                       {&type, 1}, &made)[0];
+                       {&type, 1}, &made);
 }
 
 Value Builder::boolean(bool value)
@@ -149,19 +162,19 @@ Value Builder::boolean(bool value)
     made.kind = Definition::Kind::boolean;
     made.range = {value, value};
     const Type type = Type::boolean;
-    return state->emit(key_of(KeyKind::boolean_, value, {}), {BoolConstant{value}, {}, {}, span}, {&type, 1}, &made)[0];
+    return state->emit(key_of(KeyKind::boolean_, value, {}), {BoolConstant{value}, {}, {}, span}, {&type, 1}, &made);
 }
 
 Value Builder::input(Input input)
 {
     const Type type = Type::real;
     return state->emit(key_of(KeyKind::input_, static_cast<uint32_t>(input), {}), {ReadInput{input}, {}, {}, span},
-                       {&type, 1})[0];
+                       {&type, 1});
 }
 
 Value Builder::texture_parameter(uint32_t index, Type type)
 {
-    return state->emit(key_of(KeyKind::parameter_, index, {}), {ReadParameter{index}, {}, {}, span}, {&type, 1})[0];
+    return state->emit(key_of(KeyKind::parameter_, index, {}), {ReadParameter{index}, {}, {}, span}, {&type, 1});
 }
 
 Value Builder::table(uint32_t table, Value index)
@@ -175,7 +188,7 @@ Value Builder::table(uint32_t table, Value index)
         for (uint32_t word : cells.words) made.range = join(made.range, constant_range(type, word));
     }
     return state->emit(key_of(KeyKind::table_, table, {&index, 1}), {ReadTable{table}, {index}, {}, span}, {&type, 1},
-                       &made)[0];
+                       &made);
 }
 
 Value Builder::operation(Op op, std::span<const Value> operands)
@@ -201,7 +214,7 @@ Value Builder::operation(Op op, std::span<const Value> operands)
     if (commutes(op) && ordered[1].index < ordered[0].index) std::swap(ordered[0], ordered[1]);
     Instruction instruction{Operation{op}, {operands.begin(), operands.end()}, {}, span};
     return state->emit(key_of(KeyKind::operation, static_cast<uint32_t>(op), {ordered, operands.size()}),
-                       std::move(instruction), {&*result, 1}, &made)[0];
+                       std::move(instruction), {&*result, 1}, &made);
 }
 
 Value Builder::operation(Op op, std::initializer_list<Value> operands)
@@ -214,8 +227,12 @@ std::vector<Value> Builder::call(uint32_t function, std::span<const Value> argum
     const Function& callee = state->module.functions[function];
     std::vector<Type> types;
     for (Value result : callee.body.yields) types.push_back(callee.type(result));
-    return state->emit(key_of(KeyKind::call_, function, arguments),
-                       {ir::Call{function}, {arguments.begin(), arguments.end()}, {}, span}, types);
+    const Value list{state->list(arguments)};
+    const Value first = state->emit(key_of(KeyKind::call_, function, {&list, 1}),
+                                    {ir::Call{function}, {arguments.begin(), arguments.end()}, {}, span}, types);
+    std::vector<Value> results;
+    for (uint32_t i = 0; i < types.size(); ++i) results.push_back({first.index + i});
+    return results;
 }
 
 std::vector<Value> Builder::if_else(Value condition, const Arm& then_arm, const Arm& else_arm)
@@ -353,7 +370,7 @@ Type Builder::type(Value value) const
 
 uint32_t Builder::finish(std::span<const Value> results)
 {
-    state->function.body = state->close();
+    state->function.body = std::move(state->scopes.back().block);
     state->function.body.yields.assign(results.begin(), results.end());
     remove_dead_code(state->function);
     state->module.functions.push_back(std::move(state->function));

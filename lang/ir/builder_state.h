@@ -17,8 +17,14 @@ struct Definition {
     IntRange range{0, 0}; // integers and booleans
 };
 
-// Kind, payload and operands of an instruction without effects: equal keys, equal results.
-using InstructionKey = std::vector<uint32_t>;
+// Kind, payload and operands of an instruction without effects: equal keys, equal results. A longer list of operands is
+// interned beforehand, link by link, and stands for one.
+struct InstructionKey {
+    uint32_t kind = 0;
+    uint64_t payload = 0;
+    uint32_t operand[4] = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
+    bool operator==(const InstructionKey&) const = default;
+};
 struct InstructionKeyHash {
     size_t operator()(const InstructionKey& key) const;
 };
@@ -33,13 +39,15 @@ struct Builder::State {
     Function function;
     std::vector<Definition> definitions; // by Value::index
     std::vector<Scope> scopes;
-    std::unordered_map<InstructionKey, std::vector<Value>, InstructionKeyHash> known;
+    std::unordered_map<InstructionKey, uint32_t, InstructionKeyHash> known; // first result, or number of a list
+    uint32_t lists = 0;
 
     Value new_value(Type type); // nothing known of it: an integer may have any value
     Value new_value(Type type, const Definition& definition);
-    // The results of an equal instruction in an open block, or of this one, appended.
-    std::vector<Value> emit(InstructionKey key, Instruction instruction, std::span<const Type> types,
-                            const Definition* definition = nullptr);
+    // First result of an equal instruction in an open block, or of this one, appended. Results are consecutive.
+    Value emit(const InstructionKey& key, Instruction instruction, std::span<const Type> types,
+               const Definition* definition = nullptr);
+    uint32_t list(std::span<const Value> values); // equal lists, equal numbers
     void append(Instruction instruction);
     void open();
     Block close();
