@@ -18,8 +18,8 @@ endif()
 if(HAPTEL_SANITIZE)
     target_compile_options(haptel_flags INTERFACE
         -fsanitize=${HAPTEL_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
-        # g++ sees ghosts of it in its own headers once they are instrumented.
-        $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+        # g++ sees ghosts of these in code that it has instrumented.
+        $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-conversion>)
     target_link_options(haptel_flags INTERFACE -fsanitize=${HAPTEL_SANITIZE})
 endif()
 

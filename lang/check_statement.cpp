@@ -221,7 +221,7 @@ BodyChecker::Target BodyChecker::target_of(Expression& e)
         flow.variables[local->slot].assigned = before;
         if (e.type.is_error() || index->index->type.is_error()) return {};
         const ir::IntRange at = range(*index->index);
-        target.components = at.is_constant() ? static_cast<uint8_t>(1u << at.minimum) : 0;
+        target.components = at.is_constant() ? static_cast<uint8_t>(1u << (at.minimum & 3)) : 0;
         target.type = float_type;
     }
     e.type = target.type;
