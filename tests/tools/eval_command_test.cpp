@@ -1,0 +1,100 @@
+// haptel eval: values at points, by three engines.
+#include "tests/support/catch.h"
+#include "tests/tools/run_command.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+using namespace haptel::test;
+using Json = nlohmann::json;
+
+namespace {
+
+const char* const tilt = "texture tilt(float depth = 2mm in 0mm .. 9mm) { return depth * (p.x / 4mm) + 0.5 * p.y; }\n"
+                         "texture third() { return p.x / 3.0; }\n"
+                         "texture scaled() { return footprint + 0.001 * extent.x + 0.0 * uv.x + 1mm * n.x; }\n";
+
+Json json_of(const Ran& ran)
+{
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+    return Json::parse(ran.out);
+}
+
+} // namespace
+
+TEST_CASE("eval gives height and gradient of a plane, parameters set")
+{
+    const Folder folder;
+    const std::string file = folder.write("tilt.haptel", tilt);
+    const Json json = json_of(run_command("eval '" + file + ":tilt' --at 1mm,-2mm,0.5 --set depth=4mm --json"));
+    CHECK(std::fabs(json["height_m"].get<double>() - (0.001 - 0.001)) <= 1e-18);
+    CHECK(json["gradient"] == Json({1.0, 0.5, 0.0}));
+    CHECK(json["faults"] == 0);
+    const Ran text = run_command("eval '" + file + ":tilt' --at 1mm,0,0");
+    CHECK(contains(text.out, "height_m 0.0005\n"));
+    CHECK(contains(text.out, "gradient 0.5 0.5 0\n"));
+    const Json inputs = json_of(run_command("eval '" + file +
+                                            ":scaled' --at 0,0,0 --footprint 2mm --box 0.1m "
+                                            "--normal 1,0,0 --json"));
+    CHECK(std::fabs(inputs["height_m"].get<double>() - (0.002 + 0.0001 + 0.001)) <= 1e-17);
+}
+
+TEST_CASE("the interpreter agrees to the bit, the oracle prints 36 digits")
+{
+    const Folder folder;
+    const std::string file = folder.write("t.haptel", tilt);
+    const std::string at = "eval '" + file + ":third' --at 0.1,0,0 --json --engine ";
+    CHECK(json_of(run_command(at + "jit"))["height_m"] == json_of(run_command(at + "interpreter"))["height_m"]);
+    const Ran oracle = run_command(at + "oracle");
+    // (the double nearest to 0.1) / 3, whose digits go on as those of that double do
+    CHECK(contains(oracle.out, "\"height_m\": 0.0333333333333333351837050410419275"));
+    CHECK(json_of(oracle)["engine"] == "oracle");
+}
+
+TEST_CASE("eval adds columns to a table of points")
+{
+    const Folder folder;
+    const std::string file = folder.write("t.haptel", tilt);
+    const auto table = [&](const std::string& csv) {
+        const std::string points = folder.write("points.csv", csv);
+        return run_command("eval '" + file + ":tilt' --points '" + points + "'");
+    };
+    CHECK(table("x,y,z\n0.004,0,0\n0,0.002,0\n").out ==
+          "x,y,z,height_m,gx,gy,gz\n0.004,0,0,0.002,0.5,0.5,0\n0,0.002,0,0.001,0.5,0.5,0\n");
+    CHECK(table("name,z,y,x\r\na,0,0,0.004\r\n\r\n").out ==
+          "name,z,y,x,height_m,gx,gy,gz\na,0,0,0.004,0.002,0.5,0.5,0\n");
+    CHECK(table("0.004,0,0\n").out == "x,y,z,height_m,gx,gy,gz\n0.004,0,0,0.002,0.5,0.5,0\n");
+    for (const auto& [csv, message] : std::vector<std::pair<std::string, std::string>>{
+             {"x,y\n1,2\n", "points.csv:1: expected the columns x,y,z"},
+             {"x,y,z\n1,2,3\n1,2\n", "points.csv:3: column 3: expected a number"},
+             {"x,y,z\n1,2,many\n", "found 'many'"},
+             {"", "there are no points"}}) {
+        const Ran ran = table(csv);
+        INFO(ran.err);
+        CHECK(ran.code == 1);
+        CHECK(ran.out.empty());
+        CHECK(contains(ran.err, message));
+    }
+}
+
+TEST_CASE("what eval cannot do is said, with the right exit code")
+{
+    const Folder folder;
+    const std::string file = "'" + folder.write("t.haptel", tilt);
+    const auto code = [&](const std::string& arguments, const std::string& message) {
+        const Ran ran = run_command("eval " + arguments);
+        INFO(arguments << "\n" << ran.err);
+        CHECK(ran.out.empty());
+        CHECK(contains(ran.err, message));
+        return ran.code;
+    };
+    CHECK(code(file + ":tilt' --at 0,0,0 --precision f32", "precision f32 is not built yet: only f64 is") == 2);
+    CHECK(code(file + ":tilt'", "--at") == 2);
+    CHECK(code(file + ":tilt' --at 0,0", "expected a point x,y,z") == 2);
+    CHECK(code(file + ":tild' --at 0,0,0", "did you mean 'tilt'?") == 1);
+    CHECK(code(file + ":tilt' --at 0,0,0 --set dept=1mm", "did you mean 'depth'?") == 1);
+    CHECK(code("nowhere.haptel:t --at 0,0,0", "nowhere.haptel:1:1: error: cannot read this file") == 1);
+    CHECK(code(file + ":tilt' --points nowhere.csv", "cannot read nowhere.csv") == 1);
+}
