@@ -267,6 +267,8 @@ Interval exclusive_or(const Interval& a, const Interval& b)
 Interval on_integers(Op op, Type type, std::span<const Interval> operands)
 {
     IntRange ranges[4];
+    for (const Interval& operand : operands)
+        if (operand.is_empty()) return operand; // comes of an arm that is never entered
     for (size_t i = 0; i < operands.size(); ++i)
         ranges[i] = {static_cast<int64_t>(operands[i].minimum), static_cast<int64_t>(operands[i].maximum)};
     IntRange range = range_of(op, type, {ranges, operands.size()});

@@ -19,11 +19,12 @@
 //               string ] "}"
 //
 // Reading checks names, types and the number of operands; everything else is verify's.
+#include "lang/diagnostic.h"
 #include "lang/ir/op_info.h"
 #include "lang/ir/text.h"
+#include "lang/ir/text_tokens.h"
 #include "lang/ir/verify.h"
 
-#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <map>
@@ -31,79 +32,9 @@
 namespace haptel::ir {
 namespace {
 
-struct Token {
-    enum class Kind { end, word, string, value, mark } kind = Kind::end; // numbers are words
-    std::string text;
-    int line = 1;
-};
-
 struct Failure {
     std::string message;
 };
-
-std::vector<Token> tokenize(std::string_view text)
-{
-    std::vector<Token> tokens;
-    int line = 1;
-    auto is_word = [](char c) {
-        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '.' ||
-               c == '+' || c == '-' || c == ':';
-    };
-    for (size_t i = 0; i < text.size();) {
-        char c = text[i];
-        if (c == '\n') ++line;
-        if (c == '#')
-            while (i < text.size() && text[i] != '\n') ++i;
-        else if (c == ' ' || c == '\t' || c == '\r' || c == '\n')
-            ++i;
-        else if (c == '"') {
-            Token token{Token::Kind::string, "", line};
-            for (++i; i < text.size() && text[i] != '"'; ++i) {
-                if (text[i] == '\n') ++line;
-                if (text[i] == '\\' && i + 1 < text.size()) {
-                    ++i;
-                    token.text += text[i] == 'n' ? '\n' : text[i];
-                } else
-                    token.text += text[i];
-            }
-            ++i;
-            tokens.push_back(std::move(token));
-        } else if (c == ':' || !is_word(c)) {
-            if (c == '%') {
-                size_t end = ++i;
-                while (end < text.size() && is_word(text[end]) && text[end] != ':') ++end;
-                tokens.push_back({Token::Kind::value, std::string(text.substr(i, end - i)), line});
-                i = end;
-            } else {
-                tokens.push_back({Token::Kind::mark, std::string(1, c), line});
-                ++i;
-            }
-        } else {
-            size_t end = i;
-            while (end < text.size() && is_word(text[end])) ++end;
-            tokens.push_back({Token::Kind::word, std::string(text.substr(i, end - i)), line});
-            i = end;
-        }
-    }
-    tokens.push_back({Token::Kind::end, "", line});
-    return tokens;
-}
-
-size_t edit_distance(std::string_view a, std::string_view b)
-{
-    std::vector<size_t> row(b.size() + 1);
-    for (size_t j = 0; j <= b.size(); ++j) row[j] = j;
-    for (size_t i = 1; i <= a.size(); ++i) {
-        size_t diagonal = row[0];
-        row[0] = i;
-        for (size_t j = 1; j <= b.size(); ++j) {
-            size_t changed = diagonal + (a[i - 1] != b[j - 1]);
-            diagonal = row[j];
-            row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
-        }
-    }
-    return row.back();
-}
 
 class Parser {
 public:
@@ -375,12 +306,10 @@ private:
 
     std::string suggestion() const
     {
-        std::string_view best;
-        size_t best_distance = 3;
-        for (const OpInfo& info : all_ops())
-            if (size_t distance = edit_distance(token().text, info.name); distance < best_distance)
-                best = info.name, best_distance = distance;
-        return best.empty() ? "" : ", did you mean '" + std::string(best) + "'?";
+        std::vector<std::string_view> names;
+        for (const OpInfo& info : all_ops()) names.push_back(info.name);
+        const std::string_view nearest = lang::nearest_name(token().text, names);
+        return nearest.empty() ? "" : ", did you mean '" + std::string(nearest) + "'?";
     }
 
     std::vector<Type> call(Instruction& made)
