@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <limits>
 
 namespace haptel::ir {
 namespace {
@@ -13,10 +14,19 @@ IntRange wrapped(IntRange range, Type type)
     return range.within(full.minimum, full.maximum) ? range : full;
 }
 
+// a * b, or the end of int64_t on its side: unsigned ends multiply to nearly 2^64.
+int64_t saturating_product(int64_t a, int64_t b)
+{
+    int64_t result = 0;
+    if (!__builtin_mul_overflow(a, b, &result)) return result;
+    return (a < 0) == (b < 0) ? std::numeric_limits<int64_t>::max() : std::numeric_limits<int64_t>::min();
+}
+
 IntRange product(IntRange a, IntRange b)
 {
     auto [low, high] =
-        std::minmax({a.minimum * b.minimum, a.minimum * b.maximum, a.maximum * b.minimum, a.maximum * b.maximum});
+        std::minmax({saturating_product(a.minimum, b.minimum), saturating_product(a.minimum, b.maximum),
+                     saturating_product(a.maximum, b.minimum), saturating_product(a.maximum, b.maximum)});
     return {low, high};
 }
 

@@ -278,7 +278,8 @@ TEST_CASE("the servo computes with subnormal numbers, whatever its parent does")
     const unsigned before = _mm_getcsr();
     _mm_setcsr(before | 0x8040u); // flush to zero, subnormals are zero: inherited by threads
     volatile double tiny = std::numeric_limits<double>::min(), half = 0.5;
-    const bool flushed_here = tiny * half == 0.0;
+    volatile double product = tiny * half; // volatile: not to be computed after the mode is set back
+    const bool flushed_here = product == 0.0;
     bool flushed_there = true;
     run(std::make_unique<ScriptedDevice>([&](uint64_t tick, DevicePose& pose) {
             flushed_there = tiny * half == 0.0;
