@@ -169,7 +169,7 @@ struct For {
     StatementPtr step;
     StatementPtr body;
     LoopPlan plan = {}; // set by the checker
-};                      // parts may be null
+}; // parts may be null
 struct Break {};
 struct Return {
     ExpressionPtr value;

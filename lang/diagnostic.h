@@ -43,7 +43,7 @@ public:
 
     bool has_errors() const { return error_count > 0; }
     bool full() const { return error_count >= error_limit; } // front-end stages may stop early
-    uint32_t reports() const { return report_count; }            // errors so far, those that were dropped included
+    uint32_t reports() const { return report_count; }        // errors so far, those that were dropped included
     const std::vector<Diagnostic>& all() const { return items; }
     void sort_by_place(); // file, line, column; called once before showing
 

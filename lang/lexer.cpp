@@ -266,8 +266,7 @@ std::string_view describe(Token token)
     case Token::number: return "a number";
     case Token::string: return "a string";
 #define SYMBOL(name, spelling)                                                                                         \
-    case Token::name:                                                                                                  \
-        return "'" spelling "'";
+    case Token::name: return "'" spelling "'";
 #define KEYWORD(name, spelling) SYMBOL(name, spelling)
 #include "lang/token.def"
 #undef SYMBOL

@@ -94,8 +94,7 @@ void BodyLowering::choose(Value condition, const Slots& changed, const std::func
         arm();
         return gather(changed);
     };
-    const Values after = builder.if_else(
-        condition, [&] { return run(then_arm); }, [&] { return run(else_arm); });
+    const Values after = builder.if_else(condition, [&] { return run(then_arm); }, [&] { return run(else_arm); });
     scatter(changed, after);
     --region_depth;
 }
@@ -123,8 +122,7 @@ void BodyLowering::sequence(Statements statements)
         }
         statement(s, {});
         const Slots changed = changed_slots(listed(nullptr, rest), outcome(rest));
-        return choose(
-            left(), changed, [] {}, [&] { sequence(rest); });
+        return choose(left(), changed, [] {}, [&] { sequence(rest); });
     }
 }
 
@@ -164,8 +162,7 @@ void BodyLowering::branch(const If& node, size_t index, Statements rest, const S
         if (arm.body) statement(*arm.body, {});
         if (rest.empty() || (arm.body && !outcome(*arm.body).falls_through)) return;
         if (!arm.body || !outcome(*arm.body).may_leave()) return sequence(rest);
-        choose(
-            left(), changed, [] {}, [&] { sequence(rest); });
+        choose(left(), changed, [] {}, [&] { sequence(rest); });
     };
     if (!arm.condition) return take();
     const Value condition = converted(*arm.condition, bool_type)[0];
@@ -235,9 +232,7 @@ void BodyLowering::lower(const For& node)
 
     const Outcome ends = node.body ? outcome(*node.body) : Outcome{};
     const Slots changed = node.body ? changed_slots(listed(node.body.get(), {}), ends) : Slots{};
-    if (region_depth >= region_max)
-        return choose(
-            builder.boolean(true), {}, [] {}, [] {}); // which reports it
+    if (region_depth >= region_max) return choose(builder.boolean(true), {}, [] {}, [] {}); // which reports it
     ++region_depth;
     depth = std::max(depth, region_depth);
     const Values broken_before = variables[broken_slot()];
@@ -251,8 +246,7 @@ void BodyLowering::lower(const For& node)
             if (type == uint_type) offset = builder.operation(Op::i_as_u, {offset});
             variables[plan.counter->slot] = {integer(Op::iadd, start, offset)};
             if (ends.may_leave())
-                choose(
-                    left(), changed, [] {}, [&] { statement(*node.body, {}); });
+                choose(left(), changed, [] {}, [&] { statement(*node.body, {}); });
             else if (node.body)
                 statement(*node.body, {});
             return gather(changed);

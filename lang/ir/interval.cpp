@@ -295,9 +295,7 @@ Interval value_of(Op op, std::span<const Interval> x)
     case Op::min: return {std::min(a.minimum, b.minimum), std::min(a.maximum, b.maximum)};
     case Op::max: return {std::max(a.minimum, b.minimum), std::max(a.maximum, b.maximum)};
     case Op::abs: return absolute(a);
-    case Op::sign:
-        return rising(
-            a, [](double v) { return semantics::sign(v); }, true);
+    case Op::sign: return rising(a, [](double v) { return semantics::sign(v); }, true);
     case Op::floor: return rounding(std::floor);
     case Op::ceil: return rounding(std::ceil);
     case Op::trunc: return rounding(std::trunc);

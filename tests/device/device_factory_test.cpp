@@ -55,8 +55,8 @@ TEST_CASE("requests out of range are refused, not simulated")
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
     for (const double bad : {nan, infinity, -1.0, 1e9}) {
         CAPTURE(bad);
-        for (double DeviceRequest::*const field : {&DeviceRequest::speed_m_per_s, &DeviceRequest::press_n,
-                                                   &DeviceRequest::rate_hz, &DeviceRequest::stylus_length_m}) {
+        for (double DeviceRequest::* const field : {&DeviceRequest::speed_m_per_s, &DeviceRequest::press_n,
+                                                    &DeviceRequest::rate_hz, &DeviceRequest::stylus_length_m}) {
             DeviceRequest request = request_on_plane("simulated:premium");
             request.*field = bad;
             CHECK(!error_of(request).empty());

@@ -139,9 +139,8 @@ TEST_CASE("builder: an index or a trip count is clamped where its making does no
     CHECK(indexed([](Builder& b, Value x, Value) { return b.operation(Op::iand, {x, b.i32(7)}); }));
     CHECK(indexed([](Builder& b, Value x, Value) { return b.operation(Op::irem, {x, b.i32(4)}); }));
     CHECK_FALSE(indexed([](Builder& b, Value x, Value) { return b.operation(Op::iand, {x, b.i32(3)}); }));
-    CHECK_FALSE(indexed([](Builder& b, Value, Value u) {
-        return b.operation(Op::u_as_i, {b.operation(Op::urem, {u, b.u32(4)})});
-    }));
+    CHECK_FALSE(indexed(
+        [](Builder& b, Value, Value u) { return b.operation(Op::u_as_i, {b.operation(Op::urem, {u, b.u32(4)})}); }));
     CHECK_FALSE(indexed([](Builder& b, Value, Value) { return b.i32(3); }));
     // 5 x & 3 of a loop's own counter
     Module module;

@@ -61,7 +61,7 @@ Norms largest_at(Weight (*weight)(double), size_t dimensions, const Vec3& x, con
 }
 
 // Random starts, random steps that shrink while nothing gets better.
-double supremum(double Norms::*which, Weight (*weight)(double), size_t dimensions)
+double supremum(double Norms::* which, Weight (*weight)(double), size_t dimensions)
 {
     std::mt19937_64 random(5);
     const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };

@@ -72,10 +72,8 @@ double correlation(const Field& a, const Field& b)
 
 TEST_CASE("fractals are what their comments say, and so are their gradients")
 {
-    check_definition(
-        "fbm", [](double b) { return b; }, [](double) { return 1.0; });
-    check_definition(
-        "turbulence", [](double b) { return std::abs(b); }, [](double b) { return b < 0 ? -1.0 : 1.0; });
+    check_definition("fbm", [](double b) { return b; }, [](double) { return 1.0; });
+    check_definition("turbulence", [](double b) { return std::abs(b); }, [](double b) { return b < 0 ? -1.0 : 1.0; });
     check_definition(
         "ridged", [](double b) { return (1 - std::abs(b)) * (1 - std::abs(b)); },
         [](double b) { return (b < 0 ? 2 : -2) * (1 - std::abs(b)); });

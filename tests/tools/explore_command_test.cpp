@@ -28,9 +28,9 @@ struct Stage {
     {
         folder.write("grooves.haptel", grooves);
         scene = folder.write(
-            "scene.toml", "[probe]\nkind = \"stylus\"\n[device]\n" + device +
-                              "\n[[object]]\nshape = \"icosphere\"\nsize_m = 0.1\ntexture = \"grooves.haptel:grooves\"\n" +
-                              object);
+            "scene.toml",
+            "[probe]\nkind = \"stylus\"\n[device]\n" + device +
+                "\n[[object]]\nshape = \"icosphere\"\nsize_m = 0.1\ntexture = \"grooves.haptel:grooves\"\n" + object);
     }
     std::string out(const std::string& name) const { return folder.file(name); }
 };
@@ -164,7 +164,7 @@ TEST_CASE("misuse of explore is exit code 2")
 TEST_CASE("an interrupt ends the run cleanly, with its report")
 {
     const Stage stage;
-    const Ran ran = run_command("explore " + stage.scene + " --json", "timeout --preserve-status -s INT 1");
+    const Ran ran = run_command("explore " + stage.scene + " --json", "timeout --preserve-status -s INT 5");
     CHECK(ran.code == 0);
     CHECK(json_of(ran)["state"] == "stopped");
 }
