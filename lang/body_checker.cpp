@@ -180,15 +180,14 @@ Symbol* BodyChecker::check_global(Declaration& declaration)
     check(scratch, declaration);
     Symbol* made = declared.empty() ? nullptr : declared.back();
     declared.clear(); // unread globals are nobody's mistake
-    if (!made || made->kind == SymbolKind::constant || made->kind == SymbolKind::table || made->type.is_error())
-        return made;
-    if (declaration.initializer && !declaration.initializer->type.is_error()) {
-        const Expression* culprit = first_not_constant(*declaration.initializer);
+    if (!made || made->kind != SymbolKind::local) return made;
+    const bool has_type = declaration.initializer && !declaration.initializer->type.is_error();
+    if (const Expression* culprit = has_type ? first_not_constant(*declaration.initializer) : nullptr)
         diagnostics
-            .error(culprit ? culprit->span : declaration.name.span, "not-constant",
+            .error(culprit->span, "not-constant",
                    "a global is constant, expected a value known when the texture is compiled")
             .hint = "literals, other constants and built-in functions of them are";
-    }
+    made->kind = SymbolKind::constant; // no variable of any body
     made->type = Type::error();
     return made;
 }
