@@ -45,6 +45,8 @@ public:
         texture = std::make_unique<jit::LiveTexture>(request, callbacks, options);
     }
 
+    ~Follower() { texture.reset(); } // before what its callbacks use
+
     bool comes_to(double um)
     {
         return comes_true([&] { return std::fabs(height_um - um) < 1e-9; });
