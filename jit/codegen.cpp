@@ -295,11 +295,15 @@ void ModuleEmitter::entry(const EntryPoint& point)
     store(yields[0], offsetof(haptel_sample, height_m));
     if (with_gradient) {
         for (size_t i = 0; i < 3; ++i) store(yields[1 + i], offsetof(haptel_sample, gradient) + i * sizeof(double));
-        llvm::Constant* one = llvm::ConstantFP::get(builder.getDoubleTy(), 1);
-        store(one, offsetof(haptel_sample, stiffness_scale));
-        store(one, offsetof(haptel_sample, friction_scale));
+        const std::pair<uint32_t, size_t> outputs[] = {
+            {HAPTEL_WRITES_STIFFNESS_SCALE, offsetof(haptel_sample, stiffness_scale)},
+            {HAPTEL_WRITES_FRICTION_SCALE, offsetof(haptel_sample, friction_scale)}};
+        size_t next = 5;
+        for (const auto& [bit, offset] : outputs)
+            store(point.texture->writes & bit ? yields[next++] : llvm::ConstantFP::get(builder.getDoubleTy(), 1),
+                  offset);
     }
-    store(yields.back(), offsetof(haptel_sample, faults));
+    store(yields[with_gradient ? 4 : 1], offsetof(haptel_sample, faults));
     builder.CreateRetVoid();
 }
 

@@ -4,6 +4,7 @@
 #include "lang/abi.h"
 #include "lang/ir/interpret.h"
 
+#include <array>
 #include <cstring>
 
 namespace haptel::jit {
@@ -40,6 +41,18 @@ void set_block(ir::EntryInputs<T>& inputs, const ir::Texture& texture, const voi
         case ir::Type::boolean: inputs.parameters.emplace_back(word != 0); break;
         }
     }
+}
+
+// Material outputs of a height_gradient entry, 1 where the texture does not write them: {stiffness, friction}.
+template <typename Results>
+auto material_outputs(const ir::Texture& texture, const Results& results)
+{
+    using Real = std::decay_t<decltype(results[0].real)>;
+    std::array<Real, 2> outputs{Real(1), Real(1)};
+    size_t next = 5;
+    for (size_t bit = 0; bit < outputs.size(); ++bit)
+        if (texture.writes >> bit & 1) outputs[bit] = results[next++].real;
+    return outputs;
 }
 
 } // namespace haptel::jit

@@ -47,6 +47,9 @@ OracleSample Oracle::sample(const haptel_point& point)
         sample.gradient_digits[i] = results[1 + i].real.str(digits);
     }
     sample.faults = results[4].bits;
+    const auto outputs = material_outputs(machine->texture, results);
+    sample.stiffness_digits = outputs[0].str(digits);
+    sample.friction_digits = outputs[1].str(digits);
     return sample;
 }
 
@@ -58,7 +61,8 @@ haptel_sample interpret_sample(const CompiledProgram& program, const TextureBind
     set_point(inputs, point);
     ir::Interpreter<double> interpreter(program.module());
     const auto results = interpreter.run(texture.height_gradient, {}, &inputs);
-    return {results[0].real, {results[1].real, results[2].real, results[3].real}, 1, 1, results[4].bits};
+    const auto [stiffness, friction] = material_outputs(texture, results);
+    return {results[0].real, {results[1].real, results[2].real, results[3].real}, stiffness, friction, results[4].bits};
 }
 
 } // namespace haptel::jit

@@ -13,6 +13,7 @@ struct OracleSample {
     double height_m = 0, gradient[3] = {}; // rounded to nearest
     uint32_t faults = 0;
     std::string height_digits, gradient_digits[3]; // 36 significant digits, in decimal; metres, metres per metre
+    std::string stiffness_digits, friction_digits; // the material outputs; "1" where the texture has none
 };
 
 // For one thread.

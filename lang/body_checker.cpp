@@ -157,6 +157,15 @@ void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
 {
     owner_name = tree.name.text;
     open_scope();
+    for (TextureParameter& parameter : tree.parameters) {
+        if (!parameter.is_output) continue;
+        const uint32_t bit = check_output(parameter);
+        Symbol& symbol = declare(parameter.name, SymbolKind::local, bit ? float_type : Type::error());
+        flow.variables[symbol.slot].assigned = 0xff; // 1 from the start
+        symbol.is_read = true;                       // by whoever called
+        if (bit) texture.outputs.push_back({&symbol, bit});
+    }
+    std::ranges::sort(texture.outputs, {}, &CheckedOutput::writes);
     for (size_t i = 0; i < texture.parameters.size(); ++i) {
         CheckedParameter& parameter = texture.parameters[i];
         Symbol& symbol = declare(parameter.tree->name, SymbolKind::texture_parameter, parameter.symbol->type);
@@ -167,6 +176,12 @@ void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
         parameter.symbol = &symbol;
     }
     whole_body(tree.body, tree.name, float_type, "texture", tree.damaged);
+    for (const CheckedOutput& output : texture.outputs)
+        if (!output.symbol->is_assigned && !is_library)
+            diagnostics
+                .warning(output.symbol->span, "unassigned-output",
+                         "output " + quoted(output.symbol->name) + " is never assigned: it is always 1")
+                .hint = "assign it in the body or leave it out";
     close_scope();
     texture.slot_count = static_cast<uint32_t>(flow.variables.size());
     texture.mentions = std::move(mentions);

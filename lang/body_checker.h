@@ -45,6 +45,9 @@ public:
     std::optional<double> check_constant(ast::Expression& e, Type type, const std::string& where);
 
 private:
+    // The bit of a material output, HAPTEL_WRITES_*; 0 once a mistake was reported. check_texture.cpp
+    uint32_t check_output(ast::TextureParameter& tree);
+
     struct Variable {
         uint8_t assigned = 0; // a bit per component
         ir::IntRange range{INT32_MIN, INT32_MAX};

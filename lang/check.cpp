@@ -208,7 +208,8 @@ private:
             CheckedTexture texture;
             texture.tree = &tree;
             for (TextureParameter& parameter : tree.parameters)
-                texture.parameters.push_back(check_texture_parameter(context, scope, parameter));
+                if (!parameter.is_output)
+                    texture.parameters.push_back(check_texture_parameter(context, scope, parameter));
             BodyChecker(context, scope, program.files[file].is_library).check_texture(tree, texture);
             if (file == 0) program.textures.push_back(std::move(texture));
         }

@@ -30,10 +30,17 @@ struct CheckedParameter {
     double maximum = std::numeric_limits<double>::infinity();
 };
 
+// "out float stiffness_scale": a variable of the body that is 1 until the body assigns it.
+struct CheckedOutput {
+    const Symbol* symbol = nullptr;
+    uint32_t writes = 0; // its bit, HAPTEL_WRITES_*
+};
+
 struct CheckedTexture {
     const ast::Texture* tree = nullptr;
     std::vector<CheckedParameter> parameters;
-    uint32_t slot_count = 0; // local variables
+    std::vector<CheckedOutput> outputs; // by bit
+    uint32_t slot_count = 0;            // local variables
     std::vector<FunctionInfo::Mention> mentions;
 };
 

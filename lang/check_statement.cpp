@@ -239,6 +239,7 @@ void BodyChecker::check(Statement& s, Assignment& node)
                 flow.variables[local->slot].assigned = 0xff;
         return;
     }
+    target.symbol->is_assigned = true;
     Variable& variable = flow.variables[target.symbol->slot];
     const auto operation = operation_of(node.op);
     if (!operation) {

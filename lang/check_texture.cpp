@@ -1,4 +1,5 @@
-// Parameters of textures: the numbers that applications and sliders set.
+// Parameters of textures: the numbers that applications and sliders set, and the material outputs.
+#include "lang/abi.h"
 #include "lang/body_checker.h"
 #include "lang/constant.h"
 
@@ -14,6 +15,12 @@ namespace {
 struct UnitName {
     std::string_view written, si;
 };
+struct OutputName {
+    std::string_view name;
+    uint32_t writes;
+};
+constexpr OutputName output_names[] = {{"stiffness_scale", HAPTEL_WRITES_STIFFNESS_SCALE},
+                                       {"friction_scale", HAPTEL_WRITES_FRICTION_SCALE}};
 constexpr UnitName units[] = {{"m", "m"},     {"cm", "m"}, {"mm", "m"}, {"um", "m"},  {"nm", "m"},  {"rad", "rad"},
                               {"deg", "rad"}, {"s", "s"},  {"ms", "s"}, {"Hz", "Hz"}, {"kHz", "Hz"}};
 
@@ -55,6 +62,34 @@ std::optional<double> BodyChecker::check_constant(Expression& e, Type type, cons
     return as_number(evaluate_constant(e, type).front(), type);
 }
 
+uint32_t BodyChecker::check_output(TextureParameter& tree)
+{
+    constexpr const char* names = "a texture may write 'out float stiffness_scale' and 'out float friction_scale'";
+    uint32_t bit = 0;
+    for (const OutputName& output : output_names)
+        if (output.name == tree.name.text) bit = output.writes;
+    if (bit == 0) {
+        Diagnostic& reported =
+            diagnostics.error(tree.name.span, "unknown-output", "unknown output " + quoted(tree.name.text));
+        const std::string_view nearest = nearest_name(tree.name.text, {output_names[0].name, output_names[1].name});
+        reported.hint = nearest.empty() ? names : "did you mean " + quoted(nearest) + "?";
+        if (!nearest.empty()) reported.fix = FixIt{tree.name.span, std::string(nearest)};
+    }
+    const Type type = resolve_type(context, tree.type);
+    if (!type.is_error() && (type != float_type || tree.type.is_array)) {
+        diagnostics.error(tree.type.base.span, "type-mismatch", "an output is a float").hint = names;
+        bit = 0;
+    }
+    if (tree.value || tree.minimum) {
+        diagnostics
+            .error((tree.value ? tree.value : tree.minimum)->span, "output-default",
+                   "an output has neither default nor range, expected ',' or ')' behind its name")
+            .hint = "it is 1 until the body assigns it: " + tree.name.text + " = ...;";
+        bit = 0;
+    }
+    return bit;
+}
+
 CheckedParameter check_texture_parameter(CheckContext& context, const FileScope& scope, TextureParameter& tree)
 {
     Diagnostics& diagnostics = context.diagnostics;
@@ -62,11 +97,6 @@ CheckedParameter check_texture_parameter(CheckContext& context, const FileScope&
     made.tree = &tree;
     Symbol& symbol = context.program.symbols.emplace_back();
     made.symbol = &symbol;
-    if (tree.is_output) {
-        diagnostics.error(tree.span, "not-supported", "outputs besides the height are not supported").hint =
-            "return the height; set stiffness and friction in the scene";
-        return made; // of no type: nothing more is said about it
-    }
     symbol.type = resolve_type(context, tree.type);
     const std::string name = quoted(tree.name.text);
     if (!symbol.type.is_error() && (symbol.type.is_vector() || symbol.type == void_type || tree.type.is_array)) {

@@ -83,8 +83,13 @@ void ModuleLowering::texture(const CheckedTexture& texture)
     lay_out(made, texture);
 
     BodyLowering body(*this, unique(made.name), texture.slot_count);
-    const Values height = body.whole_body(*texture.tree->body, float_type);
-    made.body = body.builder.finish(height);
+    for (const CheckedOutput& output : texture.outputs) {
+        body.variable(*output.symbol) = {body.builder.real(1)};
+        made.writes |= output.writes;
+    }
+    Values results = body.whole_body(*texture.tree->body, float_type);
+    for (const CheckedOutput& output : texture.outputs) results.push_back(body.variable(*output.symbol)[0]);
+    made.body = body.builder.finish(results);
     if (diagnostics.has_errors()) return;
     made.reads = reads_of(module.functions[made.body].body);
 

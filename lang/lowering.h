@@ -82,7 +82,7 @@ public:
     void value_parameter(Type type);
     void input_parameters(uint32_t reads);
     void bind_functions(const std::vector<FunctionReference>& passed) { functions = passed; }
-    void bind_texture(const CheckedTexture& texture) { texture_parameters = &texture.parameters; }
+    Values& variable(const Symbol& local) { return variables[local.slot]; }
 
     Values whole_body(const ast::Statement& body, Type result);
     Values converted(const ast::Expression& e, Type to);
@@ -146,7 +146,6 @@ private:
     std::vector<Values> variables; // by Symbol::slot, then the three of the flow
     uint32_t parameter_count = 0;
     std::vector<FunctionReference> functions; // parameters that are functions, by Symbol::slot
-    const std::vector<CheckedParameter>* texture_parameters = nullptr;
     Values passed_inputs[input_name_count];
     Type result_type;
     uint32_t region_depth = 0;

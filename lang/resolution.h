@@ -66,6 +66,7 @@ struct Symbol {
     const char* read_only = nullptr;       // why it cannot be assigned to, as a clause; null: it can
     bool is_parameter = false;             // of a function or texture, for messages
     bool is_read = false;
+    bool is_assigned = false; // behind its declaration
 };
 
 // A function that is called or passed: from source, built in, or a parameter of the function around the call.

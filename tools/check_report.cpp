@@ -49,6 +49,14 @@ std::vector<std::string> inputs_of(const ir::Texture& texture)
     return read;
 }
 
+std::vector<std::string> outputs_of(const ir::Texture& texture)
+{
+    std::vector<std::string> written;
+    if (texture.writes & HAPTEL_WRITES_STIFFNESS_SCALE) written.emplace_back("stiffness_scale");
+    if (texture.writes & HAPTEL_WRITES_FRICTION_SCALE) written.emplace_back("friction_scale");
+    return written;
+}
+
 Json number_of(const ir::Parameter& parameter, double value)
 {
     if (!std::isfinite(value)) return nullptr; // no range
@@ -100,6 +108,7 @@ Json to_json(const CheckedTexture& checked)
             {"doc", checked.texture->doc},
             {"parameters", std::move(parameters)},
             {"inputs", inputs_of(*checked.texture)},
+            {"outputs", outputs_of(*checked.texture)},
             {"height_m", to_json(checked.height_m)},
             {"slope_max", nullptr}, // null: not analysed
             {"curvature_max_per_m", nullptr},
@@ -200,11 +209,12 @@ std::string CheckReport::to_text() const
 {
     std::string text;
     for (const CheckedTexture& checked : textures) {
-        const std::vector<std::string> inputs = inputs_of(*checked.texture);
-        text += fmt::format("{}:{}: height {} .. {} in a cube of {}, at most {} operations, reads {}\n", checked.file,
+        const std::vector<std::string> inputs = inputs_of(*checked.texture), outputs = outputs_of(*checked.texture);
+        text += fmt::format("{}:{}: height {} .. {} in a cube of {}, at most {} operations, reads {}{}\n", checked.file,
                             checked.texture->name, shown_length(checked.height_m.minimum),
                             shown_length(checked.height_m.maximum), shown_length(box_m), operations_of(checked),
-                            inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")));
+                            inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")),
+                            outputs.empty() ? "" : fmt::format(", writes {}", fmt::join(outputs, ", ")));
     }
     return text;
 }

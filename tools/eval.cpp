@@ -31,11 +31,14 @@ struct EvalOptions {
 
 // What one engine says of one point: numbers as they are to be printed.
 struct Evaluated {
-    std::string height_m, gradient[3];
+    std::string height_m, gradient[3], stiffness_scale, friction_scale;
     uint32_t faults = 0;
 };
 
-using Engine = std::function<Evaluated(const haptel_point&)>;
+struct Engine {
+    std::function<Evaluated(const haptel_point&)> evaluate; // empty: what is wrong has been said
+    uint32_t writes = 0;                                    // HAPTEL_WRITES_* of the texture
+};
 
 std::string shortest(double value)
 {
@@ -46,11 +49,14 @@ Evaluated shown(const haptel_sample& sample)
 {
     return {shortest(sample.height_m),
             {shortest(sample.gradient[0]), shortest(sample.gradient[1]), shortest(sample.gradient[2])},
+            shortest(sample.stiffness_scale),
+            shortest(sample.friction_scale),
             sample.faults};
 }
 
-Engine make_engine(const std::string& name, const std::shared_ptr<const jit::CompiledProgram>& program,
-                   const TextureBinding& binding)
+std::function<Evaluated(const haptel_point&)> make_engine(const std::string& name,
+                                                          const std::shared_ptr<const jit::CompiledProgram>& program,
+                                                          const TextureBinding& binding)
 {
     if (name == "interpreter")
         return [=](const haptel_point& point) { return shown(jit::interpret_sample(*program, binding, point)); };
@@ -58,7 +64,11 @@ Engine make_engine(const std::string& name, const std::shared_ptr<const jit::Com
         return [oracle = std::make_shared<jit::Oracle>(program, binding)](const haptel_point& point) -> Evaluated {
             const jit::OracleSample sample = oracle->sample(point);
             const auto& g = sample.gradient_digits;
-            return {sample.height_digits, {g[0], g[1], g[2]}, sample.faults};
+            return {sample.height_digits,
+                    {g[0], g[1], g[2]},
+                    sample.stiffness_digits,
+                    sample.friction_digits,
+                    sample.faults};
         };
     return [=](const haptel_point& point) {
         haptel_sample sample{};
@@ -83,7 +93,7 @@ Engine open_engine(const EvalOptions& options)
 {
     const auto compiled = jit::ProgramCache::shared()->load(options.texture.file);
     fmt::print(stderr, "{}", compiled->rendered(stderr_has_color()));
-    if (!compiled->program) return nullptr;
+    if (!compiled->program) return {};
     TextureRequest request;
     request.parameters = options.parameters;
     request.footprint_m = options.footprint_m;
@@ -93,21 +103,29 @@ Engine open_engine(const EvalOptions& options)
     }
     TextureResult bound = jit::make_binding(compiled->program, options.texture.name, request, jit::Unbounded::allowed);
     fmt::print(stderr, "{}", bound.diagnostics);
-    return bound.binding ? make_engine(options.engine, compiled->program, *bound.binding) : nullptr;
+    if (!bound.binding) return {};
+    return {make_engine(options.engine, compiled->program, *bound.binding), bound.binding->texture->writes};
 }
 
 // Written by hand because the oracle's numbers have more digits than a JSON library's.
-void print_point(const EvalOptions& options, const Evaluated& point)
+void print_point(const EvalOptions& options, uint32_t writes, const Evaluated& point)
 {
+    std::string outputs; // only what the texture writes
+    const auto add_output = [&](uint32_t bit, const char* name, const std::string& value) {
+        if (writes & bit)
+            outputs += fmt::format(fmt::runtime(options.json ? "  \"{}\": {},\n" : "{} {}\n"), name, value);
+    };
+    add_output(HAPTEL_WRITES_STIFFNESS_SCALE, "stiffness_scale", point.stiffness_scale);
+    add_output(HAPTEL_WRITES_FRICTION_SCALE, "friction_scale", point.friction_scale);
     if (!options.json) {
-        fmt::print("height_m {}\ngradient {} {} {}\nfaults {}\n", point.height_m, point.gradient[0], point.gradient[1],
-                   point.gradient[2], point.faults);
+        fmt::print("height_m {}\ngradient {} {} {}\n{}faults {}\n", point.height_m, point.gradient[0],
+                   point.gradient[1], point.gradient[2], outputs, point.faults);
         return;
     }
     fmt::print("{{\n  \"file\": {},\n  \"name\": {},\n  \"engine\": \"{}\",\n  \"height_m\": {},\n"
-               "  \"gradient\": [{}, {}, {}],\n  \"faults\": {}\n}}\n",
+               "  \"gradient\": [{}, {}, {}],\n{}  \"faults\": {}\n}}\n",
                to_text(options.texture.file), to_text(options.texture.name), options.engine, point.height_m,
-               point.gradient[0], point.gradient[1], point.gradient[2], point.faults);
+               point.gradient[0], point.gradient[1], point.gradient[2], outputs, point.faults);
 }
 
 ExitCode run(const EvalOptions& options)
@@ -125,14 +143,14 @@ ExitCode run(const EvalOptions& options)
         }
     }
     const Engine engine = open_engine(options);
-    if (!engine) return ExitCode::findings;
+    if (!engine.evaluate) return ExitCode::findings;
     if (options.at_m) {
-        print_point(options, engine(point_at(options, *options.at_m)));
+        print_point(options, engine.writes, engine.evaluate(point_at(options, *options.at_m)));
         return ExitCode::fine;
     }
     fmt::print("{},height_m,gx,gy,gz\n", table.header);
     for (const PointTable::Row& row : table.rows) {
-        const Evaluated found = engine(point_at(options, row.p_m));
+        const Evaluated found = engine.evaluate(point_at(options, row.p_m));
         fmt::print("{},{},{},{},{}\n", row.text, found.height_m, found.gradient[0], found.gradient[1],
                    found.gradient[2]);
     }

@@ -52,6 +52,28 @@ uint32_t inputs_read(const Block& block)
     return bits;
 }
 
+// "Or" of u32, through signed words.
+Value either(Builder& builder, Value a, Value b)
+{
+    const Value bits =
+        builder.operation(Op::ior, {builder.operation(Op::u_as_i, {a}), builder.operation(Op::u_as_i, {b})});
+    return builder.operation(Op::i_as_u, {bits});
+}
+
+// Appends what the body yields behind the height, 1 and a fault where that is not finite. The faults end `results`.
+void material_outputs(Builder& builder, const DerivativeEmitter& emitter, std::span<const Value> yields,
+                      std::vector<Value>& results)
+{
+    const size_t faults = results.size() - 1;
+    for (Value yield : yields.subspan(1)) {
+        const Value output = emitter.primal(yield), is_fine = builder.operation(Op::is_finite, {output});
+        results.push_back(builder.operation(Op::select, {is_fine, output, builder.real(1)}));
+        const Value fault =
+            builder.operation(Op::select, {is_fine, builder.u32(0), builder.u32(HAPTEL_FAULT_OUTPUT_NOT_FINITE)});
+        results[faults] = either(builder, results[faults], fault);
+    }
+}
+
 } // namespace
 
 struct Differentiator::Memo {
@@ -153,12 +175,10 @@ void Differentiator::make_entries(Texture& texture)
                 results.push_back(builder.operation(Op::select, {all_fine, component, zero}));
             Value gradient_fault = builder.operation(
                 Op::select, {gradient_is_fine, builder.u32(0), builder.u32(HAPTEL_FAULT_GRADIENT_NOT_FINITE)});
-            // the bits are disjoint: either is an "or" through signed words
-            Value both = builder.operation(
-                Op::ior, {builder.operation(Op::u_as_i, {faults}), builder.operation(Op::u_as_i, {gradient_fault})});
-            faults = builder.operation(Op::i_as_u, {both});
+            faults = either(builder, faults, gradient_fault);
         }
         results.push_back(faults);
+        if (directions > 0) material_outputs(builder, emitter, source.body.yields, results);
         return builder.finish(results);
     };
     texture.height = make(0, texture.name + " height");

@@ -163,14 +163,15 @@ struct Parameter {
 
 // A texture and its entry functions. An entry has no parameters; it reads inputs and block.
 //   height:           results (height_m: real, faults: u32)
-//   height_gradient:  results (height_m, gx, gy, gz: real, faults: u32), height bit-equal to that of `height`
+//   height_gradient:  results (height_m, gx, gy, gz: real, faults: u32, then a real per bit of `writes`), height
+//                     bit-equal to that of `height`
 // Both test their results: no entry returns a value that is not finite (see HAPTEL_FAULT_*).
 struct Texture {
     std::string name, doc;
     std::vector<Parameter> parameters;
     uint32_t block_size = 0;
     uint32_t reads = 0, writes = 0; // HAPTEL_READS_*, HAPTEL_WRITES_*
-    uint32_t body = UINT32_MAX;     // entry function with one real result: the height as written, before the tests
+    uint32_t body = UINT32_MAX;     // entry function of real results: the height as written, before the tests; outputs
     uint32_t height = UINT32_MAX;
     uint32_t height_gradient = UINT32_MAX;
     Span span;

@@ -5,6 +5,7 @@
 #include "lang/ir/op_info.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace haptel::ir {
 namespace {
@@ -332,10 +333,15 @@ std::string verify(const Module& module)
     for (const Texture& texture : module.textures) {
         if (std::string problem = check_block(texture); !problem.empty()) return problem;
         const Type real = Type::real, faults = Type::u32;
-        const std::pair<uint32_t, std::vector<Type>> entries[] = {
+        if (texture.writes & ~(HAPTEL_WRITES_STIFFNESS_SCALE | HAPTEL_WRITES_FRICTION_SCALE))
+            return "texture \"" + texture.name + "\" writes outputs that do not exist";
+        std::pair<uint32_t, std::vector<Type>> entries[] = {
             {texture.body, {real}},
             {texture.height, {real, faults}},
             {texture.height_gradient, {real, real, real, real, faults}}};
+        for (size_t with_outputs : {0, 2})
+            entries[with_outputs].second.resize(
+                entries[with_outputs].second.size() + static_cast<size_t>(std::popcount(texture.writes)), real);
         for (const auto& [index, results] : entries) {
             if (std::string problem = check_entry(module, texture, index, results); !problem.empty()) return problem;
             if (index == UINT32_MAX) continue;

@@ -89,6 +89,43 @@ TEST_CASE("height and gradient are the closed form's, and parameters come from t
     check(0.001, 1e-5, 1, 1, 0);
 }
 
+TEST_CASE("material outputs: code, interpreter and closed form agree; the height is that of the texture without them")
+{
+    const std::string body = "friction_scale = 1.0 + 0.5 * sin(p.x / 1mm); if (p.y > 0.0) stiffness_scale = 1.0 / p.z; "
+                             "return 1mm * friction_scale; }\n";
+    const auto program = compiled("texture with(out float stiffness_scale, out float friction_scale) { " + body +
+                                  "texture without() { float friction_scale = 1.0, stiffness_scale = 1.0; " + body);
+    CHECK(program->find("with")->writes == (HAPTEL_WRITES_STIFFNESS_SCALE | HAPTEL_WRITES_FRICTION_SCALE));
+    CHECK(program->find("without")->writes == 0);
+    const TextureResult with = jit::make_binding(program, "with", request_over(0.05)),
+                        without = jit::make_binding(program, "without", request_over(0.05));
+    REQUIRE(with.binding);
+    REQUIRE(without.binding);
+    for (const std::array<double, 3>& p :
+         std::vector<std::array<double, 3>>{{0.0012, 0.1, 0.5}, {-0.003, -0.1, 0.5}, {0.002, 0.1, 0}}) {
+        const haptel_sample sample = sample_at(*with.binding, p), plain = sample_at(*without.binding, p);
+        const bool divides_by_zero = p[1] > 0 && p[2] == 0;
+        CHECK(sample.stiffness_scale == (p[1] > 0 && !divides_by_zero ? 1 / p[2] : 1));
+        CHECK(std::fabs(sample.friction_scale - (1 + 0.5 * std::sin(p[0] / 0.001))) <= 1e-15);
+        CHECK(sample.faults == (divides_by_zero ? uint32_t{HAPTEL_FAULT_OUTPUT_NOT_FINITE} : 0u));
+        CHECK((test::same(sample.height_m, plain.height_m) && test::same(sample.gradient[0], plain.gradient[0])));
+        CHECK((plain.stiffness_scale == 1 && plain.friction_scale == 1));
+        haptel_sample height_alone{};
+        haptel_point point{};
+        std::copy(p.begin(), p.end(), point.p);
+        with.binding->texture->height(&point, with.binding->block, &height_alone);
+        CHECK(test::same(height_alone.height_m, sample.height_m));
+        CHECK(height_alone.faults == 0); // of the height only
+        const haptel_sample slow = jit::interpret_sample(*program, *with.binding, point);
+        CHECK((test::same(slow.stiffness_scale, sample.stiffness_scale) &&
+               test::same(slow.friction_scale, sample.friction_scale)));
+        CHECK(slow.faults == sample.faults);
+        const jit::OracleSample truth = jit::Oracle(program, *with.binding).sample(point);
+        CHECK(std::fabs(std::stod(truth.friction_digits) - sample.friction_scale) <= 1e-15);
+        CHECK(std::stod(truth.stiffness_digits) == sample.stiffness_scale);
+    }
+}
+
 TEST_CASE("values that do not fit are refused with the mending")
 {
     const auto program = compiled(grooves);

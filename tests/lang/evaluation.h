@@ -19,6 +19,7 @@ struct Sample {
     double height = 0;
     std::array<double, 3> gradient{};
     uint32_t faults = 0;
+    std::vector<double> outputs; // material outputs that the texture writes, in the order of HAPTEL_WRITES_*
 };
 
 // Of the last texture in `source`. What does not compile fails the test with its diagnostics.

@@ -187,3 +187,19 @@ TEST_CASE("verify: operations are counted at their worst")
     CHECK(operations_max(module, 0) == 1 + 2 + 1 + 5 * (2 + 1));
     CHECK(operations_max(module, 1) == 2 * (19 + 1));
 }
+
+TEST_CASE("verify: an entry returns as many material outputs as its texture writes")
+{
+    const auto with = [](const std::string& writes) {
+        return verify(parsed(R"(
+        function "b" () { %h = real 0 %s = real 1 return %h, %s }
+        function "hg" () { %h = real 0 %s = real 1 %f = u32 0 return %h, %h, %h, %h, %f, %s }
+        texture "t" { block 56 reads 0 writes )" +
+                             writes + " body \"b\" height_gradient \"hg\" }"));
+    };
+    CHECK(with("1") == "");
+    CHECK(with("2") == "");
+    CHECK(with("0").find("wrong results") != std::string::npos);
+    CHECK(with("3").find("wrong results") != std::string::npos);
+    CHECK(with("4") == "texture \"t\" writes outputs that do not exist");
+}

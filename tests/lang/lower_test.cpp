@@ -1,4 +1,5 @@
 // What programs mean: source in, values out. The truth is arithmetic done by hand or by C++ beside the expectation.
+#include "lang/abi.h"
 #include "tests/lang/evaluation.h"
 #include "tests/support/catch.h"
 
@@ -440,4 +441,37 @@ TEST_CASE("lower: the gradient passes through calls, loops and hidden inputs")
     CHECK(sample.gradient[0] == 3 * 9.0);
     CHECK(sample.gradient[1] == 3 * 2.0 * 6.0);
     CHECK(sample.gradient[2] == std::cos(5.0));
+}
+
+TEST_CASE("lower: material outputs are 1 where the path taken does not assign them, and never not finite")
+{
+    const std::string source = R"(
+        texture t(out float friction_scale, out float stiffness_scale)
+        {
+            if (p.x < 0.0) return p.y; // before any assignment
+            friction_scale = 2.0 + p.x;
+            for (int i = 0; i < 4; ++i) {
+                if (p.x > 2.0) break;
+                stiffness_scale *= 2.0;
+            }
+            if (p.x > 5.0) friction_scale = log(p.y);
+            return p.x * p.y;
+        })";
+    const auto at = [&](double x, double y) {
+        Inputs inputs;
+        inputs.p = {x, y, 0};
+        return evaluate(source, inputs);
+    };
+    const std::vector<double> untouched{1, 1}, doubled{16, 3}, left{1, 5};
+    CHECK(at(-1, 7).outputs == untouched);
+    CHECK(at(-1, 7).height == 7);
+    CHECK(at(1, 7).outputs == doubled); // stiffness first, whatever the order of declaration
+    CHECK(at(1, 7).height == 7);
+    CHECK(at(1, 7).gradient == std::array{7.0, 1.0, 0.0});
+    CHECK(at(3, 7).outputs == left);
+    const Sample faulty = at(6, -1);
+    CHECK(faulty.outputs == untouched);
+    CHECK(faulty.faults == HAPTEL_FAULT_OUTPUT_NOT_FINITE);
+    CHECK(faulty.height == -6);
+    CHECK(faulty.gradient == std::array{-1.0, 6.0, 0.0});
 }

@@ -41,6 +41,21 @@ TEST_CASE("eval gives height and gradient of a plane, parameters set")
     CHECK(std::fabs(inputs["height_m"].get<double>() - (0.002 + 0.0001 + 0.001)) <= 1e-17);
 }
 
+TEST_CASE("eval shows the material outputs that a texture writes, and no others")
+{
+    const Folder folder;
+    const std::string file = folder.write(
+        "sticky.haptel", "texture sticky(out float friction_scale) { friction_scale = 1.5; return 0.0; }\n");
+    for (const std::string engine : {"jit", "interpreter", "oracle"}) {
+        const Json json = json_of(run_command("eval '" + file + ":sticky' --at 0,0,0 --json --engine " + engine));
+        CHECK(json["friction_scale"] == 1.5);
+        CHECK(!json.contains("stiffness_scale"));
+    }
+    CHECK(contains(run_command("eval '" + file + ":sticky' --at 0,0,0").out, "friction_scale 1.5\n"));
+    const Json report = json_of(run_command("check '" + file + "' --json"));
+    CHECK(report["textures"][0]["outputs"] == Json::array({"friction_scale"}));
+}
+
 TEST_CASE("the interpreter agrees to the bit, the oracle prints 36 digits")
 {
     const Folder folder;
