@@ -41,8 +41,8 @@ Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
         diagnostics.error(name.span, "reserved-name", quoted(name.text) + " is a type, expected a name of your own");
     }
     const size_t depth = scope_marks.size();
-    if (const Symbol* other = find_local(name.text); other && by_name.find(name.text)->second.back().depth == depth) {
-        mark_read(name.text);
+    if (Symbol* other = find_local(name.text); other && by_name.find(name.text)->second.back().depth == depth) {
+        other->is_read = other->is_assigned = true; // whichever was meant
         diagnostics.error(name.span, "duplicate-name", quoted(name.text) + " is declared twice in one block")
             .related.push_back({other->span, "first declared here"});
     }
