@@ -2,6 +2,7 @@
 #include "lang/abi.h"
 #include "lang/body_checker.h"
 #include "lang/constant.h"
+#include "lang/number.h"
 
 #include <cmath>
 #include <functional>
@@ -12,25 +13,17 @@ using namespace ast;
 
 namespace {
 
-struct UnitName {
-    std::string_view written, si;
-};
 struct OutputName {
     std::string_view name;
     uint32_t writes;
 };
 constexpr OutputName output_names[] = {{"stiffness_scale", HAPTEL_WRITES_STIFFNESS_SCALE},
                                        {"friction_scale", HAPTEL_WRITES_FRICTION_SCALE}};
-constexpr UnitName units[] = {{"m", "m"},     {"cm", "m"}, {"mm", "m"}, {"um", "m"},  {"nm", "m"},  {"rad", "rad"},
-                              {"deg", "rad"}, {"s", "s"},  {"ms", "s"}, {"Hz", "Hz"}, {"kHz", "Hz"}};
 
 // SI unit of the first literal that has one.
 std::string unit_in(const Expression& e)
 {
-    if (auto literal = std::get_if<NumberLiteral>(&e.node)) {
-        for (const UnitName& unit : units)
-            if (unit.written == literal->unit) return std::string(unit.si);
-    }
+    if (auto literal = std::get_if<NumberLiteral>(&e.node)) return std::string(si_unit(literal->unit));
     if (auto unary = std::get_if<Unary>(&e.node)) return unit_in(*unary->operand);
     if (auto chain = std::get_if<Chain>(&e.node)) {
         std::string unit = unit_in(*chain->first);

@@ -1,6 +1,7 @@
 #include "lang/compile.h"
 
 #include "lang/check.h"
+#include "lang/check_dimensions.h"
 #include "lang/ir/verify.h"
 #include "lang/lower.h"
 #include "lang/parser.h"
@@ -145,6 +146,7 @@ CompileResult compile(SourceFile main, const CompileOptions& options)
                 reported.hint = "did you mean '" + std::string(nearest) + "'?";
         }
     }
+    if (!diagnostics.has_errors()) check_dimensions(result.sources, checked, diagnostics);
     if (!diagnostics.has_errors()) {
         auto program = std::make_shared<Program>();
         program->module = lower(checked, options.only_texture, diagnostics);
@@ -152,11 +154,13 @@ CompileResult compile(SourceFile main, const CompileOptions& options)
         if (!broken.empty()) // a mistake of ours; the program must not run all the same
             diagnostics.error({}, "internal-error",
                               "the compiler made a program that does not pass its own check: " + broken);
+        if (options.strict) diagnostics.make_warnings_errors();
         if (!diagnostics.has_errors()) {
             program->sources = result.sources;
             result.program = std::move(program);
         }
     }
+    if (options.strict) diagnostics.make_warnings_errors();
     diagnostics.sort_by_place();
     return result;
 }

@@ -23,6 +23,7 @@ struct CompileOptions {
     std::vector<SourceFile> library; // visible everywhere without import; normally stdlib's
     ImportLoader load_import;        // empty: imports are errors
     std::string_view only_texture;   // compile entries of this texture alone; empty: of all in the main file
+    bool strict = false;             // warnings are errors
 };
 
 struct Program {

@@ -66,6 +66,15 @@ Diagnostic& Diagnostics::add(Severity severity, Span span, std::string code, std
     return items.back();
 }
 
+void Diagnostics::make_warnings_errors()
+{
+    for (Diagnostic& item : items)
+        if (item.severity == Severity::warning) {
+            item.severity = Severity::error;
+            ++error_count;
+        }
+}
+
 void Diagnostics::sort_by_place()
 {
     const auto place = [](const Diagnostic& d) { return std::tuple(d.span.file, d.span.begin, d.span.end); };

@@ -45,6 +45,7 @@ public:
     bool full() const { return error_count >= error_limit; } // front-end stages may stop early
     uint32_t reports() const { return report_count; }        // errors so far, those that were dropped included
     const std::vector<Diagnostic>& all() const { return items; }
+    void make_warnings_errors();
     void sort_by_place(); // file, line, column; called once before showing
 
     uint32_t error_limit = 50;

@@ -17,9 +17,11 @@ namespace {
 struct Unit {
     std::string_view name;
     int power_of_ten;
+    std::string_view si;
 };
-constexpr Unit units[] = {{"m", 0},   {"cm", -2}, {"mm", -3}, {"um", -6}, {"nm", -9}, {"rad", 0},
-                          {"deg", 0}, {"s", 0},   {"ms", -3}, {"Hz", 0},  {"kHz", 3}};
+constexpr Unit units[] = {{"m", 0, "m"},   {"cm", -2, "m"},   {"mm", -3, "m"},   {"um", -6, "m"},
+                          {"nm", -9, "m"}, {"rad", 0, "rad"}, {"deg", 0, "rad"}, {"s", 0, "s"},
+                          {"ms", -3, "s"}, {"Hz", 0, "Hz"},   {"kHz", 3, "Hz"}};
 constexpr std::string_view unit_list = "units are m, cm, mm, um, nm, deg, rad, s, ms, Hz and kHz";
 
 // pi/180 = digits * 10^-51
@@ -181,6 +183,13 @@ Number read_number(std::string_view text)
         number.value = std::numeric_limits<double>::max();
     }
     return number;
+}
+
+std::string_view si_unit(std::string_view unit)
+{
+    for (const Unit& known : units)
+        if (known.name == unit) return known.si;
+    return {};
 }
 
 } // namespace haptel::lang

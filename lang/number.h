@@ -22,4 +22,7 @@ struct Number {
 // `error`.
 Number read_number(std::string_view text);
 
+// The SI unit behind a unit as written: "m" for "mm", "rad" for "deg"; empty if there is no such unit.
+std::string_view si_unit(std::string_view unit);
+
 } // namespace haptel::lang

@@ -167,7 +167,7 @@ TEST_CASE("compile: the library is seen by all, lowered only where it is reached
                                 "sin(q.x); }\nconst float K = 2.0;\n"},
         {"library/over.haptel",
          "float over(vec3 q) { return K * base(q); }\nfloat never(vec3 q, float unused) { return q.x; }\n"}};
-    CompileResult result = compile({"main.haptel", "texture t() { return over(p); }"}, options);
+    CompileResult result = compile({"main.haptel", "texture t() { return 1mm * over(p / 1mm); }"}, options);
     REQUIRE(result.program);
     CHECK(result.diagnostics.all().empty()); // no warnings about what is not the user's
     CHECK(result.files == std::vector<std::string>{"main.haptel"});
