@@ -113,7 +113,7 @@ Dimension DimensionBody::call(const Expression& e, const std::string& name, cons
                 report(values[made.argument]->span, name + "() expects numbers of one dimension, got " +
                                                         description(made.expected) + " and " + description(found));
             const auto bare = std::find_if(values.begin(), values.begin() + made.argument,
-                                           [](const Expression* value) { return is_bare_number(*value); });
+                                           [](const Expression* value) { return bare_number(*value) != nullptr; });
             const bool mends_earlier = bare != values.begin() + made.argument && made.expected.is_plain();
             if (finding && mends_earlier)
                 propose(*finding, **bare, found, made.expected);

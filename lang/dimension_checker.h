@@ -163,8 +163,8 @@ private:
     Span returned_at; // a value of the result's dimension
 };
 
-// A literal without a unit, perhaps with a sign: it may have been meant in any.
-bool is_bare_number(const ast::Expression& e);
+// The literal that `e` is, without a unit and perhaps with a sign: it may have been meant in any. Null: it is none.
+const ast::Expression* bare_number(const ast::Expression& e);
 
 // "a length, a length and a plain number"
 std::string description(std::span<const Dimension> dimensions);

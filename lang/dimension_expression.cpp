@@ -35,12 +35,11 @@ std::string mismatch(BinaryOp op, Dimension left, Dimension right)
 
 } // namespace
 
-bool is_bare_number(const Expression& e)
+const Expression* bare_number(const Expression& e)
 {
-    if (auto unary = std::get_if<Unary>(&e.node))
-        return unary->op != UnaryOp::logical_not && is_bare_number(*unary->operand);
+    if (auto unary = std::get_if<Unary>(&e.node)) return bare_number(*unary->operand);
     auto literal = std::get_if<NumberLiteral>(&e.node);
-    return literal && literal->unit.empty();
+    return literal && literal->unit.empty() ? &e : nullptr;
 }
 
 Dimension DimensionBody::expression(const Expression& e)
@@ -51,7 +50,7 @@ Dimension DimensionBody::expression(const Expression& e)
     --owner.nesting;
     // Whole numbers and truth values count: only the literal 0 may stand for a length too.
     const bool counts = e.type == int_type || e.type == uint_type || e.type == bool_type;
-    return counts && !is_bare_number(e) ? Dimension::plain() : found;
+    return counts && !bare_number(e) ? Dimension::plain() : found;
 }
 
 Dimension DimensionBody::find(const Expression&, const ErrorExpression&)
@@ -141,7 +140,7 @@ Dimension DimensionBody::binary(BinaryOp op, Dimension left, Dimension right, Sp
     const auto both = join(left, right);
     if (!both)
         if (auto finding = report(whole, mismatch(op, left, right))) {
-            if (left_side && is_bare_number(*left_side))
+            if (left_side && bare_number(*left_side))
                 propose(*finding, *left_side, right, left);
             else
                 propose(*finding, right_side, left, right);
@@ -158,7 +157,7 @@ Dimension DimensionBody::find(const Expression& e, const Conditional& node)
     if (!both)
         if (auto finding = report(e.span, "both sides of ':' must have one dimension, found " + description(a) +
                                               " and " + description(b))) {
-            const bool mend_first = is_bare_number(*node.when_true);
+            const bool mend_first = bare_number(*node.when_true) != nullptr;
             propose(*finding, mend_first ? *node.when_true : *node.when_false, mend_first ? b : a, mend_first ? a : b);
         }
     return both.value_or(Dimension::any());
@@ -229,11 +228,13 @@ void DimensionBody::propose(DimensionFinding& finding, const Expression& e, Dime
     }
     if (!found.is_plain()) return;
     const std::string unit(literal_unit(expected));
-    if (is_bare_number(e) && !unit.empty()) {
+    const Expression* literal = bare_number(e);
+    if (literal && !unit.empty()) {
+        const std::string number(owner.sources.text(literal->span));
         finding.hint = "give the number a unit";
-        if (!takes_unit(text)) return;
-        finding.fix = FixIt{e.span, text + unit};
-        finding.hint += ": " + text + unit + ", if that is what it means";
+        if (!takes_unit(number)) return;
+        finding.fix = FixIt{literal->span, number + unit};
+        finding.hint += ": " + number + unit + ", if that is what it means";
     } else if (expected == Dimension::length()) {
         finding.hint = "multiply it by a length, for example 50um";
     } else if (expected == Dimension::time()) {

@@ -27,9 +27,10 @@ struct CheckOptions {
     bool strict = false, fix = false, json = false;
 };
 
-lang::CompileResult compile_file(const std::string& path)
+lang::CompileResult compile_file(const std::string& path, bool strict)
 {
     lang::CompileOptions options;
+    options.strict = strict;
     for (const stdlib::LibraryFile& file : stdlib::library())
         options.library.push_back({std::string(file.name), std::string(file.text)});
     options.load_import = jit::load_beside;
@@ -92,7 +93,7 @@ lang::CompileResult CheckRun::fix(const std::string& path, lang::CompileResult r
             break;
         }
         applied += fixed.applied;
-        result = compile_file(path);
+        result = compile_file(path, options.strict);
     }
     if (applied > 0) fmt::print(stderr, "{}: {} fixed\n", path, applied);
     return result;
@@ -126,7 +127,7 @@ std::vector<double> CheckRun::values_of(const std::string& path, const ir::Textu
 
 void CheckRun::check(const std::string& path)
 {
-    lang::CompileResult result = compile_file(path);
+    lang::CompileResult result = compile_file(path, options.strict);
     if (options.fix) result = fix(path, std::move(result));
     fmt::print(stderr, "{}", lang::render(result.diagnostics.all(), result.sources, stderr_has_color()));
     report.add(result);
@@ -164,8 +165,7 @@ ExitCode run(const CheckOptions& options)
         print_json(report.to_json());
     else
         fmt::print("{}", report.to_text());
-    const size_t errors = report.count(lang::Severity::error), warnings = report.count(lang::Severity::warning);
-    return errors > 0 || (options.strict && warnings > 0) ? ExitCode::findings : ExitCode::fine;
+    return report.count(lang::Severity::error) > 0 ? ExitCode::findings : ExitCode::fine;
 }
 
 } // namespace
@@ -178,7 +178,7 @@ Command check_command(CLI::App& app)
     command->add_option("files", options->files, "Texture files")->required()->type_name("FILE");
     add_length(*command, "--box", options->box_m, "Side of the cube round the origin that bounds are for [0.2m]");
     add_parameters(*command, options->parameters);
-    command->add_flag("--strict", options->strict, "Warnings count as errors");
+    command->add_flag("--strict", options->strict, "Warnings are errors");
     command->add_flag("--fix", options->fix, "Write what the compiler proposes into the files");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel check rock.haptel\n"
