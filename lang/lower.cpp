@@ -2,6 +2,7 @@
 #include "lang/lower.h"
 
 #include "lang/abi.h"
+#include "lang/ir/point_derivative.h"
 #include "lang/ir/verify.h"
 #include "lang/lowering.h"
 
@@ -115,6 +116,7 @@ ir::Module lower(const CheckedProgram& program, std::string_view only_texture, D
     ModuleLowering lowering(module, diagnostics);
     for (const CheckedTexture& texture : program.textures)
         if (only_texture.empty() || texture.tree->name.text == only_texture) lowering.texture(texture);
+    ir::remove_unresolved(module);
     return module;
 }
 

@@ -40,6 +40,16 @@ public:
     Value isinf(Parts x) { return make(Op::land, equal(x[0], x[0]), no(builder.operation(Op::is_finite, {x[0]}))); }
 
     Values length(Whole x) { return {length_of(x[0])}; }
+    Values stretch(Whole x)
+    {
+        Values rows;
+        for (Value part : x[0]) {
+            Values row;
+            for (uint32_t axis = 0; axis < 3; ++axis) row.push_back(builder.point_derivative(axis, part));
+            rows.push_back(length_of(row));
+        }
+        return {rows.size() == 1 ? rows[0] : length_of(rows)};
+    }
     Values distance(Whole x)
     {
         Values difference;

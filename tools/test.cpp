@@ -25,7 +25,7 @@ namespace {
 
 struct TestOptions {
     std::vector<std::string> paths;
-    double box_m = 0.05;
+    double box_m = 0.05, footprint_m = 0;
     uint32_t points = jit::default_check_points;
     uint64_t seed = 1;
     bool json = false;
@@ -80,6 +80,7 @@ public:
             box.minimum_m[i] = request.box_minimum_m[i] = -options.box_m / 2;
             box.maximum_m[i] = request.box_maximum_m[i] = options.box_m / 2;
         }
+        request.footprint_m = options.footprint_m;
     }
 
     void test(const Target& target);
@@ -161,6 +162,8 @@ Command test_command(CLI::App& app)
         ->required()
         ->type_name("PATH");
     add_length(*command, "--box", options->box_m, "Side of the cube of test points round the origin [50mm]");
+    add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
+               LengthRange::not_negative);
     command->add_option("--points", options->points, "Points per texture")
         ->check(CLI::Range(1, 10'000'000))
         ->capture_default_str();

@@ -65,6 +65,10 @@ private:
             for (size_t p = 0; p < made.operands.size(); ++p)
                 if (depends[r][p]) flow(made.operands[p], made.results[r]);
     }
+    void visit(const Instruction& made, const PointDerivative&)
+    {
+        if (callees.point_derivatives == PointDerivatives::vary) flow(made.operands[0], made.results[0]);
+    }
     void visit(const Instruction& made, const If& choice)
     {
         for (const Block& arm : choice.arms) {
@@ -111,6 +115,12 @@ bool Activity::add(Value value, Value from)
     for (size_t d = 0; d < width; ++d)
         if ((*this)(from, d)) is_new |= set(value, d);
     return is_new;
+}
+
+void Activity::add(Value value, const Activity& other)
+{
+    for (size_t d = 0; d < width; ++d)
+        if (other(value, d)) set(value, d);
 }
 
 const Dependence& Dependences::of(uint32_t function)

@@ -18,6 +18,7 @@ public:
     // True if that is new.
     bool set(Value value, size_t direction);
     bool add(Value value, Value from);
+    void add(Value value, const Activity& other); // the bits it has there
 
 private:
     size_t width;
@@ -27,11 +28,19 @@ private:
 // dependence[result][parameter]: may the derivative of the result with respect to the parameter differ from zero?
 using Dependence = std::vector<std::vector<bool>>;
 
+// Does a derivative with respect to the point have a derivative of its own, or does it count as a constant?
+enum class PointDerivatives : uint8_t { vary, constant };
+
 // The dependences of all functions of a module, worked out as they are asked for.
 class Dependences {
 public:
-    explicit Dependences(const Module& whole) : module(whole) {}
+    explicit Dependences(const Module& whole, PointDerivatives what = PointDerivatives::vary)
+        : point_derivatives(what), module(whole)
+    {
+    }
     const Dependence& of(uint32_t function);
+
+    const PointDerivatives point_derivatives;
 
 private:
     const Module& module;

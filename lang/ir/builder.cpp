@@ -19,7 +19,18 @@ bool commutes(Op op)
            op == Op::umax;
 }
 
-enum KeyKind : uint32_t { operation, real, integer, boolean_, input_, parameter_, table_, call_, link };
+enum KeyKind : uint32_t {
+    operation,
+    real,
+    integer,
+    boolean_,
+    input_,
+    parameter_,
+    table_,
+    call_,
+    point_derivative_,
+    link
+};
 
 InstructionKey key_of(KeyKind kind, uint64_t payload, std::span<const Value> operands)
 {
@@ -220,6 +231,14 @@ Value Builder::operation(Op op, std::span<const Value> operands)
 Value Builder::operation(Op op, std::initializer_list<Value> operands)
 {
     return operation(op, std::span<const Value>(operands.begin(), operands.size()));
+}
+
+Value Builder::point_derivative(uint32_t axis, Value of)
+{
+    if (real_constant(of)) return real(0);
+    const Type type = Type::real;
+    return state->emit(key_of(KeyKind::point_derivative_, axis, {&of, 1}), {PointDerivative{axis}, {of}, {}, span},
+                       {&type, 1});
 }
 
 std::vector<Value> Builder::call(uint32_t function, std::span<const Value> arguments)

@@ -30,6 +30,7 @@ public:
     Value table(uint32_t table, Value index); // index in range; see clamp_index
     Value operation(Op op, std::span<const Value> operands);
     Value operation(Op op, std::initializer_list<Value> operands);
+    Value point_derivative(uint32_t axis, Value of);
     std::vector<Value> call(uint32_t function, std::span<const Value> arguments);
 
     // Both arms run `build`, which returns the values to yield (same number and types in both).

@@ -15,45 +15,14 @@ Input input_derivative(Input input, size_t axis)
     return input <= Input::n_z ? row(Input::n_dp_00, Input::n_x) : row(Input::uv_dp_00, Input::uv_x);
 }
 
-// How the derivative of a callee is had at a call: by its Jacobian with respect to the `columns`, and the chain rule
-// here, or by passing the tangents on, whatever needs fewer directions inside the callee.
-struct CallPlan {
-    std::vector<size_t> columns; // active arguments that a result depends on
-    bool by_jacobian = true;
-    Seeds seeds;
-};
-
-CallPlan plan_call(const Instruction& made, const Dependence& depends, const Activity& activity)
-{
-    CallPlan plan;
-    for (size_t p = 0; p < made.operands.size(); ++p) {
-        auto reads_it = [&](const std::vector<bool>& row) { return static_cast<bool>(row[p]); };
-        if (activity.any(made.operands[p]) && std::any_of(depends.begin(), depends.end(), reads_it))
-            plan.columns.push_back(p);
-    }
-    plan.by_jacobian = plan.columns.size() <= activity.directions();
-    const size_t directions = plan.by_jacobian ? plan.columns.size() : activity.directions();
-    plan.seeds.assign(made.operands.size(), std::vector<Seed>(directions, Seed::none));
-    for (size_t column = 0; column < plan.columns.size(); ++column) {
-        size_t p = plan.columns[column];
-        if (plan.by_jacobian) {
-            plan.seeds[p][column] = Seed::unit;
-            continue;
-        }
-        for (size_t d = 0; d < directions; ++d)
-            if (activity(made.operands[p], d)) plan.seeds[p][d] = Seed::given;
-    }
-    return plan;
-}
-
 // The calls of a function that need a derivative of the callee.
-void collect_calls(const Block& block, Dependences& callees, const Activity& activity,
-                   std::vector<std::pair<uint32_t, Seeds>>& wanted)
+void collect_calls(const Block& block, Callees& callees, const Activity& activity,
+                   std::vector<std::pair<uint32_t, CallPlan>>& wanted)
 {
     for (const Instruction& made : block.instructions) {
         if (auto* call = std::get_if<Call>(&made.kind)) {
-            CallPlan plan = plan_call(made, callees.of(call->function), activity);
-            if (!plan.columns.empty()) wanted.emplace_back(call->function, std::move(plan.seeds));
+            CallPlan plan = callees.plan(made, activity);
+            if (plan.how != CallPlan::How::plain) wanted.emplace_back(call->function, std::move(plan));
         }
         if (auto* choice = std::get_if<If>(&made.kind))
             for (const Block& arm : choice->arms) collect_calls(arm, callees, activity, wanted);
@@ -69,12 +38,37 @@ bool input_is_active(Input input, size_t axis)
     return input <= Input::uv_y;
 }
 
-DerivativeEmitter::DerivativeEmitter(const Function& source, const Activity& active, Dependences& dependences,
-                                     const FindDerivative& derivative)
+CallPlan plan_call(const Instruction& call, const Dependence& depends, const Activity& activity, bool callee_asks)
+{
+    CallPlan plan;
+    auto is_active = [&](Value result) { return activity.any(result); };
+    if (std::none_of(call.results.begin(), call.results.end(), is_active)) return plan;
+    for (size_t p = 0; p < call.operands.size(); ++p) {
+        auto reads_it = [&](const std::vector<bool>& row) { return static_cast<bool>(row[p]); };
+        if (activity.any(call.operands[p]) && std::any_of(depends.begin(), depends.end(), reads_it))
+            plan.columns.push_back(p);
+    }
+    if (plan.columns.empty()) return plan;
+    const bool by_jacobian = plan.columns.size() <= activity.directions() && !callee_asks;
+    plan.how = by_jacobian ? CallPlan::How::jacobian : CallPlan::How::tangents;
+    const size_t directions = by_jacobian ? plan.columns.size() : activity.directions();
+    plan.seeds.assign(call.operands.size(), std::vector<Seed>(directions, Seed::none));
+    for (size_t column = 0; column < plan.columns.size(); ++column) {
+        size_t p = plan.columns[column];
+        if (by_jacobian) {
+            plan.seeds[p][column] = Seed::unit;
+            continue;
+        }
+        for (size_t d = 0; d < directions; ++d)
+            if (activity(call.operands[p], d)) plan.seeds[p][d] = Seed::given;
+    }
+    return plan;
+}
+
+DerivativeEmitter::DerivativeEmitter(const Function& source, const Activity& active, Callees& called)
     : function(source)
     , activity(active)
-    , callees(dependences)
-    , find_derivative(derivative)
+    , callees(called)
     , primals(source.value_types.size())
     , tangents(source.value_types.size() * active.directions())
 {
@@ -82,9 +76,9 @@ DerivativeEmitter::DerivativeEmitter(const Function& source, const Activity& act
 
 void DerivativeEmitter::prepare(const Block& block)
 {
-    std::vector<std::pair<uint32_t, Seeds>> wanted;
+    std::vector<std::pair<uint32_t, CallPlan>> wanted;
     collect_calls(block, callees, activity, wanted);
-    for (const auto& [callee, seeds] : wanted) find_derivative(callee, seeds);
+    for (const auto& [callee, plan] : wanted) callees.derivative(callee, plan);
 }
 
 void DerivativeEmitter::emit(Builder& builder, const Block& block)
@@ -201,14 +195,14 @@ void DerivativeEmitter::copy(Builder& builder, const Instruction& made, const Re
 
 void DerivativeEmitter::copy(Builder& builder, const Instruction& made, const Call& call)
 {
-    CallPlan plan = plan_call(made, callees.of(call.function), activity);
+    CallPlan plan = callees.plan(made, activity);
     std::vector<Value> arguments = primals_of(made.operands);
-    if (plan.columns.empty()) {
+    if (plan.how == CallPlan::How::plain) {
         std::vector<Value> results = builder.call(call.function, arguments);
         for (size_t r = 0; r < made.results.size(); ++r) set_primal(made.results[r], results[r]);
         return;
     }
-    Derivative derivative = find_derivative(call.function, plan.seeds);
+    Derivative derivative = callees.derivative(call.function, plan);
     for (size_t p = 0; p < plan.seeds.size(); ++p)
         for (size_t d = 0; d < plan.seeds[p].size(); ++d)
             if (plan.seeds[p][d] == Seed::given) arguments.push_back(made_tangent(builder, made.operands[p], d));
@@ -220,8 +214,19 @@ void DerivativeEmitter::copy(Builder& builder, const Instruction& made, const Ca
         for (bool exists : derivative.exists[r]) row.push_back(exists ? Tangent(results[next++]) : Tangent());
         for (size_t d = 0; d < activity.directions(); ++d)
             set_tangent(builder, made.results[r], d,
-                        plan.by_jacobian ? chain(builder, row, made, plan.columns, d) : row[d]);
+                        plan.how == CallPlan::How::jacobian ? chain(builder, row, made, plan.columns, d) : row[d]);
     }
+}
+
+// Derivatives in two directions may be taken in either order.
+void DerivativeEmitter::copy(Builder& builder, const Instruction& made, const PointDerivative& derivative)
+{
+    const Value result = made.results[0], of = made.operands[0];
+    if (callees.resolves_point_derivatives()) return set_primal(result, made_tangent(builder, of, derivative.axis));
+    set_primal(result, builder.point_derivative(derivative.axis, primal(of)));
+    for (size_t d = 0; d < activity.directions(); ++d)
+        if (const Tangent& inner = tangent(of, d); activity(result, d) && inner)
+            set_tangent(builder, result, d, builder.point_derivative(derivative.axis, *inner));
 }
 
 void DerivativeEmitter::copy(Builder& builder, const Instruction& made, const If& choice)

@@ -6,8 +6,6 @@
 #include "lang/ir/derivative_rules.h"
 #include "lang/ir/differentiate.h"
 
-#include <functional>
-
 namespace haptel::ir {
 
 constexpr size_t axes = 3; // directions of an entry's gradient: p_x, p_y, p_z
@@ -15,12 +13,37 @@ constexpr size_t axes = 3; // directions of an entry's gradient: p_x, p_y, p_z
 // Does an input of the point move with p along the axis? n and uv do, by their Jacobians on the facet.
 bool input_is_active(Input input, size_t axis);
 
+// How the derivative of a callee is had at a call.
+struct CallPlan {
+    enum class How : uint8_t {
+        plain,    // not at all: no result has a tangent
+        jacobian, // by its derivative with respect to the `columns`, and the chain rule at the call
+        tangents, // by passing the tangents on
+    } how = How::plain;
+    std::vector<size_t> columns; // active arguments that a result depends on
+    Seeds seeds;
+    bool tangents_of_results = true; // false: the callee is asked for its values alone
+};
+
+// The way that needs fewer directions inside the callee. The chain rule at the call is no way for a callee that asks
+// for derivatives with respect to the point: there it matters how the tangents themselves move.
+CallPlan plan_call(const Instruction& call, const Dependence& depends, const Activity& activity, bool callee_asks);
+
+// What an emitter asks about the functions that are called.
+class Callees {
+public:
+    virtual CallPlan plan(const Instruction& call, const Activity& activity) = 0;
+    virtual Derivative derivative(uint32_t callee, const CallPlan& plan) = 0;
+    // Whether derivatives with respect to the point become the values they stand for: the directions are those of p.
+    virtual bool resolves_point_derivatives() const = 0;
+
+protected:
+    ~Callees() = default;
+};
+
 class DerivativeEmitter {
 public:
-    using FindDerivative = std::function<Derivative(uint32_t function, const Seeds&)>;
-
-    DerivativeEmitter(const Function& source, const Activity& activity, Dependences& dependences,
-                      const FindDerivative& find_derivative);
+    DerivativeEmitter(const Function& source, const Activity& activity, Callees& callees);
 
     // Asks for the derivative of every callee, so that none has to be made while this function is.
     void prepare(const Block& block);
@@ -37,8 +60,7 @@ public:
 private:
     const Function& function;
     const Activity& activity;
-    Dependences& callees;
-    const FindDerivative& find_derivative;
+    Callees& callees;
     std::vector<Value> primals;    // by Value::index of the source
     std::vector<Tangent> tangents; // likewise, by direction
 
@@ -59,6 +81,7 @@ private:
     void copy(Builder& builder, const Instruction& made, const ReadParameter& read);
     void copy(Builder& builder, const Instruction& made, const ReadTable& read);
     void copy(Builder& builder, const Instruction& made, const Call& call);
+    void copy(Builder& builder, const Instruction& made, const PointDerivative& derivative);
     void copy(Builder& builder, const Instruction& made, const If& choice);
     void copy(Builder& builder, const Instruction& made, const For& loop);
 };

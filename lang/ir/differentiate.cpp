@@ -2,22 +2,13 @@
 
 #include "lang/abi.h"
 #include "lang/ir/derivative_emitter.h"
+#include "lang/ir/point_derivative.h"
 
 #include <algorithm>
 #include <map>
 
 namespace haptel::ir {
 namespace {
-
-std::string pattern_of(const Seeds& seeds)
-{
-    std::string pattern;
-    for (const std::vector<Seed>& row : seeds) {
-        if (!pattern.empty()) pattern += ',';
-        for (Seed seed : row) pattern += seed == Seed::none ? '.' : seed == Seed::unit ? '1' : 't';
-    }
-    return pattern;
-}
 
 Seeds first_argument_seeds(const Function& function)
 {
@@ -76,14 +67,37 @@ void material_outputs(Builder& builder, const DerivativeEmitter& emitter, std::s
 
 } // namespace
 
-struct Differentiator::Memo {
+std::string pattern_of(const Seeds& seeds)
+{
+    std::string pattern;
+    for (const std::vector<Seed>& row : seeds) {
+        if (!pattern.empty()) pattern += ',';
+        for (Seed seed : row) pattern += seed == Seed::none ? '.' : seed == Seed::unit ? '1' : 't';
+    }
+    return pattern;
+}
+
+struct Differentiator::Memo final : Callees {
+    Memo(Module& module, Differentiator& owner) : differentiator(owner), dependences(module), resolver(module, owner) {}
+
+    CallPlan plan(const Instruction& call, const Activity& activity) override
+    {
+        const uint32_t callee = std::get<Call>(call.kind).function;
+        return plan_call(call, dependences.of(callee), activity, resolver.asks(callee));
+    }
+    Derivative derivative(uint32_t callee, const CallPlan& plan) override
+    {
+        return differentiator.derivative(callee, plan.seeds);
+    }
+    bool resolves_point_derivatives() const override { return false; }
+
+    Differentiator& differentiator;
     std::map<std::pair<uint32_t, Seeds>, Derivative> derivatives;
     Dependences dependences;
-
-    explicit Memo(const Module& module) : dependences(module) {}
+    PointDerivativeResolver resolver;
 };
 
-Differentiator::Differentiator(Module& whole) : module(whole), memo(std::make_unique<Memo>(whole)) {}
+Differentiator::Differentiator(Module& whole) : module(whole), memo(std::make_unique<Memo>(whole, *this)) {}
 
 Differentiator::~Differentiator() = default;
 
@@ -100,10 +114,7 @@ Derivative Differentiator::derivative(uint32_t function, const Seeds& seeds)
             if (seeds[p][d] != Seed::none) activity.set(source.parameters[p], d);
     propagate(source, memo->dependences, nullptr, activity);
 
-    const DerivativeEmitter::FindDerivative find = [this](uint32_t callee, const Seeds& wanted) {
-        return derivative(callee, wanted);
-    };
-    DerivativeEmitter emitter(source, activity, memo->dependences, find);
+    DerivativeEmitter emitter(source, activity, *memo);
     emitter.prepare(source.body);
 
     const bool is_jacobian = directions > 0 && seeds == first_argument_seeds(source);
@@ -142,14 +153,12 @@ Derivative Differentiator::jacobian(uint32_t function)
 
 void Differentiator::make_entries(Texture& texture)
 {
+    texture.body = memo->resolver.resolved_entry(texture.body);
     const Function source = module.functions[texture.body];
-    const DerivativeEmitter::FindDerivative find = [this](uint32_t callee, const Seeds& wanted) {
-        return derivative(callee, wanted);
-    };
     auto make = [&](size_t directions, const std::string& name) {
         Activity activity(source.value_types.size(), directions);
         propagate(source, memo->dependences, input_is_active, activity);
-        DerivativeEmitter emitter(source, activity, memo->dependences, find);
+        DerivativeEmitter emitter(source, activity, *memo);
         emitter.prepare(source.body);
 
         Builder builder(module, name);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace haptel::ir {
@@ -18,6 +19,8 @@ enum class Seed : uint8_t {
 
 // seeds[parameter][direction]; all rows have the same length, the number of directions.
 using Seeds = std::vector<std::vector<Seed>>;
+
+std::string pattern_of(const Seeds& seeds); // "1..,.t.": a letter per parameter and direction, for names
 
 struct Derivative {
     uint32_t function = UINT32_MAX; // in the same module; memoised: equal request, equal index
@@ -38,7 +41,8 @@ public:
     Derivative jacobian(uint32_t function);
 
     // From Texture::body: makes `height` and `height_gradient`, with the tests of results that ir.h promises. The
-    // gradient is with respect to p: tangents of n and uv are n_dp and uv_dp.
+    // gradient is with respect to p: tangents of n and uv are n_dp and uv_dp. A body that asks for derivatives with
+    // respect to p is replaced by one that holds their values.
     void make_entries(Texture& texture);
 
 private:

@@ -1,6 +1,7 @@
 #include "lang/ir/flat_code.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace haptel::ir {
 namespace {
@@ -99,6 +100,10 @@ private:
         step({Kind::call, {}, 0, {call.function, lists, 0, 0}});
         deepest_callee = std::max(deepest_callee, done[call.function].depth);
         longest_chain = std::max(longest_chain, done[call.function].calls + 1);
+    }
+    void lower(const Instruction& made, const PointDerivative&) // in no program that passes `verify`
+    {
+        lower(made, RealConstant{std::numeric_limits<double>::quiet_NaN()});
     }
     void lower(const Instruction& made, const If& choice)
     {

@@ -202,6 +202,11 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Call&
     for (size_t i = 0; i < results.size(); ++i) frame.values[made.results[i].index] = results[i];
 }
 
+void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const PointDerivative&)
+{
+    frame.values[made.results[0].index] = everything(Type::real); // in no program that passes `verify`
+}
+
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const If& choice)
 {
     const Interval condition = frame.values[made.operands[0].index];

@@ -52,6 +52,7 @@ private:
     void visit(Frame& frame, const Instruction& made, const ReadParameter& kind);
     void visit(Frame& frame, const Instruction& made, const ReadTable& kind);
     void visit(Frame& frame, const Instruction& made, const Call& kind);
+    void visit(Frame& frame, const Instruction& made, const PointDerivative& kind);
     void visit(Frame& frame, const Instruction& made, const If& kind);
     void visit(Frame& frame, const Instruction& made, const For& kind);
 };

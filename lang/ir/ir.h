@@ -96,6 +96,11 @@ struct ReadTable {
 struct Call {
     uint32_t function;
 }; // operands: arguments; results: the callee's results
+// Derivative of operand 0 with respect to p along an axis. Not of what values are made of, but of where the program is
+// used: gone once a texture has entries (point_derivative.h), and never in a final program.
+struct PointDerivative {
+    uint32_t axis; // 0, 1, 2
+};
 // operand 0: condition. Blocks: then, else; both yield one value per result.
 struct If {
     std::vector<Block> arms;
@@ -109,7 +114,7 @@ struct For {
 };
 
 using Kind = std::variant<Operation, RealConstant, IntConstant, BoolConstant, ReadInput, ReadParameter, ReadTable, Call,
-                          If, For>;
+                          PointDerivative, If, For>;
 
 struct Instruction {
     Kind kind;

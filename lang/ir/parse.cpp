@@ -277,6 +277,13 @@ private:
             made.operands = {use()};
             return {module.tables[index].element};
         }
+        if (accept("d_dp")) {
+            made.kind = PointDerivative{count()};
+            if (std::get<PointDerivative>(made.kind).axis > 2) fail("an axis is 0, 1 or 2");
+            made.operands = {use()};
+            if (function.type(made.operands[0]) != Type::real) fail("a real is expected");
+            return {Type::real};
+        }
         if (accept("call")) return call(made);
         if (accept("if")) return choice(made, depth);
         if (accept("for")) return loop(made, depth);

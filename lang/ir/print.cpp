@@ -187,6 +187,11 @@ private:
         uses(made.operands);
         text += ")";
     }
+    void print(const Instruction& made, const PointDerivative& derivative, size_t)
+    {
+        text += "d_dp " + std::to_string(derivative.axis) + " ";
+        uses(made.operands);
+    }
     void print(const Instruction& made, const If& choice, size_t depth)
     {
         text += "if ";

@@ -201,6 +201,10 @@ private:
             define(made.results[i]);
         }
     }
+    void check(const Instruction&, const PointDerivative&, uint32_t)
+    {
+        fail("a derivative with respect to the point was not resolved");
+    }
     void check(const Instruction& made, const If& choice, uint32_t depth)
     {
         if (choice.arms.size() != 2) return fail("an if has not two arms");

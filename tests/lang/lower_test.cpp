@@ -475,3 +475,27 @@ TEST_CASE("lower: material outputs are 1 where the path taken does not assign th
     CHECK(faulty.height == -6);
     CHECK(faulty.gradient == std::array{-1.0, 6.0, 0.0});
 }
+
+TEST_CASE("lower: stretch is the Frobenius norm of the derivative by p, wherever it is asked for")
+{
+    Inputs at;
+    at.p = {0.5, -0.25, 3.0};
+    const std::string functions = R"(
+        float asks(vec2 q) { return stretch(q); }
+        float asks_of(float f(vec2), vec2 q) { return f(q * 4.0); }
+    )";
+    check_near({{"stretch(p)", std::sqrt(3.0)},
+                {"stretch(vec3(p.xy, 1.0))", std::sqrt(2.0)},
+                {"stretch(p.x * p.z)", std::sqrt(9.25)},
+                {"stretch(3.0)", 0.0},
+                {"stretch(detach(p))", 0.0},
+                {"asks(2.0 * p.xy)", std::sqrt(8.0)},
+                {"asks_of(asks, p.yz)", std::sqrt(32.0)},
+                {"asks_of(stretch, p.yz)", std::sqrt(32.0)}},
+               functions, at);
+    // the stretch of x^2 / 2 is abs(x)
+    const Sample sample = evaluate("texture t() { return stretch(0.5 * p.x * p.x); }", at);
+    CHECK(sample.height == 0.5);
+    CHECK(sample.gradient[0] == 1.0);
+    CHECK(sample.gradient[1] == 0.0);
+}

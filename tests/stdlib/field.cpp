@@ -3,12 +3,13 @@
 #include "stdlib/stdlib.h"
 #include "tests/support/catch.h"
 
+#include <cstddef>
 #include <cstdlib>
 #include <random>
 
 namespace haptel::test {
 
-Field::Field(const std::string& expression, const std::string& declarations)
+Field::Field(const std::string& expression, const std::string& declarations, double footprint)
 {
     const std::string source =
         declarations + "\ntexture field() { vec3 q = p / 1m; return 1m * (" + expression + "); }\n";
@@ -17,6 +18,7 @@ Field::Field(const std::string& expression, const std::string& declarations)
     REQUIRE(compiled.program);
     program = compiled.program;
     block.assign(program->textures()[0].block_size / sizeof(double) + 1, 0.0);
+    block[offsetof(haptel_block_head, footprint_m) / sizeof(double)] = footprint;
 }
 
 FieldSample Field::operator()(const Vec3& q) const

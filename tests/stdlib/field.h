@@ -19,8 +19,9 @@ struct FieldSample {
 
 class Field {
 public:
-    // `expression` in q (vec3); `declarations` are functions it may use. What does not compile fails the test.
-    explicit Field(const std::string& expression, const std::string& declarations = {});
+    // `expression` in q (vec3); `declarations` are functions it may use. What does not compile fails the test. The
+    // footprint is in units of q.
+    explicit Field(const std::string& expression, const std::string& declarations = {}, double footprint = 0);
     FieldSample operator()(const Vec3& q) const; // a fault fails the test
     uint32_t faults(const Vec3& q) const;
 
