@@ -44,7 +44,7 @@ int parse_whole(std::string_view& text)
     return value;
 }
 
-// "1", "a", "ab", "a^-1/2"
+// "1", "a", "ab", "a^-1/2", "am^-1"
 Dimension evaluate(std::string_view term, const Letters& letters)
 {
     Dimension product = Dimension::plain();
@@ -61,7 +61,8 @@ Dimension evaluate(std::string_view term, const Letters& letters)
                 exponent.denominator = parse_whole(term);
             }
         }
-        product = product * letters[static_cast<size_t>(letter - 'a')].power(exponent);
+        const Dimension base = letter == 'm' ? Dimension::length() : letters[static_cast<size_t>(letter - 'a')];
+        product = product * base.power(exponent);
     }
     return product;
 }
