@@ -38,16 +38,30 @@ ir::BoundsBox anywhere()
     return box;
 }
 
+uint32_t continuity_of(ir::Smoothness smoothness)
+{
+    switch (smoothness) {
+    case ir::Smoothness::unknown: return HAPTEL_CONTINUITY_UNKNOWN;
+    case ir::Smoothness::jump: return HAPTEL_CONTINUITY_JUMP;
+    case ir::Smoothness::c0: return HAPTEL_CONTINUITY_C0;
+    case ir::Smoothness::c1:
+    case ir::Smoothness::c2:
+    case ir::Smoothness::smooth: return HAPTEL_CONTINUITY_C1;
+    }
+    return HAPTEL_CONTINUITY_UNKNOWN;
+}
+
 haptel_facts facts(const ir::Module& module, const ir::Texture& texture, const ir::BoundsBox& box, uint32_t evaluations)
 {
-    const Interval height = ir::height_bounds(module, texture, box, evaluations);
+    const ir::TextureBounds bounds = ir::texture_bounds(module, texture, box, evaluations);
     const uint32_t entry = texture.height_gradient != UINT32_MAX ? texture.height_gradient : texture.height;
     const uint64_t operations = ir::operations_max(module, entry);
-    return {height.minimum,
-            height.maximum,
-            infinity,
-            infinity,
-            HAPTEL_CONTINUITY_UNKNOWN,
+    const uint32_t continuity = continuity_of(bounds.smoothness);
+    return {bounds.height.minimum,
+            bounds.height.maximum,
+            bounds.slope_max,
+            continuity == HAPTEL_CONTINUITY_C1 ? bounds.curvature_max_per_m : infinity,
+            continuity,
             static_cast<uint32_t>(std::min<uint64_t>(operations, UINT32_MAX))};
 }
 

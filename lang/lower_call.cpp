@@ -1,5 +1,6 @@
 // Calls, and the functions they reach.
 #include "lang/abi.h"
+#include "lang/ir/op_info.h"
 #include "lang/lowering.h"
 #include "lang/names.h"
 
@@ -35,12 +36,7 @@ ir::Facts facts_of(const FactsComment& comment, bool is_library)
     facts.value_maximum = comment.value_maximum;
     facts.slope = comment.slope;
     facts.curvature = comment.curvature;
-    if (comment.continuity == "jump")
-        facts.continuity = HAPTEL_CONTINUITY_JUMP;
-    else if (comment.continuity == "C0")
-        facts.continuity = HAPTEL_CONTINUITY_C0;
-    else if (!comment.continuity.empty())
-        facts.continuity = HAPTEL_CONTINUITY_C1;
+    facts.smoothness = ir::smoothness_named(comment.continuity);
     facts.proven = is_library;
     return facts;
 }
@@ -172,7 +168,8 @@ LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector
     }
     body.input_parameters(made.reads);
     body.bind_functions(passed);
-    if (info.tree->facts) function.facts = facts_of(*info.tree->facts, info.is_library);
+    function.is_library = info.is_library;
+    if (info.tree->facts) function.facts = {facts_of(*info.tree->facts, info.is_library)};
     const Values results = body.whole_body(*info.tree->body, info.result);
     made.index = body.builder.finish(results);
     made.depth = body.depth;

@@ -81,6 +81,25 @@ Json to_json(const ir::Interval& height_m)
     return {{"minimum", finite_or_null(height_m.minimum)}, {"maximum", finite_or_null(height_m.maximum)}};
 }
 
+// A curvature is of a gradient without jumps.
+Json curvature_of(const ir::TextureBounds& bounds)
+{
+    return bounds.smoothness >= ir::Smoothness::c1 ? finite_or_null(bounds.curvature_max_per_m) : Json(nullptr);
+}
+
+Json continuity_of(const ir::TextureBounds& bounds)
+{
+    switch (bounds.smoothness) {
+    case ir::Smoothness::unknown: return nullptr;
+    case ir::Smoothness::jump: return "jump";
+    case ir::Smoothness::c0: return "C0";
+    case ir::Smoothness::c1:
+    case ir::Smoothness::c2:
+    case ir::Smoothness::smooth: return "C1";
+    }
+    return nullptr;
+}
+
 Json to_json(const CheckFinding& finding)
 {
     return {{"severity", name_of(finding.severity)},
@@ -109,14 +128,14 @@ Json to_json(const CheckedTexture& checked)
             {"parameters", std::move(parameters)},
             {"inputs", inputs_of(*checked.texture)},
             {"outputs", outputs_of(*checked.texture)},
-            {"height_m", to_json(checked.height_m)},
-            {"slope_max", nullptr}, // null: not analysed
-            {"curvature_max_per_m", nullptr},
+            {"height_m", to_json(checked.bounds.height)},
+            {"slope_max", finite_or_null(checked.bounds.slope_max)},
+            {"curvature_max_per_m", curvature_of(checked.bounds)},
             {"over_ranges",
-             {{"height_m", to_json(checked.height_over_ranges_m)},
-              {"slope_max", nullptr},
-              {"curvature_max_per_m", nullptr}}},
-            {"continuity", nullptr},
+             {{"height_m", to_json(checked.over_ranges.height)},
+              {"slope_max", finite_or_null(checked.over_ranges.slope_max)},
+              {"curvature_max_per_m", curvature_of(checked.over_ranges)}}},
+            {"continuity", continuity_of(checked.bounds)},
             {"operations_max", operations_of(checked)},
             {"stability", nullptr}};
 }
@@ -142,6 +161,8 @@ ir::BoundsBox cube(double side_m)
     };
     set(Input::p_x, 3, {-side_m / 2, side_m / 2});
     set(Input::n_x, 3, {-1, 1});
+    set(Input::n_dp_00, 9, {-infinity, infinity});
+    set(Input::uv_dp_00, 6, {-infinity, infinity});
     set(Input::uv_x, 2, {-infinity, infinity});
     set(Input::time, 1, {0, infinity});
     set(Input::center_x, 3, {0, 0});
@@ -152,7 +173,7 @@ ir::BoundsBox cube(double side_m)
 
 } // namespace
 
-CheckedTexture check_heights(std::string file, std::shared_ptr<const lang::Program> program, const ir::Texture& texture,
+CheckedTexture check_bounds(std::string file, std::shared_ptr<const lang::Program> program, const ir::Texture& texture,
                              const std::vector<double>& values, double box_m)
 {
     ir::BoundsBox at_values = cube(box_m), over_ranges = cube(box_m);
@@ -167,10 +188,10 @@ CheckedTexture check_heights(std::string file, std::shared_ptr<const lang::Progr
         else
             over_ranges.parameters.push_back({values[i], values[i]});
     }
-    CheckedTexture checked{std::move(file), std::move(program), &texture, {}, {}};
-    checked.height_m = ir::height_bounds(checked.program->module, texture, at_values);
-    checked.height_over_ranges_m = ir::height_bounds(checked.program->module, texture, over_ranges);
-    return checked;
+    const ir::Module& module = program->module;
+    const ir::TextureBounds here = ir::texture_bounds(module, texture, at_values);
+    const ir::TextureBounds anywhere = ir::texture_bounds(module, texture, over_ranges);
+    return {std::move(file), std::move(program), &texture, here, anywhere};
 }
 
 size_t CheckReport::count(lang::Severity severity) const
@@ -209,12 +230,19 @@ std::string CheckReport::to_text() const
 {
     std::string text;
     for (const CheckedTexture& checked : textures) {
+<<<<<<< HEAD
         const std::vector<std::string> inputs = inputs_of(*checked.texture), outputs = outputs_of(*checked.texture);
         text += fmt::format("{}:{}: height {} .. {} in a cube of {}, at most {} operations, reads {}{}\n", checked.file,
                             checked.texture->name, shown_length(checked.height_m.minimum),
                             shown_length(checked.height_m.maximum), shown_length(box_m), operations_of(checked),
                             inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")),
                             outputs.empty() ? "" : fmt::format(", writes {}", fmt::join(outputs, ", ")));
+=======
+        const std::vector<std::string> inputs = inputs_of(*checked.texture);
+        text += fmt::format("{}:{}: height {} .. {} in a cube of {}, at most {} operations, reads {}\n", checked.file,
+                            checked.texture->name, shown_length(checked.bounds.height.minimum),
+                            shown_length(checked.bounds.height.maximum), shown_length(box_m), operations_of(checked),
+                            inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")));
     }
     return text;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lang/compile.h"
-#include "lang/ir/interval.h"
+#include "lang/ir/bounds.h"
 #include "tools/json.h"
 
 #include <memory>
@@ -24,8 +24,8 @@ struct CheckedTexture {
     std::string file;
     std::shared_ptr<const lang::Program> program;
     const ir::Texture* texture = nullptr;
-    ir::Interval height_m;             // at the parameters' values
-    ir::Interval height_over_ranges_m; // wherever their ranges allow; those without a range at their values
+    ir::TextureBounds bounds;      // at the parameters' values
+    ir::TextureBounds over_ranges; // wherever their ranges allow; those without a range at their values
 };
 
 struct CheckReport {
@@ -43,7 +43,7 @@ struct CheckReport {
 };
 
 // Heights of the texture in the cube. `values` by Texture::parameters, SI.
-CheckedTexture check_heights(std::string file, std::shared_ptr<const lang::Program> program, const ir::Texture& texture,
+CheckedTexture check_bounds(std::string file, std::shared_ptr<const lang::Program> program, const ir::Texture& texture,
                              const std::vector<double>& values, double box_m);
 
 } // namespace haptel::tools

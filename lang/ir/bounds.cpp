@@ -14,71 +14,114 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr uint64_t operations_per_evaluation = 1'000'000;
 constexpr uint64_t operations_in_all = 4'000'000; // keeps a reload short, whatever the program
 
-// Marks the point inputs that an entry reads and that the box leaves open.
-void find_open_inputs(const Block& block, const BoundsBox& box, std::vector<bool>& open)
+// The point inputs that an entry reads.
+void find_inputs(const Block& block, std::vector<bool>& is_read)
 {
     for (const Instruction& made : block.instructions) {
-        if (auto* read = std::get_if<ReadInput>(&made.kind)) {
-            auto index = static_cast<size_t>(read->input);
-            const Interval& range = box.input[index];
-            if (std::isfinite(range.maximum - range.minimum) && !range.is_point()) open[index] = true;
-        }
+        if (auto* read = std::get_if<ReadInput>(&made.kind)) is_read[static_cast<size_t>(read->input)] = true;
         if (auto* choice = std::get_if<If>(&made.kind))
-            for (const Block& arm : choice->arms) find_open_inputs(arm, box, open);
-        if (auto* loop = std::get_if<For>(&made.kind)) find_open_inputs(loop->body[0], box, open);
+            for (const Block& arm : choice->arms) find_inputs(arm, is_read);
+        if (auto* loop = std::get_if<For>(&made.kind)) find_inputs(loop->body[0], is_read);
     }
 }
 
-// The box, cut into pieces: the one that holds the greatest bound is cut next, or the one with the least, in turn.
+// An upper bound to push down, of one piece of the box: -infinity where the piece holds no value at all.
+enum class Goal : uint8_t { highest, lowest, slope, curvature };
+
+// The box, cut into pieces: the one that holds the greatest bound is cut next, for each goal in turn.
 class Bisection {
 public:
-    Bisection(const Module& module, const Texture& texture, const BoundsBox& whole)
-        : evaluator(module, operations_per_evaluation), entry(texture.body), box(whole), is_open(input_count, false)
+    Bisection(const Module& module, const Texture& texture, BoundsBox around, std::vector<Goal> which)
+        : evaluator(module, operations_per_evaluation), entry(texture.body), box(std::move(around)),
+          goals(std::move(which)), queues(goals.size())
     {
-        find_open_inputs(module.functions[entry].body, box, is_open);
-        add(std::vector<Interval>(std::begin(whole.input), std::end(whole.input)));
+        std::vector<bool> is_read(input_count, false);
+        find_inputs(module.functions[entry].body, is_read);
+        for (size_t i = 0; i < input_count; ++i)
+            if (is_read[i]) consider(&box.input[i]);
+        for (size_t i = 0; i < box.parameters.size(); ++i)
+            if (texture.parameters[i].type == Type::real) consider(&box.parameters[i]);
+        std::vector<Interval> all;
+        for (const Interval* side : sides) all.push_back(*side);
+        add(std::move(all));
     }
 
-    Interval run(uint32_t evaluations)
+    void run(uint32_t evaluations)
     {
-        const bool can_cut = std::find(is_open.begin(), is_open.end(), true) != is_open.end();
-        double width_before = infinity;
-        for (uint32_t target = 16; can_cut && used < operations_in_all && !is_settled; target *= 2) {
+        std::vector<double> before(goals.size(), infinity);
+        for (uint32_t target = 16; !sides.empty() && !is_settled; target *= 2) {
             while (pieces.size() < std::min(target, evaluations) && used < operations_in_all && !is_settled) cut();
-            Interval found = bounds();
-            const double width = found.maximum - found.minimum;
-            if (pieces.size() >= evaluations || !(width < 0.95 * width_before)) break;
-            width_before = width;
+            bool has_improved = false;
+            for (size_t g = 0; g < goals.size(); ++g) {
+                const double now = bound(g);
+                has_improved |= target == 16 || now < before[g] - 0.05 * std::fabs(before[g]);
+                before[g] = now;
+            }
+            if (pieces.size() >= evaluations || used >= operations_in_all || !has_improved) break;
         }
-        return bounds();
     }
+
+    double bound(size_t goal) { return pieces[next_of(queues[goal])].bounds[goal]; }
+    bool may_be_nan() const
+    {
+        return std::any_of(pieces.begin(), pieces.end(),
+                           [](const Piece& piece) { return !piece.is_cut && piece.may_be_nan; });
+    }
+    const Variation& over_all() const { return whole; } // of the box in one piece; only where a goal needs it
 
 private:
     struct Piece {
-        std::vector<Interval> input;
-        Interval height;
-        bool is_cut = false;
+        std::vector<Interval> sides;
+        std::vector<double> bounds; // by goal
+        bool may_be_nan = false, is_cut = false;
     };
+    using Queue = std::priority_queue<std::pair<double, size_t>>; // bound, piece
+
     IntervalEvaluator evaluator;
     uint32_t entry;
     BoundsBox box;
-    std::vector<bool> is_open;
+    std::vector<Goal> goals;
+    std::vector<Interval*> sides; // of `box` that can be cut
     std::vector<Piece> pieces;
-    std::priority_queue<std::pair<double, size_t>> highest, lowest; // bound (outward), piece
+    std::vector<Queue> queues; // by goal
+    Variation whole;
     uint64_t used = 0;
-    bool take_highest = true, is_settled = false;
+    size_t turn = 0;
+    bool is_settled = false;
 
-    void add(std::vector<Interval> input)
+    void consider(Interval* side)
     {
-        std::copy(input.begin(), input.end(), box.input);
-        Interval height = evaluator.run(entry, {}, &box)[0];
-        used += evaluator.operations_used() + 1;
-        highest.emplace(height.is_empty() ? -infinity : height.maximum, pieces.size());
-        lowest.emplace(height.is_empty() ? -infinity : -height.minimum, pieces.size());
-        pieces.push_back({std::move(input), height});
+        if (std::isfinite(side->maximum - side->minimum) && !side->is_point()) sides.push_back(side);
     }
 
-    size_t next_of(std::priority_queue<std::pair<double, size_t>>& queue)
+    void add(std::vector<Interval> where)
+    {
+        for (size_t i = 0; i < sides.size(); ++i) *sides[i] = where[i];
+        const bool of_height = goals[0] == Goal::highest;
+        Interval height;
+        Variation variation;
+        if (of_height) {
+            height = evaluator.run(entry, {}, &box)[0];
+        } else {
+            IntervalEvaluator::Results results = evaluator.run_varying(entry, box);
+            height = results.values[0];
+            variation = results.variations[0];
+            if (pieces.empty()) whole = variation;
+        }
+        used += evaluator.operations_used() + 1;
+        Piece piece{std::move(where), {}, height.may_be_nan, false};
+        for (size_t g = 0; g < goals.size(); ++g) {
+            const double found = goals[g] == Goal::highest  ? height.maximum
+                                 : goals[g] == Goal::lowest ? -height.minimum
+                                 : goals[g] == Goal::slope  ? variation.slope
+                                                            : variation.curvature;
+            piece.bounds.push_back(height.is_empty() ? -infinity : found);
+            queues[g].emplace(piece.bounds[g], pieces.size());
+        }
+        pieces.push_back(std::move(piece));
+    }
+
+    size_t next_of(Queue& queue)
     {
         while (pieces[queue.top().second].is_cut) queue.pop();
         return queue.top().second;
@@ -86,48 +129,51 @@ private:
 
     void cut()
     {
-        const size_t chosen = next_of(take_highest ? highest : lowest);
-        take_highest = !take_highest;
-        pieces[chosen].is_cut = true;
-        std::vector<Interval> left = pieces[chosen].input, right = left;
-        size_t widest = input_count;
+        const size_t chosen = next_of(queues[turn++ % goals.size()]);
+        std::vector<Interval> left = pieces[chosen].sides, right = left;
+        size_t widest = sides.size();
         double widest_share = 0;
-        for (size_t i = 0; i < input_count; ++i) {
-            if (!is_open[i]) continue;
-            const Interval& whole = pieces[0].input[i];
-            double share = (left[i].maximum - left[i].minimum) / (whole.maximum - whole.minimum);
+        for (size_t i = 0; i < sides.size(); ++i) {
+            const Interval& all = pieces[0].sides[i];
+            const double share = (left[i].maximum - left[i].minimum) / (all.maximum - all.minimum);
             if (share > widest_share) widest = i, widest_share = share;
         }
-        if (widest == input_count) { // too small to cut
-            pieces[chosen].is_cut = false;
+        if (widest == sides.size()) { // too small to cut
             is_settled = true;
             return;
         }
+        pieces[chosen].is_cut = true;
         const double middle = left[widest].minimum / 2 + left[widest].maximum / 2;
         left[widest].maximum = right[widest].minimum = middle;
         add(std::move(left));
         add(std::move(right));
     }
-
-    Interval bounds()
-    {
-        Interval all{-lowest_bound(), pieces[next_of(highest)].height.maximum};
-        for (const Piece& piece : pieces) all.may_be_nan |= !piece.is_cut && piece.height.may_be_nan;
-        return all;
-    }
-    double lowest_bound() { return -pieces[next_of(lowest)].height.minimum; }
 };
 
 } // namespace
 
 Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations)
 {
-    Interval height = Bisection(module, texture, box).run(evaluations);
+    Bisection bisection(module, texture, box, {Goal::highest, Goal::lowest});
+    bisection.run(evaluations);
+    Interval height{-bisection.bound(1), bisection.bound(0), bisection.may_be_nan()};
     const bool may_be_infinite = height.is_empty() || std::isinf(height.minimum) || std::isinf(height.maximum);
     if (height.is_empty()) height = {0, 0, true};
     height.may_be_nan |= may_be_infinite;
     if (height.may_be_nan) height = {std::min(height.minimum, 0.0), std::max(height.maximum, 0.0), true};
     return height;
+}
+
+TextureBounds texture_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations)
+{
+    TextureBounds bounds{height_bounds(module, texture, box, evaluations), 0, 0, Smoothness::unknown, {}};
+    Bisection bisection(module, texture, box, {Goal::slope, Goal::curvature});
+    bisection.run(evaluations);
+    bounds.slope_max = std::max(0.0, bisection.bound(0));
+    bounds.curvature_max_per_m = std::max(0.0, bisection.bound(1));
+    bounds.smoothness = bisection.over_all().smoothness;
+    bounds.cause = bisection.over_all().cause;
+    return bounds;
 }
 
 std::vector<Interval> function_bounds(const Module& module, uint32_t function, std::span<const Interval> arguments)

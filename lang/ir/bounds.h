@@ -1,7 +1,6 @@
 // What a function can return at most, over boxes of inputs and parameters: interval evaluation.
 //
-// Calls use the callee's facts (value, and slope around the middle of its first argument), intersected with natural
-// evaluation of its body; `if` conditions that the intervals decide leave out the other arm, others narrow the values
+// Calls use the callee's facts (value, slope, curvature and class), intersected with natural evaluation of its body; `if` conditions that the intervals decide leave out the other arm, others narrow the values
 // they compare inside each arm; loops run for every possible number of trips.
 #pragma once
 
@@ -19,9 +18,20 @@ struct BoundsBox {
     std::vector<Interval> parameters; // by Texture::parameters; integers and booleans as numbers
 };
 
-// Height of the texture over the box, metres; infinite where not found. Includes 0 where the height may be not finite.
-// Refined by bisecting point inputs, best first, until `evaluations` are spent or 5 % improvement per doubling is
-// missed.
+// What is known of a texture over a box; infinite where nothing was found.
+struct TextureBounds {
+    Interval height;            // metres; includes 0 where the height may be not finite
+    double slope_max;           // sup of the Euclidean norm of the gradient by p; at jumps, of the smooth pieces
+    double curvature_max_per_m; // sup of the Hessian's spectral norm; of a texture below C1, of the smooth pieces
+    Smoothness smoothness;      // as a function of p
+    Span cause;                 // of what makes it no smoother
+};
+
+// Refined by bisecting point inputs and real parameters, best first, until `evaluations` are spent or 5 % improvement
+// per doubling is missed.
+TextureBounds texture_bounds(const Module& module, const Texture& texture, const BoundsBox& box,
+                             uint32_t evaluations = 4096);
+// Its height alone, which is cheaper.
 Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations = 4096);
 
 // Every result of a function that is no entry, for arguments that lie in these intervals.

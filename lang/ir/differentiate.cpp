@@ -19,6 +19,17 @@ Seeds first_argument_seeds(const Function& function)
     return seeds;
 }
 
+// What facts say of a partial derivative with respect to one component of the first argument.
+Facts facts_of_partial(const Facts& of)
+{
+    Facts partial;
+    partial.slope = of.curvature;
+    if (of.slope) partial.value_minimum = -*of.slope, partial.value_maximum = *of.slope;
+    if (of.smoothness) partial.smoothness = lowered(*of.smoothness);
+    partial.proven = of.proven;
+    return partial;
+}
+
 // HAPTEL_READS_* of what an entry reads.
 uint32_t inputs_read(const Block& block)
 {
@@ -120,7 +131,8 @@ Derivative Differentiator::derivative(uint32_t function, const Seeds& seeds)
     const bool is_jacobian = directions > 0 && seeds == first_argument_seeds(source);
     Builder builder(module, "d " + source.name + (is_jacobian ? "" : " [" + pattern_of(seeds) + "]"));
     builder.function().first_argument_size = source.first_argument_size;
-    builder.function().facts = source.facts; // its first result is the original's
+    builder.function().is_library = source.is_library;
+    builder.function().facts = source.facts; // its first results are the original's
     for (Value parameter : source.parameters) emitter.set_primal(parameter, builder.parameter(source.type(parameter)));
     for (size_t p = 0; p < seeds.size(); ++p)
         for (size_t d = 0; d < directions; ++d)
@@ -141,6 +153,13 @@ Derivative Differentiator::derivative(uint32_t function, const Seeds& seeds)
             row.push_back(tangent.has_value());
             if (tangent) results.push_back(*tangent);
         }
+    }
+    if (is_jacobian && !source.facts.empty()) {
+        std::vector<Facts>& facts = builder.function().facts;
+        facts.resize(source.body.yields.size());
+        for (size_t r = 0; r < source.facts.size(); ++r)
+            facts.insert(facts.end(), std::count(made.exists[r].begin(), made.exists[r].end(), true),
+                         facts_of_partial(source.facts[r]));
     }
     made.function = builder.finish(results);
     return memo->derivatives.emplace(key, made).first->second;

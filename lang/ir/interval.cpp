@@ -72,6 +72,8 @@ Interval negated(const Interval& a)
     return {-a.maximum, -a.minimum, a.may_be_nan};
 }
 
+} // namespace
+
 Interval add(const Interval& a, const Interval& b)
 {
     bool opposite =
@@ -89,6 +91,8 @@ Interval multiply(const Interval& a, const Interval& b)
     all.may_be_nan = (may_be_infinite(a) && b.contains(0)) || (may_be_infinite(b) && a.contains(0));
     return all;
 }
+
+namespace {
 
 Interval divide(const Interval& a, const Interval& b)
 {

@@ -25,6 +25,10 @@ Interval everything(Type type);
 Interval join(const Interval& a, const Interval& b);
 Interval intersect(const Interval& a, const Interval& b); // of what is known by two ways: NaN only if both allow it
 
+// Of bounds of finite numbers: the product of 0 and an infinite end is 0.
+Interval add(const Interval& a, const Interval& b);
+Interval multiply(const Interval& a, const Interval& b);
+
 Interval evaluate(Op op, std::span<const Interval> operands);
 
 } // namespace haptel::ir

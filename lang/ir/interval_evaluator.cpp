@@ -1,5 +1,8 @@
 #include "lang/ir/interval_evaluator.h"
 
+#include "lang/ir/op_info.h"
+#include "lang/ir/smoothness.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,23 +13,6 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr uint32_t depth_max = 1000; // beyond, nothing is known: recursion stays bounded
 constexpr Interval nothing{infinity, -infinity, false};
-
-void collect_makers(const Block& block, std::vector<const Instruction*>& makers)
-{
-    for (const Instruction& made : block.instructions) {
-        for (Value result : made.results) makers[result.index] = &made;
-        if (auto* choice = std::get_if<If>(&made.kind))
-            for (const Block& arm : choice->arms) collect_makers(arm, makers);
-        if (auto* loop = std::get_if<For>(&made.kind)) collect_makers(loop->body[0], makers);
-    }
-}
-
-std::vector<Interval> unknown_results(const Function& function)
-{
-    std::vector<Interval> results;
-    for (Value result : function.body.yields) results.push_back(everything(function.type(result)));
-    return results;
-}
 
 Interval integer(Type type, uint32_t bits)
 {
@@ -43,6 +29,34 @@ Interval cell(const Table& table, size_t index)
     return integer(table.element, word);
 }
 
+// Inputs move with p by their Jacobian, of which only bounds are known, and of its own change nothing.
+Variation carried_along(const BoundsBox& box, Input first_partial, Span span)
+{
+    Variation variation = unknown_variation(span);
+    variation.smoothness = Smoothness::smooth;
+    double squares = 0;
+    for (size_t j = 0; j < Variation::directions; ++j) {
+        const Interval& partial = box.input[static_cast<size_t>(first_partial) + j];
+        variation.gradient[j] = partial;
+        const double size = std::max(std::fabs(partial.minimum), std::fabs(partial.maximum));
+        squares += size * size;
+    }
+    variation.slope = std::sqrt(squares) * (1 + 1e-14);
+    return variation;
+}
+
+Variation variation_of_input(const BoundsBox& box, Input input, Span span)
+{
+    const auto from = [&](Input first, Input partials, uint32_t stride) {
+        const auto component = static_cast<uint32_t>(input) - static_cast<uint32_t>(first);
+        return carried_along(box, static_cast<Input>(static_cast<uint32_t>(partials) + stride * component), span);
+    };
+    if (input <= Input::p_z) return axis(static_cast<size_t>(input));
+    if (input <= Input::n_z) return from(Input::n_x, Input::n_dp_00, 3);
+    if (input <= Input::uv_y) return from(Input::uv_x, Input::uv_dp_00, 3);
+    return {};
+}
+
 } // namespace
 
 IntervalEvaluator::IntervalEvaluator(const Module& whole, uint64_t operations)
@@ -56,80 +70,81 @@ std::vector<Interval> IntervalEvaluator::run(uint32_t function, std::span<const 
     box = where;
     left = limit;
     depth = 0;
-    return look_inside(function, arguments);
+    varying = false;
+    return look_inside(function, {{arguments.begin(), arguments.end()}, {}}, {}).values;
 }
 
-const std::vector<const Instruction*>& IntervalEvaluator::makers_of(uint32_t function)
+IntervalEvaluator::Results IntervalEvaluator::run_varying(uint32_t entry, const BoundsBox& where)
 {
-    std::vector<const Instruction*>& known = makers[function];
-    if (known.empty()) {
-        known.resize(module.functions[function].value_types.size() + 1);
-        collect_makers(module.functions[function].body, known);
-    }
-    return known;
+    box = &where;
+    left = limit;
+    depth = 0;
+    varying = true;
+    return look_inside(entry, {}, {});
 }
 
-std::vector<Interval> IntervalEvaluator::look_inside(uint32_t index, std::span<const Interval> arguments)
+// ---- several values at once
+
+IntervalEvaluator::Results IntervalEvaluator::gather(const Frame& frame, std::span<const Value> values) const
 {
-    const Function& function = module.functions[index];
-    if (depth >= depth_max || left == 0) return unknown_results(function);
-    ++depth;
-    Frame frame{function, std::vector<Interval>(function.value_types.size(), nothing), makers_of(index)};
-    for (size_t i = 0; i < arguments.size(); ++i) frame.values[function.parameters[i].index] = arguments[i];
-    block(frame, function.body);
-    --depth;
-    if (left == 0) return unknown_results(function);
-    std::vector<Interval> results;
-    for (Value result : function.body.yields) results.push_back(frame.values[result.index]);
+    Results results;
+    for (Value value : values) results.values.push_back(frame.values[value.index]);
+    if (varying)
+        for (Value value : values) results.variations.push_back(frame.variations[value.index]);
     return results;
 }
 
-// Facts speak of arguments that are numbers, and of the first result only. An argument without bounds counts as some
-// number; what comes of an infinite one is left open, as NaN is.
-std::vector<Interval> IntervalEvaluator::call(uint32_t index, std::span<const Interval> arguments)
+void IntervalEvaluator::store(Frame& frame, Value value, const Interval& interval, const Variation& variation)
 {
-    const Function& function = module.functions[index];
-    const Facts& facts = function.facts;
-    bool may_be_nan = false, are_finite = true;
-    for (const Interval& argument : arguments) {
-        may_be_nan |= argument.may_be_nan || argument.is_empty();
-        are_finite &= argument.is_finite();
-    }
-    const bool has_value = facts.value_minimum && facts.value_maximum;
-    if (may_be_nan || (!has_value && !facts.slope)) return look_inside(index, arguments);
+    frame.values[value.index] = interval;
+    if (varying) frame.variations[value.index] = variation;
+}
 
-    Interval declared{-infinity, infinity, true};
-    if (has_value) declared = {*facts.value_minimum, *facts.value_maximum, !are_finite};
-    std::optional<Interval> near = by_slope(index, arguments, (declared.maximum - declared.minimum) / 2);
-    // Where the slope says nothing, a box is too wide for natural evaluation to say more than the facts do.
-    const bool is_wide = has_value && facts.slope && !near && function.body.yields.size() == 1;
-    if (is_wide) return {declared};
-    std::vector<Interval> results = look_inside(index, arguments);
-    results[0] = intersect(results[0], declared);
-    if (near) results[0] = intersect(results[0], *near);
+void IntervalEvaluator::store(Frame& frame, std::span<const Value> values, const Results& results)
+{
+    for (size_t i = 0; i < values.size(); ++i) frame.values[values[i].index] = results.values[i];
+    if (!varying) return;
+    for (size_t i = 0; i < values.size(); ++i) frame.variations[values[i].index] = results.variations[i];
+}
+
+IntervalEvaluator::Results IntervalEvaluator::nothing_yet(size_t count) const
+{
+    return {std::vector<Interval>(count, nothing), {}};
+}
+
+// Without variations `all` has nothing joined to it yet.
+void IntervalEvaluator::join_into(Results& all, const Results& other) const
+{
+    for (size_t i = 0; i < other.values.size(); ++i) all.values[i] = join(all.values[i], other.values[i]);
+    if (!varying) return;
+    if (all.variations.empty()) {
+        all.variations = other.variations;
+        return;
+    }
+    for (size_t i = 0; i < other.variations.size(); ++i)
+        all.variations[i] = join(all.variations[i], other.variations[i]);
+}
+
+IntervalEvaluator::Results IntervalEvaluator::unknown(const Function& function, std::span<const Value> values,
+                                                      Span cause) const
+{
+    Results results;
+    for (Value value : values) results.values.push_back(everything(function.type(value)));
+    if (varying) results.variations.assign(values.size(), unknown_variation(cause));
     return results;
 }
 
-// |f(x) - f(middle)| <= slope |x - middle|.
-std::optional<Interval> IntervalEvaluator::by_slope(uint32_t index, std::span<const Interval> arguments,
-                                                    double useful_radius)
+// What depends on an undecided choice that depends on the point may jump with it.
+void IntervalEvaluator::roughen_all(Results& results, const Variation& by, Span cause) const
 {
-    const Function& function = module.functions[index];
-    if (!function.facts.slope) return std::nullopt;
-    std::vector<Interval> middle(arguments.begin(), arguments.end());
-    double square = 0;
-    for (uint32_t i = 0; i < function.first_argument_size; ++i) {
-        double at = arguments[i].minimum / 2 + arguments[i].maximum / 2;
-        double reach = std::max(arguments[i].maximum - at, at - arguments[i].minimum);
-        square += reach * reach;
-        middle[i] = {at, at};
+    if (!by.is_active) return;
+    for (Variation& variation : results.variations) {
+        variation.is_active = true;
+        roughen(variation, by.smoothness == Smoothness::unknown ? Smoothness::unknown : Smoothness::jump, cause);
     }
-    const double change = *function.facts.slope * std::sqrt(square) * (1 + 1e-14);
-    if (!(change < useful_radius) || change == 0) return std::nullopt;
-    Interval there = look_inside(index, middle)[0];
-    const Interval by[] = {there, {-change, change}};
-    return evaluate(Op::add, by);
 }
+
+// ---- one instruction at a time
 
 void IntervalEvaluator::block(Frame& frame, const Block& source)
 {
@@ -142,14 +157,57 @@ void IntervalEvaluator::block(Frame& frame, const Block& source)
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Operation& operation)
 {
-    Interval operands[4];
+    Interval operands[operands_max];
     for (size_t i = 0; i < made.operands.size(); ++i) operands[i] = frame.values[made.operands[i].index];
-    frame.values[made.results[0].index] = evaluate(operation.op, {operands, made.operands.size()});
+    const std::span<const Interval> all{operands, made.operands.size()};
+    Interval result = evaluate(operation.op, all);
     // x * x is a square
-    if (operation.op == Op::mul && made.operands[0] == made.operands[1]) {
-        Interval& square = frame.values[made.results[0].index];
-        square.minimum = std::max(square.minimum, 0.0);
+    if (operation.op == Op::mul && made.operands[0] == made.operands[1]) result.minimum = std::max(result.minimum, 0.0);
+    frame.values[made.results[0].index] = result;
+    if (varying) frame.variations[made.results[0].index] = variation_of(frame, made, operation.op, all, result);
+}
+
+// Of `a` where only it can be chosen, of both where either can; `by`: what the choice depends on, if on the point.
+Variation IntervalEvaluator::chosen(Frame& frame, const Instruction& made, bool first, bool second,
+                                    const Variation* by) const
+{
+    const size_t count = made.operands.size();
+    const Variation& a = frame.variations[made.operands[count - 2].index];
+    const Variation& b = frame.variations[made.operands[count - 1].index];
+    Results either{{}, {first && second ? join(a, b) : first ? a : b}};
+    if (by && first && second) roughen_all(either, *by, made.span);
+    return either.variations[0];
+}
+
+Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made, Op op,
+                                          std::span<const Interval> operands, const Interval& result)
+{
+    Variation variations[operands_max];
+    uint32_t active = 0;
+    for (size_t i = 0; i < operands.size(); ++i) {
+        variations[i] = frame.variations[made.operands[i].index];
+        if (variations[i].is_active) active |= 1u << i;
     }
+    if (active == 0) return {};
+    left -= std::min<uint64_t>(left, 3); // what it costs more than a value alone
+    const Interval& a = operands[0];
+    if (op == Op::select) return chosen(frame, made, a.contains(1), a.contains(0), &variations[0]);
+
+    Variation variation;
+    Partials partials{};
+    if (op == Op::min || op == Op::max) {
+        const Interval& b = operands[1];
+        const bool a_can = op == Op::min ? a.minimum <= b.maximum : a.maximum >= b.minimum;
+        const bool b_can = op == Op::min ? b.minimum <= a.maximum : b.maximum >= a.minimum;
+        variation = chosen(frame, made, a_can || !b_can, b_can, nullptr);
+    } else {
+        const OpInfo& info = op_info(op);
+        const bool of_reals = info.result == 'r' && info.operands.find_first_not_of('r') == std::string_view::npos;
+        if (of_reals) partials = rules.of(op, operands, active, true);
+        variation = chain(op, operands, {variations, operands.size()}, partials, of_reals);
+    }
+    roughen(variation, smoothness_of(op, operands, active, result, partials), made.span);
+    return variation;
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const RealConstant& constant)
@@ -171,7 +229,8 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const BoolC
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadInput& read)
 {
-    frame.values[made.results[0].index] = box ? box->input[static_cast<size_t>(read.input)] : everything(Type::real);
+    const Interval value = box ? box->input[static_cast<size_t>(read.input)] : everything(Type::real);
+    store(frame, made.results[0], value, varying ? variation_of_input(*box, read.input, made.span) : Variation{});
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadParameter& read)
@@ -192,14 +251,16 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadT
     for (size_t i = first_cell; i <= last_cell; ++i) all = join(all, cell(table, i));
     left -= std::min<uint64_t>(left, (last_cell - first_cell) / 16);
     frame.values[made.results[0].index] = all;
+    if (!varying) return;
+    Variation& variation = frame.variations[made.results[0].index];
+    const Variation& of_index = frame.variations[made.operands[0].index];
+    variation.is_active = of_index.is_active && first_cell != last_cell;
+    if (variation.is_active) roughen(variation, std::min(of_index.smoothness, Smoothness::jump), made.span);
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Call& callee)
 {
-    std::vector<Interval> arguments;
-    for (Value operand : made.operands) arguments.push_back(frame.values[operand.index]);
-    std::vector<Interval> results = call(callee.function, arguments);
-    for (size_t i = 0; i < results.size(); ++i) frame.values[made.results[i].index] = results[i];
+    store(frame, made.results, call(callee.function, gather(frame, made.operands), made.span));
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const PointDerivative&)
@@ -210,27 +271,29 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Point
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const If& choice)
 {
     const Interval condition = frame.values[made.operands[0].index];
-    std::vector<Interval> results(made.results.size(), nothing);
+    Results all = nothing_yet(made.results.size());
     for (bool taken : {true, false}) {
         if (!condition.contains(taken ? 1 : 0)) continue;
-        std::vector<Interval> yields = arm(frame, choice.arms[taken ? 0 : 1], made.operands[0], taken);
-        for (size_t i = 0; i < yields.size(); ++i) results[i] = join(results[i], yields[i]);
+        const Results yields = arm(frame, choice.arms[taken ? 0 : 1], made.operands[0], taken, made.span);
+        if (!yields.values.empty()) join_into(all, yields);
     }
-    for (size_t i = 0; i < results.size(); ++i) frame.values[made.results[i].index] = results[i];
+    if (varying) {
+        all.variations.resize(made.results.size());
+        if (!condition.is_point()) roughen_all(all, frame.variations[made.operands[0].index], made.span);
+    }
+    store(frame, made.results, all);
 }
 
-std::vector<Interval> IntervalEvaluator::arm(Frame& frame, const Block& source, Value condition, bool taken)
+IntervalEvaluator::Results IntervalEvaluator::arm(Frame& frame, const Block& source, Value condition, bool taken,
+                                                  Span span)
 {
-    std::vector<Interval> results;
-    if (depth >= depth_max) {
-        for (Value yield : source.yields) results.push_back(everything(frame.function.type(yield)));
-        return results;
-    }
+    if (depth >= depth_max) return unknown(frame.function, source.yields, span);
     ++depth;
+    Results results;
     std::vector<Narrowed> undo;
     if (narrow(frame, condition, taken, undo)) {
         block(frame, source);
-        for (Value yield : source.yields) results.push_back(frame.values[yield.index]);
+        results = gather(frame, source.yields);
     }
     for (auto narrowed = undo.rbegin(); narrowed != undo.rend(); ++narrowed)
         frame.values[narrowed->value.index] = narrowed->before;
@@ -238,75 +301,29 @@ std::vector<Interval> IntervalEvaluator::arm(Frame& frame, const Block& source, 
     return results;
 }
 
-// Shrinks what the condition compares to the values for which it is as `taken` says; false if there are none.
-bool IntervalEvaluator::narrow(Frame& frame, Value condition, bool taken, std::vector<Narrowed>& undo)
-{
-    std::vector<std::pair<Value, bool>> open{{condition, taken}};
-    while (!open.empty()) {
-        auto [value, wanted] = open.back();
-        open.pop_back();
-        const Instruction* made = frame.makers[value.index];
-        auto* operation = made ? std::get_if<Operation>(&made->kind) : nullptr;
-        if (!operation) continue;
-        if (operation->op == Op::lnot) open.emplace_back(made->operands[0], !wanted);
-        if (operation->op == (wanted ? Op::land : Op::lor))
-            for (Value part : made->operands) open.emplace_back(part, wanted);
-        if (!narrow_comparison(frame, *made, wanted, undo)) return false;
-    }
-    return true;
-}
-
-bool IntervalEvaluator::narrow_comparison(Frame& frame, const Instruction& made, bool taken,
-                                          std::vector<Narrowed>& undo)
-{
-    const Op op = std::get<Operation>(made.kind).op;
-    const bool is_less = op == Op::lt || op == Op::ilt || op == Op::ult;
-    const bool is_less_or_equal = op == Op::le || op == Op::ile || op == Op::ule;
-    const bool is_equal = op == Op::eq || op == Op::ieq || op == Op::ueq;
-    if (!is_less && !is_less_or_equal && !is_equal) return true;
-    const Interval a = frame.values[made.operands[0].index], b = frame.values[made.operands[1].index];
-    // A comparison with NaN is false, which then says nothing of the other operand.
-    if (!taken && (is_equal || a.may_be_nan || b.may_be_nan)) return true;
-
-    Interval narrow_a = a, narrow_b = b;
-    if (taken) narrow_a.may_be_nan = narrow_b.may_be_nan = false;
-    const bool a_is_below = taken, both = is_equal;
-    if (a_is_below || both) {
-        narrow_a.maximum = std::min(a.maximum, b.maximum);
-        narrow_b.minimum = std::max(a.minimum, b.minimum);
-    }
-    if (!a_is_below || both) {
-        narrow_a.minimum = std::max(a.minimum, b.minimum);
-        narrow_b.maximum = std::min(a.maximum, b.maximum);
-    }
-    undo.push_back({made.operands[0], a});
-    undo.push_back({made.operands[1], b});
-    frame.values[made.operands[0].index] = narrow_a;
-    frame.values[made.operands[1].index] = narrow_b;
-    return !narrow_a.is_empty() && !narrow_b.is_empty();
-}
-
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const For& loop)
 {
     const Block& body = loop.body[0];
     const Interval trips = frame.values[made.operands[0].index];
-    std::vector<Interval> carried, results(made.results.size(), nothing);
-    for (size_t i = 1; i < made.operands.size(); ++i) carried.push_back(frame.values[made.operands[i].index]);
+    const std::span<const Value> parameters(body.parameters);
+    Results carried = gather(frame, std::span(made.operands).subspan(1)), all = nothing_yet(made.results.size());
     ++depth;
     for (double trip = 0;; ++trip) {
-        if (trip >= trips.minimum)
-            for (size_t i = 0; i < results.size(); ++i) results[i] = join(results[i], carried[i]);
+        if (trip >= trips.minimum) join_into(all, carried);
         if (trip >= trips.maximum || left == 0 || depth >= depth_max) break;
         --left;
-        frame.values[body.parameters[0].index] = {trip, trip};
-        for (size_t i = 0; i < carried.size(); ++i) frame.values[body.parameters[i + 1].index] = carried[i];
+        store(frame, parameters[0], {trip, trip}, {});
+        store(frame, parameters.subspan(1), carried);
         block(frame, body);
-        for (size_t i = 0; i < carried.size(); ++i) carried[i] = frame.values[body.yields[i].index];
+        carried = gather(frame, body.yields);
     }
-    if (depth >= depth_max)
-        for (size_t i = 0; i < results.size(); ++i) results[i] = everything(frame.function.type(made.results[i]));
+    if (depth >= depth_max) all = unknown(frame.function, made.results, made.span);
     --depth;
-    for (size_t i = 0; i < results.size(); ++i) frame.values[made.results[i].index] = results[i];
+    if (varying) {
+        all.variations.resize(made.results.size());
+        if (!trips.is_point()) roughen_all(all, frame.variations[made.operands[0].index], made.span);
+    }
+    store(frame, made.results, all);
 }
 
 } // namespace haptel::ir

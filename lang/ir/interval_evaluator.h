@@ -1,7 +1,10 @@
-// One interval evaluation of a function and everything it calls.
+// One interval evaluation of a function and everything it calls; where asked for, with bounds of its derivatives.
+//
+// interval_evaluator.cpp walks blocks, interval_call.cpp knows calls and facts, interval_narrow.cpp conditions.
 #pragma once
 
 #include "lang/ir/bounds.h"
+#include "lang/ir/variation.h"
 
 #include <optional>
 
@@ -16,10 +19,18 @@ public:
     std::vector<Interval> run(uint32_t function, std::span<const Interval> arguments, const BoundsBox* box);
     uint64_t operations_used() const { return limit - left; }
 
+    // Values, and how each varies with the point. `variations` is empty where they were not asked for.
+    struct Results {
+        std::vector<Interval> values;
+        std::vector<Variation> variations;
+    };
+    Results run_varying(uint32_t entry, const BoundsBox& box);
+
 private:
     struct Frame {
         const Function& function;
-        std::vector<Interval> values; // by Value::index
+        std::vector<Interval> values;      // by Value::index
+        std::vector<Variation> variations; // likewise, or empty
         const std::vector<const Instruction*>& makers;
     };
     struct Narrowed {
@@ -31,16 +42,31 @@ private:
     const uint64_t limit;
     uint64_t left = 0;
     uint32_t depth = 0; // blocks and calls inside each other
+    bool varying = false;
+    PartialRules rules;
     const BoundsBox* box = nullptr;
     std::vector<std::vector<const Instruction*>> makers; // by function, then Value::index; filled when first needed
 
     const std::vector<const Instruction*>& makers_of(uint32_t function);
-    std::vector<Interval> call(uint32_t function, std::span<const Interval> arguments);
-    std::vector<Interval> look_inside(uint32_t function, std::span<const Interval> arguments);
-    std::optional<Interval> by_slope(uint32_t function, std::span<const Interval> arguments, double useful_radius);
+    // Arguments and results of calls, carried values of loops, yields of arms.
+    Results gather(const Frame& frame, std::span<const Value> values) const;
+    void store(Frame& frame, Value value, const Interval& interval, const Variation& variation);
+    void store(Frame& frame, std::span<const Value> values, const Results& results);
+    Results nothing_yet(size_t count) const;
+    void join_into(Results& all, const Results& other) const;
+    Results unknown(const Function& function, std::span<const Value> values, Span cause) const;
+    void roughen_all(Results& results, const Variation& by, Span cause) const;
+
+    Results call(uint32_t function, const Results& arguments, Span span);
+    Results look_inside(uint32_t function, const Results& arguments, Span span);
+    Variation by_facts(const Function& function, const Facts& facts, const Results& arguments) const;
+    std::optional<Interval> by_slope(uint32_t function, const Results& arguments, double useful_radius);
+    Variation variation_of(Frame& frame, const Instruction& made, Op op, std::span<const Interval> operands,
+                           const Interval& result);
+    Variation chosen(Frame& frame, const Instruction& made, bool first, bool second, const Variation* by) const;
     void block(Frame& frame, const Block& block);
     // Arms that cannot be entered give no values at all.
-    std::vector<Interval> arm(Frame& frame, const Block& block, Value condition, bool taken);
+    Results arm(Frame& frame, const Block& block, Value condition, bool taken, Span span);
     bool narrow(Frame& frame, Value condition, bool taken, std::vector<Narrowed>& undo);
     bool narrow_comparison(Frame& frame, const Instruction& comparison, bool taken, std::vector<Narrowed>& undo);
 

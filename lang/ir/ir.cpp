@@ -128,4 +128,33 @@ std::optional<Type> result_type(Op op, std::span<const Type> operands)
     return any;
 }
 
+namespace {
+constexpr std::string_view smoothness_names[] = {"unknown", "jump", "C0", "C1", "C2", "smooth"};
+}
+
+std::string_view to_string(Smoothness smoothness)
+{
+    return smoothness_names[static_cast<size_t>(smoothness)];
+}
+
+std::optional<Smoothness> smoothness_named(std::string_view name)
+{
+    const auto found = std::find(std::begin(smoothness_names), std::end(smoothness_names), name);
+    if (found == std::end(smoothness_names)) return std::nullopt;
+    return static_cast<Smoothness>(found - std::begin(smoothness_names));
+}
+
+Smoothness lowered(Smoothness smoothness)
+{
+    switch (smoothness) {
+    case Smoothness::unknown: return Smoothness::unknown;
+    case Smoothness::jump:
+    case Smoothness::c0: return Smoothness::jump;
+    case Smoothness::c1: return Smoothness::c0;
+    case Smoothness::c2: return Smoothness::c1;
+    case Smoothness::smooth: return Smoothness::smooth;
+    }
+    return Smoothness::unknown;
+}
+
 } // namespace haptel::ir

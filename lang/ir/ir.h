@@ -129,12 +129,17 @@ struct Block {
     std::vector<Value> yields; // of a function body: the function's results
 };
 
-// Proven or declared properties of a function's first result; norms with respect to its first non-function argument,
+// How smooth a value is as a function of what it is made from, the rougher the less; a composition is as smooth as its
+// roughest part. The derivative of a c1 function is c0, and so on.
+enum class Smoothness : uint8_t { unknown, jump, c0, c1, c2, smooth };
+Smoothness lowered(Smoothness smoothness); // of the derivative
+
+// Proven or declared properties of one result of a function; norms with respect to its first non-function argument,
 // all other arguments within their ranges. Absent: unknown.
 struct Facts {
     std::optional<double> value_minimum, value_maximum;
     std::optional<double> slope, curvature;
-    std::optional<uint32_t> continuity; // HAPTEL_CONTINUITY_*
+    std::optional<Smoothness> smoothness;
     bool proven = false;                // the standard library's; others print as `declared`
 };
 
@@ -144,7 +149,8 @@ struct Function {
     uint32_t first_argument_size = 0; // number of leading parameters that make up the first non-function argument
     std::vector<Type> value_types;    // by Value::index
     Block body;
-    Facts facts;
+    std::vector<Facts> facts; // by result; of those beyond its end nothing is known
+    bool is_library = false;  // no user's code: what happens inside is told of the call
     Type type(Value value) const { return value_types[value.index]; }
 };
 

@@ -31,6 +31,8 @@ std::string_view to_string(Type type);   // "real", "i32", "u32", "bool"
 std::string_view to_string(Input input); // "p_x"
 std::optional<Type> type_named(std::string_view name);
 std::optional<Input> input_named(std::string_view name);
+std::string_view to_string(Smoothness smoothness); // "unknown", "jump", "C0", "C1", "C2", "smooth"
+std::optional<Smoothness> smoothness_named(std::string_view name);
 
 // Type of the operation's result, or nothing if number or types of the operands do not fit its signature.
 std::optional<Type> result_type(Op op, std::span<const Type> operands);

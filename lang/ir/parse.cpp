@@ -130,6 +130,15 @@ private:
         return *named;
     }
 
+    Smoothness smoothness()
+    {
+        std::optional<Smoothness> named = smoothness_named(token().text);
+        if (token().kind != Token::Kind::word || !named)
+            fail("expected a class (unknown, jump, C0, C1, C2, smooth), found " + found());
+        ++next;
+        return *named;
+    }
+
     Value use()
     {
         if (token().kind != Token::Kind::value) fail("expected a value such as %0, found " + found());
@@ -193,7 +202,10 @@ private:
         }
         expect(")");
         if (accept("first")) function.first_argument_size = count();
-        facts();
+        function.is_library = accept("library");
+        if (accept("facts"))
+            do function.facts.push_back(facts());
+            while (accept("next"));
         expect("{");
         block(function.body, "return", 0);
         expect("}");
@@ -202,23 +214,24 @@ private:
         module.functions.push_back(std::move(function));
     }
 
-    void facts()
+    Facts facts()
     {
+        Facts made;
         for (;;) {
             if (accept("minimum"))
-                function.facts.value_minimum = real();
+                made.value_minimum = real();
             else if (accept("maximum"))
-                function.facts.value_maximum = real();
+                made.value_maximum = real();
             else if (accept("slope"))
-                function.facts.slope = real();
+                made.slope = real();
             else if (accept("curvature"))
-                function.facts.curvature = real();
-            else if (accept("continuity"))
-                function.facts.continuity = count();
+                made.curvature = real();
+            else if (accept("class"))
+                made.smoothness = smoothness();
             else if (accept("proven"))
-                function.facts.proven = true;
+                made.proven = true;
             else
-                return;
+                return made;
         }
     }
 

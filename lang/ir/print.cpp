@@ -70,7 +70,11 @@ public:
         }
         text += ")";
         if (source.first_argument_size) text += " first " + std::to_string(source.first_argument_size);
-        print(source.facts);
+        if (source.is_library) text += " library";
+        for (size_t r = 0; r < source.facts.size(); ++r) {
+            text += r == 0 ? " facts" : " next";
+            print(source.facts[r]);
+        }
         text += " {\n";
         print(source.body, "return", 1);
         text += "}\n";
@@ -132,7 +136,7 @@ private:
         if (facts.value_maximum) text += " maximum " + number(*facts.value_maximum);
         if (facts.slope) text += " slope " + number(*facts.slope);
         if (facts.curvature) text += " curvature " + number(*facts.curvature);
-        if (facts.continuity) text += " continuity " + std::to_string(*facts.continuity);
+        if (facts.smoothness) text += " class " + std::string(to_string(*facts.smoothness));
         if (facts.proven) text += " proven";
     }
 

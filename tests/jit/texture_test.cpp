@@ -168,7 +168,9 @@ TEST_CASE("facts hold over the object; an unbounded height is refused, unless no
     CHECK(std::fabs(tilt.binding->facts.height_max_m - 0.0025) <= 1e-9);
     CHECK(std::fabs(tilt.binding->facts.height_min_m + 0.0025) <= 1e-9);
     CHECK(tilt.binding->facts.height_max_m >= 0.0025);
-    CHECK(std::isinf(tilt.binding->facts.slope_max));
+    CHECK(std::fabs(tilt.binding->facts.slope_max - 0.1) <= 1e-12);
+    CHECK(tilt.binding->facts.curvature_max_per_m == 0);
+    CHECK(tilt.binding->facts.continuity == uint32_t{HAPTEL_CONTINUITY_C1});
     CHECK(tilt.binding->facts.operations_max > 0);
     CHECK(std::isinf(program->find("tilt")->facts.height_max_m)); // anywhere
 

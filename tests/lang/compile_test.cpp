@@ -179,12 +179,12 @@ TEST_CASE("compile: the library is seen by all, lowered only where it is reached
     const auto base = named("base(vec3)");
     REQUIRE(base != result.program->module.functions.end());
     CHECK(base->first_argument_size == 3);
-    CHECK(base->facts.proven);
-    CHECK(base->facts.value_minimum == -1.0);
-    CHECK(base->facts.value_maximum == 1.0);
-    CHECK(base->facts.slope == 2.0);
-    CHECK(base->facts.curvature == 3.0);
-    CHECK(base->facts.continuity == uint32_t{HAPTEL_CONTINUITY_C1});
+    CHECK(base->facts[0].proven);
+    CHECK(base->facts[0].value_minimum == -1.0);
+    CHECK(base->facts[0].value_maximum == 1.0);
+    CHECK(base->facts[0].slope == 2.0);
+    CHECK(base->facts[0].curvature == 3.0);
+    CHECK(base->facts[0].smoothness == ir::Smoothness::c1);
 
     // The user's base is used by the user; the library goes on with its own.
     result = compile({"main.haptel", "float base(vec3 q) { return 7.0; }\ntexture t() { return base(p) + over(p); }"},

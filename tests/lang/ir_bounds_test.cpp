@@ -189,7 +189,7 @@ TEST_CASE("bounds: facts bound each octave of a sum over a parameter's range")
 {
     // facts that the body alone would not give: the callee is a wave of height 1 that says 0.5, over many periods
     const std::string noise = R"(
-        function "noise" (%a: real, %b: real, %c: real) first 3 minimum -0.5 maximum 0.5 slope 3 proven {
+        function "noise" (%a: real, %b: real, %c: real) first 3 facts minimum -0.5 maximum 0.5 slope 3 proven {
           %s = add %a, %b
           %t = add %s, %c
           %w = sin %t

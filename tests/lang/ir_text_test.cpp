@@ -13,7 +13,7 @@ namespace {
 const std::string everything = R"ir(table "G" real [0.5, -0, inf, nan, nan:fff8000000000001]
 table "M" u32 [7, 4294967295]
 table "I" i32 [-3, 2]
-function "noise(vec3)" (%0: real, %1: i32, %2: u32, %3: bool) first 1 minimum -0.5 maximum 0.5 slope 2 curvature 3.25 continuity 3 proven {
+function "noise(vec3)" (%0: real, %1: i32, %2: u32, %3: bool) first 1 library facts minimum -0.5 maximum 0.5 slope 2 curvature 3.25 class C1 proven next next slope 2 class jump {
   %4 = real -0
   %5 = i32 -7
   %6 = u32 9

@@ -1,0 +1,140 @@
+// Calls: what a function's facts say of its results, and what its body does.
+#include "lang/ir/interval_evaluator.h"
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace haptel::ir {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr uint32_t depth_max = 1000; // beyond, nothing is known: recursion stays bounded
+constexpr Interval nothing{infinity, -infinity, false};
+
+void collect_makers(const Block& block, std::vector<const Instruction*>& makers)
+{
+    for (const Instruction& made : block.instructions) {
+        for (Value result : made.results) makers[result.index] = &made;
+        if (auto* choice = std::get_if<If>(&made.kind))
+            for (const Block& arm : choice->arms) collect_makers(arm, makers);
+        if (auto* loop = std::get_if<For>(&made.kind)) collect_makers(loop->body[0], makers);
+    }
+}
+
+Interval declared_value(const Facts& facts, bool may_be_nan)
+{
+    if (!facts.value_minimum || !facts.value_maximum) return {-infinity, infinity, true};
+    return {*facts.value_minimum, *facts.value_maximum, may_be_nan};
+}
+
+} // namespace
+
+const std::vector<const Instruction*>& IntervalEvaluator::makers_of(uint32_t function)
+{
+    std::vector<const Instruction*>& known = makers[function];
+    if (known.empty()) {
+        known.resize(module.functions[function].value_types.size() + 1);
+        collect_makers(module.functions[function].body, known);
+    }
+    return known;
+}
+
+IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const Results& arguments, Span span)
+{
+    const Function& function = module.functions[index];
+    if (depth >= depth_max || left == 0) return unknown(function, function.body.yields, span);
+    ++depth;
+    const size_t count = function.value_types.size();
+    Frame frame{function, std::vector<Interval>(count, nothing), std::vector<Variation>(varying ? count : 0),
+                makers_of(index)};
+    store(frame, function.parameters, arguments);
+    block(frame, function.body);
+    --depth;
+    if (left == 0) return unknown(function, function.body.yields, span);
+    Results results = gather(frame, function.body.yields);
+    if (function.is_library)
+        for (Variation& variation : results.variations) variation.cause = span;
+    return results;
+}
+
+// By the chain rule where only the first argument moves; else nothing but the class.
+Variation IntervalEvaluator::by_facts(const Function& function, const Facts& facts, const Results& arguments) const
+{
+    const std::span<const Variation> all(arguments.variations);
+    const auto first = all.first(function.first_argument_size), others = all.subspan(first.size());
+    Variation variation = chain(facts, first);
+    for (const Variation& other : others) {
+        if (!other.is_active) continue;
+        const Variation before = variation;
+        variation = unknown_variation(other.cause);
+        variation.smoothness = facts.smoothness.value_or(Smoothness::unknown);
+        roughen(variation, before.smoothness, before.cause);
+        roughen(variation, other.smoothness, other.cause);
+    }
+    if (!facts.smoothness && variation.is_active) variation.smoothness = Smoothness::unknown;
+    return variation;
+}
+
+// Facts speak of arguments that are numbers. An argument without bounds counts as some number; what comes of an
+// infinite one is left open, as NaN is.
+IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results& arguments, Span span)
+{
+    const Function& function = module.functions[index];
+    bool may_be_nan = false, are_finite = true;
+    for (const Interval& argument : arguments.values) {
+        may_be_nan |= argument.may_be_nan || argument.is_empty();
+        are_finite &= argument.is_finite();
+    }
+    const size_t count = function.body.yields.size();
+    if (may_be_nan || function.facts.empty()) return look_inside(index, arguments, span);
+
+    Results declared;
+    bool is_all_told = function.facts.size() >= count; // nothing is left to find out inside
+    for (size_t r = 0; r < count; ++r) {
+        const Facts facts = r < function.facts.size() ? function.facts[r] : Facts{};
+        declared.values.push_back(declared_value(facts, !are_finite));
+        is_all_told &= facts.value_minimum && facts.value_maximum && facts.slope;
+        if (!varying) continue;
+        Variation& variation = declared.variations.emplace_back(by_facts(function, facts, arguments));
+        if (variation.is_active && variation.cause.end == 0) variation.cause = span;
+        is_all_told &= !variation.is_active || (facts.smoothness && variation.curvature < infinity);
+    }
+    const Interval& value = declared.values[0];
+    const std::optional<Interval> near = by_slope(index, arguments, (value.maximum - value.minimum) / 2);
+    // Where the slope says nothing, a box is too wide for natural evaluation to say more than the facts do.
+    if (is_all_told && !near) return declared;
+
+    Results results = look_inside(index, arguments, span);
+    for (size_t r = 0; r < count; ++r) {
+        results.values[r] = intersect(results.values[r], declared.values[r]);
+        if (varying) results.variations[r] = intersect(declared.variations[r], results.variations[r]);
+    }
+    if (near) results.values[0] = intersect(results.values[0], *near);
+    return results;
+}
+
+// |f(x) - f(middle)| <= slope |x - middle|.
+std::optional<Interval> IntervalEvaluator::by_slope(uint32_t index, const Results& arguments, double useful_radius)
+{
+    const Function& function = module.functions[index];
+    const std::optional<double> slope = function.facts[0].slope;
+    if (!slope) return std::nullopt;
+    Results middle{arguments.values, {}};
+    double square = 0;
+    for (uint32_t i = 0; i < function.first_argument_size; ++i) {
+        const Interval& argument = arguments.values[i];
+        double at = argument.minimum / 2 + argument.maximum / 2;
+        double reach = std::max(argument.maximum - at, at - argument.minimum);
+        square += reach * reach;
+        middle.values[i] = {at, at};
+    }
+    const double change = *slope * std::sqrt(square) * (1 + 1e-14);
+    if (!(change < useful_radius) || change == 0) return std::nullopt;
+    const bool was_varying = std::exchange(varying, false);
+    const Interval there = look_inside(index, middle, {}).values[0];
+    varying = was_varying;
+    return add(there, {-change, change});
+}
+
+} // namespace haptel::ir

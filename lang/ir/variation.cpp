@@ -1,0 +1,246 @@
+#include "lang/ir/variation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace haptel::ir {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double rounding_up = 1 + 1e-14; // norms are computed to nearest
+constexpr size_t axes = Variation::directions;
+constexpr size_t pair_of[axes][axes] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}; // in `hessian`
+
+double size_of(const Interval& a)
+{
+    return std::max(std::fabs(a.minimum), std::fabs(a.maximum));
+}
+
+// An infinite bound times an exact zero is zero: what is bounded is a finite number.
+double times(double a, double b)
+{
+    return a == 0 || b == 0 ? 0 : a * b;
+}
+
+double norm(std::span<const Interval> parts)
+{
+    double sum = 0;
+    for (const Interval& part : parts) sum += times(size_of(part), size_of(part));
+    return std::sqrt(sum) * rounding_up;
+}
+
+// Spectral norm of a symmetric matrix: at most its largest sum of a row, and at most its Frobenius norm.
+double spectral_norm(const std::array<Interval, 6>& matrix)
+{
+    double rows = 0, squares = 0;
+    for (size_t j = 0; j < axes; ++j) {
+        double row = 0;
+        for (size_t k = 0; k < axes; ++k) {
+            const double part = size_of(matrix[pair_of[j][k]]);
+            row += part;
+            squares += times(part, part);
+        }
+        rows = std::max(rows, row);
+    }
+    return std::min(rows, std::sqrt(squares)) * rounding_up;
+}
+
+Interval square(const Interval& a)
+{
+    Interval product = multiply(a, a);
+    return {std::max(product.minimum, 0.0), product.maximum};
+}
+
+// Spectral norm of the Jacobian whose rows these are.
+double jacobian_norm(std::span<const Variation> rows)
+{
+    double squares = 0;
+    for (const Variation& row : rows) squares += times(row.slope, row.slope);
+    double gram_norm = 0; // largest row sum of J J^T
+    for (const Variation& row : rows) {
+        double sum = 0;
+        for (const Variation& other : rows) {
+            Interval product{0, 0};
+            for (size_t j = 0; j < axes; ++j)
+                product = add(product, &row == &other ? square(row.gradient[j])
+                                                      : multiply(row.gradient[j], other.gradient[j]));
+            sum += size_of(product);
+        }
+        gram_norm = std::max(gram_norm, sum);
+    }
+    return std::sqrt(std::min(squares, gram_norm)) * rounding_up;
+}
+
+// Norm of the second derivative of a vector whose components these are.
+double second_norm(std::span<const Variation> rows)
+{
+    double squares = 0;
+    for (const Variation& row : rows) squares += times(row.curvature, row.curvature);
+    return std::sqrt(squares) * rounding_up;
+}
+
+Interval around_zero(double size)
+{
+    return {-size, size};
+}
+
+void tighten(Variation& variation, bool second)
+{
+    variation.slope = std::min(variation.slope, norm(variation.gradient));
+    if (second) variation.curvature = std::min(variation.curvature, spectral_norm(variation.hessian));
+}
+
+Variation roughest_of(std::span<const Variation> parts)
+{
+    Variation all;
+    for (const Variation& part : parts) {
+        if (!part.is_active) continue;
+        all.is_active = true;
+        roughen(all, part.smoothness, part.cause);
+    }
+    return all;
+}
+
+bool is_length(Op op)
+{
+    return op == Op::length2 || op == Op::length3 || op == Op::length4;
+}
+
+} // namespace
+
+Variation axis(size_t direction)
+{
+    Variation variation;
+    variation.is_active = true;
+    variation.gradient[direction] = {1, 1};
+    variation.slope = 1;
+    return variation;
+}
+
+Variation unknown_variation(Span cause)
+{
+    Variation variation;
+    variation.is_active = true;
+    variation.smoothness = Smoothness::unknown;
+    variation.cause = cause;
+    variation.gradient.fill(around_zero(infinity));
+    variation.hessian.fill(around_zero(infinity));
+    variation.slope = variation.curvature = infinity;
+    return variation;
+}
+
+void roughen(Variation& variation, Smoothness smoothness, Span cause)
+{
+    if (smoothness >= variation.smoothness) return;
+    variation.smoothness = smoothness;
+    variation.cause = cause;
+}
+
+Variation join(const Variation& a, const Variation& b)
+{
+    Variation all;
+    all.is_active = a.is_active || b.is_active;
+    roughen(all, a.smoothness, a.cause);
+    roughen(all, b.smoothness, b.cause);
+    for (size_t j = 0; j < all.gradient.size(); ++j) all.gradient[j] = join(a.gradient[j], b.gradient[j]);
+    for (size_t j = 0; j < all.hessian.size(); ++j) all.hessian[j] = join(a.hessian[j], b.hessian[j]);
+    all.slope = std::max(a.slope, b.slope);
+    all.curvature = std::max(a.curvature, b.curvature);
+    return all;
+}
+
+Variation intersect(const Variation& a, const Variation& b)
+{
+    Variation both = a.smoothness >= b.smoothness ? a : b;
+    both.is_active = a.is_active && b.is_active;
+    for (size_t j = 0; j < both.gradient.size(); ++j) both.gradient[j] = intersect(a.gradient[j], b.gradient[j]);
+    for (size_t j = 0; j < both.hessian.size(); ++j) both.hessian[j] = intersect(a.hessian[j], b.hessian[j]);
+    both.slope = std::min(a.slope, b.slope);
+    both.curvature = std::min(a.curvature, b.curvature);
+    return both;
+}
+
+Variation chain(Op op, std::span<const Interval> operands, std::span<const Variation> variations,
+                const Partials& partials, bool second)
+{
+    Variation made = roughest_of(variations);
+    if (!made.is_active) return made;
+    // The direction of a length is a unit vector, and turns the slower the longer it is.
+    const bool is_norm = is_length(op);
+    Partials by = partials;
+    double shortest = 0;
+    for (size_t i = 0; i < operands.size() && is_norm; ++i) {
+        by.first[i] = intersect(by.first[i], {-1, 1});
+        const double least = std::max({0.0, operands[i].minimum, -operands[i].maximum});
+        shortest += least * least;
+    }
+
+    double slope = 0, curvature = 0;
+    for (size_t i = 0; i < variations.size(); ++i) {
+        const Variation& a = variations[i];
+        if (!a.is_active) continue;
+        slope += times(size_of(by.first[i]), a.slope);
+        curvature += times(size_of(by.first[i]), a.curvature);
+        for (size_t j = 0; j < axes; ++j) made.gradient[j] = add(made.gradient[j], multiply(by.first[i], a.gradient[j]));
+        if (!second) continue;
+        for (size_t j = 0; j < made.hessian.size(); ++j)
+            made.hessian[j] = add(made.hessian[j], multiply(by.first[i], a.hessian[j]));
+        for (size_t l = 0; l < variations.size(); ++l) {
+            const Variation& b = variations[l];
+            if (!b.is_active) continue;
+            curvature += times(size_of(by.second[i][l]), times(a.slope, b.slope));
+            for (size_t j = 0; j < axes; ++j)
+                for (size_t k = j; k < axes; ++k) {
+                    const Interval product = i == l && j == k ? square(a.gradient[j])
+                                                              : multiply(a.gradient[j], b.gradient[k]);
+                    Interval& sum = made.hessian[pair_of[j][k]];
+                    sum = add(sum, multiply(by.second[i][l], product));
+                }
+        }
+    }
+    if (is_norm) {
+        const double turns = jacobian_norm(variations);
+        slope = std::min(slope, turns);
+        const double bend = times(turns * turns, 1 / (std::sqrt(shortest) / rounding_up));
+        curvature = std::min(curvature, bend + second_norm(variations));
+    }
+    made.slope = slope * rounding_up;
+    made.curvature = curvature * rounding_up;
+    tighten(made, second);
+    return made;
+}
+
+Variation chain(const Facts& facts, std::span<const Variation> arguments)
+{
+    Variation made = roughest_of(arguments);
+    if (!made.is_active) return made;
+    if (facts.smoothness) roughen(made, *facts.smoothness, arguments.empty() ? Span{} : arguments[0].cause);
+    const double jacobian = jacobian_norm(arguments), second = second_norm(arguments);
+    const double slope = facts.slope.value_or(infinity), curvature = facts.curvature.value_or(infinity);
+
+    double column[axes];
+    for (size_t j = 0; j < axes; ++j) {
+        double squares = 0;
+        for (const Variation& argument : arguments)
+            squares += times(size_of(argument.gradient[j]), size_of(argument.gradient[j]));
+        column[j] = std::sqrt(squares) * rounding_up;
+        made.gradient[j] = around_zero(times(slope, column[j]));
+    }
+    for (size_t j = 0; j < axes; ++j)
+        for (size_t k = j; k < axes; ++k) {
+            double squares = 0;
+            for (const Variation& argument : arguments) {
+                const double part = size_of(argument.hessian[pair_of[j][k]]);
+                squares += times(part, part);
+            }
+            made.hessian[pair_of[j][k]] =
+                around_zero(times(curvature, column[j] * column[k]) + times(slope, std::sqrt(squares) * rounding_up));
+        }
+    made.slope = times(slope, jacobian) * rounding_up;
+    made.curvature = (times(curvature, jacobian * jacobian) + times(slope, second)) * rounding_up;
+    tighten(made, true);
+    return made;
+}
+
+} // namespace haptel::ir

@@ -1,0 +1,44 @@
+// How a value varies with the point that is touched: bounds of its first and second derivatives, and how smooth it is.
+//
+// Derivatives are held twice, because neither form is always the sharper one: as intervals by component (exact for
+// affine maps and for what depends on one axis), and as norms (exact for what is known by a bound of its slope only).
+#pragma once
+
+#include "lang/ir/partials.h"
+
+#include <array>
+#include <span>
+
+namespace haptel::ir {
+
+struct Variation {
+    static constexpr size_t directions = 3; // the axes of p
+
+    bool is_active = false; // depends on the point at all; else the rest stays as it is here
+    Smoothness smoothness = Smoothness::smooth;
+    Span cause;                           // of the roughest part
+    std::array<Interval, 3> gradient = {}; // by axis
+    std::array<Interval, 6> hessian = {};  // xx xy xz yy yz zz
+    double slope = 0;                      // sup of the gradient's Euclidean norm
+    double curvature = 0;                  // sup of the Hessian's spectral norm
+};
+
+Variation axis(size_t direction); // of p_x, p_y, p_z themselves
+Variation unknown_variation(Span cause);
+
+// Rougher of the two, with its cause.
+void roughen(Variation& variation, Smoothness smoothness, Span cause);
+
+// Of what may be either: an `if`, a choice, the lesser of two.
+Variation join(const Variation& a, const Variation& b);
+// Of what is known by two ways.
+Variation intersect(const Variation& a, const Variation& b);
+
+// By the chain rule, of a real operation with these partials at its operands. Without `second` the Hessian is left out.
+Variation chain(Op op, std::span<const Interval> operands, std::span<const Variation> variations,
+                const Partials& partials, bool second);
+
+// By the chain rule, of a function known by its facts: slope and curvature are norms with respect to these arguments.
+Variation chain(const Facts& facts, std::span<const Variation> arguments);
+
+} // namespace haptel::ir
