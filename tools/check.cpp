@@ -133,8 +133,7 @@ void CheckRun::check(const std::string& path)
     report.add(result);
     if (!result.program) return;
     for (const ir::Texture& texture : result.program->module.textures)
-        report.textures.push_back(
-            check_bounds(path, result.program, texture, values_of(path, texture), options.box_m));
+        report.textures.push_back(check_bounds(path, result.program, texture, values_of(path, texture), options.box_m));
 }
 
 void CheckRun::report_unknown_parameters()

@@ -82,9 +82,13 @@ Json to_json(const ir::Interval& height_m)
 }
 
 // A curvature is of a gradient without jumps.
+bool has_curvature(const ir::TextureBounds& bounds)
+{
+    return bounds.smoothness >= ir::Smoothness::c1;
+}
 Json curvature_of(const ir::TextureBounds& bounds)
 {
-    return bounds.smoothness >= ir::Smoothness::c1 ? finite_or_null(bounds.curvature_max_per_m) : Json(nullptr);
+    return has_curvature(bounds) ? finite_or_null(bounds.curvature_max_per_m) : Json(nullptr);
 }
 
 Json continuity_of(const ir::TextureBounds& bounds)
@@ -152,6 +156,29 @@ std::string shown_length(double metres)
     return fmt::format("{:.3g} m", metres);
 }
 
+std::string shown_range(const ir::Interval& height_m)
+{
+    return fmt::format("{} .. {}", shown_length(height_m.minimum), shown_length(height_m.maximum));
+}
+
+std::string shown_bound(double bound, std::string_view unit)
+{
+    return std::isfinite(bound) ? fmt::format("{:.3g}{}", bound, unit) : "unbounded";
+}
+
+// The class, and the place that keeps it from being smoother.
+std::string shown_class(const CheckedTexture& checked)
+{
+    const ir::TextureBounds& bounds = checked.bounds;
+    if (bounds.smoothness >= ir::Smoothness::c1) return "C1, smooth enough for a bounded change of force";
+    const std::string_view meaning = bounds.smoothness == ir::Smoothness::unknown ? "not found"
+                                     : bounds.smoothness == ir::Smoothness::jump  ? "jump, the height steps"
+                                                                                  : "C0, the slope steps";
+    const lang::SourceSet& sources = checked.program->sources;
+    const lang::Position at = sources.position(bounds.cause.file, bounds.cause.begin);
+    return fmt::format("{}, at {}:{}:{}", meaning, sources.file(bounds.cause.file).name, at.line, at.column);
+}
+
 // The cube, and wherever else the contact may be: any uv, any time.
 ir::BoundsBox cube(double side_m)
 {
@@ -174,7 +201,7 @@ ir::BoundsBox cube(double side_m)
 } // namespace
 
 CheckedTexture check_bounds(std::string file, std::shared_ptr<const lang::Program> program, const ir::Texture& texture,
-                             const std::vector<double>& values, double box_m)
+                            const std::vector<double>& values, double box_m)
 {
     ir::BoundsBox at_values = cube(box_m), over_ranges = cube(box_m);
     for (size_t i = 0; i < values.size(); ++i) {
@@ -230,19 +257,20 @@ std::string CheckReport::to_text() const
 {
     std::string text;
     for (const CheckedTexture& checked : textures) {
-<<<<<<< HEAD
+        const ir::TextureBounds &here = checked.bounds, &ranges = checked.over_ranges;
         const std::vector<std::string> inputs = inputs_of(*checked.texture), outputs = outputs_of(*checked.texture);
-        text += fmt::format("{}:{}: height {} .. {} in a cube of {}, at most {} operations, reads {}{}\n", checked.file,
-                            checked.texture->name, shown_length(checked.height_m.minimum),
-                            shown_length(checked.height_m.maximum), shown_length(box_m), operations_of(checked),
+        text += fmt::format("{}:{} in a cube of {} (and over the ranges of its parameters)\n", checked.file,
+                            checked.texture->name, shown_length(box_m));
+        text += fmt::format("  height     {} ({})\n", shown_range(here.height), shown_range(ranges.height));
+        text += fmt::format("  slope      at most {} ({})\n", shown_bound(here.slope_max, ""),
+                            shown_bound(ranges.slope_max, ""));
+        if (has_curvature(here))
+            text += fmt::format("  curvature  at most {} ({})\n", shown_bound(here.curvature_max_per_m, " /m"),
+                                has_curvature(ranges) ? shown_bound(ranges.curvature_max_per_m, " /m") : "none");
+        text += fmt::format("  class      {}\n", shown_class(checked));
+        text += fmt::format("  cost       at most {} operations; reads {}{}\n", operations_of(checked),
                             inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")),
                             outputs.empty() ? "" : fmt::format(", writes {}", fmt::join(outputs, ", ")));
-=======
-        const std::vector<std::string> inputs = inputs_of(*checked.texture);
-        text += fmt::format("{}:{}: height {} .. {} in a cube of {}, at most {} operations, reads {}\n", checked.file,
-                            checked.texture->name, shown_length(checked.bounds.height.minimum),
-                            shown_length(checked.bounds.height.maximum), shown_length(box_m), operations_of(checked),
-                            inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")));
     }
     return text;
 }

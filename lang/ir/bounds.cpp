@@ -32,8 +32,11 @@ enum class Goal : uint8_t { highest, lowest, slope, curvature };
 class Bisection {
 public:
     Bisection(const Module& module, const Texture& texture, BoundsBox around, std::vector<Goal> which)
-        : evaluator(module, operations_per_evaluation), entry(texture.body), box(std::move(around)),
-          goals(std::move(which)), queues(goals.size())
+        : evaluator(module, operations_per_evaluation)
+        , entry(texture.body)
+        , box(std::move(around))
+        , goals(std::move(which))
+        , queues(goals.size())
     {
         std::vector<bool> is_read(input_count, false);
         find_inputs(module.functions[entry].body, is_read);

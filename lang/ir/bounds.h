@@ -1,7 +1,8 @@
 // What a function can return at most, over boxes of inputs and parameters: interval evaluation.
 //
-// Calls use the callee's facts (value, slope, curvature and class), intersected with natural evaluation of its body; `if` conditions that the intervals decide leave out the other arm, others narrow the values
-// they compare inside each arm; loops run for every possible number of trips.
+// Calls use the callee's facts (value, slope, curvature and class), intersected with natural evaluation of its body;
+// `if` conditions that the intervals decide leave out the other arm, others narrow the values they compare inside each
+// arm; loops run for every possible number of trips.
 #pragma once
 
 #include "lang/ir/interval.h"

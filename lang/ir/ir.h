@@ -140,7 +140,7 @@ struct Facts {
     std::optional<double> value_minimum, value_maximum;
     std::optional<double> slope, curvature;
     std::optional<Smoothness> smoothness;
-    bool proven = false;                // the standard library's; others print as `declared`
+    bool proven = false; // the standard library's; others print as `declared`
 };
 
 struct Function {

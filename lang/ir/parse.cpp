@@ -203,8 +203,8 @@ private:
         expect(")");
         if (accept("first")) function.first_argument_size = count();
         function.is_library = accept("library");
-        if (accept("facts"))
-            do function.facts.push_back(facts());
+        if (accept("facts")) do
+                function.facts.push_back(facts());
             while (accept("next"));
         expect("{");
         block(function.body, "return", 0);

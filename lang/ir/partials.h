@@ -28,9 +28,9 @@ private:
         std::vector<uint32_t> operands;
     };
     struct Line {
-        std::vector<Step> steps; // their values follow the operands'
-        std::vector<std::pair<uint32_t, uint32_t>> first;                  // operand, where
-        std::vector<std::tuple<uint32_t, uint32_t, uint32_t>> second;      // operand, operand, where
+        std::vector<Step> steps;                                      // their values follow the operands'
+        std::vector<std::pair<uint32_t, uint32_t>> first;             // operand, where
+        std::vector<std::tuple<uint32_t, uint32_t, uint32_t>> second; // operand, operand, where
         size_t steps_for_first = 0;
     };
     std::map<std::pair<Op, uint32_t>, Line> lines;

@@ -63,8 +63,8 @@ double jacobian_norm(std::span<const Variation> rows)
         for (const Variation& other : rows) {
             Interval product{0, 0};
             for (size_t j = 0; j < axes; ++j)
-                product = add(product, &row == &other ? square(row.gradient[j])
-                                                      : multiply(row.gradient[j], other.gradient[j]));
+                product = add(product,
+                              &row == &other ? square(row.gradient[j]) : multiply(row.gradient[j], other.gradient[j]));
             sum += size_of(product);
         }
         gram_norm = std::max(gram_norm, sum);
@@ -182,7 +182,8 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
         if (!a.is_active) continue;
         slope += times(size_of(by.first[i]), a.slope);
         curvature += times(size_of(by.first[i]), a.curvature);
-        for (size_t j = 0; j < axes; ++j) made.gradient[j] = add(made.gradient[j], multiply(by.first[i], a.gradient[j]));
+        for (size_t j = 0; j < axes; ++j)
+            made.gradient[j] = add(made.gradient[j], multiply(by.first[i], a.gradient[j]));
         if (!second) continue;
         for (size_t j = 0; j < made.hessian.size(); ++j)
             made.hessian[j] = add(made.hessian[j], multiply(by.first[i], a.hessian[j]));
@@ -192,8 +193,8 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
             curvature += times(size_of(by.second[i][l]), times(a.slope, b.slope));
             for (size_t j = 0; j < axes; ++j)
                 for (size_t k = j; k < axes; ++k) {
-                    const Interval product = i == l && j == k ? square(a.gradient[j])
-                                                              : multiply(a.gradient[j], b.gradient[k]);
+                    const Interval product =
+                        i == l && j == k ? square(a.gradient[j]) : multiply(a.gradient[j], b.gradient[k]);
                     Interval& sum = made.hessian[pair_of[j][k]];
                     sum = add(sum, multiply(by.second[i][l], product));
                 }

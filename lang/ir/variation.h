@@ -16,7 +16,7 @@ struct Variation {
 
     bool is_active = false; // depends on the point at all; else the rest stays as it is here
     Smoothness smoothness = Smoothness::smooth;
-    Span cause;                           // of the roughest part
+    Span cause;                            // of the roughest part
     std::array<Interval, 3> gradient = {}; // by axis
     std::array<Interval, 6> hessian = {};  // xx xy xz yy yz zz
     double slope = 0;                      // sup of the gradient's Euclidean norm

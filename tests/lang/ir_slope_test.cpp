@@ -119,10 +119,10 @@ TEST_CASE("slope and curvature: facts by the chain rule")
     CHECK(is_near(rotated.curvature_max_per_m, 10));
 
     // a warp: slope <= s |J|, curvature <= c |J|^2 + s |H|, with q = 3 x + x^2 on [0, 1]
-    const TextureBounds warped = bounds_of(
-        "%x = input p_x %k = real 3 %a = mul %k, %x %b = mul %x, %x %q = add %a, %b %z = real 0 "
-        "%h = call \"noise\" (%q, %z, %z) return %h",
-        {{0, 1}}, noise, 1);
+    const TextureBounds warped =
+        bounds_of("%x = input p_x %k = real 3 %a = mul %k, %x %b = mul %x, %x %q = add %a, %b %z = real 0 "
+                  "%h = call \"noise\" (%q, %z, %z) return %h",
+                  {{0, 1}}, noise, 1);
     CHECK(is_near(warped.slope_max, 2 * 5));
     CHECK(is_near(warped.curvature_max_per_m, 10 * 25 + 2 * 2));
 }
@@ -144,7 +144,8 @@ TEST_CASE("class: the roughest part that can be met, with its place")
     CHECK(class_of(x + "%c = lt %x, %t %h = select %c, %x, %t return %h", {-1, 0}) == Smoothness::smooth);
     CHECK(class_of(x + "%c = lt %x, %t %h = if %c { yield %x } else { yield %t } return %h", {-1, 1}) ==
           Smoothness::jump);
-    CHECK(class_of(x + "%a = abs %x %h = mul %a, %a return %h", {-1, 1}) == Smoothness::c0); // it is C1: true, not sharp
+    CHECK(class_of(x + "%a = abs %x %h = mul %a, %a return %h", {-1, 1}) ==
+          Smoothness::c0); // it is C1: true, not sharp
 }
 
 // For programs at random: no pair of points of the box breaks what slope, curvature and class promise.

@@ -178,14 +178,18 @@ TEST_CASE("check: --fix writes what the compiler proposes, until nothing is left
                              "float width() { return 1.0; }\n");
 }
 
-TEST_CASE("check: a line per texture for people")
+TEST_CASE("check: a few lines per texture for people")
 {
     const Folder folder;
     const std::string file = folder.write("waves.haptel", waves + "texture free() { return p.x / time; }\n");
     const Ran ran = run_command("check '" + file + "'");
     CHECK(ran.code == 0);
-    CHECK(contains(ran.out, file + ":waves: height -40 um .. 40 um in a cube of 200 mm, at most "));
+    CHECK(contains(ran.out, file + ":waves in a cube of 200 mm"));
+    CHECK(contains(ran.out, "height     -40 um .. 40 um (-100 um .. 100 um)\n"));
+    CHECK(contains(ran.out, "slope      at most 0.06 (0.8)\n"));
+    CHECK(contains(ran.out, "curvature  at most 90 /m (6.4e+03 /m)\n"));
     CHECK(contains(ran.out, "reads p\n"));
-    CHECK(contains(ran.out, file + ":free: height -unbounded .. unbounded in a cube"));
+    CHECK(contains(ran.out, "height     -unbounded .. unbounded (-unbounded .. unbounded)\n"));
+    CHECK(contains(ran.out, "slope      at most unbounded (unbounded)\n"));
     CHECK(contains(ran.out, "reads p, time\n"));
 }
