@@ -265,7 +265,7 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Call&
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const PointDerivative&)
 {
-    frame.values[made.results[0].index] = everything(Type::real); // in no program that passes `verify`
+    store(frame, made.results[0], everything(Type::real), unknown_variation(made.span)); // in no verified program
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const If& choice)
