@@ -142,7 +142,7 @@ void BodyChecker::check_function(Function& tree, FunctionInfo& info)
             symbol.slot = functions++;
             for (Type type : parameter.signature) symbol.parameters.push_back({type});
         } else {
-            flow.variables[symbol.slot].assigned = 0xff;
+            flow.variables[symbol.slot].assigned = all_parts;
         }
         parameter.symbol = &symbol;
     }
@@ -161,8 +161,8 @@ void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
         if (!parameter.is_output) continue;
         const uint32_t bit = check_output(parameter);
         Symbol& symbol = declare(parameter.name, SymbolKind::local, bit ? float_type : Type::error());
-        flow.variables[symbol.slot].assigned = 0xff; // 1 from the start
-        symbol.is_read = true;                       // by whoever called
+        flow.variables[symbol.slot].assigned = all_parts; // 1 from the start
+        symbol.is_read = true;                            // by whoever called
         if (bit) texture.outputs.push_back({&symbol, bit});
     }
     std::ranges::sort(texture.outputs, {}, &CheckedOutput::writes);
@@ -190,6 +190,7 @@ void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
 Symbol* BodyChecker::check_global(Declaration& declaration)
 {
     open_scope();
+    is_global = true;
     Statement scratch{declaration.name.span, Break{}};
     declaration.is_const = true;
     check(scratch, declaration);

@@ -1,7 +1,8 @@
 // Checks one body: of a function, of a texture, or of a global constant. One pass over its tree, in source order, with
 // a little knowledge of flow: which variables are assigned for certain, and what the integers can be.
 //
-// check_expression.cpp, check_call.cpp, check_statement.cpp, check_loop.cpp and check_range.cpp hold the parts.
+// check_expression.cpp, check_call.cpp, check_statement.cpp, check_array.cpp, check_loop.cpp and check_range.cpp hold
+// the parts.
 #pragma once
 
 #include "lang/check.h"
@@ -33,12 +34,19 @@ std::optional<Type> type_named(std::string_view name);
 // Reports what is no type; `what` it is for ("a parameter"). Arrays: the element, the caller looks at is_array.
 Type resolve_type(CheckContext& context, const ast::TypeName& name);
 
+// Parts of a variable, a bit each: components; of an array, elements.
+inline constexpr uint64_t all_parts = ~uint64_t{0};
+uint64_t parts_of(Type type);
+uint64_t parts_at(Type type, int64_t index); // what an index picks; none if it is out of range
+
 class BodyChecker {
 public:
     BodyChecker(CheckContext& context, const FileScope& scope, bool is_library);
 
     void check_function(ast::Function& tree, FunctionInfo& info);
     void check_texture(ast::Texture& tree, CheckedTexture& texture);
+    // Of a parameter or result: the type with the size in brackets, or the error that was reported.
+    Type array_type(const ast::TypeName& name, Type element);
     // A global constant or table. Null after an error in its head.
     Symbol* check_global(ast::Declaration& declaration);
     // A constant number or bool outside of any body; nothing once a mistake was reported.
@@ -49,7 +57,7 @@ private:
     uint32_t check_output(ast::TextureParameter& tree);
 
     struct Variable {
-        uint8_t assigned = 0; // a bit per component
+        uint64_t assigned = 0; // a bit per component; of an array, per element
         ir::IntRange range{INT32_MIN, INT32_MAX};
     };
     struct Flow {
@@ -89,7 +97,7 @@ private:
     Type check(ast::Expression& e, ast::Member& node);
     Type check(ast::Expression& e, ast::Index& node);
     Type check(ast::Expression& e, ast::BraceList& node);
-    Type read(ast::Expression& e, ast::NameExpression& node, uint8_t components);
+    Type read(ast::Expression& e, ast::NameExpression& node, uint64_t parts);
     void check_index(const ast::Expression& index, uint32_t size, const std::string& of_what);
     // Reports unless `e` has or becomes that type; `where` as a clause: " for 'x'".
     bool require(ast::Expression& e, Type wanted, const std::string& where);
@@ -124,18 +132,22 @@ private:
     void check(ast::Statement& s, ast::For& node);
     void check(ast::Statement& s, ast::Break& node);
     void check(ast::Statement& s, ast::Return& node);
-    Symbol* table(ast::Declaration& declaration, Type element);
     void condition(ast::ExpressionPtr& e, const char* of_what);
     void merge(Flow& into, const Flow& other) const;
     void whole_body(ast::StatementPtr& tree, const ast::Name& name, Type result, const char* what, bool damaged);
 
-    // What is assigned to, and which of its components.
+    // ---- arrays, and variables with parts
+    // What is assigned to, and which of its parts.
     struct Target {
         Symbol* symbol = nullptr; // null: reported
-        uint8_t components = 0;
+        uint64_t parts = 0;
         Type type;
     };
     Target target_of(ast::Expression& e);
+    uint64_t parts_written(Type type, const std::vector<ast::Expression*>& accessors) const;
+    Symbol* array(ast::Declaration& declaration, Type element);
+    std::optional<uint32_t> size_of_array(const ast::TypeName& type);
+    bool fits_body(Type type, Span span);
 
     // ---- loops
     void plan(ast::Statement& s, ast::For& loop, Symbol& counter);
@@ -154,6 +166,7 @@ private:
     std::vector<size_t> scope_marks;
     Flow flow;
     uint32_t loop_depth = 0;
+    bool is_global = false; // what is declared stands outside of any body
     Type result_type;
     std::string owner_name; // of the function or texture, for messages
     uint32_t reads = 0;

@@ -29,7 +29,9 @@ Type type_of(char letter, uint8_t generic_size)
     case 'u': return uint_type;
     case 'b': return bool_type;
     case '3': return vec(3);
-    case 'g': return vec(generic_size);
+    case 'g':
+    case 'v': return vec(generic_size);
+    case 'm': return mat(generic_size);
     }
     return float_type;
 }
@@ -53,8 +55,9 @@ Overloads expand_all()
         for (std::string_view rest = signatures[i]; !rest.empty();) {
             std::string_view signature = rest.substr(0, rest.find(' '));
             rest.remove_prefix(std::min(rest.size(), signature.size() + 1));
-            const bool generic = signature.find('g') != std::string_view::npos;
-            for (uint8_t size = 1; size <= (generic ? 4 : 1); ++size) {
+            const bool generic = signature.find_first_of("gvm") != std::string_view::npos;
+            const bool scalars = signature.find_first_of("vm") == std::string_view::npos;
+            for (uint8_t size = scalars ? 1 : 2; size <= (generic ? 4 : 1); ++size) {
                 BuiltinOverload made = overload(builtins[i], signature, size);
                 // g(g,f) of a float is g(g,g) once more
                 const bool known = std::any_of(overloads.begin(), overloads.end(), [&](const BuiltinOverload& other) {

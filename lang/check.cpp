@@ -14,7 +14,8 @@ using namespace ast;
 
 std::optional<Type> type_named(std::string_view name)
 {
-    for (Type type : {float_type, int_type, uint_type, bool_type, vec(2), vec(3), vec(4), void_type})
+    for (Type type :
+         {float_type, int_type, uint_type, bool_type, vec(2), vec(3), vec(4), mat(2), mat(3), mat(4), void_type})
         if (to_string(type) == name) return type;
     return std::nullopt;
 }
@@ -26,14 +27,14 @@ Type resolve_type(CheckContext& context, const TypeName& name)
     Diagnostic& reported =
         context.diagnostics.error(name.base.span, "unknown-type", "unknown type " + quoted(name.base.text));
     const std::string_view nearest =
-        nearest_name(name.base.text, {"float", "int", "uint", "bool", "vec2", "vec3", "vec4"});
-    if (name.base.text.starts_with("mat")) {
-        reported.hint = "there are no matrices: write the products out with dot()";
+        nearest_name(name.base.text, {"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4"});
+    if (name.base.text.starts_with("mat") && name.base.text.find('x') != std::string::npos) {
+        reported.hint = "matrices are square: mat2, mat3 and mat4";
     } else if (!nearest.empty()) {
         reported.hint = "did you mean " + quoted(nearest) + "?";
         reported.fix = FixIt{name.base.span, std::string(nearest)};
     } else {
-        reported.hint = "types are float, int, uint, bool, vec2, vec3 and vec4";
+        reported.hint = "types are float, int, uint, bool, vec2, vec3, vec4, mat2, mat3 and mat4";
     }
     return Type::error();
 }
@@ -78,10 +79,12 @@ public:
         for (uint32_t file = 0; file < program.files.size(); ++file) order.push_back(file);
         std::stable_partition(order.begin(), order.end(),
                               [&](uint32_t file) { return program.files[file].is_library; });
-        for (uint32_t file : order) declare_functions(file);
         std::vector<FileScope> scopes;
         for (uint32_t file = 0; file < program.files.size(); ++file) scopes.push_back(scope_of(file));
+        // Sizes of arrays in heads of functions are constants, and constants may name functions.
+        for (uint32_t file : order) declare_functions(file, scopes[file], false);
         for (uint32_t file : order) check_constants(file, scopes[file]);
+        for (uint32_t file : order) declare_functions(file, scopes[file], true);
         for (FunctionInfo& function : program.functions) {
             if (context.diagnostics.full()) return;
             const Function& tree = *function.tree;
@@ -109,25 +112,28 @@ private:
         return scope;
     }
 
-    void declare_functions(uint32_t file)
+    // Those that pass arrays, or the others.
+    void declare_functions(uint32_t file, const FileScope& scope, bool with_arrays)
     {
         for (Function& tree : program.files[file].tree.functions) {
+            const auto is_array = [](const auto& parameter) { return parameter.type.is_array; };
+            if ((tree.result.is_array || std::ranges::any_of(tree.parameters, is_array)) != with_arrays) continue;
             FunctionInfo& info = program.functions.emplace_back();
             info.name = tree.name.text;
             info.tree = &tree;
             info.file = file;
             info.is_library = program.files[file].is_library;
-            info.result = value_type(tree.result, "a function returns a value");
+            info.result = value_type(tree.result, "a function returns a value", scope);
             if (type_named(info.name))
                 context.diagnostics.error(tree.name.span, "reserved-name",
                                           quoted(info.name) + " is a type, expected a name of your own");
             info.is_valid = !info.result.is_error();
             for (const FunctionParameter& parameter : tree.parameters) {
-                ParameterInfo made{value_type(parameter.type, "a parameter holds a value"), parameter.name.text,
+                ParameterInfo made{value_type(parameter.type, "a parameter holds a value", scope), parameter.name.text,
                                    parameter.is_function};
                 info.is_valid = info.is_valid && !made.type.is_error();
                 for (const TypeName& type : parameter.signature) {
-                    made.signature.push_back(value_type(type, "a function takes values"));
+                    made.signature.push_back(value_type(type, "a function takes values", scope));
                     info.is_valid = info.is_valid && !made.signature.back().is_error();
                 }
                 info.parameters.push_back(std::move(made));
@@ -161,18 +167,15 @@ private:
                                          (replaces_library ? "library's" : "built-in") + " function in this file");
     }
 
-    // Of a result or parameter: no table, not void.
-    Type value_type(const TypeName& name, const std::string& why)
+    // Of a result or parameter: not void.
+    Type value_type(const TypeName& name, const std::string& why, const FileScope& scope)
     {
         const Type type = resolve_type(context, name);
         if (type == void_type)
             context.diagnostics.error(name.base.span, "type-mismatch", why + ", found void").hint =
                 "write float, int, vec3 ...";
-        else if (name.is_array)
-            context.diagnostics.error(name.base.span, "type-mismatch", why + ", found a table").hint =
-                "declare the table as a global const and use its elements";
         else
-            return type;
+            return name.is_array ? BodyChecker(context, scope, true).array_type(name, type) : type;
         return Type::error();
     }
 

@@ -48,6 +48,14 @@ const FunctionInfo* source_of(const FunctionReference& function)
     return source ? *source : nullptr;
 }
 
+// Column j of a matrix is the derivative by component j; an error where no type holds the derivatives.
+Type derivative_type(Type of, Type argument)
+{
+    if (argument == float_type) return of; // shape of what is differentiated
+    if (of == float_type) return argument;
+    return of == argument ? mat(of.size) : Type::error();
+}
+
 bool is_literal_for(const Expression& argument, Type wanted)
 {
     return argument.type == int_type && wanted == uint_type && std::holds_alternative<NumberLiteral>(argument.node);
@@ -63,8 +71,9 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
     return chosen ? chosen->result : if_unsure;
 }
 
-// Scalars convert from any scalar, vectors join the components of their arguments; one scalar fills a vector, and a
-// longer vector is cut.
+// Scalars convert from any scalar; vectors and matrices join the components of their arguments. One scalar fills a
+// vector or the diagonal of a matrix, a longer vector is cut, and a matrix of another size is cut or filled up from the
+// unit matrix.
 Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
 {
     bool damaged = false;
@@ -73,15 +82,23 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
         Expression& argument = *call.arguments[i];
         const Type found = expression(argument);
         damaged |= found.is_error();
-        if (!damaged && components >= type.size) {
-            const std::string full = type.is_vector()
-                                         ? "has all its " + count_of(type.size, "component") + " before this argument"
-                                         : "is made of one value";
+        if (!damaged && components >= type.components()) {
+            const std::string full =
+                type.is_scalar() ? "is made of one value"
+                                 : "has all its " + count_of(type.components(), "component") + " before this argument";
             diagnostics.error(argument.span, "wrong-argument-count", to_string(type) + " " + full).hint =
                 "leave this argument out";
             damaged = true;
         }
-        components += found.size;
+        if (!damaged && (found.is_array() || (type.is_matrix() && found.is_matrix() && call.arguments.size() > 1))) {
+            diagnostics
+                .error(argument.span, "type-mismatch",
+                       "expected numbers and vectors for " + to_string(type) + ", found " + to_string(found))
+                .hint = found.is_array() ? "pick elements: " + excerpt(argument) + "[i]"
+                                         : "pick columns: " + excerpt(argument) + "[0]";
+            damaged = true;
+        }
+        components += found.components();
     }
     call.target.is_constructor = true;
     call.target.function_arguments.assign(call.arguments.size(), {});
@@ -90,12 +107,15 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
         diagnostics.error(e.span, "type-mismatch", "void has no values");
         return Type::error();
     }
-    const bool fills = call.arguments.size() == 1 && components == 1;
-    if (components == 0 || (components < type.size && !fills)) {
-        Diagnostic& reported = diagnostics.error(e.span, "wrong-argument-count",
-                                                 to_string(type) + " needs " + count_of(type.size, "component") +
-                                                     ", found " + std::to_string(components));
+    const bool fills =
+        call.arguments.size() == 1 && (components == 1 || (type.is_matrix() && call.arguments[0]->type.is_matrix()));
+    if (components == 0 || (components < type.components() && !fills)) {
+        Diagnostic& reported =
+            diagnostics.error(e.span, "wrong-argument-count",
+                              to_string(type) + " needs " + count_of(type.components(), "component") + ", found " +
+                                  std::to_string(components));
         if (type.is_vector()) reported.hint = "one number fills all: " + to_string(type) + "(0.0)";
+        if (type.is_matrix()) reported.hint = "one number fills the diagonal: " + to_string(type) + "(1.0)";
     }
     return type;
 }
@@ -108,7 +128,7 @@ Type BodyChecker::check(Expression& e, GradCall& call)
     const auto first = std::find_if(chosen->parameters.begin(), chosen->parameters.end(),
                                     [](const ParameterInfo& p) { return !p.is_function; });
     const Type argument = first == chosen->parameters.end() ? void_type : first->type;
-    if (argument.scalar != Scalar::float_) {
+    if (argument.scalar != Scalar::float_ || argument.is_matrix() || argument.is_array()) {
         diagnostics
             .error(
                 e.span, "not-differentiable",
@@ -117,25 +137,27 @@ Type BodyChecker::check(Expression& e, GradCall& call)
             .hint = "the function is " + to_string(*chosen);
         return Type::error();
     }
-    if (chosen->result.scalar != Scalar::float_) {
+    if (chosen->result.scalar != Scalar::float_ || chosen->result.is_array()) {
         diagnostics
             .error(e.span, "not-differentiable",
-                   "expected a function that returns float or a vector, found one that returns " +
+                   "expected a function that returns float, a vector or a matrix, found one that returns " +
                        to_string(chosen->result))
             .hint = "the function is " + to_string(*chosen);
         return Type::error();
     }
-    if (!argument.is_vector())
-        return chosen->result; // a derivative by a number has the shape of what is differentiated
-    if (!chosen->result.is_vector() && call.order == 1) return argument;
-    Diagnostic& reported =
-        diagnostics.error(e.span, "needs-matrix",
-                          call.order > 1 ? "the second derivative with respect to " + to_string(argument) +
-                                               " is a matrix, and there are no matrices"
-                                         : "the derivative of " + to_string(chosen->result) + " with respect to " +
-                                               to_string(argument) + " is a matrix, and there are no matrices");
-    reported.hint =
-        "what is possible: a float function of a vector, a vector function of a float; take the components one by one";
+    Type made = chosen->result;
+    for (uint32_t order = 0; order < call.order && !made.is_error(); ++order) made = derivative_type(made, argument);
+    if (!made.is_error()) return made;
+    std::string what = "the derivative";
+    if (call.order > 1)
+        what = call.order == 2 ? "the second derivative" : "a derivative of order " + std::to_string(call.order);
+    diagnostics
+        .error(e.span, "not-differentiable",
+               what + " of " + to_string(chosen->result) + " with respect to " + to_string(argument) +
+                   " has no type: it is no number, vector or square matrix")
+        .hint =
+        "what is possible: a float function of a vector, twice; a vector function of a vector of its size, once; "
+        "any function of a float";
     return Type::error();
 }
 
@@ -316,7 +338,8 @@ void BodyChecker::report_unknown_function(const Name& callee)
         if (!foreign->replacement.empty()) reported.fix = FixIt{callee.span, std::string(foreign->replacement)};
         return;
     }
-    std::vector<std::string_view> names{"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "grad"};
+    std::vector<std::string_view> names{"float", "int",  "uint", "bool", "vec2", "vec3",
+                                        "vec4",  "mat2", "mat3", "mat4", "grad"};
     scope.collect_function_names(names);
     if (const std::string_view nearest = nearest_name(callee.text, names); !nearest.empty()) {
         reported.hint = "did you mean " + quoted(nearest) + "?";

@@ -5,14 +5,13 @@
 #include "lang/swizzle.h"
 
 #include <algorithm>
+#include <bit>
 
 namespace haptel::lang {
 
 using namespace ast;
 
 namespace {
-
-constexpr uint8_t all_components = 0xff;
 
 bool is_integer(Type type)
 {
@@ -24,6 +23,11 @@ std::string conversion_hint(Type from, Type to, const std::string& text)
 {
     if (to.is_array() || to.is_error()) return {};
     if (from.is_array()) return "pick an element: " + text + "[i]";
+    if (from.is_matrix() || to.is_matrix()) {
+        if (from.is_matrix() && to == from.element()) return "pick a column: " + text + "[0]";
+        if (from.is_matrix() && to.is_scalar()) return "pick an element: " + text + "[0][0]";
+        return from.is_vector() || to.is_vector() ? "" : "write " + to_string(to) + "(" + text + ")";
+    }
     if (from.is_vector() && to.is_vector())
         return from.size > to.size
                    ? "pick components: " + text + "." + std::string("xyzw").substr(0, to.size)
@@ -37,16 +41,33 @@ std::string conversion_hint(Type from, Type to, const std::string& text)
 // The hint is a plain conversion that --fix may apply.
 bool converts_by_constructor(Type from, Type to)
 {
-    return !from.is_vector() && !from.is_array() && !to.is_array() && !to.is_error() && to != bool_type;
+    const bool makes_matrix = to.is_matrix() && (from.is_matrix() || from.is_scalar());
+    return makes_matrix || (from.is_scalar() && !to.is_array() && !to.is_matrix() && !to.is_error() && to != bool_type);
+}
+
+// As it is written.
+std::string zero_of(Type type)
+{
+    if (!type.is_scalar()) return to_string(type) + "(0.0)";
+    return type == bool_type ? "false" : type == float_type ? "0.0" : "0";
+}
+
+// ".x", "[2]", "[0][1]": which part of a variable a bit stands for.
+std::string part_name(Type type, uint32_t part)
+{
+    if (type.is_vector()) return std::string(".") + "xyzw"[part];
+    if (!type.is_matrix()) return "[" + std::to_string(part) + "]";
+    return "[" + std::to_string(part / type.size) + "][" + std::to_string(part % type.size) + "]";
 }
 
 std::string operator_hint(BinaryOp op, Type left, Type right)
 {
     using enum BinaryOp;
-    const bool vectors = left.is_vector() || right.is_vector();
+    const bool vectors = !left.is_scalar() || !right.is_scalar();
+    const bool matrices = left.is_matrix() || right.is_matrix();
     const bool reals = left.scalar == Scalar::float_ || right.scalar == Scalar::float_;
     const bool bools = left == bool_type || right == bool_type;
-    if (left.is_array() || right.is_array()) return "a table is used by its elements: A[i]";
+    if (left.is_array() || right.is_array()) return "an array is used by its elements: a[i]";
     if (is_integer(left) && is_integer(right))
         return "int and uint do not mix: write uint(...) or int(...) round one of them";
     switch (op) {
@@ -55,6 +76,7 @@ std::string operator_hint(BinaryOp op, Type left, Type right)
     case multiply:
     case divide:
         if (bools) return "write float(...) round the bool: it is then 0 or 1";
+        if (matrices) return "matrices go with matrices, vectors and columns of their size, and with numbers";
         return "vectors must have the same size: pick components, for example .xy";
     case remainder: return reals ? "write mod(x, y)" : "% takes int or uint";
     case less:
@@ -136,15 +158,11 @@ Type BodyChecker::check(Expression&, BoolLiteral&)
 
 Type BodyChecker::check(Expression& e, NameExpression& node)
 {
-    const Type type = read(e, node, all_components);
-    if (!type.is_array()) return type;
-    diagnostics.error(e.span, "type-mismatch", quoted(node.name) + " is a table, expected one of its elements").hint =
-        "write " + node.name + "[i]";
-    return Type::error();
+    return read(e, node, all_parts);
 }
 
-// A name that is read, at least some components of it. Arrays pass: the caller picks an element.
-Type BodyChecker::read(Expression& e, NameExpression& node, uint8_t components)
+// A name that is read, at least some parts of it.
+Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
 {
     const Symbol* symbol = find(node.name);
     if (!symbol && scope.is_function(node.name)) {
@@ -165,24 +183,18 @@ Type BodyChecker::read(Expression& e, NameExpression& node, uint8_t components)
             "call it: " + node.name + "(...)";
         return Type::error();
     case SymbolKind::local: {
-        const uint8_t whole = static_cast<uint8_t>((1u << symbol->type.size) - 1);
-        const uint8_t missing = whole & components & static_cast<uint8_t>(~flow.variables[symbol->slot].assigned);
+        const uint64_t whole = parts_of(symbol->type), assigned = flow.variables[symbol->slot].assigned;
+        const uint64_t missing = whole & parts & ~assigned;
         if (!missing || symbol->type.is_error()) break;
-        const bool partly = (flow.variables[symbol->slot].assigned & whole) != 0;
         std::string name = node.name;
-        for (uint8_t i = 0; partly && i < 4; ++i)
-            if (missing & (1u << i)) {
-                name += std::string(".") + "xyzw"[i];
-                break;
-            }
+        if (assigned & whole) name += part_name(symbol->type, static_cast<uint32_t>(std::countr_zero(missing)));
         Diagnostic& reported =
             diagnostics.error(e.span, "unassigned", quoted(name) + " is read here before it has a value on every path");
-        reported.hint = "give it one where it is declared: " + to_string(symbol->type) + " " + node.name + " = " +
-                        (symbol->type.is_vector()     ? to_string(symbol->type) + "(0.0)"
-                         : symbol->type == bool_type  ? "false"
-                         : symbol->type == float_type ? "0.0"
-                                                      : "0") +
-                        ";";
+        reported.hint = symbol->type.is_array()
+                            ? "give each element one: for (int i = 0; i < " + std::to_string(symbol->type.array_size) +
+                                  "; ++i) " + node.name + "[i] = " + zero_of(symbol->type.element()) + ";"
+                            : "give it one where it is declared: " + to_string(symbol->type) + " " + node.name + " = " +
+                                  zero_of(symbol->type) + ";";
         reported.related.push_back({symbol->span, quoted(node.name) + " is declared here"});
         flow.variables[symbol->slot].assigned = whole; // one report is enough
         break;
@@ -208,15 +220,15 @@ Type BodyChecker::check(Expression& e, Unary& node)
     switch (node.op) {
     case UnaryOp::negate:
     case UnaryOp::plus:
-        if (type.is_numeric()) return type;
+        if (type.is_numeric() && !type.is_array()) return type;
         diagnostics.error(e.span, "type-mismatch", op + " expects a number, found " + to_string(type)).hint =
-            "write !x for a bool";
+            type.is_array() ? "an array is used by its elements: a[i]" : "write !x for a bool";
         return Type::error();
     case UnaryOp::logical_not:
         if (type == bool_type) return type;
         diagnostics.error(e.span, "type-mismatch", op + " expects bool, found " + to_string(type)).hint =
-            type.is_vector() ? "there are no bool vectors: compare the components"
-                             : "compare: " + excerpt(*node.operand) + (type == float_type ? " == 0.0" : " == 0");
+            !type.is_scalar() ? "there are no bool vectors: compare the components"
+                              : "compare: " + excerpt(*node.operand) + (type == float_type ? " == 0.0" : " == 0");
         return Type::error();
     case UnaryOp::bit_not:
         if (is_integer(type)) return type;
@@ -291,7 +303,9 @@ Type BodyChecker::check(Expression& e, Member& node)
                    quoted(excerpt(*node.object)) + " is a " + to_string(object) + " and has no components")
             .hint = object == float_type
                         ? "leave '." + node.member.text + "' out, or write vec3(" + excerpt(*node.object) + ")"
-                        : std::string{};
+                    : object.is_matrix() ? "pick a column, which is a vector: " + excerpt(*node.object) + "[0]"
+                    : object.is_array()  ? "pick an element: " + excerpt(*node.object) + "[i]"
+                                         : std::string{};
         return Type::error();
     }
     if (!swizzle || swizzle->highest() >= object.size) {
@@ -310,16 +324,20 @@ Type BodyChecker::check(Expression& e, Member& node)
 Type BodyChecker::check(Expression& e, Index& node)
 {
     auto name = std::get_if<NameExpression>(&node.object->node);
-    const Type object = node.object->type = name ? read(*node.object, *name, all_components) : expression(*node.object);
-    const Type index = expression(*node.index);
+    const Type index = expression(*node.index); // first: it says which part is read
+    const Symbol* symbol = name ? find(name->name) : nullptr;
+    uint64_t parts = all_parts;
+    if (const ir::IntRange at = range(*node.index); symbol && is_integer(index) && at.is_constant())
+        parts = parts_at(symbol->type, at.minimum);
+    const Type object = node.object->type = name ? read(*node.object, *name, parts) : expression(*node.object);
     if (object.is_error()) return object;
-    if (!object.is_array() && !object.is_vector()) {
+    if (object.is_scalar()) {
         diagnostics.error(e.span, "not-indexable",
                           quoted(excerpt(*node.object)) + " is a " + to_string(object) +
-                              ", expected a table or a vector before '['");
+                              ", expected an array, a matrix or a vector before '['");
         return Type::error();
     }
-    const Type element = object.is_array() ? object.element() : float_type;
+    const Type element = object.element();
     if (index.is_error()) return element;
     if (!is_integer(index)) {
         Diagnostic& reported =
@@ -327,7 +345,7 @@ Type BodyChecker::check(Expression& e, Index& node)
         reported.hint = conversion_hint(index, int_type, excerpt(*node.index));
         return element;
     }
-    check_index(*node.index, object.is_array() ? object.array_size : object.size, excerpt(*node.object));
+    check_index(*node.index, object.element_count(), excerpt(*node.object));
     return element;
 }
 
@@ -341,14 +359,6 @@ void BodyChecker::check_index(const Expression& index, uint32_t size, const std:
     diagnostics.error(index.span, "index-out-of-range",
                       "index " + found + " is outside " + quoted(of_what) + ", expected 0 .. " +
                           std::to_string(size - 1));
-}
-
-Type BodyChecker::check(Expression& e, BraceList& node)
-{
-    for (ExpressionPtr& element : node.elements) expression(*element);
-    diagnostics.error(e.span, "type-mismatch", "a list in braces makes a table, expected a value").hint =
-        "write const float A[2] = {1.0, 2.0}; or a constructor, vec2(1.0, 2.0)";
-    return Type::error();
 }
 
 } // namespace haptel::lang

@@ -2,8 +2,10 @@
 #include "lang/body_checker.h"
 #include "lang/ir/verify.h"
 #include "lang/operators.h"
+#include "lang/outcome.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace haptel::lang {
 
@@ -21,7 +23,7 @@ void collect_assigned(const Statement& s, std::vector<const NameExpression*>& na
     if (auto assignment = std::get_if<Assignment>(&s.node)) {
         const Expression* object = assignment->target.get();
         if (auto member = std::get_if<Member>(&object->node)) object = member->object.get();
-        if (auto index = std::get_if<Index>(&object->node)) object = index->object.get();
+        while (auto index = std::get_if<Index>(&object->node)) object = index->object.get();
         if (auto name = std::get_if<NameExpression>(&object->node)) names.push_back(name);
     } else if (auto scope = std::get_if<ast::Scope>(&s.node)) {
         for (const StatementPtr& inner : scope->statements)
@@ -131,8 +133,12 @@ void BodyChecker::check(Statement& s, For& node)
     if (node.body) body(*node.body);
     --loop_depth;
     const size_t slots = flow.variables.size();
-    flow = before; // the body may not run at all
+    const Flow behind = std::exchange(flow, before);
     flow.variables.resize(slots);
+    // What the body assigns on its way to its end has a value, if it runs at all.
+    const bool reaches_end = node.plan.runs && behind.reachable && !outcome(*node.body).breaks;
+    for (size_t slot = 0; reaches_end && slot < before.variables.size(); ++slot)
+        flow.variables[slot].assigned = behind.variables[slot].assigned;
     close_scope();
 }
 
@@ -256,6 +262,7 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
         return;
     }
     made.trip_max = static_cast<uint32_t>(trips);
+    made.runs = loop.body && nearest >= (inclusive ? 0 : 1);
     made.difference_may_wrap = nearest < INT32_MIN;
     loop.plan = made;
     ir::IntRange inside = up ? ir::IntRange{from.minimum, to.maximum - (inclusive ? 0 : 1)}

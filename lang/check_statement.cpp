@@ -2,19 +2,12 @@
 #include "lang/body_checker.h"
 #include "lang/constant.h"
 #include "lang/operators.h"
-#include "lang/swizzle.h"
 
 #include <algorithm>
 
 namespace haptel::lang {
 
 using namespace ast;
-
-namespace {
-
-constexpr uint32_t table_size_max = 65'536;
-
-} // namespace
 
 void BodyChecker::statements(std::vector<StatementPtr>& list)
 {
@@ -57,7 +50,7 @@ void BodyChecker::check(Statement&, Declaration& node)
         type = Type::error();
     }
     if (node.type.is_array) {
-        node.symbol = table(node, type);
+        node.symbol = array(node, type);
         return;
     }
     if (!node.initializer) {
@@ -87,145 +80,9 @@ void BodyChecker::check(Statement&, Declaration& node)
             symbol.range = ir::IntRange{number, number};
         }
     } else {
-        flow.variables[symbol.slot].assigned = 0xff;
+        flow.variables[symbol.slot].assigned = all_parts;
         if (fits) flow.variables[symbol.slot].range = range(value);
     }
-}
-
-// const float A[3] = {1.0, 2.0, 3.0};
-Symbol* BodyChecker::table(Declaration& node, Type element)
-{
-    auto list = node.initializer ? std::get_if<BraceList>(&node.initializer->node) : nullptr;
-    if (!node.is_const || (node.initializer && !list && !node.initializer->type.is_error())) {
-        if (node.initializer && !list) expression(*node.initializer);
-        diagnostics
-            .error(node.name.span, "not-constant",
-                   "an array is a constant table, expected 'const " + node.type.base.text + " " + node.name.text +
-                       "[...] = {...};'")
-            .hint = "what changes belongs into variables";
-        element = Type::error();
-    } else if (!list) {
-        diagnostics.error(node.name.span, "missing-value",
-                          "table " + quoted(node.name.text) + " has no values, expected '= {...}'");
-        element = Type::error();
-    }
-    if (element == bool_type) {
-        diagnostics.error(node.type.base.span, "type-mismatch", "a table holds numbers, found bool").hint =
-            "write int A[] = {0, 1}; and compare, A[i] != 0";
-        element = Type::error();
-    }
-    size_t count = list ? list->elements.size() : 0;
-    if (node.type.array_size && !element.is_error()) {
-        Expression& size = *node.type.array_size;
-        const Type found = expression(size);
-        const bool is_int = found == int_type || found == uint_type;
-        const ir::IntRange wanted = range(size);
-        if (!found.is_error() && !(is_int && wanted.is_constant())) {
-            diagnostics.error(size.span, "not-constant",
-                              "expected a constant int as the size of a table, found " +
-                                  (is_int ? std::string("one that varies") : to_string(found)));
-        } else if (!found.is_error() && wanted.minimum != static_cast<int64_t>(count)) {
-            diagnostics
-                .error(size.span, "table-size",
-                       quoted(node.name.text) + " is declared with " + std::to_string(wanted.minimum) +
-                           " elements and has " + std::to_string(count))
-                .hint = "leave the size out, " + node.name.text + "[], and it is counted";
-        }
-    }
-    if (!element.is_error() && (count == 0 || count > table_size_max)) {
-        diagnostics.error(node.initializer->span, "table-size",
-                          "expected 1 .. " + std::to_string(table_size_max) + " elements, found " +
-                              std::to_string(count));
-        element = Type::error();
-    }
-    std::vector<ConstantPart> value;
-    bool is_sound = true; // of no type after an error: nothing more is said about it
-    for (size_t i = 0; list && i < count; ++i) {
-        Expression& cell = *list->elements[i];
-        const uint32_t reports = diagnostics.reports();
-        expression(cell);
-        const bool fits = require(cell, element, " for an element of " + quoted(node.name.text));
-        if (!fits || diagnostics.reports() != reports) {
-            is_sound = false;
-        } else if (const Expression* culprit = first_not_constant(cell)) {
-            is_sound = false;
-            diagnostics.error(culprit->span, "not-constant",
-                              "a table is constant, expected a value known when the texture is compiled");
-        } else {
-            const auto parts = evaluate_constant(cell, element);
-            value.insert(value.end(), parts.begin(), parts.end());
-        }
-    }
-    if (!is_sound) element = Type::error();
-    Type type = element;
-    if (!type.is_error()) type.array_size = static_cast<uint32_t>(count);
-    Symbol& symbol = declare(node.name, SymbolKind::table, type);
-    symbol.read_only = "it is a constant table";
-    symbol.value = std::move(value);
-    return &symbol;
-}
-
-BodyChecker::Target BodyChecker::target_of(Expression& e)
-{
-    Expression* object = &e;
-    const auto member = std::get_if<Member>(&e.node);
-    const auto index = std::get_if<Index>(&e.node);
-    if (member) object = member->object.get();
-    if (index) object = index->object.get();
-    auto name = std::get_if<NameExpression>(&object->node);
-    if (!name) {
-        if (!std::holds_alternative<ErrorExpression>(object->node))
-            diagnostics.error(e.span, "not-assignable", "expected a variable or components of one before '='").hint =
-                "v.xy and v[1] are such components, v.xyz.x is not";
-        return {};
-    }
-    Symbol* local = find_local(name->name);
-    const Symbol* symbol = find(name->name);
-    if (!symbol) {
-        expression(*object); // says what the name is, if anything
-        return {};
-    }
-    name->symbol = symbol;
-    object->type = symbol->type;
-    if (symbol->type.is_error()) return {};
-    if (symbol->read_only || !local || symbol->kind == SymbolKind::function) {
-        Diagnostic& reported = diagnostics.error(
-            e.span, "read-only",
-            quoted(name->name) + " cannot be changed: " + (symbol->read_only ? symbol->read_only : "it is a function"));
-        if (symbol->kind == SymbolKind::input || symbol->kind == SymbolKind::texture_parameter)
-            reported.hint = "change a copy: " + to_string(symbol->type) + " " + (symbol->name == "q" ? "r" : "q") +
-                            " = " + symbol->name + ";";
-        if (symbol->span.end > 0) reported.related.push_back({symbol->span, quoted(name->name) + " is declared here"});
-        return {};
-    }
-    Target target{local, static_cast<uint8_t>((1u << symbol->type.size) - 1), symbol->type};
-    if (member) {
-        const auto swizzle = parse_swizzle(member->member.text);
-        if (!symbol->type.is_vector() || !swizzle || swizzle->highest() >= symbol->type.size) {
-            flow.variables[local->slot].assigned = 0xff;
-            expression(e); // says what is wrong with it
-            return {};
-        }
-        if (swizzle->has_repeats()) {
-            diagnostics.error(member->member.span, "bad-swizzle",
-                              "a component stands twice in " + quoted(member->member.text) +
-                                  ", expected each once in a target");
-            return {};
-        }
-        target.components = swizzle->mask();
-        target.type = vec(swizzle->size);
-    } else if (index) {
-        const uint8_t before = flow.variables[local->slot].assigned;
-        flow.variables[local->slot].assigned = 0xff; // what is not picked is not read
-        expression(e);
-        flow.variables[local->slot].assigned = before;
-        if (e.type.is_error() || index->index->type.is_error()) return {};
-        const ir::IntRange at = range(*index->index);
-        target.components = at.is_constant() ? static_cast<uint8_t>(1u << (at.minimum & 3)) : 0;
-        target.type = float_type;
-    }
-    e.type = target.type;
-    return target;
 }
 
 void BodyChecker::check(Statement& s, Assignment& node)
@@ -236,7 +93,7 @@ void BodyChecker::check(Statement& s, Assignment& node)
         // Whatever was meant has a value now.
         if (auto name = std::get_if<NameExpression>(&node.target->node))
             if (Symbol* local = find_local(name->name); local && local->kind == SymbolKind::local)
-                flow.variables[local->slot].assigned = 0xff;
+                flow.variables[local->slot].assigned = all_parts;
         return;
     }
     target.symbol->is_assigned = true;
@@ -245,14 +102,14 @@ void BodyChecker::check(Statement& s, Assignment& node)
     if (!operation) {
         if (require(*node.value, target.type, " for " + quoted(excerpt(*node.target))))
             variable.range = range(*node.value);
-        variable.assigned |= target.components;
+        variable.assigned |= target.parts;
         return;
     }
     const bool was_read = target.symbol->is_read; // "x += 1" alone is no use of x
-    if (target.components & ~variable.assigned) {
+    if (target.parts & ~variable.assigned) {
         auto name = std::get_if<NameExpression>(&node.target->node);
         if (name)
-            read(*node.target, *name, 0xff);
+            read(*node.target, *name, all_parts);
         else
             expression(*node.target);
     }
@@ -270,8 +127,8 @@ void BodyChecker::check(Statement& s, Assignment& node)
             .error(node.value->span, "type-mismatch",
                    quoted(spelling(node.op)) + " would make " + quoted(excerpt(*node.target)) + " a " +
                        to_string(types->result) + ", expected " + to_string(target.type))
-            .hint = types->result.is_vector() ? "declare it as " + to_string(types->result)
-                                              : "write " + to_string(target.type) + "(...) round the value";
+            .hint = !types->result.is_scalar() ? "declare it as " + to_string(types->result)
+                                               : "write " + to_string(target.type) + "(...) round the value";
     }
 }
 

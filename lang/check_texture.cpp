@@ -92,12 +92,12 @@ CheckedParameter check_texture_parameter(CheckContext& context, const FileScope&
     made.symbol = &symbol;
     symbol.type = resolve_type(context, tree.type);
     const std::string name = quoted(tree.name.text);
-    if (!symbol.type.is_error() && (symbol.type.is_vector() || symbol.type == void_type || tree.type.is_array)) {
+    if (!symbol.type.is_error() && (!symbol.type.is_scalar() || symbol.type == void_type || tree.type.is_array)) {
         diagnostics
             .error(tree.type.base.span, "type-mismatch",
                    "a parameter of a texture is a float, int, uint or bool, found " +
                        (tree.type.is_array ? "a table" : to_string(symbol.type)))
-            .hint = symbol.type.is_vector() ? "take the components as parameters of their own" : "";
+            .hint = !symbol.type.is_scalar() ? "take the components as parameters of their own" : "";
         symbol.type = Type::error();
     }
     BodyChecker checker(context, scope, true);

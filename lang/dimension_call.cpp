@@ -58,7 +58,8 @@ Dimension DimensionBody::find(const Expression& e, const GradCall& node)
 
 Dimension DimensionBody::constructor(const Expression& e, const CallExpression& node)
 {
-    if (e.type.scalar == Scalar::float_) return common(node.arguments, e.type.is_vector() ? "a vector" : "a number");
+    if (e.type.scalar == Scalar::float_)
+        return common(node.arguments, e.type.is_matrix() ? "a matrix" : e.type.is_vector() ? "a vector" : "a number");
     for (const ExpressionPtr& argument : node.arguments) {
         const Dimension found = expression(*argument);
         if (e.type.scalar != Scalar::bool_ && !join(found, Dimension::plain()))
@@ -106,7 +107,8 @@ Dimension DimensionBody::call(const Expression& e, const std::string& name, cons
                 report_expected("pow() expects as its exponent", *values[1], Dimension::plain(), dimensions[1]);
             return power(*written, by);
         }
-        const DimensionResult made = apply_rule(id, dimensions);
+        DimensionResult made = apply_rule(id, dimensions);
+        if (id == BuiltinId::determinant) made.result = by.power({(*overload)->parameters.front().type.size, 1});
         if (!made.fits && made.by_letter) {
             const Dimension found = dimensions[made.argument];
             auto finding =

@@ -113,13 +113,15 @@ void DimensionBody::walk(const Statement&, const Declaration& node)
 void DimensionBody::walk(const Statement& s, const Assignment& node)
 {
     const Expression* object = node.target.get();
-    uint8_t components = 0; // of a vector that is assigned in part
+    uint32_t components = 0; // of a vector that is assigned in part
     if (auto member = std::get_if<Member>(&object->node)) {
         object = member->object.get();
         if (const auto swizzle = parse_swizzle(member->member.text)) components = swizzle->mask();
-    } else if (auto index = std::get_if<Index>(&object->node)) {
+    }
+    while (auto index = std::get_if<Index>(&object->node)) {
         expression(*index->index);
         object = index->object.get();
+        components = 0;
     }
     Dimension value = expression(*node.value);
     auto name = std::get_if<NameExpression>(&object->node);
@@ -132,10 +134,12 @@ void DimensionBody::walk(const Statement& s, const Assignment& node)
         variable = {value, node.value->span, Dimension::any(), {}};
         return;
     }
+    const Type type = name->symbol->type;
+    const std::string what = type.is_array() ? "an array" : type.is_matrix() ? "a matrix" : "a vector";
     const Dimension before = find(*object, *name);
     const auto both = join(before, value);
     if (!both)
-        if (auto finding = report(node.value->span, "a vector has one dimension: '" + name->name + "' is " +
+        if (auto finding = report(node.value->span, what + " has one dimension: '" + name->name + "' is " +
                                                         description(before) + ", got " + description(value)))
             propose(*finding, *node.value, before, value);
     if (before.is_any()) variable = {value, node.value->span, Dimension::any(), {}};

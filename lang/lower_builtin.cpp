@@ -99,7 +99,73 @@ public:
         return made;
     }
 
+    Values matrix_comp_mult(Whole x)
+    {
+        Values made;
+        for (size_t i = 0; i < x[0].size(); ++i) made.push_back(mul(x[0][i], x[1][i]));
+        return made;
+    }
+    Values outer_product(Whole x)
+    {
+        Values made;
+        for (Value column : x[1])
+            for (Value row : x[0]) made.push_back(mul(row, column));
+        return made;
+    }
+    Values transpose(Whole x)
+    {
+        Values made;
+        const size_t size = size_of(x[0]);
+        for (size_t column = 0; column < size; ++column)
+            for (size_t row = 0; row < size; ++row) made.push_back(x[0][row * size + column]);
+        return made;
+    }
+    Values determinant(Whole x)
+    {
+        const Lines all = lines_but(size_of(x[0]), SIZE_MAX);
+        return {minor(x[0], all, all)};
+    }
+    Values inverse(Whole x) // the adjugate, divided
+    {
+        Values made;
+        const size_t size = size_of(x[0]);
+        const Value whole = determinant(x)[0];
+        for (size_t column = 0; column < size; ++column)
+            for (size_t row = 0; row < size; ++row) {
+                const Value cofactor = minor(x[0], lines_but(size, column), lines_but(size, row));
+                const bool negative = (row + column) % 2 == 1;
+                made.push_back(div(negative ? builder.operation(Op::neg, {cofactor}) : cofactor, whole));
+            }
+        return made;
+    }
+
 private:
+    using Lines = std::vector<size_t>; // rows or columns of a matrix
+
+    static size_t size_of(const Values& matrix) { return matrix.size() == 4 ? 2 : matrix.size() == 9 ? 3 : 4; }
+    static Lines lines_but(size_t size, size_t left_out)
+    {
+        Lines lines;
+        for (size_t i = 0; i < size; ++i)
+            if (i != left_out) lines.push_back(i);
+        return lines;
+    }
+    // Determinant of those rows and columns, by the first of these columns. The builder shares the smaller ones.
+    Value minor(const Values& matrix, const Lines& rows, const Lines& columns)
+    {
+        const auto at = [&](size_t row) { return matrix[columns[0] * size_of(matrix) + rows[row]]; };
+        if (rows.size() == 1) return at(0);
+        const Lines other_columns(columns.begin() + 1, columns.end());
+        Value sum{};
+        for (size_t row = 0; row < rows.size(); ++row) {
+            Lines other_rows = rows;
+            other_rows.erase(other_rows.begin() + static_cast<std::ptrdiff_t>(row));
+            const Value term = mul(at(row), minor(matrix, other_rows, other_columns));
+            sum = row == 0 ? term : row % 2 == 1 ? sub(sum, term) : add(sum, term);
+        }
+        return sum;
+    }
+
     Value make(Op op, Value a, Value b) { return builder.operation(op, {a, b}); }
     Value real(double value) { return builder.real(value); }
     Value add(Value a, Value b) { return make(Op::add, a, b); }

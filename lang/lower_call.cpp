@@ -66,13 +66,27 @@ Values BodyLowering::lower(const Expression& e, const GradCall& node)
 
 Values BodyLowering::constructor(const Expression& e, const CallExpression& node)
 {
+    const Type from = node.arguments[0]->type;
     Values parts;
     for (const ExpressionPtr& argument : node.arguments) {
-        const Values more = convert(expression(*argument), argument->type, {e.type.scalar, argument->type.size, 0});
+        const Values more = convert(expression(*argument), argument->type, {e.type.scalar});
         parts.insert(parts.end(), more.begin(), more.end());
     }
-    if (parts.size() == 1) parts.resize(e.type.size, parts[0]);
-    parts.resize(e.type.size);
+    if (e.type.is_matrix() && (from.is_matrix() || parts.size() == 1)) {
+        Values made; // the unit matrix or the number times it, with the given part inside
+        for (uint8_t column = 0; column < e.type.size; ++column)
+            for (uint8_t row = 0; row < e.type.size; ++row) {
+                const bool is_given = row < from.size && column < from.size && from.is_matrix();
+                const bool is_diagonal = row == column;
+                made.push_back(is_given           ? parts[size_t{column} * from.size + row]
+                               : !is_diagonal     ? builder.real(0)
+                               : from.is_matrix() ? builder.real(1)
+                                                  : parts[0]);
+            }
+        return made;
+    }
+    if (parts.size() == 1) parts.resize(e.type.components(), parts[0]);
+    parts.resize(e.type.components());
     return parts;
 }
 
@@ -163,7 +177,7 @@ LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector
     ir::Function& function = body.builder.function();
     for (const ParameterInfo& parameter : info.parameters) {
         if (parameter.is_function) continue;
-        if (function.first_argument_size == 0) function.first_argument_size = parameter.type.size;
+        if (function.first_argument_size == 0) function.first_argument_size = parameter.type.components();
         body.value_parameter(parameter.type);
     }
     body.input_parameters(made.reads);
@@ -183,13 +197,15 @@ LoweredFunction ModuleLowering::make(const BuiltinOverload& overload)
     std::vector<Values> arguments;
     for (const ParameterInfo& parameter : overload.parameters) {
         Values& parts = arguments.emplace_back();
-        for (uint8_t i = 0; i < parameter.type.size; ++i) parts.push_back(builder.parameter(ir_type(parameter.type)));
+        for (uint32_t i = 0; i < parameter.type.components(); ++i)
+            parts.push_back(builder.parameter(ir_type(parameter.type)));
     }
-    builder.function().first_argument_size = overload.parameters.front().type.size;
+    builder.function().first_argument_size = overload.parameters.front().type.components();
     return {builder.finish(lower_builtin(builder, overload, arguments)), 0, 0};
 }
 
-// A function of the same parameters that returns the derivatives alone: result after result, direction after direction.
+// A function of the same parameters that returns the derivatives alone, direction after direction: of a vector by a
+// vector the matrix whose column j is the derivative by component j.
 LoweredFunction ModuleLowering::make_derivative(const LoweredFunction& of)
 {
     const ir::Derivative derivative = differentiator.jacobian(of.index);
@@ -200,10 +216,12 @@ LoweredFunction ModuleLowering::make_derivative(const LoweredFunction& of)
         arguments.push_back(builder.parameter(module.functions[of.index].type(parameter)));
     builder.function().first_argument_size = module.functions[of.index].first_argument_size;
     const Values results = builder.call(derivative.function, arguments);
-    size_t next = derivative.exists.size(); // behind the values
-    Values tangents;
-    for (const std::vector<bool>& row : derivative.exists)
-        for (bool exists : row) tangents.push_back(exists ? results[next++] : builder.real(0));
+    size_t next = derivative.exists.size(); // behind the values: by result, then direction
+    const size_t rows = derivative.exists.size(), columns = derivative.exists.front().size();
+    Values tangents(rows * columns);
+    for (size_t row = 0; row < rows; ++row)
+        for (size_t column = 0; column < columns; ++column)
+            tangents[column * rows + row] = derivative.exists[row][column] ? results[next++] : builder.real(0);
     return {builder.finish(tangents), of.reads, of.depth + 1};
 }
 
@@ -211,12 +229,14 @@ const std::vector<uint32_t>& ModuleLowering::tables(const Symbol& symbol)
 {
     std::vector<uint32_t>& made = component_tables[&symbol];
     if (!made.empty()) return made;
-    const Type type = symbol.type;
-    for (uint8_t component = 0; component < type.size; ++component) {
+    const Type element = symbol.type.element();
+    for (uint32_t component = 0; component < element.components(); ++component) {
         ir::Table table;
-        table.name = unique(type.is_vector() ? symbol.name + "." + "xyzw"[component] : symbol.name);
-        table.element = ir_type(type.element());
-        for (size_t cell = component; cell < symbol.value.size(); cell += type.size) {
+        table.name = unique(element.is_vector()   ? symbol.name + "." + "xyzw"[component]
+                            : element.is_matrix() ? symbol.name + "." + std::to_string(component)
+                                                  : symbol.name);
+        table.element = ir_type(element);
+        for (size_t cell = component; cell < symbol.value.size(); cell += element.components()) {
             const ConstantPart& part = symbol.value[cell];
             if (auto real = std::get_if<double>(&part))
                 table.reals.push_back(*real);

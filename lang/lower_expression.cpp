@@ -71,12 +71,12 @@ ir::Type ir_type(Type type)
 Values BodyLowering::zeros(Type type)
 {
     switch (ir_type(type)) {
-    case ir::Type::i32: return Values(type.size, builder.i32(0));
-    case ir::Type::u32: return Values(type.size, builder.u32(0));
-    case ir::Type::boolean: return Values(type.size, builder.boolean(false));
+    case ir::Type::i32: return Values(type.components(), builder.i32(0));
+    case ir::Type::u32: return Values(type.components(), builder.u32(0));
+    case ir::Type::boolean: return Values(type.components(), builder.boolean(false));
     case ir::Type::real: break;
     }
-    return Values(type.size, builder.real(0));
+    return Values(type.components(), builder.real(0));
 }
 
 bool BodyLowering::too_deep(Span span)
@@ -113,9 +113,14 @@ Values BodyLowering::lower(const Expression& e, const ErrorExpression&)
     return zeros(e.type);
 }
 
-Values BodyLowering::lower(const Expression& e, const BraceList&)
+Values BodyLowering::lower(const Expression& e, const BraceList& node)
 {
-    return zeros(e.type);
+    Values parts;
+    for (const ExpressionPtr& cell : node.elements) {
+        const Values more = converted(*cell, e.type.element());
+        parts.insert(parts.end(), more.begin(), more.end());
+    }
+    return parts;
 }
 
 Values BodyLowering::lower(const Expression& e, const NumberLiteral& node)
@@ -139,7 +144,8 @@ Values BodyLowering::lower(const Expression& e, const NameExpression& node)
     const Symbol& symbol = *node.symbol;
     switch (symbol.kind) {
     case SymbolKind::local: return variables[symbol.slot];
-    case SymbolKind::constant: return constant(symbol);
+    case SymbolKind::constant:
+    case SymbolKind::table: return constant(symbol);
     case SymbolKind::input: return input(symbol.input);
     case SymbolKind::texture_parameter: {
         Value value = builder.texture_parameter(symbol.slot, ir_type(symbol.type));
@@ -153,7 +159,6 @@ Values BodyLowering::lower(const Expression& e, const NameExpression& node)
         }
         return {value};
     }
-    case SymbolKind::table:
     case SymbolKind::function: break;
     }
     return zeros(e.type);
@@ -231,16 +236,34 @@ Values BodyLowering::binary(BinaryOp op, const Values& a, Type a_type, const Val
 {
     const OperatorTypes types = *operator_types(op, a_type, b_type);
     const Values left = convert(a, a_type, types.left), right = convert(b, b_type, types.right);
+    if (op == BinaryOp::multiply && is_linear_product(a_type, b_type)) return linear_product(left, right, a_type.size);
     const size_t size = std::max(left.size(), right.size());
     Values made;
     for (size_t i = 0; i < size; ++i)
         made.push_back(binary_scalar(op, left[left.size() == 1 ? 0 : i], right[right.size() == 1 ? 0 : i]));
-    if (types.result.size == size) return made;
-    // == and != of vectors: of all components
+    if (types.result.components() == size) return made;
+    // == and != of vectors and matrices: of all components
     const Op joined = op == BinaryOp::equal ? Op::land : Op::lor;
     Value all = made[0];
     for (size_t i = 1; i < size; ++i) all = builder.operation(joined, {all, made[i]});
     return {all};
+}
+
+// m * v, v * m, m * m, of matrices of `size`. A row vector has a row, a column vector a column.
+Values BodyLowering::linear_product(const Values& left, const Values& right, size_t size)
+{
+    const size_t rows = left.size() / size, columns = right.size() / size;
+    Values made;
+    for (size_t column = 0; column < columns; ++column)
+        for (size_t row = 0; row < rows; ++row) {
+            Value sum{};
+            for (size_t i = 0; i < size; ++i) {
+                const Value term = builder.operation(Op::mul, {left[i * rows + row], right[column * size + i]});
+                sum = i == 0 ? term : builder.operation(Op::add, {sum, term});
+            }
+            made.push_back(sum);
+        }
+    return made;
 }
 
 Value BodyLowering::integer(Op op, Value a, Value b)
@@ -328,23 +351,25 @@ Value BodyLowering::index_within(const Expression& index, uint32_t size)
 
 Values BodyLowering::lower(const Expression& e, const Index& node)
 {
-    if (node.object->type.is_array()) {
-        const Symbol& symbol = *std::get<NameExpression>(node.object->node).symbol;
-        const Value at = index_within(*node.index, symbol.type.array_size);
+    auto name = std::get_if<NameExpression>(&node.object->node);
+    if (name && name->symbol->kind == SymbolKind::table) {
+        const Value at = index_within(*node.index, name->symbol->type.array_size);
         builder.span = e.span;
         Values made;
-        for (uint32_t table : owner.tables(symbol)) made.push_back(builder.table(table, at));
+        for (uint32_t table : owner.tables(*name->symbol)) made.push_back(builder.table(table, at));
         return made;
     }
     const Values object = expression(*node.object);
-    const Value at = index_within(*node.index, static_cast<uint32_t>(object.size()));
+    const Value at = index_within(*node.index, node.object->type.element_count());
     builder.span = e.span;
-    Value picked = object.back();
-    for (size_t i = object.size() - 1; i-- > 0;) {
+    const size_t size = e.type.components(), count = object.size() / size;
+    Values picked(object.end() - static_cast<std::ptrdiff_t>(size), object.end());
+    for (size_t i = count - 1; i-- > 0;) {
         const Value is_here = builder.operation(Op::ieq, {at, builder.i32(static_cast<int32_t>(i))});
-        picked = builder.operation(Op::select, {is_here, object[i], picked});
+        for (size_t part = 0; part < size; ++part)
+            picked[part] = builder.operation(Op::select, {is_here, object[i * size + part], picked[part]});
     }
-    return {picked};
+    return picked;
 }
 
 } // namespace haptel::lang

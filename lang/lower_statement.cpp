@@ -37,7 +37,7 @@ BodyLowering::BodyLowering(ModuleLowering& module_lowering, std::string name, ui
 void BodyLowering::value_parameter(Type type)
 {
     Values& parts = variables[parameter_count++];
-    for (uint8_t i = 0; i < type.size; ++i) parts.push_back(builder.parameter(ir_type(type)));
+    for (uint32_t i = 0; i < type.components(); ++i) parts.push_back(builder.parameter(ir_type(type)));
 }
 
 Values BodyLowering::whole_body(const Statement& body, Type result)
@@ -191,20 +191,32 @@ void BodyLowering::lower(const Assignment& node)
         type = operator_types(*operation, target.type, type)->result;
     }
     value = convert(value, type, target.type);
-    if (auto member = std::get_if<Member>(&target.node)) {
-        Values& whole = variables[std::get<NameExpression>(member->object->node).symbol->slot];
+    store(target, value);
+}
+
+// Replaces the part of a variable that `target` names.
+void BodyLowering::store(const Expression& target, const Values& value)
+{
+    if (auto name = std::get_if<NameExpression>(&target.node)) {
+        variables[name->symbol->slot] = value;
+        return;
+    }
+    auto member = std::get_if<Member>(&target.node);
+    auto index = std::get_if<Index>(&target.node);
+    const Expression& object = member ? *member->object : *index->object;
+    Values whole = expression(object);
+    if (member) {
         const Swizzle swizzle = *parse_swizzle(member->member.text);
         for (uint8_t i = 0; i < swizzle.size; ++i) whole[swizzle.component[i]] = value[i];
-    } else if (auto index = std::get_if<Index>(&target.node)) {
-        const uint32_t slot = std::get<NameExpression>(index->object->node).symbol->slot;
-        const Value at = index_within(*index->index, static_cast<uint32_t>(variables[slot].size()));
-        for (size_t i = 0; i < variables[slot].size(); ++i) {
-            const Value is_here = builder.operation(Op::ieq, {at, builder.i32(static_cast<int32_t>(i))});
-            variables[slot][i] = builder.operation(Op::select, {is_here, value[0], variables[slot][i]});
-        }
     } else {
-        variables[std::get<NameExpression>(target.node).symbol->slot] = value;
+        const Value at = index_within(*index->index, object.type.element_count());
+        for (size_t i = 0; i < whole.size(); ++i) {
+            const auto element = static_cast<int32_t>(i / value.size());
+            const Value is_here = builder.operation(Op::ieq, {at, builder.i32(element)});
+            whole[i] = builder.operation(Op::select, {is_here, value[i % value.size()], whole[i]});
+        }
     }
+    store(object, whole);
 }
 
 // ---- loops

@@ -107,6 +107,7 @@ private:
     Values lower(const ast::Expression& e, const ast::BraceList& node);
     Values convert(const Values& parts, Type from, Type to);
     Values binary(ast::BinaryOp op, const Values& a, Type a_type, const Values& b, Type b_type);
+    Values linear_product(const Values& left, const Values& right, size_t size);
     ir::Value binary_scalar(ast::BinaryOp op, ir::Value a, ir::Value b);
     ir::Value integer(ir::Op op, ir::Value a, ir::Value b); // signed operation, on the bits where operands are u32
     ir::Value index_within(const ast::Expression& index, uint32_t size);
@@ -129,6 +130,7 @@ private:
     void statement(const ast::Statement& s, Statements rest);
     void lower(const ast::Declaration& node);
     void lower(const ast::Assignment& node);
+    void store(const ast::Expression& target, const Values& value);
     void lower(const ast::For& node);
     void branch(const ast::If& node, size_t arm, Statements rest, const Slots& changed);
     void choose(ir::Value condition, const Slots& changed, const std::function<void()>& then_arm,

@@ -10,7 +10,7 @@ bool is_integer(Type type)
 
 bool is_scalar_number(Type type)
 {
-    return type.is_numeric() && !type.is_vector() && !type.is_array();
+    return type.is_numeric() && type.is_scalar();
 }
 
 // Of two numbers; int and uint do not mix.
@@ -25,9 +25,9 @@ std::optional<Type> common_number(Type left, Type right)
 std::optional<OperatorTypes> arithmetic(Type left, Type right)
 {
     if (left.is_array() || right.is_array()) return std::nullopt;
-    if (left.is_vector() && left == right) return OperatorTypes{left, right, left};
-    if (left.is_vector() && is_scalar_number(right)) return OperatorTypes{left, float_type, left};
-    if (right.is_vector() && is_scalar_number(left)) return OperatorTypes{float_type, right, right};
+    if (!left.is_scalar() && left == right) return OperatorTypes{left, right, left};
+    if (!left.is_scalar() && is_scalar_number(right)) return OperatorTypes{left, float_type, left};
+    if (!right.is_scalar() && is_scalar_number(left)) return OperatorTypes{float_type, right, right};
     if (auto common = common_number(left, right)) return OperatorTypes{*common, *common, *common};
     return std::nullopt;
 }
@@ -49,9 +49,11 @@ std::optional<OperatorTypes> operator_types(ast::BinaryOp op, Type left, Type ri
 {
     using enum ast::BinaryOp;
     switch (op) {
+    case multiply:
+        if (is_linear_product(left, right)) return OperatorTypes{left, right, left.is_matrix() ? right : left};
+        return arithmetic(left, right);
     case add:
     case subtract:
-    case multiply:
     case divide: return arithmetic(left, right);
     case less:
     case less_equal:
@@ -59,7 +61,7 @@ std::optional<OperatorTypes> operator_types(ast::BinaryOp op, Type left, Type ri
     case greater_equal: return comparison(left, right);
     case equal:
     case not_equal:
-        if (left == right && !left.is_array() && (left == bool_type || left.is_vector()))
+        if (left == right && !left.is_array() && (left == bool_type || !left.is_scalar()))
             return OperatorTypes{left, right, bool_type};
         return comparison(left, right);
     case logical_and:
@@ -75,6 +77,12 @@ std::optional<OperatorTypes> operator_types(ast::BinaryOp op, Type left, Type ri
         return std::nullopt;
     }
     return std::nullopt;
+}
+
+bool is_linear_product(Type left, Type right)
+{
+    if (left.is_array() || right.is_array() || left.size != right.size) return false;
+    return left.is_matrix() ? right.is_matrix() || right.is_vector() : left.is_vector() && right.is_matrix();
 }
 
 bool converts_implicitly(Type from, Type to)

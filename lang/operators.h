@@ -15,6 +15,9 @@ struct OperatorTypes {
 };
 std::optional<OperatorTypes> operator_types(ast::BinaryOp op, Type left, Type right);
 
+// Whether "*" is that of linear algebra: m * v, v * m, m * m. All else goes component by component.
+bool is_linear_product(Type left, Type right);
+
 // Without being asked: int and uint become float; nothing else changes.
 bool converts_implicitly(Type from, Type to);
 

@@ -13,7 +13,7 @@ const Symbol* assigned_symbol(const Assignment& assignment)
 {
     const Expression* object = assignment.target.get();
     if (auto member = std::get_if<Member>(&object->node)) object = member->object.get();
-    if (auto index = std::get_if<Index>(&object->node)) object = index->object.get();
+    while (auto index = std::get_if<Index>(&object->node)) object = index->object.get();
     return std::get<NameExpression>(object->node).symbol;
 }
 
@@ -61,6 +61,7 @@ Outcome outcome(std::span<const StatementPtr> statements)
 {
     Outcome all{true, false, false};
     for (const StatementPtr& s : statements) {
+        if (!s) continue; // an error
         const Outcome one = outcome(*s);
         all.falls_through = one.falls_through;
         all.returns |= one.returns;

@@ -87,6 +87,7 @@ struct LoopPlan {
     Compare compare = Compare::less;
     int64_t step = 1;
     uint32_t trip_max = 0;
+    bool runs = false;                // certainly, at least once, and there is a body
     bool difference_may_wrap = false; // bound - start does not fit into 32 bits for every value in range
 };
 

@@ -4,21 +4,18 @@ namespace haptel::lang {
 
 std::string to_string(Type type)
 {
-    std::string text;
-    if (type.is_vector()) {
-        text = "vec" + std::to_string(type.size);
-    } else {
-        switch (type.scalar) {
-        case Scalar::error: text = "<error>"; break;
-        case Scalar::void_: text = "void"; break;
-        case Scalar::float_: text = "float"; break;
-        case Scalar::int_: text = "int"; break;
-        case Scalar::uint_: text = "uint"; break;
-        case Scalar::bool_: text = "bool"; break;
-        }
+    if (type.is_array()) return to_string(type.element()) + "[" + std::to_string(type.array_size) + "]";
+    if (type.is_matrix()) return "mat" + std::to_string(type.size);
+    if (type.is_vector()) return "vec" + std::to_string(type.size);
+    switch (type.scalar) {
+    case Scalar::error: return "<error>";
+    case Scalar::void_: return "void";
+    case Scalar::float_: return "float";
+    case Scalar::int_: return "int";
+    case Scalar::uint_: return "uint";
+    case Scalar::bool_: return "bool";
     }
-    if (type.is_array()) text += "[" + std::to_string(type.array_size) + "]";
-    return text;
+    return {};
 }
 
 } // namespace haptel::lang

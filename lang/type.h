@@ -1,4 +1,4 @@
-// Types of the language: scalars, vectors of 2 to 4, and arrays of them.
+// Types of the language: scalars, vectors and square matrices of 2 to 4, and arrays of them.
 #pragma once
 
 #include <cstdint>
@@ -10,25 +10,43 @@ enum class Scalar : uint8_t { error, void_, float_, int_, uint_, bool_ };
 
 struct Type {
     Scalar scalar = Scalar::error;
-    uint8_t size = 1;        // 1: scalar; 2 to 4: vector (of float only)
+    uint8_t size = 1;        // 1: scalar; 2 to 4: components of a vector, rows of a matrix (of float only)
     uint32_t array_size = 0; // 0: not an array
+    uint8_t columns = 1;     // 2 to 4: square matrix, column after column as in GLSL
 
     static constexpr Type error() { return {}; }
     bool is_error() const { return scalar == Scalar::error; }
-    bool is_vector() const { return size > 1; }
     bool is_array() const { return array_size > 0; }
+    bool is_scalar() const { return size == 1 && !is_array(); }
+    bool is_vector() const { return size > 1 && columns == 1 && !is_array(); }
+    bool is_matrix() const { return columns > 1 && !is_array(); }
     bool is_numeric() const { return scalar == Scalar::float_ || scalar == Scalar::int_ || scalar == Scalar::uint_; }
-    Type element() const { return {scalar, size, 0}; }
+    // What an index picks: an element of an array, a column of a matrix, a component of a vector.
+    constexpr Type element() const
+    {
+        if (array_size > 0) return {scalar, size, 0, columns};
+        return {scalar, columns > 1 ? size : uint8_t{1}, 0, 1};
+    }
+    uint32_t element_count() const { return is_array() ? array_size : is_matrix() ? columns : size; }
+    uint32_t components() const { return uint32_t{size} * columns * (is_array() ? array_size : 1); }
     bool operator==(const Type&) const = default;
 };
 
-inline constexpr Type float_type{Scalar::float_, 1, 0}, int_type{Scalar::int_, 1, 0}, uint_type{Scalar::uint_, 1, 0},
-    bool_type{Scalar::bool_, 1, 0}, void_type{Scalar::void_, 1, 0};
+inline constexpr Type float_type{Scalar::float_, 1, 0, 1}, int_type{Scalar::int_, 1, 0, 1},
+    uint_type{Scalar::uint_, 1, 0, 1}, bool_type{Scalar::bool_, 1, 0, 1}, void_type{Scalar::void_, 1, 0, 1};
 inline constexpr Type vec(uint8_t size)
 {
-    return {Scalar::float_, size, 0};
+    return {Scalar::float_, size, 0, 1};
+}
+inline constexpr Type mat(uint8_t size)
+{
+    return {Scalar::float_, size, 0, size};
 }
 
-std::string to_string(Type type); // as written in source: "vec3", "float[4]"
+// Elements of an array that is no constant table. All its parts are values of the program, so that an index known only
+// at run time costs a choice per element.
+inline constexpr uint32_t array_size_max = 64;
+
+std::string to_string(Type type); // as written in source: "mat3", "vec3", "float[4]"
 
 } // namespace haptel::lang
