@@ -34,7 +34,8 @@ ir::BoundsBox anywhere()
     std::fill(std::begin(box.input), std::end(box.input), Interval{-infinity, infinity});
     set(box, Input::n_x, {-1, -1, -1}, {1, 1, 1});
     set(box, Input::extent_x, {0, 0, 0}, {infinity, infinity, infinity});
-    for (Input input : {Input::time, Input::footprint}) box.input[static_cast<size_t>(input)] = {0, infinity};
+    box.input[static_cast<size_t>(Input::time)] = {0, infinity};
+    box.input[static_cast<size_t>(Input::footprint)] = {0, std::numeric_limits<double>::max()};
     return box;
 }
 

@@ -1,6 +1,7 @@
 #include "tests/stdlib/field.h"
 #include "tests/support/catch.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace haptel::test;
@@ -10,13 +11,21 @@ namespace {
 const std::string own_basis = "float basis(vec3 q) { return sin(q.x) * cos(q.y) + 0.5 * sin(q.z); }\n"
                               "float flat_basis(vec2 q) { return sin(q.x) * cos(q.y); }\n";
 
+// What is left of an octave with so many footprints per wavelength.
+double strength(double detail)
+{
+    const double t = std::clamp((detail - 0.5) / 0.5, 0.0, 1.0);
+    return 1 - t * t * (3 - 2 * t);
+}
+
 // The definition, over a basis that is differentiated by hand.
 FieldSample expected_sum(double (*shape)(double), double (*shape_slope)(double), const Vec3& q, int octaves,
-                         double lacunarity, double gain)
+                         double lacunarity, double gain, double footprint)
 {
     FieldSample sum{};
-    double frequency = 1, amplitude = 1;
+    double frequency = 1;
     for (int i = 0; i < octaves; ++i) {
+        const double amplitude = strength(footprint * std::sqrt(3.0) * frequency) * std::pow(gain, i);
         const double x = q[0] * frequency + 17.375 * i, y = q[1] * frequency + 41.625 * i,
                      z = q[2] * frequency + 29.1875 * i;
         const double b = std::sin(x) * std::cos(y) + 0.5 * std::sin(z), outer = amplitude * frequency * shape_slope(b);
@@ -25,19 +34,21 @@ FieldSample expected_sum(double (*shape)(double), double (*shape_slope)(double),
         sum.gradient[1] -= outer * std::sin(x) * std::sin(y);
         sum.gradient[2] += outer * 0.5 * std::cos(z);
         frequency *= lacunarity;
-        amplitude *= gain;
     }
     return sum;
 }
 
 void check_definition(const std::string& name, double (*shape)(double), double (*shape_slope)(double))
 {
-    CAPTURE(name);
-    const Field field(name + "(basis, q, 6, 1.9, 0.6)", own_basis);
-    for (const Vec3& q : points_within(3, 500)) {
-        const FieldSample expected = expected_sum(shape, shape_slope, q, 6, 1.9, 0.6), found = field(q);
-        CHECK(std::abs(found.value - expected.value) < 1e-13);
-        for (size_t a = 0; a < 3; ++a) CHECK(std::abs(found.gradient[a] - expected.gradient[a]) < 1e-12);
+    // Of 6 octaves the third fades at a footprint of 0.13 wavelengths, and at one of 0.4 the first.
+    for (const double footprint : {0.0, 0.01, 0.13, 0.4, 0.6}) {
+        CAPTURE(name, footprint);
+        const Field field(name + "(basis, q, 6, 1.9, 0.6)", own_basis, footprint);
+        for (const Vec3& q : points_within(3, 500)) {
+            const FieldSample expected = expected_sum(shape, shape_slope, q, 6, 1.9, 0.6, footprint), found = field(q);
+            CHECK(std::abs(found.value - expected.value) < 1e-13);
+            for (size_t a = 0; a < 3; ++a) CHECK(std::abs(found.gradient[a] - expected.gradient[a]) < 1e-12);
+        }
     }
 }
 
@@ -77,6 +88,26 @@ TEST_CASE("fractals are what their comments say, and so are their gradients")
     check_definition(
         "ridged", [](double b) { return (1 - std::abs(b)) * (1 - std::abs(b)); },
         [](double b) { return (b < 0 ? 2 : -2) * (1 - std::abs(b)); });
+}
+
+TEST_CASE("where coordinates stretch, octaves fade, and the gradient knows")
+{
+    // One octave of b = sin(w.x) cos(w.y) at w = (x^2, x y), whose Jacobian has the norm sqrt(5 x^2 + y^2).
+    const double footprint = 0.2;
+    const Field field("fbm(flat_basis, vec2(q.x * q.x, q.x * q.y), 1, 2.0, 0.5)", own_basis, footprint);
+    int fading = 0;
+    for (const Vec3& q : points_within(2, 500)) {
+        const double x = q[0], y = q[1], norm = std::sqrt(5 * x * x + y * y), detail = footprint * norm;
+        const double b = std::sin(x * x) * std::cos(x * y), t = 2 * detail - 1;
+        const double left = strength(detail), slope = t > 0 && t < 1 ? -2 * 6 * t * (1 - t) * footprint / norm : 0;
+        const double by_first = std::cos(x * x) * std::cos(x * y), by_second = -std::sin(x * x) * std::sin(x * y);
+        const FieldSample found = field(q);
+        CHECK(std::abs(found.value - left * b) < 1e-14);
+        CHECK(std::abs(found.gradient[0] - (slope * 5 * x * b + left * (2 * x * by_first + y * by_second))) < 1e-13);
+        CHECK(std::abs(found.gradient[1] - (slope * y * b + left * x * by_second)) < 1e-13);
+        fading += slope != 0;
+    }
+    CHECK(fading > 100);
 }
 
 TEST_CASE("short forms are the long ones with perlin, 2, 0.5 and seed 0")
