@@ -18,7 +18,7 @@ public:
     using Parts = std::span<const Value>; // of the arguments, at one component
     using Whole = std::span<const Values>;
 
-    explicit Formulas(Builder& target) : builder(target) {}
+    Formulas(ModuleLowering& whole, Builder& target) : owner(whole), builder(target) {}
 
     Value radians(Parts x) { return mul(x[0], real(std::numbers::pi / 180)); }
     Value degrees(Parts x) { return mul(x[0], real(180 / std::numbers::pi)); }
@@ -32,9 +32,8 @@ public:
     Value step(Parts x) { return select(less(x[1], x[0]), real(0), real(1)); }
     Value smoothstep(Parts x)
     {
-        const Value ramp[] = {div(sub(x[2], x[0]), sub(x[1], x[0])), real(0), real(1)};
-        const Value t = clamp(ramp);
-        return mul(mul(t, t), sub(real(3), mul(real(2), t)));
+        const Value ramp[] = {div(sub(x[2], x[0]), sub(x[1], x[0]))};
+        return builder.call(owner.smooth_ramp(), ramp)[0];
     }
     Value isnan(Parts x) { return no(equal(x[0], x[0])); }
     Value isinf(Parts x) { return make(Op::land, equal(x[0], x[0]), no(builder.operation(Op::is_finite, {x[0]}))); }
@@ -189,6 +188,7 @@ private:
         return builder.operation(ops[a.size() - 1], a);
     }
 
+    ModuleLowering& owner;
     Builder& builder;
 };
 
@@ -206,11 +206,12 @@ constexpr Formula formulas[] = {
 
 } // namespace
 
-Values lower_builtin(Builder& builder, const BuiltinOverload& overload, std::span<const Values> arguments)
+Values lower_builtin(ModuleLowering& owner, Builder& builder, const BuiltinOverload& overload,
+                     std::span<const Values> arguments)
 {
     const Builtin& builtin = *overload.builtin;
     const Formula& formula = formulas[static_cast<size_t>(builtin.id)];
-    Formulas maker(builder);
+    Formulas maker(owner, builder);
     if (auto whole = std::get_if<2>(&formula)) return (maker.**whole)(arguments);
     Values made;
     for (size_t i = 0; i < overload.result.size; ++i) {

@@ -108,7 +108,7 @@ Values BodyLowering::call(const Expression& e, const CallTarget& target, const s
     }
     builder.span = here;
     if (auto builtin = std::get_if<const BuiltinOverload*>(&callee); builtin && order == 0)
-        return lower_builtin(builder, **builtin, values);
+        return lower_builtin(owner, builder, **builtin, values);
 
     if (owner.is_too_large(here)) return zeros(e.type);
     const LoweredFunction function = owner.function(callee, passed, order);
@@ -201,7 +201,24 @@ LoweredFunction ModuleLowering::make(const BuiltinOverload& overload)
             parts.push_back(builder.parameter(ir_type(parameter.type)));
     }
     builder.function().first_argument_size = overload.parameters.front().type.components();
-    return {builder.finish(lower_builtin(builder, overload, arguments)), 0, 0};
+    return {builder.finish(lower_builtin(*this, builder, overload, arguments)), 0, 0};
+}
+
+uint32_t ModuleLowering::smooth_ramp()
+{
+    if (ramp) return *ramp;
+    ir::Builder builder(module, unique("smooth ramp"));
+    const Value x = builder.parameter(ir::Type::real), zero = builder.real(0), one = builder.real(1);
+    const auto make = [&](ir::Op op, Value a, Value b) { return builder.operation(op, {a, b}); };
+    const Value t = make(ir::Op::min, make(ir::Op::max, x, zero), one);
+    const Value slant = make(ir::Op::sub, builder.real(3), make(ir::Op::mul, builder.real(2), t));
+    ir::Function& function = builder.function();
+    function.first_argument_size = 1;
+    function.is_library = true;
+    // |6 t (1 - t)| is 3/2 at 1/2, |6 - 12 t| is 6 at the ends, where the second derivative jumps to 0
+    function.facts = {{0.0, 1.0, 1.5, 6.0, ir::Smoothness::c1, true}};
+    ramp = builder.finish(std::vector<Value>{make(ir::Op::mul, make(ir::Op::mul, t, t), slant)});
+    return *ramp;
 }
 
 // A function of the same parameters that returns the derivatives alone, direction after direction: of a vector by a

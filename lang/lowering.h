@@ -48,6 +48,9 @@ public:
     // One table per component of the elements.
     const std::vector<uint32_t>& tables(const Symbol& symbol);
 
+    // 0 up to 0, 1 from 1 on, 3 t^2 - 2 t^3 between: what smoothstep is made of, as a function that tells its facts.
+    uint32_t smooth_ramp();
+
     // Derivatives and functions as arguments can multiply code: reports, once, when there is too much.
     bool is_too_large(Span span);
 
@@ -69,6 +72,7 @@ private:
     std::map<Key, LoweredFunction> functions;
     std::map<const Symbol*, std::vector<uint32_t>> component_tables;
     std::map<std::string, uint32_t> names;
+    std::optional<uint32_t> ramp;
     size_t value_count = 0, counted_functions = 0; // of those made so far
     bool reported_size = false;
     ir::Differentiator differentiator;
@@ -154,7 +158,8 @@ private:
 };
 
 // A built-in function of arguments that already have its parameters' types.
-Values lower_builtin(ir::Builder& builder, const BuiltinOverload& overload, std::span<const Values> arguments);
+Values lower_builtin(ModuleLowering& owner, ir::Builder& builder, const BuiltinOverload& overload,
+                     std::span<const Values> arguments);
 
 ir::Type ir_type(Type type); // of its components
 
