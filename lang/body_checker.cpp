@@ -74,7 +74,7 @@ void BodyChecker::close_scope()
 
 void BodyChecker::report_unused(const Symbol& symbol)
 {
-    if (symbol.is_read || is_library || symbol.type.is_error()) return;
+    if (symbol.is_read || is_library || in_damaged_body || symbol.type.is_error()) return;
     if (symbol.is_parameter)
         diagnostics.warning(symbol.span, "unused-parameter",
                             "parameter " + quoted(symbol.name) + " of " + quoted(owner_name) + " is never read");
@@ -109,6 +109,7 @@ void BodyChecker::report_unknown_name(Span span, const std::string& name)
 void BodyChecker::whole_body(StatementPtr& tree, const Name& name, Type result, const char* what, bool damaged)
 {
     result_type = result;
+    in_damaged_body = damaged;
     if (!tree) return;
     if (auto block = std::get_if<Scope>(&tree->node))
         statements(block->statements); // in the parameters' scope, as in C

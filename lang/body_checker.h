@@ -160,6 +160,7 @@ private:
     Diagnostics& diagnostics;
     const FileScope& scope;
     bool is_library;
+    bool in_damaged_body = false; // a syntax error was reported inside: what may follow from it is better not said
 
     std::unordered_map<std::string_view, std::vector<Binding>> by_name;
     std::vector<Symbol*> declared; // in order; scope_marks cut it

@@ -331,6 +331,11 @@ void BodyChecker::report_unknown_function(const Name& callee)
             "to multiply, write " + callee.text + " * (...)";
         return;
     }
+    if (callee.text == "grad") {
+        diagnostics.error(callee.span, "grad", "grad takes the name of a function").hint =
+            "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)";
+        return;
+    }
     Diagnostic& reported =
         diagnostics.error(callee.span, "unknown-function", "unknown function " + quoted(callee.text));
     if (const ForeignWord* foreign = foreign_word(ForeignKind::function, callee.text)) {

@@ -31,19 +31,19 @@ double edit_distance(std::string_view a, std::string_view b)
 
 } // namespace
 
-Diagnostic& Diagnostics::error(Span span, std::string code, std::string message)
+Diagnostic& Diagnostics::error(Span span, ErrorCode code, std::string message)
 {
-    return add(Severity::error, span, std::move(code), std::move(message));
+    return add(Severity::error, span, code.string(), std::move(message));
 }
 
-Diagnostic& Diagnostics::warning(Span span, std::string code, std::string message)
+Diagnostic& Diagnostics::warning(Span span, WarningCode code, std::string message)
 {
-    return add(Severity::warning, span, std::move(code), std::move(message));
+    return add(Severity::warning, span, code.string(), std::move(message));
 }
 
-Diagnostic& Diagnostics::note(Span span, std::string code, std::string message)
+Diagnostic& Diagnostics::note(Span span, NoteCode code, std::string message)
 {
-    return add(Severity::note, span, std::move(code), std::move(message));
+    return add(Severity::note, span, code.string(), std::move(message));
 }
 
 Diagnostic& Diagnostics::add(Severity severity, Span span, std::string code, std::string message)

@@ -1,6 +1,7 @@
 // What the compiler has to say, as data. Nothing in lang prints, exits or throws across its interface.
 #pragma once
 
+#include "lang/diagnostic_code.h"
 #include "lang/source.h"
 
 #include <optional>
@@ -8,8 +9,6 @@
 #include <vector>
 
 namespace haptel::lang {
-
-enum class Severity { error, warning, note };
 
 // Replaces the text of `span` by `replacement`; applied by `haptel check --fix`.
 struct FixIt {
@@ -25,7 +24,7 @@ struct Related {
 
 struct Diagnostic {
     Severity severity = Severity::error;
-    std::string code;    // kebab-case and stable: "unknown-name"
+    std::string code;    // of diagnostics.def: "unknown-name"
     Span span;           // the whole expression, not a point in it
     std::string message; // what was expected and what was found
     std::string hint;    // how to mend it ("did you mean 'octaves'?"); may be empty
@@ -37,9 +36,9 @@ struct Diagnostic {
 class Diagnostics {
 public:
     // Returns the stored diagnostic to add hint, related or fix to; a dropped one goes to a scratch object.
-    Diagnostic& error(Span span, std::string code, std::string message);
-    Diagnostic& warning(Span span, std::string code, std::string message);
-    Diagnostic& note(Span span, std::string code, std::string message);
+    Diagnostic& error(Span span, ErrorCode code, std::string message);
+    Diagnostic& warning(Span span, WarningCode code, std::string message);
+    Diagnostic& note(Span span, NoteCode code, std::string message);
 
     bool has_errors() const { return error_count > 0; }
     bool full() const { return error_count >= error_limit; } // front-end stages may stop early

@@ -34,6 +34,7 @@ private:
     void function(ast::File& result, ast::TypeName result_type, ast::Name name, size_t doc_token);
     ast::FunctionParameter function_parameter();
     void function_signature(ast::FunctionParameter& parameter);
+    void close_head(Span opener);
     ast::StatementPtr body_of(std::string_view what);
     void skip_foreign_declaration(const ForeignWord& word);
 

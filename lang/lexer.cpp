@@ -239,8 +239,9 @@ private:
         while (at < text.size() && static_cast<unsigned char>(text[at]) >= 0x80) ++at;
         std::string message = "unexpected character '" + printable(text.substr(begin, point.length)) + "'";
         if (point.value == invalid_code_point) message = "this is not UTF-8 text";
-        Diagnostic& found =
-            diagnostics.error(first, point.value == invalid_code_point ? "not-text" : "unexpected-character", message);
+        Diagnostic& found = diagnostics.error(
+            first, point.value == invalid_code_point ? ErrorCode("not-text") : ErrorCode("unexpected-character"),
+            message);
         if (point.value < 0x80)
             found.hint = text[begin] == '\'' || text[begin] == '`' ? "strings are written with double quotes" : "";
         else if (point.value != invalid_code_point)

@@ -96,7 +96,6 @@ Number read_hex(std::string_view text)
 {
     Number number;
     number.kind = Number::Kind::integer;
-    number.code = "number";
     std::string_view digits = text.substr(2);
     if (!digits.empty() && (digits.back() == 'u' || digits.back() == 'U')) {
         number.kind = Number::Kind::unsigned_integer;
@@ -123,7 +122,6 @@ Number read_number(std::string_view text)
     if (text.starts_with("0x") || text.starts_with("0X")) return read_hex(text);
 
     Number number;
-    number.code = "number";
     Decimal decimal;
     size_t at = 0;
     const auto peek = [&](size_t ahead = 0) { return at + ahead < text.size() ? text[at + ahead] : '\0'; };

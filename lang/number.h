@@ -2,6 +2,8 @@
 // once. 0.8mm is the f64 nearest to 0.0008, not 0.8 * 0.001.
 #pragma once
 
+#include "lang/diagnostic_code.h"
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -10,11 +12,11 @@ namespace haptel::lang {
 
 struct Number {
     enum class Kind { real, integer, unsigned_integer } kind = Kind::real;
-    double value = 0;      // SI; integers too
-    uint64_t integer = 0;  // integer kinds; UINT64_MAX if larger
-    std::string_view unit; // as written; empty: none
-    std::string error;     // what is wrong with it, empty: nothing; the rest is then a guess
-    std::string_view code; // of the error: "number", "unknown-unit"
+    double value = 0;          // SI; integers too
+    uint64_t integer = 0;      // integer kinds; UINT64_MAX if larger
+    std::string_view unit;     // as written; empty: none
+    std::string error;         // what is wrong with it, empty: nothing; the rest is then a guess
+    ErrorCode code = "number"; // of the error
     std::string hint;
 };
 

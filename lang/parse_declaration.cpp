@@ -56,9 +56,11 @@ void Grammar::array_suffix(TypeName& type)
 {
     while (at(Token::left_bracket)) {
         const Span opener = span();
-        if (type.is_array)
+        if (type.is_array) {
             error(opener, "nested-table", "tables have one dimension").hint =
                 "write the rows one behind the other and index by row * columns + column";
+            type.base.text.clear(); // of no type: nothing more is said about it
+        }
         advance();
         type.is_array = true;
         if (!at(Token::right_bracket)) type.array_size = expression();
@@ -152,7 +154,7 @@ void Grammar::function(File& result, TypeName result_type, Name function_name, s
             if (lost) skip_to({Token::comma, Token::right_paren});
         } while (accept(Token::comma));
     }
-    close(Token::right_paren, opener, true);
+    close_head(opener);
     if (at(Token::semicolon) && !lost) {
         advance();
         Diagnostic& reported = diagnostics.warning(since(first), "prototype",
@@ -212,6 +214,15 @@ void Grammar::function_signature(FunctionParameter& parameter)
     close(Token::right_paren, opener, true);
 }
 
+// Behind the parameters. Where the body begins without ')', it is not skipped.
+void Grammar::close_head(Span opener)
+{
+    if (at(Token::left_brace))
+        report_unclosed(Token::right_paren, opener, true);
+    else
+        close(Token::right_paren, opener, true);
+}
+
 StatementPtr Grammar::body_of(std::string_view what)
 {
     if (lost) { // in the brackets before
@@ -258,7 +269,7 @@ void Grammar::texture(File& result)
                 if (lost) skip_to({Token::comma, Token::right_paren});
             } while (accept(Token::comma));
         }
-        close(Token::right_paren, opener, true);
+        close_head(opener);
     } else {
         return;
     }

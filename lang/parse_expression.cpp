@@ -242,7 +242,7 @@ ExpressionPtr Grammar::number()
     Number read = read_number(text());
     advance();
     if (!read.error.empty()) {
-        diagnostics.error(where, std::string(read.code), std::move(read.error)).hint = std::move(read.hint);
+        diagnostics.error(where, read.code, std::move(read.error)).hint = std::move(read.hint);
         return make(where, ErrorExpression{});
     }
     const auto kind_of = [](Number::Kind kind) {
@@ -360,7 +360,9 @@ ExpressionPtr Grammar::brace_list()
         if (at(Token::left_brace)) {
             error(span(), "nested-table", "tables have one dimension").hint =
                 "write the rows one behind the other and index by row * columns + column";
+            const Span inner = span();
             brace_list();
+            list_of.elements.push_back(make(since(inner), ErrorExpression{}));
         } else {
             list_of.elements.push_back(expression());
         }

@@ -99,13 +99,13 @@ bool TokenCursor::beside_invalid() const
     return at(Token::invalid) || (position > 0 && list.tokens[position - 1].kind == Token::invalid);
 }
 
-Diagnostic& TokenCursor::error(Span where, std::string code, std::string message)
+Diagnostic& TokenCursor::error(Span where, ErrorCode code, std::string message)
 {
     const bool silent = lost || beside_invalid();
     lost = true;
     ++mistakes;
     if (silent) return unheard = {};
-    Diagnostic& reported = diagnostics.error(where, std::move(code), std::move(message));
+    Diagnostic& reported = diagnostics.error(where, code, std::move(message));
     if (diagnostics.full()) position = list.tokens.size() - 1; // enough is said: run off the end
     return reported;
 }

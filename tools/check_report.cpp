@@ -19,16 +19,6 @@ using ir::Input;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-const char* name_of(lang::Severity severity)
-{
-    switch (severity) {
-    case lang::Severity::error: return "error";
-    case lang::Severity::warning: return "warning";
-    case lang::Severity::note: return "note";
-    }
-    return "";
-}
-
 const char* name_of(ir::Type type)
 {
     switch (type) {

@@ -27,11 +27,11 @@ TEST_CASE("a finding shows its line, the whole span underlined, further places a
 {
     const SourceSet sources = one("texture t(\n    float a = 1,\n    return depth * sin(p.x);\n");
     Diagnostics diagnostics;
-    Diagnostic& d = diagnostics.error({0, 47, 55}, "dimension", "sin() expects a plain number, got a length");
+    Diagnostic& d = diagnostics.warning({0, 47, 55}, "dimension", "sin() expects a plain number, got a length");
     d.hint = "divide by a wavelength";
     d.related.push_back({{0, 9, 10}, "it was opened here"});
     CHECK(render(diagnostics.all(), sources) ==
-          "t.haptel:3:20: error: sin() expects a plain number, got a length [dimension]\n"
+          "t.haptel:3:20: warning: sin() expects a plain number, got a length [dimension]\n"
           "   3 |     return depth * sin(p.x);\n"
           "     |                    ^~~~~~~~\n"
           "t.haptel:1:10: note: it was opened here\n"
@@ -78,30 +78,30 @@ TEST_CASE("a long line is cut around the finding")
 TEST_CASE("one error per place, a bounded number of them, the rest goes nowhere")
 {
     Diagnostics diagnostics;
-    diagnostics.error({0, 5, 6}, "a", "first");
-    diagnostics.error({0, 5, 9}, "b", "second at the same place").hint = "lost";
+    diagnostics.error({0, 5, 6}, "syntax", "first");
+    diagnostics.error({0, 5, 9}, "number", "second at the same place").hint = "lost";
     CHECK(diagnostics.all().size() == 1);
     CHECK(diagnostics.all()[0].hint.empty());
-    diagnostics.warning({0, 5, 6}, "w", "warnings stand beside errors");
-    diagnostics.warning({0, 5, 6}, "w", "but not twice");
+    diagnostics.warning({0, 5, 6}, "dimension", "warnings stand beside errors");
+    diagnostics.warning({0, 5, 6}, "dimension", "but not twice");
     CHECK(diagnostics.all().size() == 2);
-    for (uint32_t i = 0; i < 1000; ++i) diagnostics.error({0, 10 + i, 11 + i}, "c", "more");
+    for (uint32_t i = 0; i < 1000; ++i) diagnostics.error({0, 10 + i, 11 + i}, "facts", "more");
     CHECK(diagnostics.full());
     CHECK(diagnostics.all().size() == 51);
-    for (uint32_t i = 0; i < 1000; ++i) diagnostics.note({0, i, i + 1}, "n", "more");
+    for (uint32_t i = 0; i < 1000; ++i) diagnostics.note({0, i, i + 1}, "replaces-library", "more");
     CHECK(diagnostics.all().size() == 250);
 }
 
 TEST_CASE("findings are sorted by file and place")
 {
     Diagnostics diagnostics;
-    diagnostics.error({1, 0, 1}, "c", "");
-    diagnostics.warning({0, 9, 10}, "b", "");
-    diagnostics.error({0, 2, 3}, "a", "");
+    diagnostics.error({1, 0, 1}, "facts", "");
+    diagnostics.warning({0, 9, 10}, "prototype", "");
+    diagnostics.error({0, 2, 3}, "syntax", "");
     diagnostics.sort_by_place();
-    CHECK(diagnostics.all()[0].code == "a");
-    CHECK(diagnostics.all()[1].code == "b");
-    CHECK(diagnostics.all()[2].code == "c");
+    CHECK(diagnostics.all()[0].code == "syntax");
+    CHECK(diagnostics.all()[1].code == "prototype");
+    CHECK(diagnostics.all()[2].code == "facts");
 }
 
 TEST_CASE("colour wraps label and underline and changes no text")

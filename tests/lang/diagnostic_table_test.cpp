@@ -1,0 +1,120 @@
+// The table of diagnostics: its examples are what they say, and it is the only list there is.
+#include "lang/compile.h"
+#include "tests/support/catch.h"
+
+#include <algorithm>
+#include <set>
+
+using namespace haptel::lang;
+
+namespace {
+
+// A compilation in which imports find the text itself, and nothing else.
+CompileResult compiled(std::string_view text)
+{
+    CompileOptions options;
+    options.load_import = [&](std::string_view path, std::string_view) -> std::optional<SourceFile> {
+        if (path != "main.haptel") return std::nullopt;
+        return SourceFile{std::string(path), std::string(text)};
+    };
+    return compile({"main.haptel", std::string(text)}, options);
+}
+
+std::set<std::string> said(const CompileResult& result)
+{
+    std::set<std::string> all;
+    for (const Diagnostic& diagnostic : result.diagnostics.all())
+        all.insert(std::string(name_of(diagnostic.severity)) + " " + diagnostic.code);
+    return all;
+}
+
+} // namespace
+
+TEST_CASE("diagnostics: every wrong example has its finding, every right one has none")
+{
+    for (const DiagnosticInfo& info : all_diagnostics()) {
+        if (info.wrong.empty()) continue;
+        CAPTURE(info.code, info.wrong, info.right);
+        const std::string finding = std::string(name_of(info.severity)) + " " + std::string(info.code);
+        CHECK(said(compiled(info.wrong)) == std::set<std::string>{finding});
+        CHECK(said(compiled(info.right)) == std::set<std::string>{});
+    }
+}
+
+TEST_CASE("diagnostics: the table is complete and tidy")
+{
+    // What no small text shows: tests of their own have these.
+    const std::set<std::string_view> without_example = {"bad-value",       "dimension-limit", "internal-error",
+                                                        "no-code",         "too-large",       "unknown-parameter",
+                                                        "unknown-texture", "unreadable-file", "unwritable-file"};
+    std::set<std::string_view> codes, shown_nowhere;
+    for (const DiagnosticInfo& info : all_diagnostics()) {
+        CAPTURE(info.code);
+        CHECK(codes.insert(info.code).second);
+        CHECK(info.code.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == std::string_view::npos);
+        CHECK(!info.meaning.empty());
+        CHECK(info.meaning.find('\n') == std::string_view::npos);
+        CHECK(!info.explanation.empty());
+        CHECK(info.wrong.empty() == info.right.empty());
+        if (info.wrong.empty()) shown_nowhere.insert(info.code);
+        CHECK(find_diagnostic(info.code) == &info);
+    }
+    CHECK(shown_nowhere == without_example);
+    CHECK(!find_diagnostic("no-such-code"));
+}
+
+// What the constructors of ErrorCode and its like ask while they compile.
+static_assert(is_listed("unknown-name", Severity::error));
+static_assert(!is_listed("unknown-nmae", Severity::error));
+static_assert(!is_listed("unknown-name", Severity::warning));
+static_assert(!is_listed("", Severity::error));
+
+TEST_CASE("diagnostics: ten mistakes of ten kinds are ten findings, each at its place and once")
+{
+    const std::string text = "float f(flaot x) { return x; }\n"
+                             "float g(float x) { if (x > 0) return x; }\n"
+                             "texture t(float depth = 3mm in 0mm .. 2mm, int n = 3)\n"
+                             "{\n"
+                             "    float a = dpeth * 2.0;\n"
+                             "    vec2 b = p;\n"
+                             "    for (int i = 0; i < n; ++i) a += 1mm;\n"
+                             "    int c = 1.5;\n"
+                             "    p.x = a + c;\n"
+                             "    float e = lenght(b) + b.z;\n"
+                             "    return a + b.x + e + f(1.0) + depth;\n"
+                             "}\n";
+    const CompileResult result = compiled(text);
+    std::vector<std::string> found;
+    for (const Diagnostic& diagnostic : result.diagnostics.all()) {
+        const Position at = result.sources.position(0, diagnostic.span.begin);
+        found.push_back(std::to_string(at.line) + ":" + std::to_string(at.column) + " " + diagnostic.code);
+    }
+    const std::vector<std::string> expected = {"1:9 unknown-type",   "2:7 missing-return", "3:25 default-out-of-range",
+                                               "5:15 unknown-name",  "6:14 type-mismatch", "7:25 unbounded-loop",
+                                               "8:13 type-mismatch", "9:5 read-only",      "10:15 unknown-function",
+                                               "10:29 bad-swizzle"};
+    CHECK(found == expected);
+}
+
+TEST_CASE("diagnostics: a mistake of grammar hides nothing in the functions beside it")
+{
+    const CompileResult result = compiled("float f(float x) { return x * ; }\n"
+                                          "float g(float x) { return x + y; }\n"
+                                          "float h(float x { return x; }\n"
+                                          "texture t() { return f(p.x) + g(p.x) + k(p.x); }\n");
+    std::vector<std::string> found;
+    for (const Diagnostic& diagnostic : result.diagnostics.all())
+        found.push_back(std::to_string(result.sources.position(0, diagnostic.span.begin).line) + " " + diagnostic.code);
+    CHECK(found ==
+          std::vector<std::string>{"1 expected-expression", "2 unknown-name", "3 syntax", "4 unknown-function"});
+}
+
+TEST_CASE("diagnostics: errors stop at the limit, which can be set")
+{
+    Diagnostics diagnostics;
+    diagnostics.error_limit = 3;
+    for (uint32_t i = 0; i < 10; ++i) diagnostics.error({0, i, i + 1}, "syntax", "x");
+    CHECK(diagnostics.all().size() == 3);
+    CHECK(diagnostics.full());
+    CHECK(diagnostics.reports() == 10);
+}
