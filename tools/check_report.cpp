@@ -165,8 +165,8 @@ std::string shown_class(const CheckedTexture& checked)
                                      : bounds.smoothness == ir::Smoothness::jump  ? "jump, the height steps"
                                                                                   : "C0, the slope steps";
     const lang::SourceSet& sources = checked.program->sources;
-    const lang::Position at = sources.position(bounds.cause.file, bounds.cause.begin);
-    return fmt::format("{}, at {}:{}:{}", meaning, sources.file(bounds.cause.file).name, at.line, at.column);
+    const lang::Position at = sources.position(bounds.cause.span.file, bounds.cause.span.begin);
+    return fmt::format("{}, at {}:{}:{}", meaning, sources.file(bounds.cause.span.file).name, at.line, at.column);
 }
 
 // The cube, and wherever else the contact may be: any uv, any time.

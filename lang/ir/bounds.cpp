@@ -70,7 +70,9 @@ public:
         return std::any_of(pieces.begin(), pieces.end(),
                            [](const Piece& piece) { return !piece.is_cut && piece.may_be_nan; });
     }
-    const Variation& over_all() const { return whole; } // of the box in one piece; only where a goal needs it
+    // Of the box in one piece, where the goals are of derivatives.
+    const Variation& over_all() const { return whole; }
+    const std::vector<Undefined>& undefined_over_all() const { return undefined; }
 
 private:
     struct Piece {
@@ -88,6 +90,7 @@ private:
     std::vector<Piece> pieces;
     std::vector<Queue> queues; // by goal
     Variation whole;
+    std::vector<Undefined> undefined;
     uint64_t used = 0;
     size_t turn = 0;
     bool is_settled = false;
@@ -109,7 +112,7 @@ private:
             IntervalEvaluator::Results results = evaluator.run_varying(entry, box);
             height = results.values[0];
             variation = results.variations[0];
-            if (pieces.empty()) whole = variation;
+            if (pieces.empty()) whole = variation, undefined = evaluator.undefined();
         }
         used += evaluator.operations_used() + 1;
         Piece piece{std::move(where), {}, height.may_be_nan, false};
@@ -169,13 +172,15 @@ Interval height_bounds(const Module& module, const Texture& texture, const Bound
 
 TextureBounds texture_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations)
 {
-    TextureBounds bounds{height_bounds(module, texture, box, evaluations), 0, 0, Smoothness::unknown, {}};
+    TextureBounds bounds{height_bounds(module, texture, box, evaluations), 0, 0, Smoothness::unknown, {}, {}};
     Bisection bisection(module, texture, box, {Goal::slope, Goal::curvature});
     bisection.run(evaluations);
     bounds.slope_max = std::max(0.0, bisection.bound(0));
     bounds.curvature_max_per_m = std::max(0.0, bisection.bound(1));
     bounds.smoothness = bisection.over_all().smoothness;
     bounds.cause = bisection.over_all().cause;
+    const bool is_finite = bounds.height.is_finite() && std::isfinite(bounds.slope_max) && !bisection.may_be_nan();
+    if (!is_finite) bounds.undefined = bisection.undefined_over_all();
     return bounds;
 }
 

@@ -7,6 +7,7 @@
 
 #include "lang/ir/interval.h"
 #include "lang/ir/ir.h"
+#include "lang/ir/variation.h"
 
 #include <span>
 #include <vector>
@@ -19,13 +20,21 @@ struct BoundsBox {
     std::vector<Interval> parameters; // by Texture::parameters; integers and booleans as numbers
 };
 
+// An operation whose operands can leave what it is defined for.
+struct Undefined {
+    Op op;
+    Interval operand; // the divisor, the radicand, ...
+    Span span;        // innermost user code
+};
+
 // What is known of a texture over a box; infinite where nothing was found.
 struct TextureBounds {
-    Interval height;            // metres; includes 0 where the height may be not finite
-    double slope_max;           // sup of the Euclidean norm of the gradient by p; at jumps, of the smooth pieces
-    double curvature_max_per_m; // sup of the Hessian's spectral norm; of a texture below C1, of the smooth pieces
-    Smoothness smoothness;      // as a function of p
-    Span cause;                 // of what makes it no smoother
+    Interval height;                  // metres; includes 0 where the height may be not finite
+    double slope_max;                 // sup of the Euclidean norm of the gradient by p; at jumps, of the smooth pieces
+    double curvature_max_per_m;       // sup of the Hessian's spectral norm; of a texture below C1, of the smooth pieces
+    Smoothness smoothness;            // as a function of p
+    Cause cause;                      // of what makes it no smoother
+    std::vector<Undefined> undefined; // what may make it not finite somewhere; empty where it is finite for certain
 };
 
 // Refined by bisecting point inputs and real parameters, best first, until `evaluations` are spent or 5 % improvement

@@ -49,12 +49,15 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     Frame frame{function, std::vector<Interval>(count, nothing), std::vector<Variation>(varying ? count : 0),
                 makers_of(index)};
     store(frame, function.parameters, arguments);
+    const std::optional<Span> outside = user;
+    if (function.is_library && !user) user = span;
     block(frame, function.body);
+    user = outside;
     --depth;
     if (left == 0) return unknown(function, function.body.yields, span);
     Results results = gather(frame, function.body.yields);
     if (function.is_library)
-        for (Variation& variation : results.variations) variation.cause = span;
+        for (Variation& variation : results.variations) variation.cause = {span, {}}, variation.kink = 0;
     return results;
 }
 
@@ -67,7 +70,7 @@ Variation IntervalEvaluator::by_facts(const Function& function, const Facts& fac
     for (const Variation& other : others) {
         if (!other.is_active) continue;
         const Variation before = variation;
-        variation = unknown_variation(other.cause);
+        variation = unknown_variation(other.cause.span);
         variation.smoothness = facts.smoothness.value_or(Smoothness::unknown);
         roughen(variation, before.smoothness, before.cause);
         roughen(variation, other.smoothness, other.cause);
@@ -97,7 +100,7 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
         is_all_told &= facts.value_minimum && facts.value_maximum && facts.slope;
         if (!varying) continue;
         Variation& variation = declared.variations.emplace_back(by_facts(function, facts, arguments));
-        if (variation.is_active && variation.cause.end == 0) variation.cause = span;
+        if (variation.is_active && variation.cause.span.end == 0) variation.cause = {span, {}};
         is_all_told &= !variation.is_active || (facts.smoothness && variation.curvature < infinity);
     }
     const Interval& value = declared.values[0];

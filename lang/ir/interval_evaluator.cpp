@@ -29,6 +29,13 @@ Interval cell(const Table& table, size_t index)
     return integer(table.element, word);
 }
 
+// One of the two is 0, always.
+bool is_zero_side(std::span<const Interval> operands)
+{
+    return std::any_of(operands.begin(), operands.end(),
+                       [](const Interval& operand) { return operand.minimum == 0 && operand.maximum == 0; });
+}
+
 // Inputs move with p by their Jacobian, of which only bounds are known, and of its own change nothing.
 Variation carried_along(const BoundsBox& box, Input first_partial, Span span)
 {
@@ -80,6 +87,9 @@ IntervalEvaluator::Results IntervalEvaluator::run_varying(uint32_t entry, const 
     left = limit;
     depth = 0;
     varying = true;
+    kinks = 0;
+    user.reset();
+    undefined_operations.clear();
     return look_inside(entry, {}, {});
 }
 
@@ -135,13 +145,59 @@ IntervalEvaluator::Results IntervalEvaluator::unknown(const Function& function, 
 }
 
 // What depends on an undecided choice that depends on the point may jump with it.
-void IntervalEvaluator::roughen_all(Results& results, const Variation& by, Span cause) const
+void IntervalEvaluator::roughen_all(Results& results, const Variation& by, Span where) const
 {
     if (!by.is_active) return;
     for (Variation& variation : results.variations) {
         variation.is_active = true;
-        roughen(variation, by.smoothness == Smoothness::unknown ? Smoothness::unknown : Smoothness::jump, cause);
+        variation.kink = 0;
+        roughen(variation, std::min(by.smoothness, Smoothness::jump), {where, {}});
     }
+}
+
+// What an operation is not defined for: where its operands are numbers and its result may not be one.
+void IntervalEvaluator::note_undefined(const Instruction& made, Op op, std::span<const Interval> operands,
+                                       const Interval& result)
+{
+    const OpInfo& info = op_info(op);
+    const auto is_number = [](const Interval& operand) { return !operand.may_be_nan && !operand.is_empty(); };
+    if (info.result != 'r' || info.operands[0] != 'r' || is_trying) return;
+    if (!std::all_of(operands.begin(), operands.end(), is_number)) return;
+    const bool divides_by_zero = op == Op::div && operands[1].contains(0);
+    const bool overflows = op == Op::add || op == Op::sub || op == Op::mul || op == Op::fma; // of what has no bound
+    if (!divides_by_zero && (overflows || !result.may_be_nan)) return;
+    const Span span = user.value_or(made.span);
+    for (const Undefined& known : undefined_operations)
+        if (known.op == op && known.span.file == span.file && known.span.begin == span.begin) return;
+    undefined_operations.push_back({op, operands[op == Op::div ? 1 : 0], span});
+}
+
+// What the operands say together: a square, a component of a unit vector, a division whose divisor was looked at.
+Interval IntervalEvaluator::sharpened(const Frame& frame, const Instruction& made, Op op, const Interval& result) const
+{
+    Interval sharp = result;
+    const auto maker = [&](size_t operand) { return frame.makers[made.operands[operand].index]; };
+    const auto made_by = [&](const Instruction* by, Op which) {
+        auto* operation = by ? std::get_if<Operation>(&by->kind) : nullptr;
+        return operation && operation->op == which;
+    };
+    if (op == Op::mul && made.operands[0] == made.operands[1]) sharp.minimum = std::max(sharp.minimum, 0.0);
+    if (op == Op::div) {
+        const Instruction* divisor = maker(1);
+        for (Op length : {Op::length2, Op::length3, Op::length4})
+            if (made_by(divisor, length) && std::find(divisor->operands.begin(), divisor->operands.end(),
+                                                      made.operands[0]) != divisor->operands.end())
+                sharp = intersect({sharp.minimum, sharp.maximum, true}, {-1, 1, sharp.may_be_nan});
+    }
+    if (op == Op::select && made_by(maker(0), Op::eq) && made_by(maker(2), Op::div)) {
+        const Value tested = maker(0)->operands[0], divisor = maker(2)->operands[1];
+        const Interval &zero = frame.values[maker(0)->operands[1].index],
+                       &dividend = frame.values[maker(2)->operands[0].index];
+        const bool is_guarded = tested == divisor && zero.is_point() && zero.minimum == 0 && dividend.is_finite() &&
+                                frame.values[divisor.index].is_finite();
+        if (is_guarded) sharp.may_be_nan = frame.values[made.operands[1].index].may_be_nan;
+    }
+    return sharp;
 }
 
 // ---- one instruction at a time
@@ -161,8 +217,8 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Opera
     for (size_t i = 0; i < made.operands.size(); ++i) operands[i] = frame.values[made.operands[i].index];
     const std::span<const Interval> all{operands, made.operands.size()};
     Interval result = evaluate(operation.op, all);
-    // x * x is a square
-    if (operation.op == Op::mul && made.operands[0] == made.operands[1]) result.minimum = std::max(result.minimum, 0.0);
+    if (varying) note_undefined(made, operation.op, all, result);
+    result = sharpened(frame, made, operation.op, result);
     frame.values[made.results[0].index] = result;
     if (varying) frame.variations[made.results[0].index] = variation_of(frame, made, operation.op, all, result);
 }
@@ -206,7 +262,12 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
         if (of_reals) partials = rules.of(op, operands, active, true);
         variation = chain(op, operands, {variations, operands.size()}, partials, of_reals);
     }
-    roughen(variation, smoothness_of(op, operands, active, result, partials), made.span);
+    const Smoothness own = smoothness_of(op, operands, active, result, partials);
+    const bool was_smooth = variation.smoothness == Smoothness::smooth;
+    roughen(variation, own, {made.span, op});
+    if (own != Smoothness::smooth && variation.kink != 0) variation.kink = 0;
+    const bool at_zero = op == Op::abs || ((op == Op::min || op == Op::max) && is_zero_side(operands));
+    if (own == Smoothness::c0 && was_smooth && at_zero) variation.kink = ++kinks, variation.kink_power = 1;
     return variation;
 }
 
@@ -255,7 +316,7 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadT
     Variation& variation = frame.variations[made.results[0].index];
     const Variation& of_index = frame.variations[made.operands[0].index];
     variation.is_active = of_index.is_active && first_cell != last_cell;
-    if (variation.is_active) roughen(variation, std::min(of_index.smoothness, Smoothness::jump), made.span);
+    if (variation.is_active) roughen(variation, std::min(of_index.smoothness, Smoothness::jump), {made.span, {}});
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Call& callee)
@@ -277,9 +338,15 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const If& c
         const Results yields = arm(frame, choice.arms[taken ? 0 : 1], made.operands[0], taken, made.span);
         if (!yields.values.empty()) join_into(all, yields);
     }
-    if (varying) {
-        all.variations.resize(made.results.size());
-        if (!condition.is_point()) roughen_all(all, frame.variations[made.operands[0].index], made.span);
+    const Variation* by = varying ? &frame.variations[made.operands[0].index] : nullptr;
+    if (by) all.variations.resize(made.results.size());
+    if (by && by->is_active && !condition.is_point()) {
+        const std::vector<Smoothness> meets = meeting(frame, made, choice, all);
+        for (size_t i = 0; i < meets.size(); ++i) {
+            all.variations[i].is_active = true;
+            all.variations[i].kink = 0;
+            roughen(all.variations[i], meets[i], {made.span, {}});
+        }
     }
     store(frame, made.results, all);
 }

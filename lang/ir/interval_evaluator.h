@@ -25,6 +25,8 @@ public:
         std::vector<Variation> variations;
     };
     Results run_varying(uint32_t entry, const BoundsBox& box);
+    // Met by the last run_varying(), each place once.
+    const std::vector<Undefined>& undefined() const { return undefined_operations; }
 
 private:
     struct Frame {
@@ -44,6 +46,10 @@ private:
     uint32_t depth = 0; // blocks and calls inside each other
     bool varying = false;
     PartialRules rules;
+    uint32_t kinks = 0;       // numbered as they are met
+    bool is_trying = false;   // arms are evaluated where they meet
+    std::optional<Span> user; // the call, while inside the library
+    std::vector<Undefined> undefined_operations;
     const BoundsBox* box = nullptr;
     std::vector<std::vector<const Instruction*>> makers; // by function, then Value::index; filled when first needed
 
@@ -55,7 +61,9 @@ private:
     Results nothing_yet(size_t count) const;
     void join_into(Results& all, const Results& other) const;
     Results unknown(const Function& function, std::span<const Value> values, Span cause) const;
-    void roughen_all(Results& results, const Variation& by, Span cause) const;
+    void roughen_all(Results& results, const Variation& by, Span where) const;
+    void note_undefined(const Instruction& made, Op op, std::span<const Interval> operands, const Interval& result);
+    Interval sharpened(const Frame& frame, const Instruction& made, Op op, const Interval& result) const;
 
     Results call(uint32_t function, const Results& arguments, Span span);
     Results look_inside(uint32_t function, const Results& arguments, Span span);
@@ -65,6 +73,8 @@ private:
                            const Interval& result);
     Variation chosen(Frame& frame, const Instruction& made, bool first, bool second, const Variation* by) const;
     void block(Frame& frame, const Block& block);
+    // How smooth each result of an undecided `if` is where its arms meet: they may meet in value, and in slope.
+    std::vector<Smoothness> meeting(Frame& frame, const Instruction& made, const If& choice, const Results& joined);
     // Arms that cannot be entered give no values at all.
     Results arm(Frame& frame, const Block& block, Value condition, bool taken, Span span);
     bool narrow(Frame& frame, Value condition, bool taken, std::vector<Narrowed>& undo);

@@ -65,6 +65,7 @@ Smoothness smoothness_of(Op op, std::span<const Interval> operands, uint32_t act
             std::all_of(operands.begin(), operands.end(), [](const Interval& part) { return part.contains(0); });
         return reaches_zero ? Smoothness::c0 : Smoothness::smooth;
     }
+    if (op == Op::div && b.contains(0) && (active & 2)) return Smoothness::jump;
     if (op == Op::atan2) return b.minimum <= 0 && a.contains(0) ? Smoothness::jump : Smoothness::smooth;
     // Choices, comparisons and integers can only change by a step.
     const OpInfo& info = op_info(op);

@@ -102,6 +102,31 @@ Variation roughest_of(std::span<const Variation> parts)
     return all;
 }
 
+Smoothness of_power(uint32_t power)
+{
+    return power == 1 ? Smoothness::c0 : power == 2 ? Smoothness::c1 : Smoothness::c2;
+}
+
+// Operations that keep a kink where the value is 0: products raise it to a power, what is smooth may be a factor.
+void keep_kink(Op op, std::span<const Variation> variations, Variation& made)
+{
+    if (op != Op::mul && op != Op::neg && op != Op::div) return;
+    uint32_t kink = 0, power = 0;
+    for (size_t i = 0; i < variations.size(); ++i) {
+        const Variation& a = variations[i];
+        const bool is_smooth = !a.is_active || a.smoothness >= Smoothness::c2;
+        const bool is_numerator = op != Op::div || i == 0;
+        if (is_smooth && a.kink == 0) continue;
+        if (a.kink == 0 || !is_numerator || (kink != 0 && kink != a.kink)) return;
+        kink = a.kink;
+        power += a.kink_power;
+    }
+    if (kink == 0) return;
+    made.kink = kink;
+    made.kink_power = power;
+    made.smoothness = of_power(power);
+}
+
 bool is_length(Op op)
 {
     return op == Op::length2 || op == Op::length3 || op == Op::length4;
@@ -118,19 +143,19 @@ Variation axis(size_t direction)
     return variation;
 }
 
-Variation unknown_variation(Span cause)
+Variation unknown_variation(Span where)
 {
     Variation variation;
     variation.is_active = true;
     variation.smoothness = Smoothness::unknown;
-    variation.cause = cause;
+    variation.cause = {where, {}};
     variation.gradient.fill(around_zero(infinity));
     variation.hessian.fill(around_zero(infinity));
     variation.slope = variation.curvature = infinity;
     return variation;
 }
 
-void roughen(Variation& variation, Smoothness smoothness, Span cause)
+void roughen(Variation& variation, Smoothness smoothness, const Cause& cause)
 {
     if (smoothness >= variation.smoothness) return;
     variation.smoothness = smoothness;
@@ -209,6 +234,7 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
     made.slope = slope * rounding_up;
     made.curvature = curvature * rounding_up;
     tighten(made, second);
+    keep_kink(op, variations, made);
     return made;
 }
 
@@ -216,7 +242,7 @@ Variation chain(const Facts& facts, std::span<const Variation> arguments)
 {
     Variation made = roughest_of(arguments);
     if (!made.is_active) return made;
-    if (facts.smoothness) roughen(made, *facts.smoothness, arguments.empty() ? Span{} : arguments[0].cause);
+    if (facts.smoothness) roughen(made, *facts.smoothness, arguments.empty() ? Cause{} : arguments[0].cause);
     const double jacobian = jacobian_norm(arguments), second = second_norm(arguments);
     const double slope = facts.slope.value_or(infinity), curvature = facts.curvature.value_or(infinity);
 

@@ -7,16 +7,26 @@
 #include "lang/ir/partials.h"
 
 #include <array>
+#include <optional>
 #include <span>
 
 namespace haptel::ir {
+
+// What makes a value rough: an operation, or nothing where a condition decides between two values.
+struct Cause {
+    Span span;
+    std::optional<Op> op;
+};
 
 struct Variation {
     static constexpr size_t directions = 3; // the axes of p
 
     bool is_active = false; // depends on the point at all; else the rest stays as it is here
     Smoothness smoothness = Smoothness::smooth;
-    Span cause;                            // of the roughest part
+    Cause cause; // of the roughest part
+    // Not 0: the value is smooth but where it is 0, as |u| and max(u, 0) are; its powers of 2, 3.. are C1, C2..
+    uint32_t kink = 0;                     // which kink: values that share it are 0 in the same places
+    uint32_t kink_power = 0;               // of max(u, 0) in it
     std::array<Interval, 3> gradient = {}; // by axis
     std::array<Interval, 6> hessian = {};  // xx xy xz yy yz zz
     double slope = 0;                      // sup of the gradient's Euclidean norm
@@ -24,10 +34,10 @@ struct Variation {
 };
 
 Variation axis(size_t direction); // of p_x, p_y, p_z themselves
-Variation unknown_variation(Span cause);
+Variation unknown_variation(Span where);
 
 // Rougher of the two, with its cause.
-void roughen(Variation& variation, Smoothness smoothness, Span cause);
+void roughen(Variation& variation, Smoothness smoothness, const Cause& cause);
 
 // Of what may be either: an `if`, a choice, the lesser of two.
 Variation join(const Variation& a, const Variation& b);

@@ -142,10 +142,53 @@ TEST_CASE("class: the roughest part that can be met, with its place")
     CHECK(class_of(x + "%h = div %t, %x return %h", {-1, 1}) == Smoothness::jump);
     CHECK(class_of(x + "%c = lt %x, %t %h = select %c, %x, %t return %h", {-1, 1}) == Smoothness::jump);
     CHECK(class_of(x + "%c = lt %x, %t %h = select %c, %x, %t return %h", {-1, 0}) == Smoothness::smooth);
-    CHECK(class_of(x + "%c = lt %x, %t %h = if %c { yield %x } else { yield %t } return %h", {-1, 1}) ==
+    CHECK(class_of(x + "%c = lt %x, %t %h = if %c { yield %t } else { yield %x } return %h", {-1, 1}) ==
+          Smoothness::c0); // they meet
+    CHECK(class_of(x + "%c = lt %x, %t %k = real 0 %h = if %c { yield %k } else { yield %x } return %h", {-1, 1}) ==
           Smoothness::jump);
-    CHECK(class_of(x + "%a = abs %x %h = mul %a, %a return %h", {-1, 1}) ==
-          Smoothness::c0); // it is C1: true, not sharp
+    CHECK(class_of(x + "%h = div %x, %x return %h", {-1, 1}) == Smoothness::jump);
+}
+
+TEST_CASE("class: a kink where the value is 0 is smoothed by a power")
+{
+    const auto class_of = [](const std::string& body) { return bounds_of(body, {{-1, 1}}).smoothness; };
+    const std::string ramp = "%x = input p_x %z = real 0 %r = max %x, %z ";
+    CHECK(class_of(ramp + "return %r") == Smoothness::c0);
+    CHECK(class_of(ramp + "%h = mul %r, %r return %h") == Smoothness::c1);
+    CHECK(class_of(ramp + "%s = mul %r, %r %h = mul %s, %r return %h") == Smoothness::c2);
+    CHECK(class_of(ramp + "%w = sin %x %h = mul %r, %w return %h") == Smoothness::c0);
+    CHECK(class_of(ramp + "%w = abs %x %h = mul %r, %w return %h") == Smoothness::c0);
+    CHECK(class_of(ramp + "%s = mul %r, %r %k = real 1 %h = add %s, %k return %h") == Smoothness::c1);
+    CHECK(class_of("%x = input p_x %k = real 0.5 %r = max %x, %k %h = mul %r, %r return %h") == Smoothness::c0);
+    CHECK(class_of(ramp + "%s = mul %r, %r %q = sqrt %s return %q") == Smoothness::c0);
+}
+
+TEST_CASE("class: arms of an if that meet")
+{
+    const auto class_of = [](const std::string& arms) {
+        return bounds_of("%x = input p_x %y = input p_y %r = length2 %x, %y %one = real 1 %z = real 0 %c = le %r, %one "
+                         "%h = if %c { " +
+                             arms + " return %h",
+                         {{-3, 3}, {-3, 3}})
+            .smoothness;
+    };
+    const std::string bowl = "%s = mul %r, %r %b = sub %one, %s ";
+    CHECK(class_of(bowl + "yield %b } else { yield %z }") == Smoothness::c0);                 // 1 - r^2, 0
+    CHECK(class_of(bowl + "%q = mul %b, %b yield %q } else { yield %z }") == Smoothness::c0); // r alone is C0, at 0
+    CHECK(class_of(bowl + "yield %b } else { yield %one }") == Smoothness::jump);
+    CHECK(class_of("%u = add %x, %y yield %u } else { yield %z }") == Smoothness::jump);
+
+    const auto along_x = [](const std::string& arms) {
+        return bounds_of("%x = input p_x %y = input p_y %z = real 0 %two = real 2 %c = lt %x, %two %h = if %c { " +
+                             arms + " return %h",
+                         {{-3, 3}, {-3, 3}})
+            .smoothness;
+    };
+    CHECK(along_x("yield %x } else { yield %two }") == Smoothness::c0);
+    CHECK(along_x(
+              "%s = mul %x, %x yield %s } else { %a = mul %x, %two %b = add %a, %a %d = add %two, %two %e = sub %b, %d "
+              "yield %e }") == Smoothness::c1); // x^2, 4 x - 4
+    CHECK(along_x("%s = mul %x, %y yield %s } else { %t = mul %two, %y yield %t }") == Smoothness::jump); // not told
 }
 
 // For programs at random: no pair of points of the box breaks what slope, curvature and class promise.
