@@ -42,9 +42,14 @@ private:
         const Span at = finding.span;
         if (!places.insert({at.file, at.begin, at.end}).second) return; // found before, with other dimensions
         Diagnostic& said = diagnostics.warning(at, "dimension", finding.message);
-        said.hint = finding.hint;
         said.related = finding.related;
-        said.fix = finding.fix;
+        // What mends a body for one call would break it for the others.
+        if (instance.choices && *instance.choices > 1 && finding.fix) {
+            said.hint = "'" + instance.name + "' is called with other dimensions too: mend the call";
+        } else {
+            said.hint = finding.hint;
+            said.fix = finding.fix;
+        }
         if (!instance.called_with.empty())
             said.related.push_back(
                 {instance.called_at, "'" + instance.name + "' is called here with " + instance.called_with});
@@ -96,7 +101,8 @@ const DimensionInstance& DimensionChecker::function(const FunctionInfo& info, co
     const auto [place, is_new] = instances.try_emplace(std::move(key));
     DimensionInstance& made = place->second;
     if (!is_new) return made;
-    seen.insert(&info);
+    made.choices = &choices[&info];
+    ++choices[&info];
     made.name = info.name;
     made.called_at = user_call;
     Dimensions shown; // of real numbers; the others count

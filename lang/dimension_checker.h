@@ -11,7 +11,6 @@
 #include <span>
 #include <string>
 #include <unordered_map>
-#include <unordered_set>
 #include <vector>
 
 namespace haptel::lang {
@@ -35,6 +34,7 @@ struct DimensionInstance {
     bool is_at_fault = false;                      // library code that these dimensions do not go with
     Span called_at;                                // the first call in code of the user's own
     std::string called_with;                       // "a length and a plain number"; empty: nothing is known
+    const uint32_t* choices = nullptr;             // that the same body is looked at for; null: it has no parameters
 };
 
 class DimensionChecker {
@@ -50,7 +50,7 @@ public:
     // any more, but it may be unknown.
     const DimensionInstance& function(const FunctionInfo& info, const FunctionReferences& passed,
                                       const Dimensions& arguments);
-    bool has_seen(const FunctionInfo& function) const { return seen.contains(&function); }
+    bool has_seen(const FunctionInfo& function) const { return choices.contains(&function); }
     // False once the work is more than a program of sensible size can need: then everything fits.
     bool spend(size_t steps);
 
@@ -71,7 +71,7 @@ private:
     std::map<Key, DimensionInstance> instances; // nodes stay where they are
     std::deque<DimensionInstance> roots;        // of textures and constants
     std::vector<const DimensionInstance*> constant_roots;
-    std::unordered_set<const FunctionInfo*> seen;
+    std::unordered_map<const FunctionInfo*, uint32_t> choices; // of dimensions, per function
     size_t work = 0;
 };
 

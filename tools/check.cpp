@@ -4,38 +4,44 @@
 #include "stdlib/stdlib.h"
 #include "tools/check_report.h"
 #include "tools/command.h"
+#include "tools/explain.h"
 #include "tools/fixes.h"
 #include "tools/quantity.h"
+#include "tools/replace_file.h"
 #include "tools/terminal.h"
 #include "tools/texture_argument.h"
 
 #include <algorithm>
 #include <fmt/format.h>
-#include <fstream>
 #include <memory>
 
 namespace haptel::tools {
 
 namespace {
 
-constexpr int fix_rounds_max = 8; // what was hidden behind one mistake shows when it is mended
-
 struct CheckOptions {
     std::vector<std::string> files;
     ParameterTexts parameters;
     double box_m = 0.2;
     bool strict = false, fix = false, json = false;
+    const CLI::Option* explain = nullptr; // given: nothing is checked, a code is explained
+    std::string code;                     // empty: all are listed
 };
 
-lang::CompileResult compile_file(const std::string& path, bool strict)
+lang::CompileResult compile_text(const std::string& path, std::string text, bool strict)
 {
     lang::CompileOptions options;
     options.strict = strict;
     for (const stdlib::LibraryFile& file : stdlib::library())
         options.library.push_back({std::string(file.name), std::string(file.text)});
     options.load_import = jit::load_beside;
+    return lang::compile({path, std::move(text)}, options);
+}
+
+lang::CompileResult compile_file(const std::string& path, bool strict)
+{
     jit::SourceText source = jit::read_source(path);
-    if (source.error.empty()) return lang::compile({path, std::move(source.text)}, options);
+    if (source.error.empty()) return compile_text(path, std::move(source.text), strict);
     lang::CompileResult result;
     result.sources.add({path, {}});
     result.diagnostics.error({}, "unreadable-file", source.error).hint = source.hint;
@@ -55,48 +61,38 @@ public:
     CheckReport report;
 
 private:
-    lang::CompileResult fix(const std::string& path, lang::CompileResult result);
+    void fix(const std::string& path);
     // Defaults, but for what --set says.
     std::vector<double> values_of(const std::string& path, const ir::Texture& texture);
-    void say(CheckFinding finding);
+    // A finding that belongs to no line.
+    void say(lang::ErrorCode code, std::string message, std::string hint, const std::string& file);
 
     const CheckOptions& options;
     std::vector<bool> is_set; // by options.parameters
     std::vector<std::string> parameter_names;
 };
 
-// A finding that belongs to no line.
-void CheckRun::say(CheckFinding finding)
+void CheckRun::say(lang::ErrorCode code, std::string message, std::string hint, const std::string& file)
 {
-    fmt::print(stderr, "{}: error: {} [{}]\n", finding.file, finding.message, finding.code);
-    if (!finding.hint.empty()) fmt::print(stderr, "     = hint: {}\n", finding.hint);
-    report.add(std::move(finding));
+    fmt::print(stderr, "{}: error: {} [{}]\n", file, message, code.string());
+    if (!hint.empty()) fmt::print(stderr, "     = hint: {}\n", hint);
+    report.add({lang::Severity::error, code.string(), std::move(message), std::move(hint), file, {}, {}});
 }
 
-lang::CompileResult CheckRun::fix(const std::string& path, lang::CompileResult result)
+void CheckRun::fix(const std::string& path)
 {
-    size_t applied = 0;
-    for (int round = 0; round < fix_rounds_max; ++round) {
-        const FixedText fixed = apply_fixes(result.sources.file(0).text, 0, result.diagnostics);
-        if (fixed.applied == 0) break;
-        std::ofstream out(path, std::ios::binary | std::ios::trunc);
-        out << fixed.text;
-        out.close();
-        if (!out) {
-            say({lang::Severity::error,
-                 "unwritable-file",
-                 "cannot write the mended text",
-                 "is it write-protected?",
-                 path,
-                 {},
-                 {}});
-            break;
-        }
-        applied += fixed.applied;
-        result = compile_file(path, options.strict);
+    const jit::SourceText source = jit::read_source(path);
+    if (!source.error.empty()) return; // said where it is compiled
+    const Mended mended = mend(source.text, [&](const std::string& text) { return compile_text(path, text, false); });
+    if (mended.applied > 0) {
+        const std::string fault = replace_file(path, mended.text);
+        if (!fault.empty())
+            return say("unwritable-file", "cannot write the mended text: " + fault, "is it write-protected?", path);
+        fmt::print(stderr, "{}: {} fixed\n", path, mended.applied);
     }
-    if (applied > 0) fmt::print(stderr, "{}: {} fixed\n", path, applied);
-    return result;
+    if (mended.left_out > 0)
+        fmt::print(stderr, "{}: {} left for you to mend: what is proposed would lead to more findings\n", path,
+                   mended.left_out);
 }
 
 std::vector<double> CheckRun::values_of(const std::string& path, const ir::Texture& texture)
@@ -113,13 +109,7 @@ std::vector<double> CheckRun::values_of(const std::string& path, const ir::Textu
             if (parsed.error.empty())
                 value = parsed.value;
             else
-                say({lang::Severity::error,
-                     "bad-value",
-                     "--set " + name + " for " + texture.name + ": " + parsed.error,
-                     parsed.hint,
-                     path,
-                     {},
-                     {}});
+                say("bad-value", "--set " + name + " for " + texture.name + ": " + parsed.error, parsed.hint, path);
         }
     }
     return values;
@@ -127,8 +117,8 @@ std::vector<double> CheckRun::values_of(const std::string& path, const ir::Textu
 
 void CheckRun::check(const std::string& path)
 {
-    lang::CompileResult result = compile_file(path, options.strict);
-    if (options.fix) result = fix(path, std::move(result));
+    if (options.fix) fix(path);
+    const lang::CompileResult result = compile_file(path, options.strict);
     fmt::print(stderr, "{}", lang::render(result.diagnostics.all(), result.sources, stderr_has_color()));
     report.add(result);
     if (!result.program) return;
@@ -144,18 +134,18 @@ void CheckRun::report_unknown_parameters()
         if (is_set[i]) continue;
         const std::string& name = options.parameters[i].first;
         const std::string_view nearest = lang::nearest_name(name, names);
-        say({lang::Severity::error,
-             "unknown-parameter",
-             "no texture has a parameter '" + name + "'",
-             nearest.empty() ? "" : "did you mean '" + std::string(nearest) + "'?",
-             options.files.front(),
-             {},
-             {}});
+        say("unknown-parameter", "no texture has a parameter '" + name + "'",
+            nearest.empty() ? "" : "did you mean '" + std::string(nearest) + "'?", options.files.front());
     }
 }
 
 ExitCode run(const CheckOptions& options)
 {
+    if (options.explain->count() > 0) return explain(options.code, options.json);
+    if (options.files.empty()) {
+        say_error("check needs a texture file: haptel check FILE...");
+        return ExitCode::misuse;
+    }
     CheckRun checks(options);
     for (const std::string& path : options.files) checks.check(path);
     checks.report_unknown_parameters();
@@ -174,15 +164,20 @@ Command check_command(CLI::App& app)
     const auto options = std::make_shared<CheckOptions>();
     CLI::App* command =
         app.add_subcommand("check", "What is wrong with texture files, and how high their textures get");
-    command->add_option("files", options->files, "Texture files")->required()->type_name("FILE");
+    command->add_option("files", options->files, "Texture files")->type_name("FILE");
     add_length(*command, "--box", options->box_m, "Side of the cube round the origin that bounds are for [0.2m]");
     add_parameters(*command, options->parameters);
     command->add_flag("--strict", options->strict, "Warnings are errors");
     command->add_flag("--fix", options->fix, "Write what the compiler proposes into the files");
+    options->explain = command->add_option("--explain", options->code, "What a code means; without CODE all are listed")
+                           ->expected(0, 1)
+                           ->type_name("[CODE]");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel check rock.haptel\n"
                            "  haptel check --strict examples/textures/*.haptel\n"
-                           "  haptel check rock.haptel --box 50mm --set depth=0.1mm --json");
+                           "  haptel check rock.haptel --box 50mm --set depth=0.1mm --json\n"
+                           "  haptel check --fix rock.haptel\n"
+                           "  haptel check --explain dimension");
     return {command, [options] { return run(*options); }};
 }
 

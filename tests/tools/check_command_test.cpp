@@ -3,6 +3,7 @@
 #include "tests/tools/run_command.h"
 #include "tools/json.h"
 
+#include <algorithm>
 #include <cmath>
 
 using namespace haptel::test;
@@ -176,6 +177,61 @@ TEST_CASE("check: --fix writes what the compiler proposes, until nothing is left
                              "    return mix(f(1.0), f(width()), 0.5) * i;\n"
                              "}\n"
                              "float width() { return 1.0; }\n");
+}
+
+TEST_CASE("check: --strict makes warnings errors, in the exit code and in JSON")
+{
+    const Folder folder;
+    const std::string file = folder.write("t.haptel", "texture t() { return 1mm * sin(p.x); }\n");
+    const Ran lenient = run_command("check --json '" + file + "'"),
+              strict = run_command("check --strict --json '" + file + "'");
+    CHECK(lenient.code == 0);
+    CHECK(strict.code == 1);
+    Json expected = {{"severity", "warning"},
+                     {"code", "dimension"},
+                     {"message", "sin() expects a plain number, got a length: divide by a wavelength"},
+                     {"file", file},
+                     {"line", 1},
+                     {"column", 32},
+                     {"end_line", 1},
+                     {"end_column", 35},
+                     {"hint", "write p.x / 1m, with the quantity you mean instead of 1m"}};
+    CHECK(Json::parse(lenient.out)["diagnostics"] == Json::array({expected}));
+    CHECK(Json::parse(lenient.out)["textures"].size() == 1);
+    expected["severity"] = "error";
+    CHECK(Json::parse(strict.out)["diagnostics"] == Json::array({expected}));
+}
+
+TEST_CASE("check: --explain tells what a code means, lists all, and knows a slip of the pen")
+{
+    const Ran one = run_command("check --explain unbounded-loop");
+    CHECK(one.code == 0);
+    CHECK(contains(one.out, "unbounded-loop (error): a loop that is not known to end\n"));
+    CHECK(contains(one.out, "\nWrong:\n    texture t(int n = 3) { float h = 0.0; for (int i = 0; i < n; ++i)"));
+    CHECK(contains(one.out, "\nRight:\n    texture t(int n = 3 in 1 .. 8)"));
+    const Ran all = run_command("check --explain"), data = run_command("check --json --explain");
+    CHECK(all.code == 0);
+    CHECK(contains(all.out, "\ndimension                warning  lengths, times"));
+    const Json codes = Json::parse(data.out)["codes"];
+    CHECK(codes.size() == static_cast<size_t>(std::count(all.out.begin(), all.out.end(), '\n')));
+    CHECK(codes[0]["code"] == "not-text");
+    const Ran slip = run_command("check --explain dimenson");
+    CHECK(slip.code == 2);
+    CHECK(contains(slip.err, "did you mean 'dimension'?"));
+    CHECK(run_command("check --explain dimension --json").out == run_command("check --json --explain dimension").out);
+}
+
+TEST_CASE("check: --fix leaves a file that it cannot write as it is, and says so")
+{
+    const Folder folder;
+    const std::string file = folder.write("t.haptel", "texture t(float depth = 1mm) { return dpeth; }\n");
+    const std::string before = read_file(file);
+    std::filesystem::permissions(file, std::filesystem::perms::owner_read);
+    if (std::ofstream(file, std::ios::app)) return; // this user may write anything
+    const Ran ran = run_command("check --fix --json '" + file + "'");
+    CHECK(ran.code == 1);
+    CHECK(Json::parse(ran.out)["diagnostics"][0]["code"] == "unwritable-file");
+    CHECK(read_file(file) == before);
 }
 
 TEST_CASE("check: a few lines per texture for people")
