@@ -118,12 +118,19 @@ std::vector<double> CheckRun::values_of(const std::string& path, const ir::Textu
 void CheckRun::check(const std::string& path)
 {
     if (options.fix) fix(path);
-    const lang::CompileResult result = compile_file(path, options.strict);
-    fmt::print(stderr, "{}", lang::render(result.diagnostics.all(), result.sources, stderr_has_color()));
+    lang::CompileResult result = compile_file(path, options.strict);
+    lang::Diagnostics& diagnostics = result.diagnostics;
+    if (result.program) {
+        for (const ir::Texture& texture : result.program->module.textures) {
+            const std::vector<double> values = values_of(path, texture);
+            report.textures.push_back({path, result.program, &texture,
+                                       lang::analyse(*result.program, texture, values, options.box_m, diagnostics)});
+        }
+        if (options.strict) diagnostics.make_warnings_errors();
+        diagnostics.sort_by_place();
+    }
+    fmt::print(stderr, "{}", lang::render(diagnostics.all(), result.sources, stderr_has_color()));
     report.add(result);
-    if (!result.program) return;
-    for (const ir::Texture& texture : result.program->module.textures)
-        report.textures.push_back(check_bounds(path, result.program, texture, values_of(path, texture), options.box_m));
 }
 
 void CheckRun::report_unknown_parameters()

@@ -1,7 +1,6 @@
 #include "tools/check_report.h"
 
 #include "lang/abi.h"
-#include "lang/ir/bounds.h"
 #include "lang/ir/verify.h"
 
 #include <algorithm>
@@ -14,10 +13,6 @@
 namespace haptel::tools {
 
 namespace {
-
-using ir::Input;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 const char* name_of(ir::Type type)
 {
@@ -122,14 +117,14 @@ Json to_json(const CheckedTexture& checked)
             {"parameters", std::move(parameters)},
             {"inputs", inputs_of(*checked.texture)},
             {"outputs", outputs_of(*checked.texture)},
-            {"height_m", to_json(checked.bounds.height)},
-            {"slope_max", finite_or_null(checked.bounds.slope_max)},
-            {"curvature_max_per_m", curvature_of(checked.bounds)},
+            {"height_m", to_json(checked.analysis.at_values.height)},
+            {"slope_max", finite_or_null(checked.analysis.at_values.slope_max)},
+            {"curvature_max_per_m", curvature_of(checked.analysis.at_values)},
             {"over_ranges",
-             {{"height_m", to_json(checked.over_ranges.height)},
-              {"slope_max", finite_or_null(checked.over_ranges.slope_max)},
-              {"curvature_max_per_m", curvature_of(checked.over_ranges)}}},
-            {"continuity", continuity_of(checked.bounds)},
+             {{"height_m", to_json(checked.analysis.over_ranges.height)},
+              {"slope_max", finite_or_null(checked.analysis.over_ranges.slope_max)},
+              {"curvature_max_per_m", curvature_of(checked.analysis.over_ranges)}}},
+            {"continuity", continuity_of(checked.analysis.at_values)},
             {"operations_max", operations_of(checked)},
             {"stability", nullptr}};
 }
@@ -159,7 +154,7 @@ std::string shown_bound(double bound, std::string_view unit)
 // The class, and the place that keeps it from being smoother.
 std::string shown_class(const CheckedTexture& checked)
 {
-    const ir::TextureBounds& bounds = checked.bounds;
+    const ir::TextureBounds& bounds = checked.analysis.at_values;
     if (bounds.smoothness >= ir::Smoothness::c1) return "C1, smooth enough for a bounded change of force";
     const std::string_view meaning = bounds.smoothness == ir::Smoothness::unknown ? "not found"
                                      : bounds.smoothness == ir::Smoothness::jump  ? "jump, the height steps"
@@ -169,47 +164,7 @@ std::string shown_class(const CheckedTexture& checked)
     return fmt::format("{}, at {}:{}:{}", meaning, sources.file(bounds.cause.span.file).name, at.line, at.column);
 }
 
-// The cube, and wherever else the contact may be: any uv, any time.
-ir::BoundsBox cube(double side_m)
-{
-    ir::BoundsBox box;
-    const auto set = [&](Input first, size_t count, ir::Interval interval) {
-        std::fill_n(box.input + static_cast<size_t>(first), count, interval);
-    };
-    set(Input::p_x, 3, {-side_m / 2, side_m / 2});
-    set(Input::n_x, 3, {-1, 1});
-    set(Input::n_dp_00, 9, {-infinity, infinity});
-    set(Input::uv_dp_00, 6, {-infinity, infinity});
-    set(Input::uv_x, 2, {-infinity, infinity});
-    set(Input::time, 1, {0, infinity});
-    set(Input::center_x, 3, {0, 0});
-    set(Input::extent_x, 3, {side_m, side_m});
-    set(Input::footprint, 1, {0, 0});
-    return box;
-}
-
 } // namespace
-
-CheckedTexture check_bounds(std::string file, std::shared_ptr<const lang::Program> program, const ir::Texture& texture,
-                            const std::vector<double>& values, double box_m)
-{
-    ir::BoundsBox at_values = cube(box_m), over_ranges = cube(box_m);
-    for (size_t i = 0; i < values.size(); ++i) {
-        const ir::Parameter& parameter = texture.parameters[i];
-        at_values.parameters.push_back({values[i], values[i]});
-        if (parameter.type == ir::Type::boolean)
-            over_ranges.parameters.push_back({0, 1});
-        else if (std::isfinite(parameter.minimum))
-            over_ranges.parameters.push_back(
-                {std::min(parameter.minimum, values[i]), std::max(parameter.maximum, values[i])});
-        else
-            over_ranges.parameters.push_back({values[i], values[i]});
-    }
-    const ir::Module& module = program->module;
-    const ir::TextureBounds here = ir::texture_bounds(module, texture, at_values);
-    const ir::TextureBounds anywhere = ir::texture_bounds(module, texture, over_ranges);
-    return {std::move(file), std::move(program), &texture, here, anywhere};
-}
 
 size_t CheckReport::count(lang::Severity severity) const
 {
@@ -227,12 +182,16 @@ void CheckReport::add(CheckFinding finding)
     if (!known) findings.push_back(std::move(finding));
 }
 
+void CheckReport::add(const lang::Diagnostics& diagnostics, const lang::SourceSet& sources)
+{
+    for (const lang::Diagnostic& said : diagnostics.all())
+        add({said.severity, said.code, said.message, said.hint, sources.file(said.span.file).name,
+             sources.position(said.span.file, said.span.begin), sources.position(said.span.file, said.span.end)});
+}
+
 void CheckReport::add(const lang::CompileResult& result)
 {
-    for (const lang::Diagnostic& said : result.diagnostics.all())
-        add({said.severity, said.code, said.message, said.hint, result.sources.file(said.span.file).name,
-             result.sources.position(said.span.file, said.span.begin),
-             result.sources.position(said.span.file, said.span.end)});
+    add(result.diagnostics, result.sources);
 }
 
 Json CheckReport::to_json() const
@@ -247,7 +206,7 @@ std::string CheckReport::to_text() const
 {
     std::string text;
     for (const CheckedTexture& checked : textures) {
-        const ir::TextureBounds &here = checked.bounds, &ranges = checked.over_ranges;
+        const ir::TextureBounds &here = checked.analysis.at_values, &ranges = checked.analysis.over_ranges;
         const std::vector<std::string> inputs = inputs_of(*checked.texture), outputs = outputs_of(*checked.texture);
         text += fmt::format("{}:{} in a cube of {} (and over the ranges of its parameters)\n", checked.file,
                             checked.texture->name, shown_length(box_m));

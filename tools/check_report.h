@@ -1,8 +1,7 @@
 // What `haptel check` has to say, as JSON by the contract of the command and as text for people.
 #pragma once
 
-#include "lang/compile.h"
-#include "lang/ir/bounds.h"
+#include "lang/analyse.h"
 #include "tools/json.h"
 
 #include <memory>
@@ -19,13 +18,12 @@ struct CheckFinding {
     lang::Position begin, end;
 };
 
-// A texture that compiled, and the heights it can have in a cube round the origin.
+// A texture that compiled, and what it can be in a cube round the origin.
 struct CheckedTexture {
     std::string file;
     std::shared_ptr<const lang::Program> program;
     const ir::Texture* texture = nullptr;
-    ir::TextureBounds bounds;      // at the parameters' values
-    ir::TextureBounds over_ranges; // wherever their ranges allow; those without a range at their values
+    lang::Analysis analysis;
 };
 
 struct CheckReport {
@@ -36,14 +34,11 @@ struct CheckReport {
     size_t count(lang::Severity severity) const;
     // The findings of one file and of what it imports; said once, however many files import it.
     void add(const lang::CompileResult& result);
+    void add(const lang::Diagnostics& diagnostics, const lang::SourceSet& sources);
     void add(CheckFinding finding);
 
     Json to_json() const;
     std::string to_text() const; // a line per texture; findings are rendered with their source lines elsewhere
 };
-
-// Heights of the texture in the cube. `values` by Texture::parameters, SI.
-CheckedTexture check_bounds(std::string file, std::shared_ptr<const lang::Program> program, const ir::Texture& texture,
-                            const std::vector<double>& values, double box_m);
 
 } // namespace haptel::tools
