@@ -23,7 +23,7 @@ struct CheckOptions {
     std::vector<std::string> files;
     ParameterTexts parameters;
     double box_m = 0.2;
-    bool strict = false, fix = false, json = false;
+    bool strict = false, fix = false, cost = false, json = false;
     const CLI::Option* explain = nullptr; // given: nothing is checked, a code is explained
     std::string code;                     // empty: all are listed
 };
@@ -53,6 +53,7 @@ public:
     explicit CheckRun(const CheckOptions& chosen) : options(chosen), is_set(chosen.parameters.size(), false)
     {
         report.box_m = chosen.box_m;
+        report.with_cost = chosen.cost;
     }
 
     void check(const std::string& path);
@@ -179,6 +180,7 @@ Command check_command(CLI::App& app)
     options->explain = command->add_option("--explain", options->code, "What a code means; without CODE all are listed")
                            ->expected(0, 1)
                            ->type_name("[CODE]");
+    command->add_flag("--cost", options->cost, "What each line costs at worst, the dearest first");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel check rock.haptel\n"
                            "  haptel check --strict examples/textures/*.haptel\n"

@@ -2,6 +2,7 @@
 
 #include "lang/abi.h"
 #include "lang/ir/verify.h"
+#include "tools/check_cost.h"
 
 #include <algorithm>
 #include <cmath>
@@ -198,7 +199,10 @@ Json CheckReport::to_json() const
 {
     Json diagnostics = Json::array(), all = Json::array();
     for (const CheckFinding& finding : findings) diagnostics.push_back(tools::to_json(finding));
-    for (const CheckedTexture& checked : textures) all.push_back(tools::to_json(checked));
+    for (const CheckedTexture& checked : textures) {
+        all.push_back(tools::to_json(checked));
+        if (with_cost) all.back()["cost"] = cost_json(checked);
+    }
     return {{"diagnostics", std::move(diagnostics)}, {"textures", std::move(all)}};
 }
 
@@ -220,6 +224,7 @@ std::string CheckReport::to_text() const
         text += fmt::format("  cost       at most {} operations; reads {}{}\n", operations_of(checked),
                             inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")),
                             outputs.empty() ? "" : fmt::format(", writes {}", fmt::join(outputs, ", ")));
+        if (with_cost) text += cost_text(checked);
     }
     return text;
 }

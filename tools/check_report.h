@@ -27,7 +27,8 @@ struct CheckedTexture {
 };
 
 struct CheckReport {
-    double box_m = 0; // side of the cube
+    double box_m = 0;       // side of the cube
+    bool with_cost = false; // by line
     std::vector<CheckFinding> findings;
     std::vector<CheckedTexture> textures;
 

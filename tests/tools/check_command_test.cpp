@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 using namespace haptel::test;
 using haptel::tools::Json;
@@ -232,6 +233,60 @@ TEST_CASE("check: --fix leaves a file that it cannot write as it is, and says so
     CHECK(ran.code == 1);
     CHECK(Json::parse(ran.out)["diagnostics"][0]["code"] == "unwritable-file");
     CHECK(read_file(file) == before);
+}
+
+TEST_CASE("check: what each line costs adds up to the whole")
+{
+    const Folder folder;
+    const std::string file = folder.write("cost.haptel", "float twice(float x)\n{\n    return sin(x) * sin(x);\n}\n"
+                                                         "texture t(int n = 4 in 1 .. 10)\n{\n"
+                                                         "    float h = 0.0;\n"
+                                                         "    for (int i = 0; i < n; ++i)\n"
+                                                         "        h += twice(p.x * i);\n"
+                                                         "    return 1um * (h + fbm(p / 1mm, 8));\n}\n");
+    const Ran ran = run_command("check --cost --json '" + file + "'");
+    REQUIRE(ran.code == 0);
+    const Json texture = Json::parse(ran.out)["textures"][0];
+    uint64_t sum = 0;
+    std::map<int, uint64_t> lines;
+    for (const Json& cost : texture["cost"]) {
+        CHECK(cost["file"] == file); // the library counts for the call
+        sum += cost["operations"].get<uint64_t>();
+        lines[cost["line"].get<int>()] = cost["operations"].get<uint64_t>();
+    }
+    CHECK(sum == texture["operations_max"].get<uint64_t>());
+    CHECK(lines[3] % 10 == 0); // ten times at most
+    CHECK(lines[3] >= 30);
+    CHECK(lines[10] > 1000); // eight octaves
+    const std::string text = run_command("check --cost '" + file + "'").out;
+    CHECK(text.find("return 1um * (h + fbm") < text.find("return sin(x) * sin(x);"));
+}
+
+TEST_CASE("check: jumps, kinks and what may be undefined are found with their place")
+{
+    const Folder folder;
+    const std::string file = folder.write("rough.haptel", "texture a() { return 1um * floor(p.x / 1mm); }\n"
+                                                          "texture b() { return 0.1 * abs(p.x - 3mm); }\n"
+                                                          "texture c() { return 1mm * 1mm / (p.x + 10mm); }\n"
+                                                          "texture d() { return 1um * sqrt(p.x / 1mm); }\n"
+                                                          "texture e() { return 0.1 * abs(p.x + 1m); }\n");
+    const Ran ran = run_command("check --json '" + file + "'");
+    CHECK(ran.code == 0);
+    const Json found = Json::parse(ran.out)["diagnostics"];
+    REQUIRE(found.size() == 4);
+    const auto check = [&](size_t index, const std::string& code, int line, int column, int end) {
+        CAPTURE(index);
+        CHECK(found[index]["code"] == code);
+        CHECK(found[index]["line"] == line);
+        CHECK(found[index]["column"] == column);
+        CHECK(found[index]["end_column"] == end);
+    };
+    check(0, "jump", 1, 28, 44);
+    check(1, "kink", 2, 28, 42);
+    check(2, "division", 3, 22, 46);
+    check(3, "domain", 4, 28, 43);
+    CHECK(contains(found[2]["message"], "-0.09 .. 0.11"));
+    CHECK(run_command("check --strict '" + file + "'").code == 1);
 }
 
 TEST_CASE("check: a few lines per texture for people")
