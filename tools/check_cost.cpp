@@ -18,8 +18,7 @@ std::vector<LineCost> cost_by_line(const CheckedTexture& checked)
 {
     const lang::SourceSet& sources = checked.program->sources;
     std::map<std::pair<uint32_t, uint32_t>, uint64_t> lines;
-    for (const ir::SpanCost& cost :
-         ir::cost_by_span(checked.program->module, checked.texture->height_gradient))
+    for (const ir::SpanCost& cost : ir::cost_by_span(checked.program->module, checked.texture->height_gradient))
         lines[{cost.span.file, sources.position(cost.span.file, cost.span.begin).line}] += cost.operations;
     std::vector<LineCost> costs;
     for (const auto& [place, operations] : lines) costs.push_back({place.first, place.second, operations});
@@ -48,10 +47,10 @@ std::string cost_text(const CheckedTexture& checked)
                      [](const LineCost& a, const LineCost& b) { return a.operations > b.operations; });
     std::string text;
     for (const LineCost& cost : costs)
-        text += fmt::format("  {:>9}  {:>3.0f} %  {}:{:<4} {}\n", cost.operations,
-                            100.0 * static_cast<double>(cost.operations) / static_cast<double>(all),
-                            sources.file(cost.file).name, cost.line,
-                            lang::printable(sources.line(cost.file, cost.line)));
+        text +=
+            fmt::format("  {:>9}  {:>3.0f} %  {}:{:<4} {}\n", cost.operations,
+                        100.0 * static_cast<double>(cost.operations) / static_cast<double>(all),
+                        sources.file(cost.file).name, cost.line, lang::printable(sources.line(cost.file, cost.line)));
     return text;
 }
 

@@ -102,7 +102,8 @@ private:
 std::vector<SpanCost> cost_by_span(const Module& module, uint32_t function)
 {
     std::vector<SpanCost> costs;
-    for (const auto& [span, count] : Counter(module).of(function).places) costs.push_back({span, count});
+    Counter counter(module);
+    for (const auto& [span, count] : counter.of(function).places) costs.push_back({span, count});
     return costs;
 }
 

@@ -155,6 +155,7 @@ Derivative PointDerivativeResolver::resolved(uint32_t function, const Seeds& see
     Builder builder(module, std::string(tangents_of_results ? "d " : "") + "resolved " + source.name +
                                 (seeds.empty() ? "" : " [" + pattern_of(seeds) + "]"));
     builder.function().first_argument_size = source.first_argument_size;
+    builder.function().is_library = source.is_library;
     builder.function().facts = source.facts; // its first result is the original's
     for (Value parameter : source.parameters) emitter.set_primal(parameter, builder.parameter(source.type(parameter)));
     for (size_t p = 0; p < seeds.size(); ++p)

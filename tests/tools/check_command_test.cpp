@@ -242,7 +242,7 @@ TEST_CASE("check: what each line costs adds up to the whole")
                                                          "texture t(int n = 4 in 1 .. 10)\n{\n"
                                                          "    float h = 0.0;\n"
                                                          "    for (int i = 0; i < n; ++i)\n"
-                                                         "        h += twice(p.x * i);\n"
+                                                         "        h += twice(p.x / 1mm * i);\n"
                                                          "    return 1um * (h + fbm(p / 1mm, 8));\n}\n");
     const Ran ran = run_command("check --cost --json '" + file + "'");
     REQUIRE(ran.code == 0);
