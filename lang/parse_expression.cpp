@@ -137,6 +137,7 @@ ExpressionPtr Grammar::postfix()
 {
     ExpressionPtr object = primary();
     const uint32_t depth_before = depth;
+    bool is_member = false; // as it stands, not in parentheses
     while (at(Token::dot) || at(Token::left_bracket) || at(Token::left_paren) || at(Token::arrow)) {
         depth += Nesting::bracket;
         if (depth > Nesting::limit) {
@@ -150,10 +151,12 @@ ExpressionPtr Grammar::postfix()
             advance();
             ExpressionPtr index = expression();
             close(Token::right_bracket, opener);
+            is_member = false;
             const Span whole = since(object->span);
             object = make(whole, Index{std::move(object), std::move(index)});
-        } else if (at(Token::left_paren) && std::holds_alternative<Member>(object->node)) {
+        } else if (at(Token::left_paren) && is_member) {
             object = method_call(std::move(object));
+            is_member = false;
         } else if (at(Token::left_paren)) {
             error(span(), "not-callable", "only a name can be called").hint =
                 "for a constant table write: const float A[3] = {1.0, 2.0, 3.0};";
@@ -168,6 +171,7 @@ ExpressionPtr Grammar::postfix()
             advance();
             std::optional<Name> member = name("after '.': components such as x or xyz");
             const Span whole = since(object->span);
+            is_member = member.has_value();
             if (member)
                 object = make(whole, Member{std::move(object), std::move(*member)});
             else

@@ -71,9 +71,9 @@ bool Grammar::top_level_name(File& result)
     if (foreign) guess = foreign->replacement;
     const bool follows = kind(1) == Token::name || (guess == "import" && kind(1) == Token::string);
     if (!guess.empty() && follows) {
-        Diagnostic& reported =
-            diagnostics.error(span(), foreign ? "foreign-word" : "syntax",
-                              "expected 'texture' or the type of a function, found '" + std::string(text()) + "'");
+        const ErrorCode code = foreign ? ErrorCode("foreign-word") : ErrorCode("syntax");
+        Diagnostic& reported = diagnostics.error(
+            span(), code, "expected 'texture' or the type of a function, found '" + std::string(text()) + "'");
         reported.hint = foreign ? std::string(foreign->hint) : "did you mean '" + std::string(guess) + "'?";
         reported.fix = FixIt{span(), std::string(guess)};
         ++mistakes;
