@@ -215,6 +215,9 @@ TEST_CASE("no fact is exceeded anywhere")
     check("triplanar_share(vec3)", "triplanar_share(q)", 1.5);
     check("pole_fade(vec3,vec3,vec3,float)", "pole_fade(q, vec3(0.0), vec3(2.0), 0.2)", 1);
     check("weave(vec2)", "weave(q.xy)", 5);
+    check("flank_profile(float)", "flank_profile(q.x)", 1.5);
+    check("bump_profile(vec2)", "bump_profile(q.xy)", 1.5);
+    check("smoothmin_of(vec2,float)", "smoothmin_of(q.xy, 0.3)", 2);
     check("wave(float)", "wave(q.x)", 5);
     check("grating(float,float,float)", "grating(q.x, 0.4, 0.2)", 5);
     check("bumps(vec2,float)", "bumps(q.xy, 0.4)", 5);
