@@ -38,8 +38,10 @@ std::string described(const ParameterInfo& parameter)
 
 bool is_valid(const Candidate& candidate)
 {
-    auto source = std::get_if<const FunctionInfo*>(&candidate.function);
-    return !source || (*source)->is_valid;
+    if (auto source = std::get_if<const FunctionInfo*>(&candidate.function)) return (*source)->is_valid;
+    return !candidate.result.is_error() &&
+           std::ranges::none_of(candidate.parameters,
+                                [](const ParameterInfo& parameter) { return parameter.type.is_error(); });
 }
 
 const FunctionInfo* source_of(const FunctionReference& function)
@@ -363,6 +365,7 @@ void BodyChecker::report_unknown_function(const Expression& e, const Name& calle
 {
     if (const Symbol* variable = find(callee.text)) {
         mark_read(callee.text);
+        if (variable->type.is_error()) return; // enough has been said of it
         const std::string found = quoted(callee.text) + " is a " + to_string(variable->type);
         diagnostics.error(callee.span, "not-a-function", found + ", expected a function").hint =
             "to multiply, write " + callee.text + " * (...)";

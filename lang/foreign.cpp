@@ -169,6 +169,8 @@ constexpr ForeignWord words[] = {
     {ForeignKind::function, "cnoise", "perlin", "write perlin"},
     {ForeignKind::function, "pnoise", "perlin", "write perlin"},
     {ForeignKind::function, "simplex", "perlin", "write perlin"},
+    {ForeignKind::function, "worley", "", "write cellular(q, smoothing)"},
+    {ForeignKind::function, "voronoi", "", "write cellular(q, smoothing)"},
     {ForeignKind::function, "rand", "", use_noise},
     {ForeignKind::function, "random", "", use_noise},
     {ForeignKind::function, "hash", "", use_noise},
