@@ -22,7 +22,7 @@ namespace {
 struct CheckOptions {
     std::vector<std::string> files;
     ParameterTexts parameters;
-    double box_m = 0.2;
+    double box_m = 0.2, footprint_m = 0;
     bool strict = false, fix = false, json = false;
     const CLI::Option* explain = nullptr; // given: nothing is checked, a code is explained
     std::string code;                     // empty: all are listed
@@ -123,7 +123,8 @@ void CheckRun::check(const std::string& path)
     report.add(result);
     if (!result.program) return;
     for (const ir::Texture& texture : result.program->module.textures)
-        report.textures.push_back(check_bounds(path, result.program, texture, values_of(path, texture), options.box_m));
+        report.textures.push_back(
+            check_bounds(path, result.program, texture, values_of(path, texture), options.box_m, options.footprint_m));
 }
 
 void CheckRun::report_unknown_parameters()
@@ -166,6 +167,8 @@ Command check_command(CLI::App& app)
         app.add_subcommand("check", "What is wrong with texture files, and how high their textures get");
     command->add_option("files", options->files, "Texture files")->type_name("FILE");
     add_length(*command, "--box", options->box_m, "Side of the cube round the origin that bounds are for [0.2m]");
+    add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
+               LengthRange::not_negative);
     add_parameters(*command, options->parameters);
     command->add_flag("--strict", options->strict, "Warnings are errors");
     command->add_flag("--fix", options->fix, "Write what the compiler proposes into the files");

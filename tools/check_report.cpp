@@ -170,7 +170,7 @@ std::string shown_class(const CheckedTexture& checked)
 }
 
 // The cube, and wherever else the contact may be: any uv, any time.
-ir::BoundsBox cube(double side_m)
+ir::BoundsBox cube(double side_m, double footprint_m)
 {
     ir::BoundsBox box;
     const auto set = [&](Input first, size_t count, ir::Interval interval) {
@@ -184,16 +184,16 @@ ir::BoundsBox cube(double side_m)
     set(Input::time, 1, {0, infinity});
     set(Input::center_x, 3, {0, 0});
     set(Input::extent_x, 3, {side_m, side_m});
-    set(Input::footprint, 1, {0, 0});
+    set(Input::footprint, 1, {footprint_m, footprint_m});
     return box;
 }
 
 } // namespace
 
 CheckedTexture check_bounds(std::string file, std::shared_ptr<const lang::Program> program, const ir::Texture& texture,
-                            const std::vector<double>& values, double box_m)
+                            const std::vector<double>& values, double box_m, double footprint_m)
 {
-    ir::BoundsBox at_values = cube(box_m), over_ranges = cube(box_m);
+    ir::BoundsBox at_values = cube(box_m, footprint_m), over_ranges = cube(box_m, footprint_m);
     for (size_t i = 0; i < values.size(); ++i) {
         const ir::Parameter& parameter = texture.parameters[i];
         at_values.parameters.push_back({values[i], values[i]});

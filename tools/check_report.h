@@ -44,6 +44,6 @@ struct CheckReport {
 
 // Heights of the texture in the cube. `values` by Texture::parameters, SI.
 CheckedTexture check_bounds(std::string file, std::shared_ptr<const lang::Program> program, const ir::Texture& texture,
-                            const std::vector<double>& values, double box_m);
+                            const std::vector<double>& values, double box_m, double footprint_m);
 
 } // namespace haptel::tools
