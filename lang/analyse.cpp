@@ -16,8 +16,9 @@ using ir::Op;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-ir::BoundsBox cube(double side_m)
+ir::BoundsBox box_of(const AnalysedCube& where)
 {
+    const auto [side_m, footprint_m] = where;
     ir::BoundsBox box;
     const auto set = [&](Input first, size_t count, ir::Interval interval) {
         std::fill_n(box.input + static_cast<size_t>(first), count, interval);
@@ -30,7 +31,7 @@ ir::BoundsBox cube(double side_m)
     set(Input::time, 1, {0, infinity});
     set(Input::center_x, 3, {0, 0});
     set(Input::extent_x, 3, {side_m, side_m});
-    set(Input::footprint, 1, {0, 0});
+    set(Input::footprint, 1, {footprint_m, footprint_m});
     return box;
 }
 
@@ -99,10 +100,10 @@ void report(const ir::Undefined& found, Diagnostics& diagnostics)
 
 } // namespace
 
-Analysis analyse(const Program& program, const ir::Texture& texture, std::span<const double> values, double side_m,
-                 Diagnostics& diagnostics)
+Analysis analyse(const Program& program, const ir::Texture& texture, std::span<const double> values,
+                 const AnalysedCube& where, Diagnostics& diagnostics)
 {
-    ir::BoundsBox at_values = cube(side_m), over_ranges = at_values;
+    ir::BoundsBox at_values = box_of(where), over_ranges = at_values;
     for (size_t i = 0; i < values.size(); ++i) {
         at_values.parameters.push_back({values[i], values[i]});
         over_ranges.parameters.push_back(range_of(texture.parameters[i], values[i]));

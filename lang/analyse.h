@@ -13,11 +13,17 @@ struct Analysis {
     ir::TextureBounds over_ranges; // wherever their ranges allow; those without a range at their values
 };
 
-// In a cube of this side round the origin, wherever else the contact may be: any uv, any time. `values` of the
+// A cube round the origin, wherever else the contact may be: any uv, any time.
+struct AnalysedCube {
+    double side_m = 0.2;
+    double footprint_m = 0; // smallest wavelength worth rendering
+};
+
+// `values` of the
 // parameters by ir::Texture::parameters, SI. Says what it finds as diagnostics, not sorted: the warnings `jump`,
 // `division` and `domain` and the note `kink`; jumps and kinks where the values allow them, the others where the ranges
 // do.
-Analysis analyse(const Program& program, const ir::Texture& texture, std::span<const double> values, double side_m,
-                 Diagnostics& diagnostics);
+Analysis analyse(const Program& program, const ir::Texture& texture, std::span<const double> values,
+                 const AnalysedCube& where, Diagnostics& diagnostics);
 
 } // namespace haptel::lang

@@ -124,9 +124,11 @@ struct Member {
 struct Index {
     ExpressionPtr object, index;
 };
+// Elements of an array: "{1.0, 2.0}", only behind '=' of a declaration, or "float[2](1.0, 2.0)" with a type.
 struct BraceList {
     std::vector<ExpressionPtr> elements;
-}; // initialiser of an array, only there
+    std::optional<TypeName> type = std::nullopt;
+};
 
 struct Expression {
     Span span;

@@ -1,6 +1,7 @@
 // Scopes and whole bodies.
 #include "lang/body_checker.h"
 #include "lang/constant.h"
+#include "lang/foreign.h"
 
 #include <algorithm>
 
@@ -89,6 +90,11 @@ void BodyChecker::report_unknown_name(Span span, const std::string& name)
         reported.hint = "it is declared further down: a constant is known from its declaration on";
         return;
     }
+    if (const ForeignWord* foreign = foreign_word(ForeignKind::name, name)) {
+        reported.hint = foreign->hint;
+        if (!foreign->replacement.empty()) reported.fix = FixIt{span, std::string(foreign->replacement)};
+        return;
+    }
     std::vector<std::string_view> names;
     for (const auto& [local, bindings] : by_name)
         if (!bindings.empty()) names.push_back(local);
@@ -99,8 +105,6 @@ void BodyChecker::report_unknown_name(Span span, const std::string& name)
         reported.hint = "did you mean " + quoted(nearest) + "?";
         reported.fix = FixIt{span, std::string(nearest)};
         mark_read(nearest); // if it was meant, it is read
-    } else if (name == "PI" || name == "M_PI" || name == "pi") {
-        reported.hint = "write const float PI = 3.141592653589793; or use sinturn and costurn, which count full turns";
     }
 }
 

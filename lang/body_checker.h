@@ -118,7 +118,10 @@ private:
                          const std::vector<Candidate>& candidates);
     void report_argument(const Candidate& candidate, size_t index, const ast::Expression& argument,
                          const Argument& argument_class);
-    void report_unknown_function(const ast::Name& callee);
+    void report_unknown_function(const ast::Expression& e, const ast::Name& callee,
+                                 const std::vector<ast::ExpressionPtr>& arguments);
+    std::optional<std::string> filled_in(std::string_view pattern,
+                                         const std::vector<ast::ExpressionPtr>& arguments) const;
 
     // ---- statements
     void statement(ast::Statement& s);
@@ -148,6 +151,7 @@ private:
     Symbol* array(ast::Declaration& declaration, Type element);
     std::optional<uint32_t> size_of_array(const ast::TypeName& type);
     bool fits_body(Type type, Span span);
+    Type array_constructor(ast::Expression& e, ast::BraceList& node);
 
     // ---- loops
     void plan(ast::Statement& s, ast::For& loop, Symbol& counter);

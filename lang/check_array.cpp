@@ -94,6 +94,8 @@ bool BodyChecker::fits_body(Type type, Span span)
 Symbol* BodyChecker::array(Declaration& node, Type element)
 {
     auto list = node.initializer ? std::get_if<BraceList>(&node.initializer->node) : nullptr;
+    const bool is_typed = list && list->type;
+    if (is_typed && !node.is_const) list = nullptr; // a value as others are
     const std::string name = quoted(node.name.text);
     const auto of_no_type = [&] {
         Symbol& symbol = declare(node.name, SymbolKind::local, Type::error());
@@ -113,7 +115,21 @@ Symbol* BodyChecker::array(Declaration& node, Type element)
         element = Type::error();
     }
 
-    const auto declared_size = size_of_array(node.type);
+    auto declared_size = size_of_array(node.type);
+    if (is_typed && list) { // const float A[] = float[](1.0, 2.0);
+        const auto own_size = size_of_array(*list->type);
+        const Type own = resolve_type(context, *list->type);
+        if (!own_size || own.is_error()) {
+            element = Type::error();
+        } else if (own != element && !element.is_error()) {
+            diagnostics.error(node.initializer->span, "type-mismatch",
+                              "expected elements of " + to_string(element) + " for " + name + ", found " +
+                                  to_string(own));
+            element = Type::error();
+        } else if (*own_size > 0 && declared_size == 0u) {
+            declared_size = own_size;
+        }
+    }
     uint32_t size = declared_size.value_or(0);
     std::optional<std::vector<ConstantPart>> cells;
     bool is_sound = declared_size.has_value() && !element.is_error();
@@ -183,8 +199,32 @@ Symbol* BodyChecker::array(Declaration& node, Type element)
     return &symbol;
 }
 
+// float[2](1.0, 2.0)
+Type BodyChecker::array_constructor(Expression& e, BraceList& node)
+{
+    const Type element = resolve_type(context, *node.type);
+    const auto size = size_of_array(*node.type);
+    const auto count = static_cast<uint32_t>(node.elements.size());
+    bool is_sound = size.has_value();
+    for (ExpressionPtr& cell : node.elements) {
+        expression(*cell);
+        is_sound = require(*cell, element, " for an element of the array") && is_sound;
+    }
+    if (!is_sound) return Type::error();
+    if (count == 0 || (*size > 0 && *size != count)) {
+        diagnostics.error(e.span, "table-size",
+                          "expected " + (*size > 0 ? std::to_string(*size) : "1 or more") + " elements, found " +
+                              std::to_string(count));
+        return Type::error();
+    }
+    Type made = element;
+    made.array_size = count;
+    return fits_body(made, e.span) ? made : Type::error();
+}
+
 Type BodyChecker::check(Expression& e, BraceList& node)
 {
+    if (node.type) return array_constructor(e, node);
     for (ExpressionPtr& element : node.elements) expression(*element);
     diagnostics.error(e.span, "type-mismatch", "a list in braces makes an array, expected a value").hint =
         "write float a[2] = {1.0, 2.0}; or a constructor, vec2(1.0, 2.0)";

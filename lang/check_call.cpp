@@ -38,8 +38,10 @@ std::string described(const ParameterInfo& parameter)
 
 bool is_valid(const Candidate& candidate)
 {
-    auto source = std::get_if<const FunctionInfo*>(&candidate.function);
-    return !source || (*source)->is_valid;
+    if (auto source = std::get_if<const FunctionInfo*>(&candidate.function)) return (*source)->is_valid;
+    return !candidate.result.is_error() &&
+           std::ranges::none_of(candidate.parameters,
+                                [](const ParameterInfo& parameter) { return parameter.type.is_error(); });
 }
 
 const FunctionInfo* source_of(const FunctionReference& function)
@@ -63,9 +65,45 @@ bool is_literal_for(const Expression& argument, Type wanted)
 
 } // namespace
 
+// "clamp($1, 0.0, 1.0)" with the arguments' text in place; nothing if their number differs.
+std::optional<std::string> BodyChecker::filled_in(std::string_view pattern,
+                                                  const std::vector<ExpressionPtr>& arguments) const
+{
+    size_t used = 0;
+    std::string written;
+    const bool is_call = pattern.find(" * ") == pattern.npos && pattern.find(" / ") == pattern.npos &&
+                         !pattern.starts_with('!'); // one call as a whole
+    for (size_t i = 0; i < pattern.size(); ++i) {
+        if (pattern[i] != '$') {
+            written += pattern[i];
+            continue;
+        }
+        const auto which = static_cast<size_t>(pattern[++i] - '0');
+        used = std::max(used, which);
+        if (which > arguments.size()) return std::nullopt;
+        const Expression& argument = *arguments[which - 1];
+        const bool is_part = !is_call && (std::holds_alternative<Chain>(argument.node) ||
+                                          std::holds_alternative<Conditional>(argument.node));
+        const std::string text(context.sources.text(argument.span));
+        written += is_part ? "(" + text + ")" : text;
+    }
+    if (used != arguments.size()) return std::nullopt;
+    return is_call ? written : "(" + written + ")";
+}
+
 Type BodyChecker::check(Expression& e, CallExpression& call)
 {
     if (const auto type = type_named(call.callee.text)) return constructor(e, call, *type);
+    const ForeignWord* foreign = foreign_word(ForeignKind::type, call.callee.text);
+    if (foreign && !find(call.callee.text) && !scope.is_function(call.callee.text)) {
+        Diagnostic& reported =
+            diagnostics.error(call.callee.span, "foreign-word", quoted(call.callee.text) + " is not a type of Haptel");
+        reported.hint = foreign->hint;
+        if (!foreign->replacement.empty()) reported.fix = FixIt{call.callee.span, std::string(foreign->replacement)};
+        if (const auto type = type_named(foreign->replacement)) return constructor(e, call, *type);
+        for (ExpressionPtr& argument : call.arguments) expression(*argument);
+        return Type::error();
+    }
     Type if_unsure;
     const auto chosen = resolve(e, call.callee, call.arguments, 0, call.target, if_unsure);
     return chosen ? chosen->result : if_unsure;
@@ -181,7 +219,7 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
         candidates = scope.functions(callee.text);
     }
     if (candidates.empty()) {
-        report_unknown_function(callee);
+        report_unknown_function(e, callee, arguments);
         return std::nullopt;
     }
     const auto same_result = [&](const Candidate& c) { return c.result == candidates.front().result; };
@@ -322,10 +360,12 @@ void BodyChecker::report_argument(const Candidate& candidate, size_t index, cons
         reported.related.push_back({parameter.symbol->span, quoted(parameter.name) + " is declared here"});
 }
 
-void BodyChecker::report_unknown_function(const Name& callee)
+void BodyChecker::report_unknown_function(const Expression& e, const Name& callee,
+                                          const std::vector<ExpressionPtr>& arguments)
 {
     if (const Symbol* variable = find(callee.text)) {
         mark_read(callee.text);
+        if (variable->type.is_error()) return; // enough has been said of it
         const std::string found = quoted(callee.text) + " is a " + to_string(variable->type);
         diagnostics.error(callee.span, "not-a-function", found + ", expected a function").hint =
             "to multiply, write " + callee.text + " * (...)";
@@ -340,7 +380,18 @@ void BodyChecker::report_unknown_function(const Name& callee)
         diagnostics.error(callee.span, "unknown-function", "unknown function " + quoted(callee.text));
     if (const ForeignWord* foreign = foreign_word(ForeignKind::function, callee.text)) {
         reported.hint = foreign->hint;
-        if (!foreign->replacement.empty()) reported.fix = FixIt{callee.span, std::string(foreign->replacement)};
+        const bool is_call = std::holds_alternative<CallExpression>(e.node);
+        if (foreign->replacement.find('$') == std::string_view::npos) {
+            if (!foreign->replacement.empty()) reported.fix = FixIt{callee.span, std::string(foreign->replacement)};
+        } else if (const auto written = filled_in(foreign->replacement, arguments); written && is_call) {
+            reported.fix = FixIt{e.span, *written};
+        }
+        return;
+    }
+    const std::string_view stem = std::string_view(callee.text).substr(0, callee.text.size() - 1);
+    if (callee.text.ends_with('f') && !builtin_overloads(stem).empty()) { // sinf of C
+        reported.hint = "write " + std::string(stem);
+        reported.fix = FixIt{callee.span, std::string(stem)};
         return;
     }
     std::vector<std::string_view> names{"float", "int",  "uint", "bool", "vec2", "vec3",

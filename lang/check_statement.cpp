@@ -203,7 +203,8 @@ void BodyChecker::check(Statement& s, Break&)
 void BodyChecker::check(Statement& s, Return& node)
 {
     if (!node.value) {
-        diagnostics.error(s.span, "missing-value", "expected a " + to_string(result_type) + " behind 'return'");
+        if (!result_type.is_error()) // of what returns nothing, enough has been said
+            diagnostics.error(s.span, "missing-value", "expected a " + to_string(result_type) + " behind 'return'");
     } else {
         expression(*node.value);
         require(*node.value, result_type, " from " + quoted(owner_name));

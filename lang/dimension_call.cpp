@@ -104,7 +104,7 @@ Dimension DimensionBody::call(const Expression& e, const std::string& name, cons
         auto written = std::get_if<CallExpression>(&e.node);
         if (id == BuiltinId::pow && written && !by.is_any() && !by.is_plain()) {
             if (!join(dimensions[1], Dimension::plain()))
-                report_expected("pow() expects as its exponent", *values[1], Dimension::plain(), dimensions[1]);
+                report_expected("pow() expects", *values[1], Dimension::plain(), dimensions[1], " as its exponent");
             return power(*written, by);
         }
         DimensionResult made = apply_rule(id, dimensions);
@@ -168,7 +168,7 @@ void DimensionBody::blame_call(const Expression& e, const std::string& name, con
             tried[i] = expected;
             if (!goes_with(tried)) continue;
             const std::string which = expected.is_plain() ? "" : " as argument " + std::to_string(i + 1);
-            report_expected(name + "() expects" + which, *values[i], expected, dimensions[i]);
+            report_expected(name + "() expects", *values[i], expected, dimensions[i], which);
             return;
         }
     }

@@ -147,7 +147,9 @@ private:
     // ---- findings; null in library code, which is only marked as at fault
     DimensionFinding* report(Span span, std::string message);
     // An argument or operand that should be something else, with how to mend it.
-    void report_expected(const std::string& who, const ast::Expression& e, Dimension expected, Dimension found);
+    // `who` expects it, `where` as a clause: " as argument 2".
+    void report_expected(const std::string& who, const ast::Expression& e, Dimension expected, Dimension found,
+                         const std::string& where = {});
     void propose(DimensionFinding& finding, const ast::Expression& e, Dimension expected, Dimension found);
 
     DimensionChecker& owner;

@@ -206,9 +206,10 @@ DimensionFinding* DimensionBody::report(Span span, std::string message)
     return &instance.findings.back();
 }
 
-void DimensionBody::report_expected(const std::string& who, const Expression& e, Dimension expected, Dimension found)
+void DimensionBody::report_expected(const std::string& who, const Expression& e, Dimension expected, Dimension found,
+                                    const std::string& where)
 {
-    std::string message = who + " " + description(expected) + ", got " + description(found);
+    std::string message = who + " " + description(expected) + where + ", got " + description(found);
     const std::string advice = expected.is_plain() ? advice_to_plain(found) : std::string{};
     if (!advice.empty()) message += ": " + advice;
     if (auto finding = report(e.span, std::move(message))) propose(*finding, e, expected, found);

@@ -59,7 +59,8 @@ Dimension DimensionBody::parameter(const CheckedParameter& parameter)
         const Dimension found = expression(*e);
         const auto both = join(dimension, found);
         if (!both)
-            report_expected("the range of '" + tree.name.text + "' must be, as its default is,", *e, dimension, found);
+            report_expected("the range of '" + tree.name.text + "' must be", *e, dimension, found,
+                            " as its default is");
         dimension = both.value_or(dimension);
     }
     return dimension.is_any() ? Dimension::plain() : dimension;

@@ -5,13 +5,23 @@
 
 namespace haptel::lang {
 
-enum class ForeignKind { type, function, statement, declaration };
+enum class ForeignKind {
+    type,
+    function,
+    name,
+    operation, // "and" between operands, "not" before one
+    statement,
+    qualifier,   // before a type
+    declaration, // at the top of a file
+};
 
 struct ForeignWord {
     ForeignKind kind;
     std::string_view word;
-    std::string_view replacement; // a word that can stand in its place; empty: none
-    std::string_view hint;        // what to write instead
+    // What can stand in its place; empty: nothing that is sure to mean the same. Of a function it may be a whole
+    // expression, "clamp($1, 0.0, 1.0)", of its arguments.
+    std::string_view replacement;
+    std::string_view hint; // what to write instead
 };
 
 // Null if `word` is not known as such a word.

@@ -36,7 +36,6 @@ private:
     void function_signature(ast::FunctionParameter& parameter);
     void close_head(Span opener);
     ast::StatementPtr body_of(std::string_view what);
-    void skip_foreign_declaration(const ForeignWord& word);
 
     // parse_statement.cpp
     void statement(Statements& into);
@@ -51,7 +50,6 @@ private:
     void declaration_list(Statements& into);
     ast::Declaration declarator(bool is_const, ast::TypeName type);
     ast::ExpressionPtr initializer();
-    void foreign_statement(const ForeignWord& word, Statements& into);
     bool at_declaration() const;
     bool is_used_as_name() const;
     bool at_top_level_start() const;
@@ -70,6 +68,18 @@ private:
     ast::ExpressionPtr grad_call(Span first);
     std::vector<ast::ExpressionPtr> arguments(Span opener);
     ast::ExpressionPtr brace_list();
+    ast::ExpressionPtr array_constructor(ast::Name type);
+
+    // parse_foreign.cpp
+    void skip_foreign_qualifiers();
+    void skip_type_arguments();
+    void skip_foreign_declaration(const ForeignWord& word);
+    void skip_global_in_or_out();
+    void foreign_statement(const ForeignWord& word, Statements& into);
+    void read_misspelt_keyword();
+    Token foreign_operator();
+    ast::ExpressionPtr cast();
+    ast::ExpressionPtr method_call(ast::ExpressionPtr object);
 
     // Small rules that all share, parse_declaration.cpp and parse_facts.cpp
     ast::TypeName type_name();

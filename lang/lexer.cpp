@@ -1,6 +1,7 @@
 #include "lang/lexer.h"
 
 #include <array>
+#include <optional>
 #include <utility>
 
 namespace haptel::lang {
@@ -196,8 +197,11 @@ private:
             if (at < text.size()) ++at;
         }
         const bool define = text.substr(begin, word.end - begin) == "#define";
-        diagnostics.error(word, "preprocessor", "Haptel has no preprocessor").hint =
-            define ? "write a constant, \"const float WIDTH = 2mm;\", or a function" : "leave this line out";
+        Diagnostic& found = diagnostics.error(word, "preprocessor", "Haptel has no preprocessor");
+        found.hint = define ? "write a constant, \"const float WIDTH = 2mm;\", or a function" : "leave this line out";
+        const std::string_view ignored[] = {"#version", "#extension", "#pragma", "#line"}; // what changes nothing here
+        for (const std::string_view known : ignored)
+            if (text.substr(begin, word.end - begin) == known) found.fix = FixIt{span_from(begin), ""};
     }
 
     bool symbol()
@@ -256,6 +260,25 @@ private:
     TokenList list;
 };
 
+// Where a file that is no text stops being one: at a zero byte, or at the first of many bytes that no text has.
+std::optional<uint32_t> first_of_garbage(std::string_view text)
+{
+    constexpr size_t tolerated = 16, one_in = 20;
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return std::nullopt; // the lexer knows better
+    size_t odd = 0;
+    uint32_t first = 0;
+    for (uint32_t at = 0; at < text.size();) {
+        const char c = text[at];
+        if (c == '\0') return odd > 0 ? first : at;
+        const bool is_control =
+            (c > 0 && c < ' ' && c != '\t' && c != '\n' && c != '\r' && c != '\v' && c != '\f') || c == 127;
+        const CodePoint point = decode_utf8(text, at);
+        if ((is_control || point.value == invalid_code_point) && odd++ == 0) first = at;
+        at += point.length;
+    }
+    return odd > tolerated && odd > text.size() / one_in ? std::optional(first) : std::nullopt;
+}
+
 } // namespace
 
 std::string_view describe(Token token)
@@ -282,6 +305,11 @@ TokenList lex(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics)
     if (text.size() > longest_file) {
         diagnostics.error({file, 0, 0}, "too-large", "this file is larger than 64 MiB");
         return {{{Token::invalid, 0, 0}, {Token::end, 0, 0}}, {}};
+    }
+    if (const auto garbage = first_of_garbage(text)) {
+        diagnostics.error({file, *garbage, *garbage + 1}, "not-text", "this file is not text, expected UTF-8").hint =
+            "is it the right file, and saved as UTF-8?";
+        return {{{Token::invalid, *garbage, *garbage}, {Token::end, *garbage, *garbage}}, {}};
     }
     return lex(sources, {file, 0, static_cast<uint32_t>(text.size())}, diagnostics);
 }

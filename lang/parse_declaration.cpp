@@ -36,6 +36,7 @@ std::optional<Name> Grammar::name(std::string_view what)
 TypeName Grammar::type_name()
 {
     TypeName type;
+    skip_foreign_qualifiers();
     std::optional<Name> base = name("of a type");
     if (!base) return type;
     type.base = std::move(*base);
@@ -48,6 +49,7 @@ TypeName Grammar::type_name()
             type.base.text = foreign->replacement;
         }
     }
+    skip_type_arguments();
     array_suffix(type);
     return type;
 }
@@ -320,18 +322,6 @@ TextureParameter Grammar::texture_parameter()
     }
     parameter.span = since(first);
     return parameter;
-}
-
-// "struct S {...};", "uniform float x;": says what to write, skips the whole.
-void Grammar::skip_foreign_declaration(const ForeignWord& word)
-{
-    error(span(), "foreign-word", "there is no '" + std::string(word.word) + "' in Haptel").hint = word.hint;
-    advance();
-    skip_to({Token::left_brace});
-    if (at(Token::left_brace)) skip_brackets();
-    while (at(Token::name)) advance(); // "struct S {...} s;"
-    accept(Token::semicolon);
-    lost = false;
 }
 
 } // namespace haptel::lang

@@ -85,6 +85,7 @@ ExpressionPtr Grammar::binary(int lowest_precedence)
 {
     ExpressionPtr left = unary();
     for (;;) {
+        foreign_operator();
         const Operator* first = operator_of(kind());
         if (!first || first->precedence < lowest_precedence) return left;
         Chain chain{std::move(left), {}};
@@ -100,6 +101,7 @@ ExpressionPtr Grammar::binary(int lowest_precedence)
             ExpressionPtr operand = binary(first->precedence + 1);
             whole = join(whole, operand->span);
             chain.rest.push_back({next->op, op_span, std::move(operand)});
+            foreign_operator();
         }
         left = make(whole, std::move(chain));
     }
@@ -108,6 +110,8 @@ ExpressionPtr Grammar::binary(int lowest_precedence)
 // unary = ("-" | "+" | "!" | "~") unary | postfix
 ExpressionPtr Grammar::unary()
 {
+    if (at(Token::name) && text() == "not" && (kind(1) == Token::name || kind(1) == Token::left_paren))
+        foreign_operator();
     const auto prefix = [&]() -> std::optional<UnaryOp> {
         if (at(Token::minus)) return UnaryOp::negate;
         if (at(Token::plus)) return UnaryOp::plus;
@@ -133,6 +137,7 @@ ExpressionPtr Grammar::postfix()
 {
     ExpressionPtr object = primary();
     const uint32_t depth_before = depth;
+    bool is_member = false; // as it stands, not in parentheses
     while (at(Token::dot) || at(Token::left_bracket) || at(Token::left_paren) || at(Token::arrow)) {
         depth += Nesting::bracket;
         if (depth > Nesting::limit) {
@@ -146,8 +151,12 @@ ExpressionPtr Grammar::postfix()
             advance();
             ExpressionPtr index = expression();
             close(Token::right_bracket, opener);
+            is_member = false;
             const Span whole = since(object->span);
             object = make(whole, Index{std::move(object), std::move(index)});
+        } else if (at(Token::left_paren) && is_member) {
+            object = method_call(std::move(object));
+            is_member = false;
         } else if (at(Token::left_paren)) {
             error(span(), "not-callable", "only a name can be called").hint =
                 "for a constant table write: const float A[3] = {1.0, 2.0, 3.0};";
@@ -162,6 +171,7 @@ ExpressionPtr Grammar::postfix()
             advance();
             std::optional<Name> member = name("after '.': components such as x or xyz");
             const Span whole = since(object->span);
+            is_member = member.has_value();
             if (member)
                 object = make(whole, Member{std::move(object), std::move(*member)});
             else
@@ -189,6 +199,10 @@ ExpressionPtr Grammar::primary()
             skip_brackets();
             return make(first, ErrorExpression{});
         }
+        const Token behind = kind(3);
+        if (kind(1) == Token::name && kind(2) == Token::right_paren && is_type_word(text(1)) &&
+            (behind == Token::name || behind == Token::number || behind == Token::left_paren))
+            return cast();
         advance();
         ExpressionPtr inner = expression();
         if (at(Token::comma) && !lost) {
@@ -216,7 +230,12 @@ ExpressionPtr Grammar::primary()
         return brace_list();
     }
     if (at(Token::ampersand) || at(Token::star)) {
-        error(first, "no-pointers", "expected an expression" + found() + "; there are no pointers in Haptel");
+        const bool is_power = at(Token::star) && position > 0 && list.tokens[position - 1].kind == Token::star;
+        if (is_power)
+            error(join(previous_span(), first), "foreign-word", "there is no '**' in Haptel").hint =
+                "a power is pow(x, y), a square x * x";
+        else
+            error(first, "no-pointers", "expected an expression" + found() + "; there are no pointers in Haptel");
         return behind_stray_operator();
     }
     error(first, "expected-expression", "expected an expression" + found());
@@ -262,29 +281,15 @@ ExpressionPtr Grammar::name_or_call()
 {
     Name callee{std::string(text()), span()};
     advance();
-    if (at(Token::left_bracket) && is_type_word(callee.text)) { // float[3](...), float[](...)
-        error(callee.span, "array-constructor", "arrays have no constructor in Haptel").hint =
-            "write a table: const float A[3] = {1.0, 2.0, 3.0};";
-        skip_brackets();
-        if (at(Token::left_paren)) skip_brackets();
-        return make(since(callee.span), ErrorExpression{});
-    }
+    if (at(Token::left_bracket) && is_own_type(callee.text)) return array_constructor(std::move(callee));
+    if (at(Token::less) && is_own_type(callee.text)) skip_type_arguments();
     if (!at(Token::left_paren)) return make(callee.span, NameExpression{callee.text});
     if (callee.text == "grad") return grad_call(callee.span);
 
-    const ForeignWord* foreign = foreign_word(ForeignKind::type, callee.text);
-    if (foreign) {
-        Diagnostic& reported =
-            diagnostics.error(callee.span, "foreign-word", "'" + callee.text + "' is not a type of Haptel");
-        reported.hint = foreign->hint;
-        if (!foreign->replacement.empty()) reported.fix = FixIt{callee.span, std::string(foreign->replacement)};
-        callee.text = foreign->replacement;
-    }
     const Span opener = span();
     advance();
     std::vector<ExpressionPtr> values = arguments(opener);
     const Span whole = since(callee.span);
-    if (foreign && foreign->replacement.empty()) return make(whole, ErrorExpression{});
     return make(whole, CallExpression{std::move(callee), std::move(values)});
 }
 
@@ -343,6 +348,20 @@ ExpressionPtr Grammar::grad_call(Span first)
     advance();
     call.arguments = arguments(second);
     return make(since(first), std::move(call));
+}
+
+// array_constructor = type "[" [expression] "]" "(" expression {"," expression} ")"        Behind the type's name.
+ExpressionPtr Grammar::array_constructor(Name type)
+{
+    BraceList made;
+    const Span first = type.span;
+    made.type.emplace();
+    made.type->base = std::move(type);
+    array_suffix(*made.type);
+    const Span opener = span();
+    if (!expect(Token::left_paren, "and the elements of the array")) return make(since(first), ErrorExpression{});
+    made.elements = arguments(opener);
+    return make(since(first), std::move(made));
 }
 
 // brace_list = "{" [expression {"," expression} [","]] "}"

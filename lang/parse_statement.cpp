@@ -51,6 +51,8 @@ void Grammar::statement(Statements& into)
     const Span first = span();
     const size_t first_position = position;
     if (accept(Token::semicolon)) return;
+    skip_foreign_qualifiers();
+    read_misspelt_keyword();
     if (at(Token::left_brace)) {
         into.push_back(block());
     } else if (at(Token::kw_if)) {
@@ -342,28 +344,6 @@ Declaration Grammar::declarator(bool is_const, TypeName type)
 ExpressionPtr Grammar::initializer()
 {
     return at(Token::left_brace) ? brace_list() : expression();
-}
-
-// "while (...) {...}", "switch (...) {...}": says what to write. A loop's body is still read for its own mistakes.
-void Grammar::foreign_statement(const ForeignWord& word, Statements& into)
-{
-    error(span(), "foreign-word", "there is no '" + std::string(word.word) + "' in Haptel").hint = word.hint;
-    advance();
-    const bool is_loop = word.word == "while" || word.word == "do";
-    if (at(Token::left_paren)) skip_brackets();
-    if (is_loop && at(Token::left_brace)) {
-        into.push_back(block());
-        if (word.word == "do" && at(Token::name) && text() == "while") advance(), skip_to({});
-    } else if (at(Token::left_brace)) {
-        skip_brackets();
-    } else if (is_loop) {
-        return; // its body is the next statement
-    } else {
-        skip_to({Token::colon}); // "case 1:", "default:", "continue;"
-        accept(Token::colon);
-    }
-    accept(Token::semicolon);
-    lost = false;
 }
 
 } // namespace haptel::lang

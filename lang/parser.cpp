@@ -28,12 +28,15 @@ File Grammar::parse_file()
         const size_t first_position = position;
         if (accept(Token::semicolon)) continue;
         bool strayed = false;
+        skip_foreign_qualifiers();
         if (at(Token::kw_import)) {
             import_declaration(result);
         } else if (at(Token::kw_const)) {
             constants(result);
         } else if (at(Token::kw_texture)) {
             texture(result);
+        } else if ((at(Token::kw_in) || at(Token::kw_out)) && kind(1) == Token::name) {
+            skip_global_in_or_out();
         } else if (at(Token::name)) {
             strayed = !top_level_name(result);
         } else {
@@ -58,21 +61,24 @@ void Grammar::report_stray()
 // A name at the top: a function's type; or a slip. False if nothing at all can begin like this.
 bool Grammar::top_level_name(File& result)
 {
-    if (const ForeignWord* foreign = foreign_word(ForeignKind::declaration, text())) {
+    const ForeignWord* foreign = foreign_word(ForeignKind::declaration, text());
+    if (foreign && foreign->replacement.empty()) {
         skip_foreign_declaration(*foreign);
         return true;
     }
-    const std::string_view guess =
+    std::string_view guess =
         is_type_word(text()) ? std::string_view{} : nearest_name(text(), {"texture", "import", "const"});
-    if (!guess.empty() && kind(1) == Token::name) {
+    if (foreign) guess = foreign->replacement;
+    const bool follows = kind(1) == Token::name || (guess == "import" && kind(1) == Token::string);
+    if (!guess.empty() && follows) {
+        const ErrorCode code = foreign ? ErrorCode("foreign-word") : ErrorCode("syntax");
         Diagnostic& reported = diagnostics.error(
-            span(), "syntax", "expected 'texture' or the type of a function, found '" + std::string(text()) + "'");
-        reported.hint = "did you mean '" + std::string(guess) + "'?";
+            span(), code, "expected 'texture' or the type of a function, found '" + std::string(text()) + "'");
+        reported.hint = foreign ? std::string(foreign->hint) : "did you mean '" + std::string(guess) + "'?";
         reported.fix = FixIt{span(), std::string(guess)};
-        if (guess == "texture")
-            texture(result);
-        else
-            lost = true;
+        ++mistakes;
+        if (guess == "const") list.tokens[position].kind = Token::kw_const;
+        guess == "texture" ? texture(result) : guess == "import" ? import_declaration(result) : constants(result);
         return true;
     }
     if (kind(1) != Token::name && kind(1) != Token::left_bracket && !is_type_word(text())) return false;

@@ -69,7 +69,7 @@ protected:
 
     const SourceSet& sources;
     const uint32_t file;
-    const TokenList list;
+    TokenList list; // a token that was misspelt becomes the one that was meant
     Diagnostics& diagnostics;
     size_t position = 0;
     uint32_t depth = 0;

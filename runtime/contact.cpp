@@ -139,7 +139,6 @@ void PointContact::describe() noexcept
     const Lattice& lattice = surface_->lattice;
     contact_.touching = proxy_.on != Proxy::On::nothing;
     contact_.sliding = contact_.touching && proxy_.sliding;
-    contact_.shaft_crosses = false;
     contact_.proxy_m = lattice.metres(proxy_.at);
     contact_.hand_m = lattice.metres(hand_);
     contact_.depth_m = 0;
@@ -173,12 +172,24 @@ StylusContact::StylusContact(std::shared_ptr<const Surface> surface) : tip_(std:
 const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
                                      const Friction& friction) noexcept
 {
-    if (!finite(tail_m)) return tip_.update(tip_m, friction);
-    const glm::dvec3 tail = tip_.surface().lattice.snap(tail_m);
-    tip_.update(tip_m, &tail, friction);
+    has_tail_ = finite(tail_m);
+    if (!has_tail_) return tip_.update(tip_m, friction);
+    tail_ = tip_.surface().lattice.snap(tail_m);
+    return tip_.update(tip_m, &tail_, friction);
+}
+
+void StylusContact::reset() noexcept
+{
+    tip_.reset();
+    has_tail_ = false;
+}
+
+bool StylusContact::shaft_crosses() const noexcept
+{
+    if (!has_tail_ || !tip_.placed_ || tip_.contact_.touching) return false;
     Crossing crossing;
-    if (tip_.placed_ && !tip_.contact_.touching) tip_.contact_.shaft_crosses = tip_.sweep(tail, tip_.hand_, crossing);
-    return tip_.contact_;
+    CollisionCount count;
+    return first_crossing(tip_.surface(), tail_, tip_.hand_, StartsOn::nothing(), crossing, count);
 }
 
 } // namespace haptel::runtime

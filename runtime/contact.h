@@ -35,7 +35,6 @@ struct Contact {
     bool sliding = false;        // friction: the proxy moved this tick and dynamic friction holds
     bool hand_held = false;      // the pose was not finite: the last good one was used
     bool hand_clamped = false;   // the hand was farther than four half extents from the object's centre
-    bool shaft_crosses = false;  // stylus only: the shaft passes through the surface while the tip does not press
     uint32_t face = 0, side = 0; // the face under the proxy and the side touched; 0: front
     glm::dvec3 proxy_m{0};
     glm::dvec3 hand_m{0};             // the tip as used: held, clamped, rounded to the lattice
@@ -104,13 +103,16 @@ private:
 
 // The stylus of the paper: a segment from tail to tip. Its tip is tracked like a point probe; the first tick also looks
 // along the segment, so that a stylus put down with its tip inside and its tail outside touches where it entered.
-// A shaft that rests on the surface beside the tip is not yet held: it is seen (shaft_crosses) and gives no force.
+// A shaft that rests on the surface beside the tip is not yet held: shaft_crosses() sees it, and it gives no force.
 class StylusContact {
 public:
     explicit StylusContact(std::shared_ptr<const Surface> surface);
 
     const Contact& update(const glm::dvec3& tip_m, const glm::dvec3& tail_m, const Friction& friction = {}) noexcept;
-    void reset() noexcept { tip_.reset(); }
+    void reset() noexcept;
+
+    // The shaft passes through the surface while the tip does not press. A query, made only for who asks.
+    bool shaft_crosses() const noexcept;
 
     const Contact& contact() const noexcept { return tip_.contact(); }
     const ContactCounters& counters() const noexcept { return tip_.counters(); }
@@ -118,6 +120,8 @@ public:
 
 private:
     PointContact tip_;
+    glm::dvec3 tail_{0};    // lattice units
+    bool has_tail_ = false; // of the last tick
 };
 
 // Torque (N m) about the grip of a force (N) that acts at a point.

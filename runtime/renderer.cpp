@@ -153,10 +153,9 @@ Renderer::ObjectForce Renderer::force_of(Touched& touched, const Contact& contac
 
 void Renderer::update_velocity(const glm::dvec3& tip_m) noexcept
 {
-    if (has_last_tip_)
-        velocity_m_per_s_ += velocity_gain_ * ((tip_m - last_tip_m_) / period_s_ - velocity_m_per_s_);
-    else
-        velocity_m_per_s_ = glm::dvec3(0);
+    if (has_last_tip_) velocity_m_per_s_ += velocity_gain_ * ((tip_m - last_tip_m_) / period_s_ - velocity_m_per_s_);
+    // Speeds may overflow where positions do not, and what is not finite would never leave a low-pass again.
+    if (!has_last_tip_ || !finite(velocity_m_per_s_)) velocity_m_per_s_ = glm::dvec3(0);
     last_tip_m_ = tip_m;
     has_last_tip_ = true;
 }

@@ -22,7 +22,7 @@ namespace {
 struct CheckOptions {
     std::vector<std::string> files;
     ParameterTexts parameters;
-    double box_m = 0.2;
+    double box_m = 0.2, footprint_m = 0;
     bool strict = false, fix = false, cost = false, json = false;
     const CLI::Option* explain = nullptr; // given: nothing is checked, a code is explained
     std::string code;                     // empty: all are listed
@@ -124,8 +124,9 @@ void CheckRun::check(const std::string& path)
     if (result.program) {
         for (const ir::Texture& texture : result.program->module.textures) {
             const std::vector<double> values = values_of(path, texture);
-            report.textures.push_back({path, result.program, &texture,
-                                       lang::analyse(*result.program, texture, values, options.box_m, diagnostics)});
+            report.textures.push_back(
+                {path, result.program, &texture,
+                 lang::analyse(*result.program, texture, values, {options.box_m, options.footprint_m}, diagnostics)});
         }
         if (options.strict) diagnostics.make_warnings_errors();
         diagnostics.sort_by_place();
@@ -174,6 +175,8 @@ Command check_command(CLI::App& app)
         app.add_subcommand("check", "What is wrong with texture files, and how high their textures get");
     command->add_option("files", options->files, "Texture files")->type_name("FILE");
     add_length(*command, "--box", options->box_m, "Side of the cube round the origin that bounds are for [0.2m]");
+    add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
+               LengthRange::not_negative);
     add_parameters(*command, options->parameters);
     command->add_flag("--strict", options->strict, "Warnings are errors");
     command->add_flag("--fix", options->fix, "Write what the compiler proposes into the files");

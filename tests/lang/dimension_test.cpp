@@ -3,13 +3,20 @@
 #include "lang/compile.h"
 #include "lang/dimension.h"
 #include "lang/dimension_rules.h"
+#include "tests/lang/evaluation.h"
 #include "tests/support/catch.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <set>
 
 using namespace haptel::lang;
 
 namespace {
+
+using Dimensions = std::vector<Dimension>;
 
 const Dimension length = Dimension::length(), period = Dimension::time(), plain = Dimension::plain();
 
@@ -85,30 +92,79 @@ TEST_CASE("dimension: names that people use")
     CHECK(dimension_of_unit("") == plain);
 }
 
-// The rule of a homogeneous function f(s x) = s^k f(x) is that f has the dimension of its argument to the k: all rules
-// that have one free argument, tested by scaling the function itself, in numbers.
-TEST_CASE("dimension: rules of functions of one argument are those of scaling")
+TEST_CASE("dimension: a rule knows what comes first, and what comes later tells of what was 0")
 {
-    const auto dimension_of = [](BuiltinId id, Dimension of) { return apply_rule(id, std::vector{of}); };
-    CHECK(dimension_of(BuiltinId::sqrt, length * length).result == length);
-    CHECK(dimension_of(BuiltinId::inversesqrt, length * length).result == plain / length);
-    CHECK(dimension_of(BuiltinId::abs, length).result == length);
-    CHECK(dimension_of(BuiltinId::sign, length).result == plain);
-    CHECK(dimension_of(BuiltinId::normalize, length).result == plain);
-    CHECK(dimension_of(BuiltinId::length, length).result == length);
-    for (const BuiltinId id : {BuiltinId::sin, BuiltinId::exp, BuiltinId::log, BuiltinId::floor, BuiltinId::fract,
-                               BuiltinId::round, BuiltinId::atan, BuiltinId::radians, BuiltinId::sinturn}) {
-        CHECK(dimension_of(id, plain).fits);
-        CHECK(!dimension_of(id, length).fits);
-        CHECK(dimension_of(id, Dimension::any()).result == plain);
-    }
     const std::vector<Dimension> product{length, period, length * period}, wrong{length, period, length};
     CHECK(apply_rule(BuiltinId::fma, product).fits);
     CHECK(apply_rule(BuiltinId::fma, product).result == length * period);
     CHECK(!apply_rule(BuiltinId::fma, wrong).fits);
-    // what comes first says nothing, what comes later does
     CHECK(apply_rule(BuiltinId::max, std::vector{Dimension::any(), length}).result == length);
     CHECK(apply_rule(BuiltinId::clamp, std::vector{length, Dimension::any(), plain}).argument == 2);
+    CHECK(apply_rule(BuiltinId::sqrt, std::vector{Dimension::any()}).result.is_any());
+}
+
+// A length in other units is the same length: where a rule accepts lengths and gives a length to the k, the function
+// of arguments 4 times as large must be 4^k times as large; where it refuses, there must be no such k.
+TEST_CASE("dimension: the rule of every built-in function is how it scales")
+{
+    constexpr double scale = 4;
+    constexpr uint32_t samples = 24;
+    const std::set<BuiltinId> angles{BuiltinId::radians, BuiltinId::degrees}; // plain by what they mean, though linear
+    uint32_t random = 1;
+    const auto next = [&] { // 0.02 .. 3: inside and outside of what acos and acosh take
+        random = random * 1664525u + 1013904223u;
+        return 0.02 * std::pow(150.0, random / 4294967296.0);
+    };
+    const auto text_of = [](const std::vector<double>& parts) {
+        char number[40];
+        std::string text = parts.size() == 1 ? "" : "vec3(";
+        for (size_t i = 0; i < parts.size(); ++i) {
+            std::snprintf(number, sizeof number, "%s%.17g", i > 0 ? ", " : "", parts[i]);
+            text += number;
+        }
+        return parts.size() == 1 ? "float(" + text + ")" : text + ")";
+    };
+    size_t functions = 0, refusals = 0;
+    for (const std::string_view name : builtin_names()) {
+        for (const BuiltinOverload& overload : builtin_overloads(name)) {
+            const auto fits_here = [](Type type) { return type == float_type || type == vec(3); };
+            const auto& parameters = overload.parameters;
+            if (!fits_here(overload.result) || overload.builtin->id == BuiltinId::stretch) continue;
+            if (!std::ranges::all_of(parameters, [&](const auto& p) { return fits_here(p.type); })) continue;
+            ++functions;
+            for (uint32_t choice = 0; choice < 1u << parameters.size(); ++choice) {
+                Dimensions dimensions;
+                for (size_t i = 0; i < parameters.size(); ++i) dimensions.push_back(choice >> i & 1 ? length : plain);
+                const DimensionResult rule = apply_rule(overload.builtin->id, dimensions);
+                const Exponent power = rule.result.length_exponent();
+                std::set<double> ratios;
+                for (uint32_t sample = 0; sample < samples; ++sample) {
+                    std::string before = std::string(name) + "(", after = before;
+                    for (size_t i = 0; i < parameters.size(); ++i) {
+                        std::vector<double> parts;
+                        for (uint8_t c = 0; c < parameters[i].type.size; ++c) parts.push_back(next());
+                        before += (i > 0 ? ", " : "") + text_of(parts);
+                        for (double& part : parts) part *= choice >> i & 1 ? scale : 1;
+                        after += (i > 0 ? ", " : "") + text_of(parts);
+                    }
+                    const std::string end = overload.result.is_vector() ? ").x" : ")";
+                    const double x = test::value_of(before + end), y = test::value_of(after + end);
+                    CAPTURE(before, after, x, y);
+                    if (rule.fits) {
+                        const double expected = x * std::pow(scale, double(power.numerator) / power.denominator);
+                        CHECK(std::fabs(y - expected) <= 1e-12 * std::fabs(expected));
+                    } else if (x != 0 || y != 0) { // 0 is also what a fault gives
+                        ratios.insert(std::round(y / x * 1e6));
+                    }
+                }
+                CAPTURE(name, choice);
+                if (!rule.fits && !angles.contains(overload.builtin->id)) CHECK(ratios.size() > 1);
+                refusals += !rule.fits;
+            }
+        }
+    }
+    CHECK(functions > 60);
+    CHECK(refusals > 100);
 }
 
 TEST_CASE("dimension: library code is never blamed, the user's call is, at the argument that is wrong")
@@ -128,9 +184,9 @@ TEST_CASE("dimension: library code is never blamed, the user's call is, at the a
     CHECK(said_of("d * noise(p / d)") == "");
     CHECK(said_of("rounded(p.x, 0, d) + d * rounded(1.0, 2.0, 0.5)") == "");
     CHECK(said_of("d * noise(p)") == "1:45 noise() expects a plain number, got a length: divide by a wavelength\n");
-    CHECK(said_of("rounded(p.x, 0.5, d)") == "1:48 rounded() expects as argument 2 a length, got a plain number\n");
+    CHECK(said_of("rounded(p.x, 0.5, d)") == "1:48 rounded() expects a length as argument 2, got a plain number\n");
     CHECK(said_of("d + rounded(p.x, p.y, 0.1)") ==
-          "1:57 rounded() expects as argument 3 a length, got a plain number\n");
+          "1:57 rounded() expects a length as argument 3, got a plain number\n");
     CHECK(said_of("d * bumps(p.xy, d)") == "1:39 bumps() expects plain numbers, got a length and a length\n");
     CHECK(said_of("d * over(noise, p / d)") == "");
     CHECK(said_of("d * over(noise, p)") ==

@@ -135,7 +135,24 @@ TEST_CASE("one report for a run of bytes that are no text, and none after a zero
     CHECK(lexed("a \xFF\x80\x81\x82 b").diagnostics.all().size() == 1);
     const Lexed zero = lexed(std::string("a\0b $ c", 7));
     CHECK(zero.diagnostics.all().size() == 1);
-    CHECK(zero.first_message() == "this is not text: found a zero byte");
+    CHECK(zero.first_message() == "this file is not text, expected UTF-8");
+    CHECK(zero.diagnostics.all()[0].span.begin == 1);
+    CHECK(zero.list.tokens.size() == 2); // nothing else is said of such a file
+}
+
+TEST_CASE("a file that is no text is one mistake, a few odd bytes are not")
+{
+    std::string garbage = "float a; ";
+    for (int i = 0; i < 400; ++i) garbage += std::string(1, static_cast<char>(1 + i % 8)) + "a\xFE$\n";
+    const Lexed binary = lexed(garbage);
+    CHECK(binary.diagnostics.all().size() == 1);
+    CHECK(binary.diagnostics.all()[0].code == "not-text");
+    CHECK(binary.diagnostics.all()[0].span.begin == 9);
+    std::string text(2000, ' ');
+    for (size_t i = 0; i < 20; ++i) text[100 * i] = '\x01';
+    CHECK(lexed(text).diagnostics.all().size() == 20); // one in a hundred
+    CHECK(lexed(text).diagnostics.all()[0].code == "unexpected-character");
+    CHECK(lexed("// \xC3\xA9t\xC3\xA9 \xE6\x89\x8B").diagnostics.all().empty());
 }
 
 TEST_CASE("reading stops when enough is said")

@@ -155,8 +155,7 @@ TEST_CASE("facts that cannot be read")
 
 TEST_CASE("habits of other languages get one message each, and what to write")
 {
-    CHECK(in_body("float3 q = float3(1, 2, 3);") == "2:1-7 foreign-word: 'float3' is not a type of Haptel\n"
-                                                    "2:12-18 foreign-word: 'float3' is not a type of Haptel\n");
+    CHECK(in_body("float3 q = float3(1, 2, 3);") == "2:1-7 foreign-word: 'float3' is not a type of Haptel\n");
     CHECK(in_body("while (a < b) { a = 1; }\nc = 1;") == "2:1-6 foreign-word: there is no 'while' in Haptel\n");
     CHECK(in_body("do { a = 1; } while (a < b);\nc = 1;") == "2:1-3 foreign-word: there is no 'do' in Haptel\n");
     CHECK(in_body("switch (a) { case 1: b = 1; break; default: b = 2; }\nc = 1;") ==
@@ -166,7 +165,6 @@ TEST_CASE("habits of other languages get one message each, and what to write")
     CHECK(in_body("bvec2 b = lessThan(p.xy, q.xy);") == "2:1-6 foreign-word: 'bvec2' is not a type of Haptel\n");
     CHECK(in_body("float *a = &b;") == "2:7 no-pointers: there are no pointers or references in Haptel\n");
     CHECK(in_body("a = b->c;") == "2:6-8 no-pointers: there are no pointers in Haptel\n");
-    CHECK(in_body("a = float[2](1.0, 2.0);") == "2:5-10 array-constructor: arrays have no constructor in Haptel\n");
     CHECK(in_body("float A[2][2];") == "2:11 nested-table: tables have one dimension\n");
     CHECK(in_body("const float A[4] = {{1, 2}, {3, 4}};") == "2:21 nested-table: tables have one dimension\n");
     CHECK(in_file("#define PI 3.14\nfloat f() { return 1.0; }") == "1:1-8 preprocessor: Haptel has no preprocessor\n");
@@ -180,8 +178,8 @@ TEST_CASE("habits of other languages get one message each, and what to write")
     CHECK(first_hint("float f() { while (a) b = 1; }") ==
           "every texture must end: write a for loop with a constant bound and leave it by break");
     // The right word stands in the tree, so that nothing follows from the slip.
-    CHECK(tree_text(parse_text("float3 f(half a) { return float3(a); }").file) ==
-          "function vec3 f (float a) {(return (call vec3 a))}\n");
+    CHECK(tree_text(parse_text("float3 f(half a) { return a.xxx; }").file) ==
+          "function vec3 f (float a) {(return (. a xxx))}\n");
 }
 
 TEST_CASE("ten mistakes are ten messages")

@@ -155,6 +155,21 @@ TEST_CASE("a pose that is not finite gives zero force and keeps the contact")
     CHECK(glm::length(after.force_n - before) < 1e-9);
 }
 
+TEST_CASE("a pose of absurd size is forgotten like one that is not finite")
+{
+    Scene scene = bare_scene(plane_mesh());
+    scene.objects[0].material.damping_n_s_per_m = 1;
+    Renderer renderer(shared(std::move(scene)));
+    for (int i = 0; i < 200; ++i) renderer.tick(at(0.001, 0.002, 1e-4 - i * 5e-6));
+    const glm::dvec3 before = renderer.tick(at(0.001, 0.002, -1e-3)).force_n;
+    REQUIRE(before.z > 0.5);
+    renderer.tick(at(0.001, 0.002, std::numeric_limits<double>::max())); // its speed overflows
+    TickResult after;
+    for (int i = 0; i < 1000; ++i) after = renderer.tick(at(0.001, 0.002, i < 100 ? 1e-3 : -1e-3));
+    CHECK(after.faults == 0);
+    CHECK(after.force_n.z > 0.5);
+}
+
 TEST_CASE("a texture that breaks its promises stays finite, below its bound, and is told on")
 {
     double height_m = 0, slope = 0;

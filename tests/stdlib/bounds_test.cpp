@@ -193,6 +193,31 @@ TEST_CASE("no fact is exceeded anywhere")
         check("ridged(vec2,int)", "ridged(q.xy, " + octaves + ")", 50);
         check("fourier(vec2,int)", "fourier(q.xy, " + octaves + ")", 5);
     }
+    for (const std::string octaves : {"1", "4", "16"}) {
+        check("hybrid(vec3,int)", "hybrid(q, " + octaves + ")", 50);
+        check("hybrid(vec2,int)", "hybrid(q.xy, " + octaves + ")", 50);
+        check("fourier(vec3,int)", "fourier(q, " + octaves + ")", 5);
+    }
+    check("fourier(vec2)", "fourier(q.xy)", 5);
+    check("fourier(vec3)", "fourier(q)", 5);
+    check("noise_periodic(vec3,int,int,int)", "noise_periodic(q, 3, 4, 5)", 50);
+    check("noise_periodic(vec2,int,int)", "noise_periodic(q.xy, 3, 1)", 50);
+    check("perlin_periodic(vec3,int,int,int)", "perlin_periodic(q, 3, 4, 5)", 50);
+    check("perlin_periodic(vec2,int,int)", "perlin_periodic(q.xy, 3, 1)", 50);
+    check("white_spline(vec3,int)", "white_spline(q, 3)", 50);
+    check("white_spline(vec2,int)", "white_spline(q.xy, 3)", 50);
+    check("white(vec3,float)", "white(q, 0.7)", 50);
+    check("white(vec2,float)", "white(q.xy, 0.7)", 50);
+    for (const std::string smoothing : {"0.0", "0.1", "9.0"}) {
+        check("cellular(vec3,float)", "cellular(q, " + smoothing + ")", 20);
+        check("cellular(vec2,float)", "cellular(q.xy, " + smoothing + ")", 50);
+    }
+    check("triplanar_share(vec3)", "triplanar_share(q)", 1.5);
+    check("pole_fade(vec3,vec3,vec3,float)", "pole_fade(q, vec3(0.0), vec3(2.0), 0.2)", 1);
+    check("weave(vec2)", "weave(q.xy)", 5);
+    check("flank_profile(float)", "flank_profile(q.x)", 1.5);
+    check("bump_profile(vec2)", "bump_profile(q.xy)", 1.5);
+    check("smoothmin_of(vec2,float)", "smoothmin_of(q.xy, 0.3)", 2);
     check("wave(float)", "wave(q.x)", 5);
     check("grating(float,float,float)", "grating(q.x, 0.4, 0.2)", 5);
     check("bumps(vec2,float)", "bumps(q.xy, 0.4)", 5);

@@ -104,3 +104,23 @@ TEST_CASE("fourier without terms is flat, beyond 16 nothing is added")
         CHECK(sixteen(q).value == hundred(q).value);
     }
 }
+
+TEST_CASE("in space: both phases lean along z, by half a turn times the sine of half the frequency")
+{
+    const Field field("fourier(q, 3)"), short_form("fourier(q)"), four("fourier(q, 4)"), flat("fourier(q.xy)"),
+        flat_four("fourier(q.xy, 4)"), floor("fourier(vec3(q.xy, 0.0), 5)"), flat_five("fourier(q.xy, 5)");
+    for (const Vec3& at : points_within(3, 300)) {
+        double x = 0, y = 0, most = 0;
+        for (int i = 0; i < 3; ++i) {
+            const double f = 2 * pi * std::pow(2.0, i), c = std::pow(2.0, -i / 2.0), lean = i > 0 ? pi / 2 : 0;
+            const double up = pi * std::sin(f * at[2] / 2);
+            x += c * std::sin(f * at[0] + lean * std::sin(f * at[1] / 2) + up) + 0.3;
+            y += c * std::sin(f * at[1] + lean * std::sin(f * at[0] / 2) + up) + 0.3;
+            most += c + 0.3;
+        }
+        CHECK(std::abs(field(at).value - x * y / (most * most)) < 1e-13);
+        CHECK(short_form(at).value == four(at).value);
+        CHECK(flat(at).value == flat_four(at).value);
+        CHECK(std::abs(floor(at).value - flat_five(at).value) < 1e-15);
+    }
+}

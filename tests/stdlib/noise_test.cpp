@@ -241,3 +241,22 @@ TEST_CASE("whole points are zeros, the period is 256, far away is as good as nea
         for (const double huge : {1e10, -3e12, 1e100, -1e300}) CHECK(solid.faults({huge, 0.3 * huge, -huge}) == 0);
     }
 }
+
+TEST_CASE("periodic noises close after their periods, and are the noise itself in between")
+{
+    for (const std::string name : {"noise", "perlin"}) {
+        CAPTURE(name);
+        const Field plain(name + "(q, 5)"), solid(name + "_periodic(q, 3, 5, 0, 5)"),
+            flat(name + "_periodic(q.xy, 4, 1)"), flat_plain(name + "(q.xy)");
+        for (const Vec3& q : points_within(20, 200)) {
+            const FieldSample here = solid(q), there = solid({q[0] + 3, q[1] - 10, q[2]});
+            CHECK(std::abs(here.value - there.value) < 1e-13);
+            for (size_t a = 0; a < 3; ++a) CHECK(std::abs(here.gradient[a] - there.gradient[a]) < 1e-12);
+            CHECK(std::abs(flat(q).value - flat({q[0] - 8, q[1] + 7, 0}).value) < 1e-13);
+            const Vec3 inside{2 * std::abs(q[0]) / 20, 4 * std::abs(q[1]) / 20, q[2]};
+            CHECK(solid(inside).value == plain(inside).value);
+        }
+        // a period of 1 leaves one vector per row: equal values at the faces, and still a gradient along them
+        CHECK(std::abs(flat({0.3, 0.4, 0}).value - flat_plain({0.3, 0.4, 0}).value) > 1e-3);
+    }
+}

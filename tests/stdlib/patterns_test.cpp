@@ -93,3 +93,19 @@ TEST_CASE("bumps: one in the middle of each cell, flat between")
     CHECK(field({0.5 + 0.31, 0.5, 0}).value == 0);
     CHECK(steepest_change(field, 2, 1e-4) < 6 / 0.09 + 1e-6);
 }
+
+TEST_CASE("weave: the warp over the weft in every other cell, both at their full height in the middle")
+{
+    const Field field("weave(q.xy)");
+    for (int i = -2; i < 3; ++i)
+        for (int j = -2; j < 3; ++j) {
+            const Vec3 middle{i + 0.5, j + 0.5, 0};
+            CHECK(std::abs(field(middle).value - 1) < 1e-12);
+            // along the thread on top the height falls like 1 + sin towards the next cell, where it goes below
+            const bool warp = (i + j) % 2 == 0;
+            const double t = 0.1, along = 0.5 * (1 + std::cos(3.14159265358979323846 * t));
+            CHECK(std::abs(field({middle[0] + (warp ? 0 : t), middle[1] + (warp ? t : 0), 0}).value - along) < 1e-12);
+        }
+    for (int i = 0; i < 4; ++i) CHECK(field({1.0 * i, 2.0, 0}).value == 0.0625); // between threads: the rounding alone
+    CHECK(steepest_change(field, 2, 1e-4) < 100.3);
+}

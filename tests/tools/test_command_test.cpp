@@ -49,6 +49,25 @@ TEST_CASE("one texture of a file, as a table")
     CHECK_FALSE(contains(ran.out, "two.haptel:a"));
 }
 
+TEST_CASE("test and check take a footprint")
+{
+    const Folder folder;
+    // no number from a footprint of more than 1 mm on
+    const std::string file = folder.write(
+        "fine.haptel", "texture fine() { return footprint > 1mm ? log(p.x / 1m - 9.0) * 1mm : footprint; }");
+    CHECK(run_command("test '" + file + "' --points 10").code == 0);
+    CHECK(run_command("test '" + file + "' --points 10 --footprint 1mm").code == 0);
+    CHECK(run_command("test '" + file + "' --points 10 --footprint 2mm").code == 1);
+    const std::string plain = folder.write("plain.haptel", "texture plain() { return 3.0 * footprint; }");
+    const auto height = [&](const std::string& option) {
+        return Json::parse(run_command("check '" + plain + "' --json" + option).out)["textures"][0]["height_m"];
+    };
+    CHECK(height("")["maximum"] == 0.0);
+    CHECK(height(" --footprint 2mm")["minimum"] == 0.006);
+    CHECK(height(" --footprint 2mm")["maximum"] == 0.006);
+    CHECK(run_command("test '" + file + "' --footprint -1mm").code == 2);
+}
+
 TEST_CASE("what fails is exit code 1 and says why")
 {
     const Folder folder;
