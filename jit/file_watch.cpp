@@ -43,19 +43,20 @@ void FileWatch::watch(const std::set<std::string>& files)
     for (auto folder = folders.begin(); folder != folders.end();) {
         if (!wanted.contains(folder->first)) {
             inotify_rm_watch(inotify, folder->second);
-            names_by_watch.erase(folder->second);
             folder = folders.erase(folder);
         } else {
             ++folder;
         }
     }
+    std::map<int, std::set<std::string>> names_by_number;
     for (auto& [folder, names] : wanted) {
         // Adding a folder that is watched already returns its number; a folder made anew gets a new one.
         const int number = inotify_add_watch(inotify, folder.c_str(), folder_events);
         if (number < 0) continue;
         folders[folder] = number;
-        names_by_watch[number] = std::move(names);
+        names_by_number[number].merge(names); // two paths may lead to one folder, which has one number
     }
+    names_by_watch = std::move(names_by_number);
 }
 
 FileWatch::Change FileWatch::take()

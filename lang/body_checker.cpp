@@ -85,12 +85,16 @@ void BodyChecker::report_unused(const Symbol& symbol)
 
 void BodyChecker::report_unknown_name(Span span, const std::string& name)
 {
-    Diagnostic& reported = diagnostics.error(span, "unknown-name", "unknown name " + quoted(name));
+    if (!unknown_names.insert(name).second) return diagnostics.count_consequence();
+    const auto report = [&]() -> Diagnostic& {
+        return diagnostics.error(span, "unknown-name", "unknown name " + quoted(name));
+    };
     if (scope.declares_constant_later(name)) {
-        reported.hint = "it is declared further down: a constant is known from its declaration on";
+        report().hint = "it is declared further down: a constant is known from its declaration on";
         return;
     }
     if (const ForeignWord* foreign = foreign_word(ForeignKind::name, name)) {
+        Diagnostic& reported = report();
         reported.hint = foreign->hint;
         if (!foreign->replacement.empty()) reported.fix = FixIt{span, std::string(foreign->replacement)};
         return;
@@ -101,7 +105,11 @@ void BodyChecker::report_unknown_name(Span span, const std::string& name)
     std::sort(names.begin(), names.end()); // the hash's order must not decide between equals
     scope.collect_constant_names(names);
     for (const Symbol* input : context.inputs) names.push_back(input->name);
-    if (const std::string_view nearest = nearest_name(name, names); !nearest.empty()) {
+    const std::string_view nearest = nearest_name(name, names);
+    // Most likely what declares it could not be read.
+    if (in_damaged_body && nearest.empty()) return diagnostics.count_consequence();
+    Diagnostic& reported = report();
+    if (!nearest.empty()) {
         reported.hint = "did you mean " + quoted(nearest) + "?";
         reported.fix = FixIt{span, std::string(nearest)};
         mark_read(nearest); // if it was meant, it is read

@@ -9,6 +9,7 @@
 #include "lang/names.h"
 
 #include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -164,6 +165,7 @@ private:
     Diagnostics& diagnostics;
     const FileScope& scope;
     bool is_library;
+    std::set<std::string, std::less<>> unknown_names; // each is reported once
     bool in_damaged_body = false; // a syntax error was reported inside: what may follow from it is better not said
 
     std::unordered_map<std::string_view, std::vector<Binding>> by_name;

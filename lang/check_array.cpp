@@ -81,11 +81,14 @@ Type BodyChecker::array_type(const TypeName& name, Type element)
 
 bool BodyChecker::fits_body(Type type, Span span)
 {
-    if (type.array_size <= array_size_max) return true;
+    if (type.array_size <= array_size_max && type.components() <= array_components_max) return true;
+    const bool is_long = type.array_size > array_size_max;
     diagnostics
         .error(span, "table-size",
-               "an array that is no constant table has at most " + std::to_string(array_size_max) +
-                   " elements, found " + std::to_string(type.array_size))
+               "an array that is no constant table has at most " +
+                   std::to_string(is_long ? array_size_max : array_components_max) +
+                   (is_long ? " elements" : " numbers") + ", found " +
+                   std::to_string(is_long ? type.array_size : type.components()))
         .hint = "its elements are values of the program; a constant table may have " + std::to_string(table_size_max);
     return false;
 }

@@ -186,6 +186,11 @@ Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
         const uint64_t whole = parts_of(symbol->type), assigned = flow.variables[symbol->slot].assigned;
         const uint64_t missing = whole & parts & ~assigned;
         if (!missing || symbol->type.is_error()) break;
+        if (in_damaged_body) { // most likely what assigns it could not be read
+            diagnostics.count_consequence();
+            flow.variables[symbol->slot].assigned = whole;
+            return Type::error();
+        }
         std::string name = node.name;
         if (assigned & whole) name += part_name(symbol->type, static_cast<uint32_t>(std::countr_zero(missing)));
         Diagnostic& reported =

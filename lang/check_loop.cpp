@@ -118,6 +118,8 @@ void BodyChecker::check(Statement& s, For& node)
         diagnostics.error(counter->span, "unbounded-loop", "a loop counts in int, found " + to_string(counter->type))
             .hint = "count in int and compute the " + to_string(counter->type) + " from it: float x = 0.1 * i;";
         counter = nullptr;
+    } else if (!counter && in_damaged_body) {
+        diagnostics.count_consequence(); // most likely what declares it could not be read
     } else if (!counter) {
         diagnostics
             .error(node.init ? node.init->span : s.span, "unbounded-loop", "expected a counter declared in the loop")

@@ -40,9 +40,12 @@ public:
     Diagnostic& warning(Span span, WarningCode code, std::string message);
     Diagnostic& note(Span span, NoteCode code, std::string message);
 
+    // An error that follows from one that was reported is not said, but what it is in is not sound either.
+    void count_consequence() { ++report_count; }
+
     bool has_errors() const { return error_count > 0; }
     bool full() const { return error_count >= error_limit; } // front-end stages may stop early
-    uint32_t reports() const { return report_count; }        // errors so far, those that were dropped included
+    uint32_t reports() const { return report_count; }        // errors so far, those not said included
     const std::vector<Diagnostic>& all() const { return items; }
     void make_warnings_errors();
     void sort_by_place(); // file, line, column; called once before showing

@@ -37,6 +37,8 @@ struct DimensionInstance {
     const uint32_t* choices = nullptr;             // that the same body is looked at for; null: it has no parameters
 };
 
+constexpr uint32_t dimension_nesting_limit = 500; // as in lowering, which reports it: bounds the stack
+
 class DimensionChecker {
 public:
     DimensionChecker(const SourceSet& all_sources, const CheckedProgram& checked)
@@ -58,7 +60,7 @@ public:
     const CheckedProgram& program;
     std::unordered_map<const Symbol*, Dimension> symbols; // constants, tables, parameters of the texture at hand
     Span user_call;                                       // in code of the user's own, the innermost under work
-    uint32_t nesting = 0;                                 // of expressions under work, over all bodies
+    uint32_t nesting = 0;                                 // of expressions and statements under work, over all bodies
     bool is_exhausted = false;
 
 private:

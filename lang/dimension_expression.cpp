@@ -7,8 +7,6 @@ using namespace ast;
 
 namespace {
 
-constexpr uint32_t nesting_limit = 500; // as in lowering, which reports it: bounds the stack
-
 // An operand of '*' or '/' as it stands.
 bool binds_tightly(const Expression& e, std::string_view text)
 {
@@ -44,7 +42,7 @@ const Expression* bare_number(const Expression& e)
 
 Dimension DimensionBody::expression(const Expression& e)
 {
-    if (owner.nesting >= nesting_limit || !owner.spend(1)) return Dimension::any();
+    if (owner.nesting >= dimension_nesting_limit || !owner.spend(1)) return Dimension::any();
     ++owner.nesting;
     const Dimension found = std::visit([&](const auto& node) { return find(e, node); }, e.node);
     --owner.nesting;

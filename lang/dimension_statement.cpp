@@ -85,8 +85,10 @@ void DimensionBody::body(const Statement& tree, uint32_t slot_count, const Varia
 
 void DimensionBody::statement(const Statement& s)
 {
-    if (!flow.reachable) return;
+    if (!flow.reachable || owner.nesting >= dimension_nesting_limit) return;
+    ++owner.nesting;
     std::visit([&](const auto& node) { walk(s, node); }, s.node);
+    --owner.nesting;
 }
 
 void DimensionBody::walk(const Statement&, const ast::Scope& node)

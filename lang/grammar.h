@@ -20,7 +20,7 @@ public:
 private:
     // parser.cpp
     bool top_level_name(ast::File& result);
-    void report_stray();
+    void report_stray(ast::File& result);
     void find_top_level(bool strayed);
 
     using Statements = std::vector<ast::StatementPtr>;

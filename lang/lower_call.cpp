@@ -130,11 +130,11 @@ Values BodyLowering::call(const Expression& e, const CallTarget& target, const s
 
 // ---- in the module
 
-bool ModuleLowering::is_too_large(Span span)
+bool ModuleLowering::is_too_large(Span span, size_t under_work)
 {
     for (; counted_functions < module.functions.size(); ++counted_functions)
         value_count += module.functions[counted_functions].value_types.size();
-    if (value_count <= value_count_max) return false;
+    if (value_count + under_work <= value_count_max) return false;
     if (!reported_size)
         diagnostics
             .error(span, "too-large", "this program grows beyond " + std::to_string(value_count_max) + " values here")

@@ -204,6 +204,7 @@ void BodyLowering::store(const Expression& target, const Values& value)
     auto member = std::get_if<Member>(&target.node);
     auto index = std::get_if<Index>(&target.node);
     const Expression& object = member ? *member->object : *index->object;
+    if (owner.is_too_large(target.span, builder.function().value_types.size())) return; // a choice per element adds up
     Values whole = expression(object);
     if (member) {
         const Swizzle swizzle = *parse_swizzle(member->member.text);

@@ -52,7 +52,7 @@ public:
     uint32_t smooth_ramp();
 
     // Derivatives and functions as arguments can multiply code: reports, once, when there is too much.
-    bool is_too_large(Span span);
+    bool is_too_large(Span span, size_t under_work = 0);
 
     ir::Module& module;
     Diagnostics& diagnostics;

@@ -308,6 +308,7 @@ TextureParameter Grammar::texture_parameter()
                    "the parameter '" + parameter.name.text + "' needs a default value")
             .hint = "for example " + parameter.type.base.text + " " + parameter.name.text + " = 1.0 in 0.0 .. 10.0";
         parameter.value = make(parameter.name.span, ErrorExpression{});
+        lost = !at(Token::kw_in) && !at(Token::comma) && !at(Token::right_paren); // "float depth 1mm": enough is said
     }
     if (!lost && accept(Token::kw_in)) {
         parameter.minimum = binary(1);

@@ -306,7 +306,8 @@ std::vector<ExpressionPtr> Grammar::arguments(Span opener)
     if (accept(Token::right_paren)) return result;
     do result.push_back(expression());
     while (accept(Token::comma));
-    close(Token::right_paren, opener, true);
+    if (!close(Token::right_paren, opener, true) || lost)
+        result.push_back(make(span(), ErrorExpression{})); // nobody knows how many were meant
     return result;
 }
 

@@ -42,7 +42,7 @@ File Grammar::parse_file()
         } else {
             strayed = true;
         }
-        if (strayed) report_stray();
+        if (strayed) report_stray(result);
         if (lost) find_top_level(strayed);
         if (position == first_position) advance();
     }
@@ -50,12 +50,20 @@ File Grammar::parse_file()
 }
 
 // Statements outside of any body: a '}' too many above, or a slip.
-void Grammar::report_stray()
+void Grammar::report_stray(File& result)
 {
     const bool statement_like = kind() >= Token::kw_if || at(Token::name) || at(Token::right_brace);
     Diagnostic& reported = error(span(), "syntax", "expected a texture, function, constant or import" + found());
-    if (statement_like)
-        reported.hint = "statements stand inside functions and textures; is there a '}' too many above?";
+    if (!statement_like) return;
+    reported.hint = "statements stand inside functions and textures; is there a '}' too many above?";
+    // Then the body above has ended too early.
+    const bool has_texture = !result.textures.empty(), has_function = !result.functions.empty();
+    const bool is_texture =
+        has_texture && (!has_function || result.functions.back().span.end < result.textures.back().span.end);
+    if (is_texture)
+        result.textures.back().damaged = true;
+    else if (has_function)
+        result.functions.back().damaged = true;
 }
 
 // A name at the top: a function's type; or a slip. False if nothing at all can begin like this.

@@ -127,14 +127,15 @@ void append_place(std::string& out, Span span, std::string_view label, std::stri
 std::string render(const Diagnostic& diagnostic, const SourceSet& sources, bool color)
 {
     const Palette& palette = color ? ansi : plain;
-    std::string_view label, label_color;
+    std::string_view color_of_label;
     switch (diagnostic.severity) {
-    case Severity::error: label = "error", label_color = palette.error; break;
-    case Severity::warning: label = "warning", label_color = palette.warning; break;
-    case Severity::note: label = "note", label_color = palette.note; break;
+    case Severity::error: color_of_label = palette.error; break;
+    case Severity::warning: color_of_label = palette.warning; break;
+    case Severity::note: color_of_label = palette.note; break;
     }
     std::string out;
-    append_place(out, diagnostic.span, label, label_color, diagnostic.message, diagnostic.code, sources, palette);
+    append_place(out, diagnostic.span, name_of(diagnostic.severity), color_of_label, diagnostic.message,
+                 diagnostic.code, sources, palette);
     for (const Related& related : diagnostic.related)
         append_place(out, related.span, "note", palette.note, related.message, {}, sources, palette);
     if (!diagnostic.hint.empty()) {

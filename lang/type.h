@@ -45,7 +45,7 @@ inline constexpr Type mat(uint8_t size)
 
 // Elements of an array that is no constant table. All its parts are values of the program, so that an index known only
 // at run time costs a choice per element.
-inline constexpr uint32_t array_size_max = 64;
+inline constexpr uint32_t array_size_max = 64, array_components_max = 256;
 
 std::string to_string(Type type); // as written in source: "mat3", "vec3", "float[4]"
 

@@ -34,7 +34,7 @@ struct ExploreOptions {
 
 volatile std::sig_atomic_t interrupted = 0;
 
-// The first Ctrl-C asks for a clean end, the second one gets what it always gets.
+// The first Ctrl-C, or the terminal's end, asks for a clean end; the second one gets what it always gets.
 extern "C" void on_interrupt(int signal)
 {
     interrupted = 1;
@@ -90,6 +90,7 @@ ExitCode explore(const ExploreOptions& options)
     interrupted = 0;
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
+    if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN); // nohup: the terminal may go
 
     ExploreTextures textures;
     std::optional<Exploration> exploration = load(options, textures);

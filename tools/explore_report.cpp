@@ -1,6 +1,10 @@
 #include "tools/explore_report.h"
 
+#include "lang/abi.h"
+#include "runtime/renderer.h"
+
 #include <fmt/format.h>
+#include <utility>
 
 namespace haptel::tools {
 
@@ -46,6 +50,25 @@ std::string percentiles_text(const Histogram& histogram)
     const auto at = [&](double fraction) { return time_text(static_cast<double>(histogram.percentile(fraction))); };
     return fmt::format("median {}, p99 {}, p99.9 {}, longest {}", at(0.5), at(0.99), at(0.999),
                        time_text(static_cast<double>(histogram.maximum())));
+}
+
+std::string faults_text(uint32_t bits)
+{
+    constexpr std::pair<uint32_t, const char*> meanings[] = {
+        {HAPTEL_FAULT_HEIGHT_NOT_FINITE, "a height was not finite (0 was used)"},
+        {HAPTEL_FAULT_GRADIENT_NOT_FINITE, "a gradient was not finite (0 was used)"},
+        {HAPTEL_FAULT_OUTPUT_NOT_FINITE, "a material output was not finite or negative (1 was used)"},
+        {runtime::fault_height_above_bound, "a height was above its proven bound (cut off there)"},
+        {runtime::fault_pose_not_finite, "the device gave a pose that is not finite (no force)"},
+        {runtime::fault_force_not_finite, "the force was not finite (none was sent)"},
+    };
+    std::string text;
+    for (const auto& [bit, meaning] : meanings) {
+        if (bits & bit) text += (text.empty() ? "" : "; ") + std::string(meaning);
+        bits &= ~bit;
+    }
+    if (bits != 0) text += fmt::format("{}unknown bits 0x{:x}", text.empty() ? "" : "; ", bits);
+    return text;
 }
 
 double percent(uint64_t part, uint64_t whole)
@@ -110,9 +133,7 @@ std::string to_lines(const ExploreOutcome& outcome)
     line("textures", fmt::format("{} compiled, {} reloads", outcome.textures_compiled, servo.reloads));
     line("skipped", fmt::format("collision in {} ticks", servo.skipped.free_space));
     if (servo.allocations_in_tick) line("allocations", fmt::format("{} in ticks", *servo.allocations_in_tick));
-    if (servo.faults > 0)
-        line("faults", fmt::format("in {} ticks (bits 0x{:x}): a value that was not finite was replaced", servo.faults,
-                                   servo.fault_bits));
+    if (servo.faults > 0) line("faults", fmt::format("in {} ticks: {}", servo.faults, faults_text(servo.fault_bits)));
     if (servo.records_dropped > 0) line("telemetry", fmt::format("{} records were dropped", servo.records_dropped));
     if (!servo.real_time_note.empty()) line("note", servo.real_time_note);
     return text;

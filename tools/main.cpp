@@ -4,6 +4,7 @@
 #include "tools/terminal.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <exception>
 #include <fmt/format.h>
 #include <iostream>
@@ -56,8 +57,13 @@ ExitCode run(int argc, char** argv)
     } catch (const CLI::ParseError& error) {
         return app.exit(error, std::cout, std::cerr) == 0 ? ExitCode::fine : ExitCode::misuse;
     }
-    for (const Command& command : commands)
-        if (command.app->parsed()) return command.run();
+    for (const Command& command : commands) {
+        if (!command.app->parsed()) continue;
+        const ExitCode code = command.run();
+        if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+        say_error("not all of the output could be written: is the disk full?");
+        return code == ExitCode::fine ? ExitCode::findings : code;
+    }
     return ExitCode::misuse;
 }
 

@@ -270,6 +270,13 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
                  FileMessages& messages)
 {
     LoadedScene loaded;
+    std::error_code unknown;
+    if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown)) {
+        // A pipe may never end, and a folder is no text.
+        messages.error(std::filesystem::is_directory(file, unknown) ? "this is a folder: name the scene file in it"
+                                                                    : "this is not a regular file");
+        return loaded;
+    }
     std::ifstream in(file, std::ios::binary);
     const std::string source{std::istreambuf_iterator<char>(in), {}};
     if (!in.is_open() || in.bad()) {

@@ -1,4 +1,5 @@
 // Textures that follow their files, however the files are written. Times here are patience, not claims.
+#include "jit/file_watch.h"
 #include "jit/live_texture.h"
 #include "jit/resolver.h"
 #include "tests/jit/folder.h"
@@ -144,6 +145,23 @@ TEST_CASE("an edit reaches the hand, however the file is saved")
         folder.write("t.haptel", constant("9"));
         CHECK(follower.comes_to(9));
     }
+}
+
+TEST_CASE("a folder that is reached by two paths is watched for the files of both")
+{
+    const test::Folder folder;
+    std::filesystem::create_directory(folder.path / "real");
+    std::filesystem::create_directory_symlink(folder.path / "real", folder.path / "second"); // sorts after
+    folder.write("real/a.haptel", constant("1"));
+    folder.write("real/b.haptel", constant("1"));
+    jit::FileWatch watch;
+    REQUIRE(watch.descriptor() >= 0);
+    watch.watch({folder.file("second/a.haptel"), folder.file("real/b.haptel")});
+    CHECK(watch.take() == jit::FileWatch::Change::none);
+    folder.write("real/a.haptel", constant("2"));
+    CHECK(watch.take() == jit::FileWatch::Change::written);
+    folder.write("real/b.haptel", constant("2"));
+    CHECK(watch.take() == jit::FileWatch::Change::written);
 }
 
 TEST_CASE("nothing is published without a change")

@@ -316,6 +316,9 @@ TEST_CASE("compile: deep, large or endless is refused with a reason")
     refused(functions(10, "return grad(@)(x) * x;") + "texture t() { return f9(p.x); }", "too-deep");
     refused("float f(float x) { return g(x); } float g(float x) { return f(x); } texture t() { return f(p.x); }",
             "recursion");
+    refused("texture t(int k = 1 in 0 .. 15) { mat4 a[16]; for (int i = 0; i < 16; ++i) a[i] = mat4(1.0); " +
+                repeated("a[k] += a[k + 1];", 1'000) + " return a[k][k][k] * 1mm; }",
+            "too-large");
     refused(std::string(10'000, '\0'), "not-text");
     refused(std::string(10'000, '\xff'), "not-text");
 }

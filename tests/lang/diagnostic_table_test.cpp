@@ -122,6 +122,35 @@ TEST_CASE("diagnostics: a mistake of grammar hides nothing in the functions besi
           std::vector<std::string>{"1 expected-expression", "2 unknown-name", "3 syntax", "4 unknown-function"});
 }
 
+TEST_CASE("diagnostics: what follows from a mistake is not said")
+{
+    const std::string rest = " return h + k + h; }";
+    const std::vector<std::pair<std::string, std::string>> cases = {
+        {"texture t() { float = 1mm; float k = 1mm;" + rest, "1:21 syntax"},
+        {"texture t() { flaot h = 1mm; float k = 1mm;" + rest, "1:15 unknown-type"},
+        {"texture t() { float h max(p.x, p.y); float k = 1mm;" + rest, "1:23 syntax"},
+        {"texture t() { float h = 1mm; float k = max(p.x, p.y;" + rest, "1:52 syntax"},
+        {"texture t(float h 1mm, float k = 1mm) {" + rest, "1:17 missing-default"},
+        {"texture t(float = 1mm, float h = 1mm, float k = 1mm) {" + rest, "1:17 syntax"},
+        {"texture t() { float h = 1mm; float k = nothing + nothing;" + rest, "1:40 unknown-name"},
+        {"texture t() { float h = 0.0; float k = 0.0; for (int = 0; i < 3; ++i) h += i * 1mm;" + rest, "1:54 syntax"},
+        {"texture t(float h = 1mm) { float k = 1mm; if (h > k) return k; } else k = h;" + rest, "1:66 syntax"},
+        {"float f(float h { return h; }\ntexture t() { return f(p.x); }", "1:17 syntax"},
+        {"const float A[2][2] = {{1.0, 2.0}, {3.0, 4.0}};\ntexture t() { return A[0] * 1mm; }", "1:17 nested-table"},
+    };
+    for (const auto& [text, expected] : cases) {
+        CAPTURE(text);
+        const CompileResult result = compiled(text);
+        std::string found;
+        for (const Diagnostic& diagnostic : result.diagnostics.all()) {
+            const Position at = result.sources.position(0, diagnostic.span.begin);
+            found += (found.empty() ? "" : ", ") + std::to_string(at.line) + ":" + std::to_string(at.column) + " " +
+                     diagnostic.code;
+        }
+        CHECK(found == expected);
+    }
+}
+
 TEST_CASE("diagnostics: errors stop at the limit, which can be set")
 {
     Diagnostics diagnostics;

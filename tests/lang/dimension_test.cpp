@@ -294,7 +294,16 @@ TEST_CASE("dimension: work is bounded where calls, loops and dimensions multiply
     for (int i = 0; i < 20; ++i) values += i > 0 ? ", 1.0" : "1.0";
     choices += "texture t() { return 1mm * h20(" + values + "); }";
 
+    // blocks inside blocks, and in the innermost a call of a function made likewise
+    std::string deep = "float d0(float x) { return x + 1.0; }\n";
+    for (int i = 1; i < 120; ++i)
+        deep += "float d" + std::to_string(i) + "(float x) { " + std::string(200, '{') + "if (x > 0) { return d" +
+                std::to_string(i - 1) + "(x); }" + std::string(200, '}') + " return x; }\n";
+    deep += "texture t() { return d119(p.x); }";
+
     std::string messages;
+    CHECK(seconds_to_compile(deep, messages) < 20);
+    CHECK(messages.find("nest") != std::string::npos);
     CHECK(seconds_to_compile(choices, messages) < 20);
     CHECK(messages.find("this program is too large for all its dimensions to be checked\n") != std::string::npos);
     CHECK(seconds_to_compile(dimensions, messages) < 20);

@@ -15,16 +15,6 @@ struct Finding {
     std::string text, hint; // text: "line:column severity: message [code]"
 };
 
-std::string severity_name(Severity severity)
-{
-    switch (severity) {
-    case Severity::error: return "error";
-    case Severity::warning: return "warning";
-    case Severity::note: return "note";
-    }
-    return {};
-}
-
 // Behind "[code]", where " = hint" may follow; messages may hold brackets of their own.
 size_t end_of_code(const std::string& one)
 {
@@ -67,7 +57,7 @@ std::string golden_differences(const std::string& text)
     for (const Diagnostic& said : result.diagnostics.all()) {
         const Position place = result.sources.position(said.span.file, said.span.begin);
         const std::string found = std::to_string(place.line) + ":" + std::to_string(place.column) + " " +
-                                  severity_name(said.severity) + ": " + said.message + " [" + said.code + "]";
+                                  std::string(name_of(said.severity)) + ": " + said.message + " [" + said.code + "]";
         const auto wanted = std::find_if(expected.begin(), expected.end(), [&](const Finding& finding) {
             return finding.text == found && (finding.hint.empty() || finding.hint == said.hint);
         });

@@ -362,7 +362,9 @@ TEST_CASE("a scene that is no text is reported, not crashed on")
     const LoadedScene missing = load_scene("/nowhere/at/all.toml", resolve_flat, open_scripted);
     CHECK_FALSE(missing.scene);
     CHECK(missing.diagnostics == "/nowhere/at/all.toml:1:1: error: the scene could not be read: is the path right?\n");
-    CHECK_FALSE(load_scene(std::filesystem::temp_directory_path(), resolve_flat, open_scripted).scene);
+    const LoadedScene folder = load_scene(std::filesystem::temp_directory_path(), resolve_flat, open_scripted);
+    CHECK_FALSE(folder.scene);
+    CHECK(folder.diagnostics.ends_with(":1:1: error: this is a folder: name the scene file in it\n"));
 }
 
 TEST_CASE("what textures and devices say reaches the user")

@@ -27,3 +27,15 @@ TEST_CASE("misuse is exit code 2, said on standard error, with nothing on standa
         CHECK(contains(ran.err, "--help"));
     }
 }
+
+TEST_CASE("output that cannot be written is an error, not a success with nothing to show")
+{
+    const Folder folder;
+    const std::string file = folder.write("flat.haptel", "texture flat() { return 1um; }");
+    for (const std::string to : {">/dev/full", "--json >/dev/full", "--json >&-"}) {
+        CAPTURE(to);
+        const Ran ran = run_command("check '" + file + "' " + to);
+        CHECK(ran.code == 1);
+        CHECK(contains(ran.err, "written"));
+    }
+}

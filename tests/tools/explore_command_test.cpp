@@ -5,6 +5,7 @@
 #include "tools/json.h"
 
 #include <sstream>
+#include <sys/stat.h>
 #include <vector>
 
 using namespace haptel::test;
@@ -164,6 +165,8 @@ TEST_CASE("misuse of explore is exit code 2")
 TEST_CASE("an interrupt ends the run cleanly, with its report")
 {
     const Stage stage;
+    const std::string signal = GENERATE("INT", "TERM", "HUP"); // HUP: the terminal was closed
+    CAPTURE(signal);
     // As soon as the run writes its trace, however long it took to start.
     const std::string out = stage.folder.file("run");
     const std::string script =
@@ -172,10 +175,21 @@ TEST_CASE("an interrupt ends the run cleanly, with its report")
                                                out +
                                                "/trace.csv' ] || ! kill -0 $command 2>/dev/null\n"
                                                "do sleep 0.05; done\n"
-                                               "sleep 0.3; kill -INT $command; wait $command\n");
+                                               "sleep 0.3; kill -" +
+                                               signal + " $command; wait $command\n");
     const Ran ran = run_command("explore " + stage.scene + " --json --out '" + out + "'", "sh '" + script + "'");
     CHECK(ran.code == 0);
     CHECK(json_of(ran)["state"] == "stopped");
+}
+
+TEST_CASE("a scene that is no file is refused, never waited for")
+{
+    const Folder folder;
+    const std::string pipe = folder.file("pipe.toml");
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    const Ran ran = run_command("explore '" + pipe + "' --seconds 0.1 --clock virtual", "timeout 20");
+    CHECK(ran.code == 1);
+    CHECK(contains(ran.err, "not a regular file"));
 }
 
 TEST_CASE("a texture that is edited is felt without a restart; a broken edit is explained and not felt")

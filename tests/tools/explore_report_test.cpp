@@ -1,3 +1,4 @@
+#include "runtime/renderer.h"
 #include "tests/support/catch.h"
 #include "tools/explore_report.h"
 
@@ -34,4 +35,16 @@ TEST_CASE("the report holds every promised field, null where nothing was measure
     const double median_us = json["wake_late_us"]["median"];
     CHECK((median_us > 480 && median_us < 520)); // buckets of 3 %
     CHECK(!to_lines(outcome).empty());
+}
+
+TEST_CASE("a fault is told by its own name")
+{
+    ExploreOutcome outcome;
+    outcome.servo.faults = 3;
+    outcome.servo.fault_bits = haptel::runtime::fault_height_above_bound;
+    const std::string bound = to_lines(outcome);
+    CHECK(bound.find("above its proven bound") != std::string::npos);
+    CHECK(bound.find("not finite") == std::string::npos);
+    outcome.servo.fault_bits = haptel::runtime::fault_pose_not_finite | 1u << 31;
+    CHECK(to_lines(outcome).find("pose that is not finite (no force); unknown bits 0x80000000") != std::string::npos);
 }
