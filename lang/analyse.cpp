@@ -45,6 +45,7 @@ ir::Interval range_of(const ir::Parameter& parameter, double value)
 // What to write instead of an operation that is rough.
 std::string smooth_form(const ir::Cause& cause)
 {
+    if (cause.is_library) return "haptel info tells how smooth the library's functions are";
     if (!cause.op) return "blend the two with smoothstep() where they are to differ, or let them meet";
     switch (*cause.op) {
     case Op::abs: return "smoothabs(x, k) rounds the kink off";
@@ -70,7 +71,9 @@ std::string smooth_form(const ir::Cause& cause)
 
 std::string what_of(const ir::Cause& cause)
 {
-    return cause.op ? std::string(ir::op_info(*cause.op).name) + "()" : "this choice";
+    return cause.op           ? std::string(ir::op_info(*cause.op).name) + "()"
+           : cause.is_library ? std::string("this call")
+                              : std::string("this choice");
 }
 
 std::string shown(const ir::Interval& range)

@@ -57,7 +57,7 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     if (left == 0) return unknown(function, function.body.yields, span);
     Results results = gather(frame, function.body.yields);
     if (function.is_library)
-        for (Variation& variation : results.variations) variation.cause = {span, {}}, variation.kink = 0;
+        for (Variation& variation : results.variations) variation.cause = {span, {}, true}, variation.kink = 0;
     return results;
 }
 
@@ -100,7 +100,7 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
         is_all_told &= facts.value_minimum && facts.value_maximum && facts.slope;
         if (!varying) continue;
         Variation& variation = declared.variations.emplace_back(by_facts(function, facts, arguments));
-        if (variation.is_active && variation.cause.span.end == 0) variation.cause = {span, {}};
+        if (variation.is_active && variation.cause.span.end == 0) variation.cause = {span, {}, function.is_library};
         is_all_told &= !variation.is_active || (facts.smoothness && variation.curvature < infinity);
     }
     const Interval& value = declared.values[0];

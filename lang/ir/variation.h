@@ -12,10 +12,12 @@
 
 namespace haptel::ir {
 
-// What makes a value rough: an operation, or nothing where a condition decides between two values.
+// What makes a value rough: an operation, something inside of a library function, or a condition that decides between
+// two values.
 struct Cause {
     Span span;
     std::optional<Op> op;
+    bool is_library = false;
 };
 
 struct Variation {
