@@ -201,6 +201,31 @@ TEST_CASE("point derivatives: inside of what is measured, other measurements cou
     CHECK(std::fabs(made.gradient[0] - (slope + last_slope)) < 4e-14);
 }
 
+TEST_CASE("point derivatives: what was measured has no tangent that a loop would have to carry")
+{
+    Module module = with_entries(R"(
+    function "body" () {
+      %x = input p_x
+      %s = mul %x, %x
+      %three = i32 3
+      %two = real 2
+      %h, %sum = for %three max 3 (%i, %q, %t) from (%s, %two) {
+        %d = d_dp 0 %q
+        %r = mul %q, %q
+        %u = add %t, %d
+        yield %r, %u
+      }
+      %m = d_dp 0 %sum
+      %n = add %m, %sum
+      %r = add %h, %n
+      return %r
+    })");
+    for (const Instruction& made : module.functions[module.textures[0].body].body.instructions)
+        if (std::holds_alternative<For>(made.kind)) CHECK(made.results.size() == 3); // q, its tangent, the sum
+    // x^16 + 2 + 2 x + 4 x^3 + 8 x^7, whose last three terms were measured
+    CHECK(sample(module, at(0.5, 0, 0)).height == 0x1p-16 + 2 + 1 + 0.5 + 0.0625);
+}
+
 TEST_CASE("point derivatives: only tangents that are asked for are made")
 {
     Module module = with_entries(asking + R"(

@@ -130,3 +130,18 @@ TEST_CASE("triplanar: each axis by the fourth power of the normal")
         }
     }
 }
+
+TEST_CASE("fractals over a periodic basis close round a sphere, band-limited or not")
+{
+    const std::string basis = "float basis(vec2 q) { return perlin_periodic(q, 8, 0); }\n"
+                              "float wrapped(vec2 uv) { return fbm(basis, vec2(8.0, 5.0) * uv, 4, 2.0, 0.5); }\n";
+    for (const double footprint : {0.0, 0.1}) {
+        const Field field("wrapped(sphere_map(q, vec3(0.0), vec3(2.0)))", basis, footprint);
+        for (const Vec3& q : points_within(1, 100)) {
+            const double x = 0.3 + std::fabs(q[0]); // both sides of the half plane where the longitude is 0
+            const FieldSample before = field({x, -1e-12, q[2]}), after = field({x, 1e-12, q[2]});
+            CHECK(std::fabs(before.value - after.value) < 1e-9);
+            for (size_t a = 0; a < 3; ++a) CHECK(std::fabs(before.gradient[a] - after.gradient[a]) < 1e-7);
+        }
+    }
+}
