@@ -238,7 +238,9 @@ ExpressionPtr Grammar::primary()
             error(first, "no-pointers", "expected an expression" + found() + "; there are no pointers in Haptel");
         return behind_stray_operator();
     }
-    error(first, "expected-expression", "expected an expression" + found());
+    Diagnostic& reported = error(first, "expected-expression", "expected an expression" + found());
+    if (at(Token::kw_texture) && kind(1) == Token::left_paren)
+        reported.hint = foreign_word(ForeignKind::function, "texture2D")->hint;
     return make(first, ErrorExpression{});
 }
 
