@@ -211,7 +211,8 @@ Symbol* BodyChecker::check_global(Declaration& declaration)
     declared.clear(); // unread globals are nobody's mistake
     if (!made || made->kind != SymbolKind::local) return made;
     const bool has_type = declaration.initializer && !declaration.initializer->type.is_error();
-    if (const Expression* culprit = has_type ? first_not_constant(*declaration.initializer) : nullptr)
+    const Expression* culprit = has_type ? first_not_constant(*declaration.initializer) : nullptr;
+    if (culprit && !culprit->type.is_error())
         diagnostics
             .error(culprit->span, "not-constant",
                    "a global is constant, expected a value known when the texture is compiled")

@@ -165,6 +165,7 @@ Symbol* BodyChecker::array(Declaration& node, Type element)
             const Expression* varies = first_not_constant(cell);
             if (varies && is_global) {
                 is_sound = false;
+                if (varies->type.is_error()) continue; // of a mistake that was reported
                 diagnostics.error(varies->span, "not-constant",
                                   "a table is constant, expected a value known when the texture is compiled");
             }

@@ -48,6 +48,7 @@ std::optional<double> BodyChecker::check_constant(Expression& e, Type type, cons
     expression(e);
     if (!require(e, type, where) || diagnostics.reports() != reports) return std::nullopt;
     if (const Expression* culprit = first_not_constant(e)) {
+        if (culprit->type.is_error()) return std::nullopt; // of a mistake that was reported
         diagnostics.error(culprit->span, "not-constant", "expected a value known when the texture is compiled" + where)
             .hint = "literals, global constants and built-in functions of them are";
         return std::nullopt;

@@ -34,7 +34,7 @@ const Expression* first_not_constant(const Expression& e)
     if (auto name = std::get_if<NameExpression>(&e.node)) {
         const bool known =
             name->symbol && (name->symbol->kind == SymbolKind::constant || name->symbol->kind == SymbolKind::table);
-        return known ? nullptr : &e;
+        return known && !e.type.is_error() ? nullptr : &e; // what a mistake has left without a type has no value
     }
     if (auto unary = std::get_if<Unary>(&e.node)) return first_not_constant(*unary->operand);
     if (auto member = std::get_if<Member>(&e.node)) return first_not_constant(*member->object);

@@ -136,6 +136,14 @@ TEST_CASE("diagnostics: what follows from a mistake is not said")
         {"texture t() { float h = 0.0; float k = 0.0; for (int = 0; i < 3; ++i) h += i * 1mm;" + rest, "1:54 syntax"},
         {"texture t(float h = 1mm) { float k = 1mm; if (h > k) return k; } else k = h;" + rest, "1:66 syntax"},
         {"float f(float h { return h; }\ntexture t() { return f(p.x); }", "1:17 syntax"},
+        {"const mat2 M = mat2(1.0, 0.5 0.8, 0.6);\nconst mat3 L[2] = {mat3(1.0), mat3(M)};\n"
+         "texture t() { return L[0][0][0] * 1mm; }",
+         "1:30 syntax"},
+        {"const afloat A[1] = {1.0};\nconst int I[2] = {5, A[0] > 0.0 ? 6 : 7};\ntexture t(float h = A[0] > 0.0 ? "
+         "1mm : 2mm) { return h * I[0]; }",
+         "1:7 unknown-type"},
+        {"const afloat A = 1.0;\nconst float B = A > 0.0 ? 1.0 : 2.0;\ntexture t() { return 1mm * B; }",
+         "1:7 unknown-type"},
         {"const float A[2][2] = {{1.0, 2.0}, {3.0, 4.0}};\ntexture t() { return A[0] * 1mm; }", "1:17 nested-table"},
     };
     for (const auto& [text, expected] : cases) {
