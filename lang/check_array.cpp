@@ -139,8 +139,10 @@ Symbol* BodyChecker::array(Declaration& node, Type element)
     if (list) {
         const auto count = static_cast<uint32_t>(list->elements.size());
         if (size > 0 && size != count) {
+            // the size stands in the declaration, or in front of the list: float[2](...)
+            const Expression& written = node.type.array_size ? *node.type.array_size : *list->type->array_size;
             diagnostics
-                .error(node.type.array_size->span, "table-size",
+                .error(written.span, "table-size",
                        name + " is declared with " + std::to_string(size) + " elements and has " +
                            std::to_string(count))
                 .hint = "leave the size out, " + node.name.text + "[], and it is counted";

@@ -175,6 +175,38 @@ TEST_CASE("the facts of the noises are the supremum over all unit tables, rounde
     check_facts("perlin", quintic, 2);
 }
 
+TEST_CASE("the slope facts of fourier are the supremum over phases on their own, rounded up")
+{
+    // X lies with |dX| in a sum of ellipses; the largest x y' + y x' over that set and itself, over its border by
+    // angle.
+    constexpr double pi = 3.14159265358979323846;
+    const auto supremum = [&](double first_phase, double phase) {
+        double best = 0, most = 4 * 0.3;
+        for (int i = 0; i < 4; ++i) most += std::pow(2.0, -i / 2.0);
+        const auto term = [&](int i) { return std::pow(2.0, -i / 2.0); };
+        const auto steep = [&](int i) { return term(i) * 2 * pi * std::pow(2.0, i) * (i == 0 ? first_phase : phase); };
+        for (int step = 0; step <= 10'000; ++step) {
+            const double u = std::cos(pi / 2 * step / 10'000), v = std::sin(pi / 2 * step / 10'000);
+            double x = 4 * 0.3, slope = 0;
+            for (int i = 0; i < 4; ++i) {
+                const double norm = std::hypot(term(i) * u, steep(i) * v);
+                x += term(i) * term(i) * u / norm;
+                slope += steep(i) * steep(i) * v / norm;
+            }
+            double support = 4 * 0.3 * slope;
+            for (int i = 0; i < 4; ++i) support += std::hypot(term(i) * slope, steep(i) * x);
+            best = std::max(best, support / (most * most));
+        }
+        return best;
+    };
+    const double plane = supremum(1, std::hypot(1, pi / 4)),
+                 space = supremum(std::hypot(1, pi / 2), std::hypot(1, pi / 4, pi / 2));
+    const double plane_fact = facts_of("fourier(vec2)", "fourier(q.xy)").slope.value(),
+                 space_fact = facts_of("fourier(vec3)", "fourier(q)").slope.value();
+    CHECK((plane_fact > plane && plane_fact < plane * 1.0001));
+    CHECK((space_fact > space && space_fact < space * 1.0001));
+}
+
 TEST_CASE("no fact is exceeded anywhere")
 {
     const auto check = [](const std::string& function, const std::string& call, double size) {
