@@ -209,7 +209,8 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
     bool damaged = false;
     for (ExpressionPtr& argument : arguments) {
         classes.push_back(classify(*argument));
-        damaged |= !classes.back().is_function && argument->type.is_error();
+        damaged |= classes.back().is_function ? !std::ranges::all_of(classes.back().functions, is_valid)
+                                              : argument->type.is_error();
     }
     std::vector<Candidate> candidates;
     if (Symbol* local = find_local(callee.text); local && local->kind == SymbolKind::function) {
