@@ -207,6 +207,31 @@ TEST_CASE("the slope facts of fourier are the supremum over phases on their own,
     CHECK((space_fact > space && space_fact < space * 1.0001));
 }
 
+TEST_CASE("the slope facts of cellular are 1 and what its factor adds at most, rounded up")
+{
+    const auto added = [](double dimensions, double spread, int others) {
+        const double near = dimensions * (0.5 + spread) * (0.5 + spread), far = (2 - spread) * (2 - spread);
+        double most = 0;
+        for (const double k : {0.01, 0.1, 0.2, 0.3}) {
+            const double c = k / (4 * std::log(2.0));
+            const auto rounded = [&](double square) { return std::sqrt(square + k * k) - k; };
+            for (int step = 1; step < 10'000; ++step) {
+                const double t = step / 10'000.0, square = near + (far - near) * t;
+                const double factor = 1 - t * t * (3 - 2 * t);
+                const double slope = 6 * t * (1 - t) / (far - near) * 2 * std::sqrt(square);
+                const double weight = others * std::exp((rounded(near) - rounded(square)) / c);
+                most = std::max(most, c * slope * weight / (1 + factor * weight));
+            }
+        }
+        return most;
+    };
+    const double plane = 1 + added(2, 0.4, 15), space = 1 + added(3, 0.3, 63);
+    const double plane_fact = facts_of("cellular(vec2,float)", "cellular(q.xy, 0.1)").slope.value(),
+                 space_fact = facts_of("cellular(vec3,float)", "cellular(q, 0.1)").slope.value();
+    CHECK((plane_fact > plane && plane_fact < plane * 1.01));
+    CHECK((space_fact > space && space_fact < space * 1.01));
+}
+
 TEST_CASE("no fact is exceeded anywhere")
 {
     const auto check = [](const std::string& function, const std::string& call, double size) {
