@@ -1,5 +1,7 @@
 #include "jit/check_code.h"
 
+#include "jit/check_smoothness.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -91,6 +93,7 @@ void check_code(GradientCheck& check, const TextureBinding& binding, const Check
                    static_cast<double>(check.not_finite), 0);
     expect_at_most(check, "points where the height leaves its proven bounds",
                    static_cast<double>(check.bounds_exceeded), 0);
+    check_smoothness(check, binding, points);
 }
 
 GradientCheck check_gradient(const TextureBinding& binding, const CheckBox& box, uint32_t count, uint64_t seed)

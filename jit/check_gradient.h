@@ -39,7 +39,8 @@ struct GradientCheck {
     double loop_integral_m =
         0;                   // largest |closed-loop integral of gradient . dp| over a few circles, quadrature included
     uint64_t not_finite = 0; // faults or values not finite, edge and huge points included
-    uint64_t bounds_exceeded = 0;      // heights outside of the binding's facts
+    uint64_t bounds_exceeded = 0;      // heights, slopes and changes of the gradient outside of the binding's facts
+    uint32_t continuity_measured = 0;  // HAPTEL_CONTINUITY_*: roughest met along short paths; 0: not looked at
     double worst_point_m[3] = {};      // where the gradient is farthest from the truth
     std::vector<std::string> failures; // in words; empty: passed
 
@@ -47,8 +48,8 @@ struct GradientCheck {
 };
 
 // Height and gradient error of at most 1e-12 + 8 conditioning, differences that agree as well, at most 1 % of points at
-// kinks, nothing not finite, no height out of bounds. `binding` was made from `program`, or wraps a texture of the same
-// name and block. Uses all processors.
+// kinks, nothing not finite, nothing out of bounds, no rougher class than the facts say. `binding` was made from
+// `program`, or wraps a texture of the same name and block. Uses all processors.
 GradientCheck check_gradient(const std::shared_ptr<const CompiledProgram>& program, const TextureBinding& binding,
                              const CheckBox& box, uint32_t points = default_check_points, uint64_t seed = 1);
 

@@ -78,7 +78,9 @@ Json TestReport::to_json() const
         one["loop_integral"] = of_check(tools::finite_or_null(check.loop_integral_m));
         one["not_finite"] = of_check(check.not_finite);
         one["bounds_exceeded"] = of_check(check.bounds_exceeded);
-        one["continuity_measured"] = nullptr;
+        constexpr const char* classes[] = {"", "jump", "C0", "C1"}; // HAPTEL_CONTINUITY_*
+        const bool is_measured = check.continuity_measured != HAPTEL_CONTINUITY_UNKNOWN;
+        one["continuity_measured"] = is_measured ? Json(classes[check.continuity_measured]) : Json(nullptr);
         one["passed"] = texture.passed();
         one["failures"] = reasons(texture);
         list.push_back(std::move(one));

@@ -54,7 +54,6 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     block(frame, function.body);
     user = outside;
     --depth;
-    if (left == 0) return unknown(function, function.body.yields, span);
     Results results = gather(frame, function.body.yields);
     if (function.is_library)
         for (Variation& variation : results.variations) variation.cause = {span, {}, true}, variation.kink = 0;

@@ -204,9 +204,9 @@ Interval IntervalEvaluator::sharpened(const Frame& frame, const Instruction& mad
 
 void IntervalEvaluator::block(Frame& frame, const Block& source)
 {
+    // What is left unfinished are loops and calls: a straight line is short, and a clamp at its end bounds all before.
     for (const Instruction& made : source.instructions) {
-        if (left == 0) return;
-        --left;
+        left -= std::min<uint64_t>(left, 1);
         std::visit([&](const auto& kind) { visit(frame, made, kind); }, made.kind);
     }
 }
@@ -384,7 +384,7 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const For& 
         block(frame, body);
         carried = gather(frame, body.yields);
     }
-    if (depth >= depth_max) all = unknown(frame.function, made.results, made.span);
+    if (depth >= depth_max || left == 0) all = unknown(frame.function, made.results, made.span);
     --depth;
     if (varying) {
         all.variations.resize(made.results.size());

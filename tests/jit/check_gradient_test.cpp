@@ -96,6 +96,28 @@ TEST_CASE("a gradient wrong by one part in 10^9 fails, and so does a height")
     CHECK(turned.loop_integral_m > 1e-6); // not a gradient of anything
 }
 
+TEST_CASE("the class is measured, and facts that promise too much fail")
+{
+    CHECK(check("texture a() { return 50um * sin(p.x / 1mm); }").continuity_measured == HAPTEL_CONTINUITY_C1);
+    CHECK(check("texture b() { return 50um * abs(sin(p.x / 1mm)); }").continuity_measured == HAPTEL_CONTINUITY_C0);
+    CHECK(check("texture c() { return 50um * floor(p.x / 3mm); }").continuity_measured == HAPTEL_CONTINUITY_JUMP);
+    CHECK(check("texture d() { return 50um * noise(p / 3mm); }").continuity_measured == HAPTEL_CONTINUITY_C1);
+    CHECK(check("texture e() { return 50um * dnoise(p / 3mm).x; }").continuity_measured == HAPTEL_CONTINUITY_C0);
+
+    const auto failures_of = [](const std::string& facts, const std::string& body) {
+        const std::string text = "/// @facts " + facts + "\nfloat f(float x) { return " + body + "; }\n" +
+                                 "texture t() { return 50um * f(p.x / 1mm); }";
+        return all(check(text.c_str()).failures);
+    };
+    CHECK(failures_of("value -1 .. 1, slope 1, curvature 1, class C1", "sin(x)") == "");
+    CHECK(contains(failures_of("value -0.9 .. 0.9, slope 1, curvature 1, class C1", "sin(x)"),
+                   "leaves its proven bounds"));
+    CHECK(contains(failures_of("value -1 .. 1, slope 0.9, curvature 1, class C1", "sin(x)"), "the slope leaves"));
+    CHECK(contains(failures_of("value -1 .. 1, slope 1, curvature 0.8, class C1", "sin(x)"), "the gradient changes"));
+    CHECK(contains(failures_of("value 0 .. 1, slope 1, curvature 1, class C1", "abs(sin(x))"), "measured is C0"));
+    CHECK(contains(failures_of("value 0 .. 1, slope 9, class C0", "fract(x)"), "measured is jump"));
+}
+
 TEST_CASE("a wrong gradient of a texture without source fails, a right one passes")
 {
     haptel_texture texture{};
