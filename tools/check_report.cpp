@@ -126,6 +126,7 @@ Json to_json(const CheckedTexture& checked)
               {"slope_max", finite_or_null(checked.analysis.over_ranges.slope_max)},
               {"curvature_max_per_m", curvature_of(checked.analysis.over_ranges)}}},
             {"continuity", continuity_of(checked.analysis.at_values)},
+            {"declared", checked.analysis.at_values.declared},
             {"operations_max", operations_of(checked)},
             {"stability", nullptr}};
 }
@@ -221,6 +222,9 @@ std::string CheckReport::to_text() const
             text += fmt::format("  curvature  at most {} ({})\n", shown_bound(here.curvature_max_per_m, " /m"),
                                 has_curvature(ranges) ? shown_bound(ranges.curvature_max_per_m, " /m") : "none");
         text += fmt::format("  class      {}\n", shown_class(checked));
+        if (!here.declared.empty())
+            text += fmt::format("  declared   believes the facts of {}(); haptel test tries them\n",
+                                fmt::join(here.declared, "(), "));
         text += fmt::format("  cost       at most {} operations; reads {}{}\n", operations_of(checked),
                             inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")),
                             outputs.empty() ? "" : fmt::format(", writes {}", fmt::join(outputs, ", ")));

@@ -25,6 +25,13 @@ void find_inputs(const Block& block, std::vector<bool>& is_read)
     }
 }
 
+// "hollow" of "d resolved hollow(vec2)"
+std::string source_name(const std::string& name)
+{
+    const std::string head = name.substr(0, name.find_first_of("(<"));
+    return head.substr(head.rfind(' ') + 1);
+}
+
 // An upper bound to push down, of one piece of the box: -infinity where the piece holds no value at all.
 enum class Goal : uint8_t { highest, lowest, slope, curvature };
 
@@ -73,6 +80,7 @@ public:
     // Of the box in one piece, where the goals are of derivatives.
     const Variation& over_all() const { return whole; }
     const std::vector<Undefined>& undefined_over_all() const { return undefined; }
+    const std::set<uint32_t>& believed_over_all() const { return believed; }
 
 private:
     struct Piece {
@@ -91,6 +99,7 @@ private:
     std::vector<Queue> queues; // by goal
     Variation whole;
     std::vector<Undefined> undefined;
+    std::set<uint32_t> believed;
     uint64_t used = 0;
     size_t turn = 0;
     bool is_settled = false;
@@ -112,7 +121,7 @@ private:
             IntervalEvaluator::Results results = evaluator.run_varying(entry, box);
             height = results.values[0];
             variation = results.variations[0];
-            if (pieces.empty()) whole = variation, undefined = evaluator.undefined();
+            if (pieces.empty()) whole = variation, undefined = evaluator.undefined(), believed = evaluator.believed();
         }
         used += evaluator.operations_used() + 1;
         Piece piece{std::move(where), {}, height.may_be_nan, false};
@@ -172,13 +181,18 @@ Interval height_bounds(const Module& module, const Texture& texture, const Bound
 
 TextureBounds texture_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations)
 {
-    TextureBounds bounds{height_bounds(module, texture, box, evaluations), 0, 0, Smoothness::unknown, {}, {}};
+    TextureBounds bounds{height_bounds(module, texture, box, evaluations), 0, 0, Smoothness::unknown, {}, {}, {}};
     Bisection bisection(module, texture, box, {Goal::slope, Goal::curvature});
     bisection.run(evaluations);
     bounds.slope_max = std::max(0.0, bisection.bound(0));
     bounds.curvature_max_per_m = std::max(0.0, bisection.bound(1));
     bounds.smoothness = bisection.over_all().smoothness;
     bounds.cause = bisection.over_all().cause;
+    for (uint32_t function : bisection.believed_over_all()) {
+        const std::string name = source_name(module.functions[function].name);
+        if (std::find(bounds.declared.begin(), bounds.declared.end(), name) == bounds.declared.end())
+            bounds.declared.push_back(name);
+    }
     const bool is_finite = bounds.height.is_finite() && std::isfinite(bounds.slope_max) && !bisection.may_be_nan();
     if (!is_finite) bounds.undefined = bisection.undefined_over_all();
     return bounds;

@@ -96,6 +96,8 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
     for (size_t r = 0; r < count; ++r) {
         const Facts facts = r < function.facts.size() ? function.facts[r] : Facts{};
         declared.values.push_back(declared_value(facts, !are_finite));
+        const bool says_something = facts.value_minimum || facts.slope || facts.curvature || facts.smoothness;
+        if (varying && says_something && !facts.proven) believed_functions.insert(index);
         is_all_told &= facts.value_minimum && facts.value_maximum && facts.slope;
         if (!varying) continue;
         Variation& variation = declared.variations.emplace_back(by_facts(function, facts, arguments));

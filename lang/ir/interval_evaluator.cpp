@@ -90,6 +90,7 @@ IntervalEvaluator::Results IntervalEvaluator::run_varying(uint32_t entry, const 
     kinks = 0;
     user.reset();
     undefined_operations.clear();
+    believed_functions.clear();
     return look_inside(entry, {}, {});
 }
 

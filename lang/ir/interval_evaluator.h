@@ -7,6 +7,7 @@
 #include "lang/ir/variation.h"
 
 #include <optional>
+#include <set>
 
 namespace haptel::ir {
 
@@ -27,6 +28,8 @@ public:
     Results run_varying(uint32_t entry, const BoundsBox& box);
     // Met by the last run_varying(), each place once.
     const std::vector<Undefined>& undefined() const { return undefined_operations; }
+    // Functions whose facts the last run_varying() believed although they are not proven.
+    const std::set<uint32_t>& believed() const { return believed_functions; }
 
 private:
     struct Frame {
@@ -50,6 +53,7 @@ private:
     bool is_trying = false;   // arms are evaluated where they meet
     std::optional<Span> user; // the call, while inside the library
     std::vector<Undefined> undefined_operations;
+    std::set<uint32_t> believed_functions;
     const BoundsBox* box = nullptr;
     std::vector<std::vector<const Instruction*>> makers; // by function, then Value::index; filled when first needed
 

@@ -262,6 +262,20 @@ TEST_CASE("check: what each line costs adds up to the whole")
     CHECK(text.find("return 1um * (h + fbm") < text.find("return sin(x) * sin(x);"));
 }
 
+TEST_CASE("check: a verdict that rests on declared facts says so")
+{
+    const Folder folder;
+    const std::string file = folder.write("said.haptel", "/// @facts value 0 .. 1, slope 2, class C0\n"
+                                                         "float saw(float x) { return abs(mod(x, 2.0) - 1.0); }\n"
+                                                         "texture t() { return 1mm * saw(p.x / 1mm); }\n"
+                                                         "texture u() { return 1mm * noise(p / 1mm); }\n");
+    const Json textures = Json::parse(run_command("check --json '" + file + "'").out)["textures"];
+    CHECK(textures[0]["continuity"] == "C0");
+    CHECK(textures[0]["declared"] == Json::array({"saw"}));
+    CHECK(textures[1]["declared"] == Json::array()); // what the library says is proven
+    CHECK(contains(run_command("check '" + file + "'").out, "believes the facts of saw(); haptel test tries them"));
+}
+
 TEST_CASE("check: jumps, kinks and what may be undefined are found with their place")
 {
     const Folder folder;
