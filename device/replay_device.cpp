@@ -2,11 +2,51 @@
 
 #include "runtime/recording.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <fmt/format.h>
+#include <limits>
+#include <string>
 #include <utility>
 
 namespace haptel::device {
+
+namespace {
+
+struct Steps {
+    std::vector<uint64_t> periods; // between each record and the one before it; 1 for the first
+    std::string error;
+};
+
+// Where a servo missed deadlines, several periods lie between two ticks. One that missed none between at least two
+// ticks gives its rate away.
+Steps steps_of(const std::vector<runtime::TickRecord>& records, double rate_hz)
+{
+    Steps steps{{1}, {}};
+    double shortest_s = std::numeric_limits<double>::infinity(), periods_sum = 0;
+    for (std::size_t i = 1; i < records.size(); ++i) {
+        const runtime::TickRecord& before = records[i - 1];
+        const runtime::TickRecord& record = records[i];
+        const double step_s = record.time_s - before.time_s;
+        const double periods = std::round(step_s * rate_hz);
+        if (record.tick <= before.tick || !(step_s > 0) || !(periods < 1e15))
+            return {{},
+                    fmt::format("tick {} at {:.6g} s follows tick {} at {:.6g} s: a trace goes forward in time",
+                                record.tick, record.time_s, before.tick, before.time_s)};
+        shortest_s = std::min(shortest_s, step_s / static_cast<double>(record.tick - before.tick));
+        steps.periods.push_back(static_cast<uint64_t>(periods));
+        periods_sum += periods;
+    }
+    if (records.size() < 2) return steps;
+    const double mean_hz = periods_sum / (records.back().time_s - records.front().time_s);
+    if (std::abs(mean_hz / rate_hz - 1) < 1e-6 && std::round(shortest_s * rate_hz) == 1) return steps;
+    return {{},
+            fmt::format("recorded at {:.6g} Hz, but the scene's servo runs at {:.6g} Hz; set rate_hz = {:.6g}",
+                        1 / shortest_s, rate_hz, 1 / shortest_s)};
+}
+
+} // namespace
 
 ReplayDevice::ReplayDevice(runtime::DeviceInfo info, std::vector<runtime::DevicePose> poses)
     : info_(std::move(info)), poses_(std::move(poses))
@@ -32,15 +72,8 @@ runtime::DeviceResult open_replay(runtime::DeviceInfo info, const std::filesyste
     const auto& records = recorded.records;
     if (records.empty()) return {nullptr, fmt::format("{}: the trace holds no tick", trace.string())};
 
-    if (records.size() > 1) {
-        const double ticks = static_cast<double>(records.back().tick) - static_cast<double>(records.front().tick);
-        const double recorded_hz = ticks / (records.back().time_s - records.front().time_s);
-        if (!(std::abs(recorded_hz / rate_hz - 1) < 1e-6))
-            return {
-                nullptr,
-                fmt::format("{}: recorded at {:.6g} Hz, but the scene's servo runs at {:.6g} Hz; set rate_hz = {:.6g}",
-                            trace.string(), recorded_hz, rate_hz, recorded_hz)};
-    }
+    const Steps steps = steps_of(records, rate_hz);
+    if (!steps.error.empty()) return {nullptr, fmt::format("{}: {}", trace.string(), steps.error)};
 
     std::vector<runtime::DevicePose> poses;
     poses.reserve(records.size());
@@ -48,7 +81,7 @@ runtime::DeviceResult open_replay(runtime::DeviceInfo info, const std::filesyste
         const double sum = glm::dot(record.tip_m, glm::dvec3(1)) + glm::dot(record.tail_m, glm::dvec3(1));
         if (!std::isfinite(sum))
             return {nullptr, fmt::format("{}: the pose of tick {} is not finite", trace.string(), record.tick)};
-        poses.push_back({record.tip_m, record.tail_m});
+        poses.push_back({record.tip_m, record.tail_m, steps.periods[poses.size()], record.interrupted != 0});
     }
     return {std::make_unique<ReplayDevice>(std::move(info), std::move(poses)), {}};
 }

@@ -1,6 +1,7 @@
 // A recorded hand: gives the poses of a trace one by one, whatever force it is sent, and then has finished.
 //
-// What is computed from equal poses is equal: a run on the same scene repeats the recorded forces bit for bit.
+// What is computed from equal poses is equal: a run on the same scene repeats the recorded forces bit for bit, those
+// after missed deadlines and interruptions included.
 #pragma once
 
 #include "runtime/haptic_device.h"

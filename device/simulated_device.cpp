@@ -42,6 +42,7 @@ runtime::DeviceStatus SimulatedDevice::read(runtime::DevicePose& pose) noexcept
     if (std::exchange(started_, true)) advance_period();
     pose.tip_m = quantized(position_m_, model_.encoder_m);
     pose.tail_m = pose.tip_m + tail_from_tip_m_;
+    pose.periods = 1;
     return runtime::DeviceStatus::ok;
 }
 

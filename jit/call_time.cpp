@@ -2,10 +2,22 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
 #include <random>
 #include <vector>
 
 namespace haptel::jit {
+
+namespace {
+
+std::string microseconds(double seconds)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g us", seconds * 1e6);
+    return text;
+}
+
+} // namespace
 
 double median_call_s(const TextureBinding& binding, const double (&box_minimum_m)[3], const double (&box_maximum_m)[3])
 {
@@ -30,6 +42,17 @@ double median_call_s(const TextureBinding& binding, const double (&box_minimum_m
     const auto middle = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() / 2);
     std::nth_element(times_s.begin(), middle, times_s.end());
     return *middle;
+}
+
+std::string too_slow(const TextureBinding& binding, const TextureRequest& request)
+{
+    if (request.servo_period_s <= 0) return {};
+    const double most_s = share_of_period_max * request.servo_period_s;
+    const double call_s = median_call_s(binding, request.box_minimum_m, request.box_maximum_m);
+    if (call_s <= most_s) return {};
+    return std::string("texture '") + binding.texture->name + "' takes " + microseconds(call_s) +
+           " per call (median), more than the " + microseconds(most_s) + " that a servo period of " +
+           microseconds(request.servo_period_s) + " leaves for it";
 }
 
 } // namespace haptel::jit

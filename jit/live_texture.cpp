@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <mutex>
 #include <optional>
 #include <vector>
@@ -19,13 +18,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 // Between deleting the old file and making the new one, some editors take a while.
 constexpr auto absence_forgiven = std::chrono::milliseconds(500);
-
-std::string microseconds(double seconds)
-{
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g us", seconds * 1e6);
-    return text;
-}
 
 bool is_unreadable(const CompiledTextures& compiled)
 {
@@ -136,13 +128,9 @@ void LiveTexture::Client::make_and_publish(const CompiledTextures& compiled)
     const TextureRequest fitting = request_for(*compiled.program, said);
     TextureResult result = make_binding(compiled.program, reference.texture, fitting);
     if (!result.binding) return report(said + lang::printable(reference.file) + ": " + result.diagnostics);
-    const double call_s = median_call_s(*result.binding, request.box_minimum_m, request.box_maximum_m);
-    if (call_s > options.share_of_period_max * options.servo_period_s)
-        return report(said + lang::printable(reference.file) + ": error: texture '" + result.binding->texture->name +
-                      "' takes " + microseconds(call_s) + " per call (median), more than the " +
-                      microseconds(options.share_of_period_max * options.servo_period_s) + " that a servo period of " +
-                      microseconds(options.servo_period_s) +
-                      " leaves for it; the old texture stays\n  hint: fewer octaves or terms\n");
+    if (const std::string slow = too_slow(*result.binding, request); !slow.empty())
+        return report(said + lang::printable(reference.file) + ": error: " + slow +
+                      "; the old texture stays\n  hint: fewer octaves or terms\n");
     callbacks.publish(std::move(*result.binding));
     report(std::move(said));
 }

@@ -2,8 +2,8 @@
 //
 // All live textures of a process share one compile thread: it watches the files, compiles, times the result and calls
 // back; the servo never waits for it. A file that is broken, gone, half written or too slow leaves the old texture in
-// the hand and is reported. Parameter values survive by name and type: one that does not fit the new text is set aside
-// and comes back when it fits again.
+// the hand and is reported (too slow: for the request's servo, jit/call_time.h). Parameter values survive by name and
+// type: one that does not fit the new text is set aside and comes back when it fits again.
 #pragma once
 
 #include "jit/program_cache.h"
@@ -17,8 +17,6 @@
 namespace haptel::jit {
 
 struct LiveOptions {
-    double servo_period_s = 1e-3;
-    double share_of_period_max = 0.2; // a texture whose median call takes more of the period is refused
     std::shared_ptr<ProgramCache> cache = ProgramCache::shared();
 };
 

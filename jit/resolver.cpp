@@ -1,5 +1,6 @@
 #include "jit/resolver.h"
 
+#include "jit/call_time.h"
 #include "jit/source_file.h"
 
 namespace haptel::jit {
@@ -12,6 +13,9 @@ TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache, Unbounded unb
         std::string said = compiled->rendered();
         if (!compiled->program) return {std::nullopt, std::move(said)};
         TextureResult result = make_binding(compiled->program, reference.texture, request, unbounded);
+        if (const std::string slow = result.binding ? too_slow(*result.binding, request) : ""; !slow.empty())
+            return {std::nullopt, said + lang::printable(reference.file) + ": error: " + slow +
+                                      "\n  hint: fewer octaves or terms, or a lower rate_hz\n"};
         if (!result.diagnostics.empty()) said += lang::printable(reference.file) + ": " + result.diagnostics;
         result.diagnostics = std::move(said);
         return result;

@@ -7,7 +7,8 @@
 namespace haptel::jit {
 
 // Resolves "PATH.haptel:NAME", or "PATH.haptel" where the file holds one texture. The result's diagnostics start with
-// the file's name; warnings stand beside a binding. Any thread.
+// the file's name; warnings stand beside a binding. A texture that is too slow for the request's servo is refused with
+// the figure. Any thread.
 TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache = ProgramCache::shared(),
                               Unbounded unbounded = Unbounded::refused);
 

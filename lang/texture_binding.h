@@ -32,7 +32,8 @@ struct TextureRequest {
     std::vector<std::pair<std::string, std::string>> parameters; // name, value as written: "60um", "5"
     double box_minimum_m[3] = {0, 0, 0};                         // the object's bounding box, object space
     double box_maximum_m[3] = {0, 0, 0};
-    double footprint_m = 0; // smallest wavelength worth rendering
+    double footprint_m = 0;    // smallest wavelength worth rendering
+    double servo_period_s = 0; // of the servo that will call it and must not be held up; 0: none
 };
 
 // Either a binding or none and the reason. Diagnostics may hold warnings beside a binding; rendered as text, ready to

@@ -16,6 +16,11 @@ namespace haptel::runtime {
 struct DevicePose {
     glm::dvec3 tip_m{0};  // haptic interface point
     glm::dvec3 tail_m{0}; // other end of the stylus; equals tip_m for devices that report no orientation
+    // Whole periods that the hand has lived since the pose before. 0: as many as went by on the servo's clock, which is
+    // right for a hand of flesh. A simulated hand lives one per read; a replayed one says what was recorded.
+    uint64_t periods = 0;
+    // No force was on the hand since the pose before: it must not come back at once.
+    bool interrupted = false;
 };
 
 struct DeviceInfo {

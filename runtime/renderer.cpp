@@ -52,15 +52,20 @@ uint64_t Renderer::reloads() const noexcept
 TickResult Renderer::tick(const DevicePose& pose) noexcept
 {
     TickResult result;
-    result.time_s = static_cast<double>(ticks_++) * period_s_;
-    for (Touched& touched : objects_) touched.texture.advance(period_s_);
+    const uint64_t periods = std::max(uint64_t{1}, pose.periods);
+    if (std::exchange(started_, true)) period_ += periods;
+    result.time_s = static_cast<double>(period_) * period_s_;
+    for (Touched& touched : objects_) touched.texture.advance(static_cast<double>(periods) * period_s_);
     if (!objects_.empty()) result.binding = objects_.front().texture.to().serial;
     if (!finite(pose.tip_m) || !finite(pose.tail_m)) {
         has_last_tip_ = false;
+        interrupted_ = true;
         result.faults = fault_pose_not_finite;
         return result;
     }
-    update_velocity(pose.tip_m);
+    update_velocity(pose.tip_m, periods);
+    result.interrupted = std::exchange(interrupted_, false) || pose.interrupted;
+    if (result.interrupted) rise_period_ = period_;
 
     bool no_query = true;
     for (Touched& touched : objects_) {
@@ -86,9 +91,11 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     if (!finite(result.unlimited_force_n)) {
         result.unlimited_force_n = glm::dvec3(0);
         result.faults |= fault_force_not_finite;
+        interrupted_ = true;
     }
     const double rise_s = scene_->servo.force_rise_s;
-    const double risen = result.time_s < rise_s ? result.time_s / rise_s : 1.0;
+    const double rising_s = static_cast<double>(period_ - rise_period_) * period_s_;
+    const double risen = rising_s < rise_s ? rising_s / rise_s : 1.0;
     result.force_n = limited(risen * result.unlimited_force_n, force_limit_n_);
     return result;
 }
@@ -118,7 +125,7 @@ Renderer::ObjectForce Renderer::force_of(Touched& touched, const Contact& contac
 
     SurfacePoint at;
     at.p_m = contact.proxy_m;
-    at.time_s = static_cast<double>(ticks_ - 1) * period_s_;
+    at.time_s = static_cast<double>(period_) * period_s_;
     if (texture_reads(touched.texture) & (HAPTEL_READS_NORMAL | HAPTEL_READS_UV))
         at.shading = shade(surface, contact.face, contact.side, contact.barycentric);
     else if (object.force_shading)
@@ -151,9 +158,12 @@ Renderer::ObjectForce Renderer::force_of(Touched& touched, const Contact& contac
     return result;
 }
 
-void Renderer::update_velocity(const glm::dvec3& tip_m) noexcept
+void Renderer::update_velocity(const glm::dvec3& tip_m, uint64_t periods) noexcept
 {
-    if (has_last_tip_) velocity_m_per_s_ += velocity_gain_ * ((tip_m - last_tip_m_) / period_s_ - velocity_m_per_s_);
+    // One period: the same bits as ever. Several: the low-pass as if each of them had seen the mean speed.
+    const double count = static_cast<double>(periods);
+    const double gain = periods == 1 ? velocity_gain_ : 1 - std::pow(1 - velocity_gain_, count);
+    if (has_last_tip_) velocity_m_per_s_ += gain * ((tip_m - last_tip_m_) / (count * period_s_) - velocity_m_per_s_);
     // Speeds may overflow where positions do not, and what is not finite would never leave a low-pass again.
     if (!has_last_tip_ || !finite(velocity_m_per_s_)) velocity_m_per_s_ = glm::dvec3(0);
     last_tip_m_ = tip_m;

@@ -1,9 +1,9 @@
 // One tick of haptic rendering: from the pose of the hand to the force on it.
 //
-// A function of its state, the pose and the period alone - no clock, no thread, no device - so that a run can be
-// repeated bit for bit and tested without any of them. The stages, each skipped when the one before says so: pose
-// check, contact (free-space skip, collision, proxy, friction), force shading, texture, force model, friction and
-// damping, limits. tick() allocates nothing, locks nothing, throws nothing.
+// A function of its state and the pose (with the periods that have passed) alone - no clock, no thread, no device - so
+// that a run can be repeated bit for bit and tested without any of them. The stages, each skipped when the one before
+// says so: pose check, contact (free-space skip, collision, proxy, friction), force shading, texture, force model,
+// friction and damping, limits. tick() allocates nothing, locks nothing, throws nothing.
 #pragma once
 
 #include "runtime/contact.h"
@@ -26,7 +26,8 @@ namespace haptel::runtime {
 // force, however fast the hand comes (Hunt and Crossley 1975 have the same reason for the same product).
 inline constexpr double full_damping_depth_m = 1e-3;
 
-// The hand's velocity is the backward difference of its positions through a one-pole low-pass of this cut-off.
+// The hand's velocity is the backward difference of its positions, over the periods that really passed between them,
+// through a one-pole low-pass of this cut-off.
 inline constexpr double velocity_cutoff_hz = 100;
 
 // Bits of TickResult::faults, beside those of TextureSample::faults.
@@ -36,7 +37,8 @@ enum : uint32_t {
 };
 
 struct TickResult {
-    double time_s = 0;
+    double time_s = 0;        // periods since the first pose, those without a pose included, times the period
+    bool interrupted = false; // the force rises anew from here on
     glm::dvec3 force_n{0};    // on the hand, world frame, after rise and limits; finite and never above the limit
     glm::dvec3 torque_n_m{0}; // about the tip; 0 as long as only the tip presses
     glm::dvec3 unlimited_force_n{0};
@@ -52,7 +54,10 @@ public:
     // device_force_max_n: what the motors can do; 0: unknown, the scene's limit alone holds.
     explicit Renderer(std::shared_ptr<const Scene> scene, double device_force_max_n = 0);
 
-    // Once per period with the pose of the hand. The first pose puts the probe down where it is.
+    // Once per period with the pose of the hand (once for several where the servo was late: DevicePose::periods, 0 is
+    // taken for 1). The first pose puts the probe down where it is. After the start and after every interruption - the
+    // device had no pose, or one that is not finite, or the force was not finite - the force grows linearly from 0 over
+    // the scene's force_rise_s.
     TickResult tick(const DevicePose& pose) noexcept;
 
     double force_limit_n() const noexcept { return force_limit_n_; }
@@ -80,14 +85,17 @@ private:
     const ContactCounters& counters(const Touched& touched) const noexcept;
     const Contact& update_contact(Touched& touched, const DevicePose& pose) const noexcept;
     ObjectForce force_of(Touched& touched, const Contact& contact) const noexcept;
-    void update_velocity(const glm::dvec3& tip_m) noexcept;
+    void update_velocity(const glm::dvec3& tip_m, uint64_t periods) noexcept;
 
     std::shared_ptr<const Scene> scene_;
     std::vector<Touched> objects_;
     double period_s_;
     double force_limit_n_;
     double velocity_gain_; // of the low-pass
-    uint64_t ticks_ = 0;
+    bool started_ = false;
+    uint64_t period_ = 0;      // number of this tick's period, 0 at the first pose
+    uint64_t rise_period_ = 0; // the force rises from this one on
+    bool interrupted_ = false; // the tick before sent no force, for a fault
     SkippedStages skipped_;
     bool has_last_tip_ = false;
     glm::dvec3 last_tip_m_{0};

@@ -58,7 +58,7 @@ struct ServoSettings {
     ForceModel force_model = ForceModel::displaced;
     double force_limit_n = 7;   // > 0; the device's own limit applies too
     double v_max_m_per_s = 0.3; // hand speed that textures are band-limited for
-    double force_rise_s = 0.1;  // forces grow linearly from 0 over this time after start
+    double force_rise_s = 0.1;  // forces grow linearly from 0 over this time after start or interruption
 };
 
 struct Scene {

@@ -98,7 +98,8 @@ void ServoThread::loop()
                 std::this_thread::yield();
                 continue;
             }
-            tick();
+            ++periods_since_pose_;
+            if (!tick()) break;
             ++periods;
             deadline_ns += period_ns;
             if (wall) {
@@ -107,6 +108,7 @@ void ServoThread::loop()
                     const int64_t missed = late_ns / period_ns + 1;
                     report_.missed_deadlines += static_cast<uint64_t>(missed);
                     periods += static_cast<uint64_t>(missed);
+                    periods_since_pose_ += static_cast<uint64_t>(missed);
                     deadline_ns += missed * period_ns;
                 }
             }
@@ -115,7 +117,7 @@ void ServoThread::loop()
     report_.seconds = static_cast<double>(periods) / rate_hz;
 }
 
-void ServoThread::tick()
+bool ServoThread::tick()
 {
     const uint64_t allocations_before = options_.allocation_count ? options_.allocation_count() : 0;
 
@@ -123,12 +125,17 @@ void ServoThread::tick()
     const DeviceStatus read = device_->read(pose);
     if (read == DeviceStatus::not_ready) {
         device_->write(glm::dvec3(0), glm::dvec3(0));
-        return;
+        interrupted_ = true;
+        return true;
     }
     if (read != DeviceStatus::ok) {
         end(read == DeviceStatus::finished ? ServoState::finished : ServoState::faulted, reason_of(read));
-        return;
+        return false;
     }
+    if (pose.periods == 0) pose.periods = periods_since_pose_;
+    pose.interrupted = pose.interrupted || interrupted_;
+    periods_since_pose_ = 0;
+    interrupted_ = false;
 
     const int64_t start_ns = monotonic_ns();
     const TickResult result = renderer_.tick(pose);
@@ -139,6 +146,7 @@ void ServoThread::tick()
     if (options_.allocation_count) *report_.allocations_in_tick += options_.allocation_count() - allocations_before;
     if (written != DeviceStatus::ok && written != DeviceStatus::not_ready)
         end(written == DeviceStatus::finished ? ServoState::finished : ServoState::faulted, reason_of(written));
+    return true;
 }
 
 void ServoThread::record(const DevicePose& pose, const TickResult& result, uint64_t compute_ns)
@@ -163,6 +171,7 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
     TickRecord row;
     row.tick = report_.ticks++;
     row.time_s = result.time_s;
+    row.interrupted = result.interrupted;
     row.tip_m = pose.tip_m;
     row.tail_m = pose.tail_m;
     row.force_n = result.force_n;

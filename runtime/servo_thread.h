@@ -54,7 +54,7 @@ public:
 private:
     void run();
     void loop();
-    void tick();
+    bool tick(); // false: there was nothing left to live through, as after the end of a recording
     void record(const DevicePose& pose, const TickResult& result, uint64_t compute_ns);
     void end(ServoState state, const char* reason);
 
@@ -71,6 +71,8 @@ private:
     // Of the servo thread only.
     glm::dvec3 last_tip_m_{0}, last_force_n_{0};
     bool has_last_tip_ = false;
+    uint64_t periods_since_pose_ = 0; // of the device; missed deadlines included
+    bool interrupted_ = false;        // the device was not ready since
     double force_squared_sum_ = 0;
 };
 

@@ -15,16 +15,17 @@ namespace haptel::runtime {
 
 // One tick as it was felt. World frame, SI.
 struct TickRecord {
-    uint64_t tick = 0;
-    double time_s = 0; // tick times the period, whatever the wall clock says
+    uint64_t tick = 0; // without gaps: what is missing was dropped on the way to the reader
+    double time_s = 0; // periods since the first pose times the period; steps over those without a pose
     glm::dvec3 tip_m{0}, tail_m{0};
-    glm::dvec3 force_n{0};   // as sent to the device, after all limits
-    uint32_t contact = 0;    // number of objects touched
-    double depth_m = 0;      // below the base surface, of the deepest object touched
-    double height_m = 0;     // of its texture, as published (not shifted to the envelope)
-    uint64_t compute_ns = 0; // pose in hand to force computed
-    uint64_t binding = 0;    // serial of the texture that is felt, or that is being faded in
-    uint32_t faults = 0;     // bits of TickResult::faults
+    glm::dvec3 force_n{0};    // as sent to the device, after all limits
+    uint32_t contact = 0;     // number of objects touched
+    double depth_m = 0;       // below the base surface, of the deepest object touched
+    double height_m = 0;      // of its texture, as published (not shifted to the envelope)
+    uint64_t compute_ns = 0;  // pose in hand to force computed
+    uint64_t binding = 0;     // serial of the texture that is felt, or that is being faded in
+    uint32_t faults = 0;      // bits of TickResult::faults
+    uint32_t interrupted = 0; // 1: no force was on the hand since the tick before, and it rises anew
 };
 
 // Lock-free ring of one writer and one reader.

@@ -8,10 +8,7 @@
 namespace haptel::tools {
 
 struct ExploreTextures::Watcher {
-    Watcher(TextureRequest request, jit::LiveCallbacks callbacks, const jit::LiveOptions& options)
-        : texture(std::move(request), std::move(callbacks), options)
-    {
-    }
+    Watcher(TextureRequest request, jit::LiveCallbacks callbacks) : texture(std::move(request), std::move(callbacks)) {}
     jit::LiveTexture texture;
 };
 
@@ -29,8 +26,6 @@ TextureResolver ExploreTextures::resolver()
 
 void ExploreTextures::watch(const runtime::Scene& scene)
 {
-    jit::LiveOptions options;
-    options.servo_period_s = 1 / scene.servo.rate_hz;
     for (const runtime::SceneObject& object : scene.objects) {
         if (!object.request) continue;
         jit::LiveCallbacks callbacks;
@@ -40,7 +35,7 @@ void ExploreTextures::watch(const runtime::Scene& scene)
             say(fault.empty() ? name + ": reloaded\n" : name + ": not used: " + fault + "\n");
         };
         callbacks.report = [this](std::string_view diagnostics) { say(std::string(diagnostics)); };
-        watchers_.push_back(std::make_unique<Watcher>(*object.request, std::move(callbacks), options));
+        watchers_.push_back(std::make_unique<Watcher>(*object.request, std::move(callbacks)));
     }
 }
 

@@ -224,6 +224,7 @@ void load_texture(ObjectText& text, const SceneText& scene, const std::filesyste
         request.box_maximum_m[i] = text.object.surface->box_maximum_m[i];
     }
     request.footprint_m = 2 * scene.servo.v_max_m_per_s / scene.servo.rate_hz;
+    request.servo_period_s = 1 / scene.servo.rate_hz;
 
     TextureResult result = textures(request);
     const std::string fault = result.binding ? binding_fault(*result.binding) : "";

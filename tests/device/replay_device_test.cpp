@@ -1,6 +1,8 @@
 #include "device/device_factory.h"
 #include "runtime/recording.h"
+#include "runtime/renderer.h"
 #include "tests/support/catch.h"
+#include "tests/support/touch_scenes.h"
 
 #include <cmath>
 #include <filesystem>
@@ -9,6 +11,7 @@
 #include <unistd.h>
 #include <vector>
 
+using namespace haptel;
 using namespace haptel::device;
 using namespace haptel::runtime;
 
@@ -71,6 +74,44 @@ TEST_CASE("a replay gives the recorded poses bit for bit and then has finished")
     CHECK(pose.tip_m == records.back().tip_m);
 }
 
+TEST_CASE("a replay repeats the forces after missed deadlines and interruptions")
+{
+    // A hand that presses through the plane at changing speed; the servo that felt it was late and interrupted.
+    runtime::Scene scene = tests::bare_scene(tests::plane_mesh());
+    scene.objects[0].material = {1000, 5, 0.3, 0.2};
+    scene.servo.force_rise_s = 0.02;
+    const auto touched = tests::shared(std::move(scene));
+    Renderer felt(touched), repeated(touched);
+    std::vector<TickRecord> records;
+    double time = 0;
+    for (uint64_t i = 0; i < 300; ++i) {
+        DevicePose pose = tests::at(1e-4 * std::sin(time / 9), 0, 1e-3 * std::cos(time / 30));
+        pose.periods = i % 7 == 0 ? 1 + i % 5 : 1;
+        pose.interrupted = i % 90 == 89;
+        time += static_cast<double>(pose.periods);
+        const TickResult result = felt.tick(pose);
+        TickRecord record;
+        record.tick = i;
+        record.time_s = result.time_s;
+        record.tip_m = record.tail_m = pose.tip_m;
+        record.force_n = result.force_n;
+        record.interrupted = result.interrupted;
+        records.push_back(record);
+    }
+    const TraceFile file;
+    file.write(records);
+    const DeviceResult opened = file.open();
+    INFO(opened.error);
+    REQUIRE(opened.device);
+    DevicePose pose;
+    for (const TickRecord& record : records) {
+        REQUIRE(opened.device->read(pose) == DeviceStatus::ok);
+        const TickResult result = repeated.tick(pose);
+        REQUIRE(result.force_n == record.force_n);
+        REQUIRE(result.time_s == record.time_s);
+    }
+}
+
 TEST_CASE("a trace that cannot be replayed is refused with the reason")
 {
     const TraceFile file;
@@ -82,6 +123,11 @@ TEST_CASE("a trace that cannot be replayed is refused with the reason")
     auto records = spiral(10);
     file.write(records);
     CHECK(file.open(2000).error.find("recorded at 1000 Hz") != std::string::npos);
+
+    records[5].time_s = 0.001;
+    file.write(records);
+    CHECK(file.open().error.find("tick 5 at 0.001 s follows tick 4 at 0.004 s") != std::string::npos);
+    records[5].time_s = 0.005;
 
     records[4].tail_m.y = std::numeric_limits<double>::quiet_NaN();
     file.write(records);

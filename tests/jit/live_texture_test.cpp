@@ -28,8 +28,8 @@ public:
         request.parameters = std::move(parameters);
         jit::LiveOptions options;
         options.cache = std::make_shared<jit::ProgramCache>();
-        options.servo_period_s = servo_period_s;
         jit::make_resolver(options.cache)(request); // what a scene has done before
+        request.servo_period_s = servo_period_s;
         jit::LiveCallbacks callbacks;
         callbacks.publish = [this](TextureBinding binding) {
             const std::lock_guard lock(mutex);

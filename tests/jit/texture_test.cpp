@@ -271,6 +271,25 @@ TEST_CASE("many programs, from several threads, each its own")
     CHECK(jit::programs_alive() == before);
 }
 
+TEST_CASE("a texture too slow for the servo of its request is refused with the figure, from its first binding on")
+{
+    const test::Folder folder;
+    folder.write("slow.haptel", "texture slow() { float h = 0.0; for (int i = 0; i < 2000; ++i)"
+                                " h += sin(p.x / 1mm + float(i)); return clamp(1um * h, -1mm, 1mm); }");
+    const TextureResolver resolve = jit::make_resolver(std::make_shared<jit::ProgramCache>());
+    TextureRequest request = request_over(0.05);
+    request.reference = folder.file("slow.haptel:slow");
+    CHECK(resolve(request).binding); // no servo waits
+    request.servo_period_s = 1;
+    CHECK(resolve(request).binding);
+    request.servo_period_s = 1e-6; // 2000 sines and cosines in 0.2 us
+    const TextureResult refused = resolve(request);
+    CHECK_FALSE(refused.binding);
+    INFO(refused.diagnostics);
+    CHECK(contains(refused.diagnostics, "slow.haptel: error: texture 'slow' takes "));
+    CHECK(contains(refused.diagnostics, "per call (median), more than the 0.2 us that a servo period of 1 us"));
+}
+
 TEST_CASE("the resolver finds textures by reference, and explains what it does not find")
 {
     const test::Folder folder;

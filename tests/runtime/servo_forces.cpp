@@ -329,6 +329,56 @@ TEST_CASE("forces rise from zero after the start")
     }
 }
 
+TEST_CASE("after missed deadlines damping knows the speed that was, not a multiple of it")
+{
+    constexpr double speed_m_per_s = 0.02, damping = 5, stiffness = 1000;
+    for (const uint64_t late : {uint64_t{1}, uint64_t{2}, uint64_t{10}}) {
+        Scene scene = bare_scene(plane_mesh());
+        scene.objects[0].material.damping_n_s_per_m = damping;
+        Renderer renderer(shared(std::move(scene)));
+        double period = 0, z = 2e-3;
+        const auto go_on = [&](uint64_t periods) {
+            period += static_cast<double>(periods);
+            z = 2e-3 - speed_m_per_s * period * 1e-3;
+            DevicePose pose = at(0, 0, z);
+            pose.periods = periods;
+            return renderer.tick(pose);
+        };
+        for (int i = 0; i < 160; ++i) go_on(1); // 1.2 mm below, full damping
+        const TickResult result = go_on(late);
+        CHECK(std::abs(result.force_n.z - (stiffness * -z + damping * speed_m_per_s)) < 1e-9);
+        CHECK(std::abs(result.time_s - (159 + static_cast<double>(late)) * 1e-3) < 1e-12);
+    }
+}
+
+TEST_CASE("forces rise from zero after every interruption")
+{
+    Scene scene = bare_scene(plane_mesh());
+    scene.servo.force_rise_s = 0.05;
+    Renderer renderer(shared(std::move(scene)));
+    renderer.tick(at(0, 0, 1e-3));
+    const auto pressed = at(0, 0, -1e-3);
+    for (int i = 0; i < 100; ++i) renderer.tick(pressed);
+    REQUIRE(std::abs(renderer.tick(pressed).force_n.z - 1) < 1e-9);
+    DevicePose back = pressed; // the device was away for 30 periods
+    back.periods = 30;
+    back.interrupted = true;
+    for (const bool away : {true, false}) {
+        if (!away) renderer.tick(at(not_a_number, 0, 0));
+        const TickResult first = renderer.tick(away ? back : pressed);
+        CHECK(first.interrupted);
+        CHECK(first.force_n == glm::dvec3(0));
+        for (int i = 1; i < 60; ++i) {
+            const TickResult result = renderer.tick(pressed);
+            CHECK_FALSE(result.interrupted);
+            CHECK(std::abs(result.force_n.z - std::min(1.0, i / 50.0)) < 1e-9);
+        }
+    }
+    // Missed deadlines are none: the last force was held meanwhile.
+    back.interrupted = false;
+    CHECK(std::abs(renderer.tick(back).force_n.z - 1) < 1e-9);
+}
+
 TEST_CASE("force shading makes an icosphere of 5120 triangles a sphere")
 {
     Mesh mesh = make_icosphere(4);

@@ -164,6 +164,7 @@ TEST_CASE("whatever ends a device ends the run with zero force and the reason")
         CHECK(report.state == expected.state);
         CHECK(report.stop_reason == expected.reason);
         CHECK(report.ticks == 250);
+        CHECK(report.seconds == 0.25); // the period of the read that found the end is not one of them
         CHECK(seen->last_force_n == glm::dvec3(0));
         CHECK(seen->stopped);
     }
@@ -183,6 +184,57 @@ TEST_CASE("a device that is not ready is sent zero force and waited for")
     CHECK(report.ticks == 200);
     CHECK(report.seconds == 0.3);
     CHECK(report.faults == 0);
+}
+
+TEST_CASE("a device that is away for a while comes back to a force that rises")
+{
+    Scene scene = textured_plane();
+    scene.servo.force_rise_s = 0.05;
+    std::vector<TickRecord> records;
+    run(std::make_unique<ScriptedDevice>([](uint64_t tick, DevicePose& pose) {
+            pose = at(0.001, 0.002, tick < 10 ? 1e-3 : -1e-3);
+            return tick >= 200 && tick < 230 ? DeviceStatus::not_ready : DeviceStatus::ok;
+        }),
+        as_fast_as_possible(0.5), &records, std::move(scene));
+    REQUIRE(records.size() == 470);
+    const double full_n = glm::length(records[199].force_n);
+    REQUIRE(full_n > 0.5);
+    CHECK(std::abs(records[199].time_s - 0.199) < 1e-12);
+    CHECK(std::abs(records[200].time_s - 0.230) < 1e-12);
+    CHECK(records[200].interrupted == 1);
+    CHECK(records[201].interrupted == 0);
+    for (std::size_t i = 200; i < 470; ++i)
+        CHECK(std::abs(glm::length(records[i].force_n) - full_n * std::min(1.0, double(i - 200) / 50)) < 1e-9);
+}
+
+TEST_CASE("missed deadlines stand in the trace's time, not for a hand that has a time of its own")
+{
+    for (const bool own_time : {false, true}) {
+        std::vector<TickRecord> records;
+        ServoOptions options;
+        options.seconds = 0.1;
+        options.ask_for_real_time = false;
+        const ServoReport report =
+            run(std::make_unique<ScriptedDevice>([&](uint64_t tick, DevicePose& pose) {
+                    if (tick == 10)
+                        for (const int64_t until = monotonic_ns() + 3'500'000; monotonic_ns() < until;) {
+                        }
+                    const DeviceStatus status = stroke(tick, pose);
+                    if (own_time) pose.periods = 1;
+                    return status;
+                }),
+                options, &records);
+        REQUIRE(report.missed_deadlines >= 3);
+        REQUIRE(records.size() == report.ticks);
+        const double last = std::round(records.back().time_s * 1e3); // number of the last tick's period
+        if (own_time) {
+            CHECK(last == static_cast<double>(report.ticks - 1));
+        } else {
+            CHECK(records[11].time_s - records[10].time_s > 3.9e-3);
+            CHECK(last >= static_cast<double>(report.ticks - 1 + 3));
+            CHECK(last <= static_cast<double>(report.ticks - 1 + report.missed_deadlines)); // the last one may be late
+        }
+    }
 }
 
 TEST_CASE("a tick with a broken pose is counted and the run goes on")

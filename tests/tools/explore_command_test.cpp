@@ -142,6 +142,13 @@ TEST_CASE("what is wrong with a scene is said, with its place, and is exit code 
     broken.folder.write("grooves.haptel", "texture grooves() { return 1mm * sinn(p.x); }");
     CHECK(contains(refused(broken), "grooves.haptel:1:"));
     CHECK(run_command("explore /no/such/scene.toml").code == 1);
+
+    const Stage slow("[servo]\nrate_hz = 100000\n"); // 2000 sines in a fifth of 10 us
+    slow.folder.write("grooves.haptel", "texture grooves() { float h = 0.0; for (int i = 0; i < 2000; ++i)"
+                                        " h += sin(p.x / 1mm + float(i)); return clamp(1um * h, -1mm, 1mm); }");
+    const std::string why = refused(slow);
+    INFO(why);
+    CHECK(contains(why, "per call (median), more than the 2 us that a servo period of 10 us leaves for it"));
 }
 
 TEST_CASE("a folder that cannot be written is an error before anything runs")
