@@ -1,0 +1,27 @@
+#include "bench/timing.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace haptel::bench {
+
+double milliseconds(const std::function<void()>& work)
+{
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+Times summary(std::vector<double> times_ms)
+{
+    if (times_ms.empty()) return {};
+    std::sort(times_ms.begin(), times_ms.end());
+    const auto rank = [&](double share) {
+        const auto index = static_cast<size_t>(std::ceil(share * static_cast<double>(times_ms.size())));
+        return times_ms[std::max<size_t>(index, 1) - 1];
+    };
+    return {rank(0.5), rank(0.99)};
+}
+
+} // namespace haptel::bench
