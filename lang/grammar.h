@@ -92,6 +92,9 @@ private:
     ast::StatementPtr make_statement(Span where, Node node);
 };
 
+// Of a binary operator, higher binds tighter; 0 for any other token.
+int precedence_of(Token token);
+
 bool is_own_type(std::string_view word);
 // Those of other languages too.
 bool is_type_word(std::string_view word);

@@ -46,6 +46,12 @@ const Operator* operator_of(Token token)
 
 } // namespace
 
+int precedence_of(Token token)
+{
+    const Operator* found = operator_of(token);
+    return found ? found->precedence : 0;
+}
+
 // expression = conditional
 ExpressionPtr Grammar::expression()
 {
