@@ -1,6 +1,6 @@
 // What the checker says, word for word and to the column.
 #include "lang/compile.h"
-#include "tests/lang/golden.h"
+#include "tests/conformance/case.h"
 #include "tests/support/catch.h"
 
 #include <algorithm>
@@ -35,7 +35,7 @@ TEST_CASE("golden: a wrong, a missing and an unexpected finding are all noticed"
     wrong_column.replace(wrong_column.find("26"), 2, "27");
     wrong_hint.replace(wrong_hint.find("write float(b)"), 14, "write float(c)");
     const std::string both =
-        "unexpected: 1:26 error: expected float from 'f', found bool [type-mismatch] = write float(b)\n";
+        "unexpected: 1:26-27 error: expected float from 'f', found bool [type-mismatch] = write float(b)\n";
     CHECK(golden_differences(wrong_column) == both + "missing: 1:27 error: expected float from 'f', found bool "
                                                      "[type-mismatch] = write float(b)\n");
     CHECK(golden_differences(wrong_hint) == both + "missing: 1:26 error: expected float from 'f', found bool "
