@@ -29,6 +29,12 @@ std::string MeshReport::warning() const
     return text;
 }
 
+std::string MeshReport::note() const
+{
+    if (border_edges == 0) return {};
+    return "open mesh: " + std::to_string(border_edges) + " border edges, past which a hand gets behind the surface";
+}
+
 SurfaceResult build_surface(const Mesh& mesh)
 {
     SurfaceResult result;

@@ -35,6 +35,7 @@ struct MeshReport {
 
     bool repaired() const { return indices_out_of_range + not_finite + degenerate + duplicate > 0; }
     std::string warning() const; // one line for the user; empty when nothing was dropped and nothing is pierced
+    std::string note() const;    // what is no fault but good to know: that the mesh is open; or empty
 };
 
 // One side of one edge of one face, in 32 bits. Edge i runs from corner i to corner i + 1.

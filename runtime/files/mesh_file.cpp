@@ -1,6 +1,8 @@
 #include "runtime/files/mesh_file.h"
 
+#include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
+#include <assimp/LogStream.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -9,6 +11,7 @@
 #include <cctype>
 #include <exception>
 #include <limits>
+#include <mutex>
 #include <system_error>
 
 namespace haptel::runtime {
@@ -47,6 +50,41 @@ void append(Mesh& mesh, const aiMesh& part, bool with_uv)
     }
 }
 
+// Listens to what assimp says of vertex indices while one file is read: some of its readers put another vertex in the
+// place of one that does not exist, and only log it. The log is assimp's one of the process: files are read one at a
+// time, and a logger that the program has made itself stays.
+class IndexListener final : public Assimp::LogStream {
+public:
+    IndexListener() : lock_(reading_), own_logger_(Assimp::DefaultLogger::isNullLogger())
+    {
+        if (own_logger_) Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
+        Assimp::DefaultLogger::get()->attachStream(this, severities);
+    }
+    ~IndexListener() override
+    {
+        Assimp::DefaultLogger::get()->detachStream(this, severities);
+        if (own_logger_) Assimp::DefaultLogger::kill();
+    }
+
+    void write(const char* message) override
+    {
+        const std::string text = message; // "Error, T0: OFF: Vertex index is out of range"
+        if (!heard_.empty() || lower_case(text).find("vertex index") == std::string::npos) return;
+        const std::size_t prefix = text.find(": ");
+        heard_ = prefix == std::string::npos ? text : text.substr(prefix + 2);
+        while (!heard_.empty() && std::isspace(static_cast<unsigned char>(heard_.back()))) heard_.pop_back();
+    }
+    const std::string& heard() const { return heard_; } // the first one; empty: none
+
+private:
+    static constexpr unsigned severities = Assimp::Logger::Warn | Assimp::Logger::Err;
+    static inline std::mutex reading_;
+
+    std::lock_guard<std::mutex> lock_;
+    bool own_logger_;
+    std::string heard_;
+};
+
 MeshFileResult failed(std::string why)
 {
     MeshFileResult result;
@@ -68,6 +106,7 @@ try {
         return failed("expected a mesh of type .obj, .ply, .stl, .off, .3ds, .dae, .gltf or .glb, found " +
                       (extension.empty() ? "no type" : extension));
 
+    const IndexListener listener;
     Assimp::Importer importer;
     const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
     if (!scene) {
@@ -76,6 +115,8 @@ try {
         return failed(why.starts_with("No output meshes") ? "the file holds no triangle"
                                                           : "the file could not be read: " + why);
     }
+
+    if (!listener.heard().empty()) return failed("the file could not be read: " + listener.heard());
 
     MeshFileResult result;
     bool with_uv = scene->mNumMeshes > 0;

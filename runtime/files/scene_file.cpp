@@ -200,6 +200,8 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, FileMe
         messages.error(text.mesh_at, "mesh `" + text.object.name + "`: " + built.error);
     else if (const std::string warning = built.report.warning(); !warning.empty())
         messages.warning(text.mesh_at, "mesh `" + text.object.name + "`: " + warning);
+    if (const std::string note = built.report.note(); built.surface && !text.mesh.empty() && !note.empty())
+        messages.note(text.mesh_at, "mesh `" + text.object.name + "`: " + note);
     text.object.surface = std::move(built.surface);
 }
 

@@ -15,7 +15,7 @@ namespace haptel::runtime {
 struct LoadedScene {
     std::shared_ptr<const Scene> scene;   // null: see diagnostics
     std::unique_ptr<HapticDevice> device; // null without a scene, or where no factory was given
-    // Errors (then there is no scene) and warnings, ready to print: "FILE:LINE:COLUMN: error: ...", a line each,
+    // Errors (then there is no scene), warnings and notes, ready to print: "FILE:LINE:COLUMN: error: ...", a line each,
     // several at once.
     std::string diagnostics;
 };

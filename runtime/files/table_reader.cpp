@@ -125,6 +125,11 @@ void FileMessages::warning(const toml::source_region& where, const std::string& 
     write(where.begin, "warning", message);
 }
 
+void FileMessages::note(const toml::source_region& where, const std::string& message)
+{
+    write(where.begin, "note", message);
+}
+
 void FileMessages::add(std::string_view text)
 {
     added_ += text;

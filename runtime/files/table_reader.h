@@ -27,6 +27,7 @@ public:
     void error(const toml::source_region& where, const std::string& message);
     void error(const std::string& message); // about the file as a whole
     void warning(const toml::source_region& where, const std::string& message);
+    void note(const toml::source_region& where, const std::string& message);
     void add(std::string_view text); // of somebody else, as it is, after all others
 
     bool any_error() const { return any_error_; }

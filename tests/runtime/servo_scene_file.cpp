@@ -71,6 +71,7 @@ std::string diagnostics_of(std::string_view toml, const TextureResolver& texture
         "beyond.ply",
         "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face "
         "2\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n4 0 0\n0 3 0\n3 0 1 2\n3 0 1 7\n");
+    folder.write("beyond.off", "OFF\n3 2 0\n0 0 0\n4 0 0\n0 3 0\n3 0 1 2\n3 0 1 9\n");
     folder.write("note.txt", "hello");
     const LoadedScene loaded = load_scene(folder.write("scene.toml", toml), textures, devices);
     std::string text = loaded.diagnostics;
@@ -154,7 +155,9 @@ shape = "icosphere"
             device = request;
             return open_scripted(request);
         });
-    CHECK(loaded.diagnostics == "rock.haptel:1:1: warning: harmless\n");
+    CHECK(loaded.diagnostics == (folder.path() / "scene.toml").string() +
+                                    ":18:8: note: mesh `triangle.obj`: open mesh: 3 border edges, past which a hand "
+                                    "gets behind the surface\nrock.haptel:1:1: warning: harmless\n");
 
     const Scene& scene = *loaded.scene;
     CHECK(scene.probe.kind == ProbeKind::stylus);
@@ -322,7 +325,11 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "scene.toml:2:8: error: mesh `beyond.obj`: the file could not be read: OBJ: vertex index out of range\n"},
         {"[[object]]\nmesh = \"beyond.ply\"\n",
          "scene.toml:2:8: warning: mesh `beyond.ply`: dropped triangles: 1 with a vertex index that does not exist (of "
-         "2)\n"},
+         "2)\n"
+         "scene.toml:2:8: note: mesh `beyond.ply`: open mesh: 3 border edges, past which a hand gets behind the "
+         "surface\n"},
+        {"[[object]]\nmesh = \"beyond.off\"\n",
+         "scene.toml:2:8: error: mesh `beyond.off`: the file could not be read: OFF: Vertex index is out of range\n"},
         {"[[object]]\nmesh = \"garbage.obj\"\n", nullptr},
         {"[[object]]\nmesh = \"note.txt\"\n",
          "scene.toml:2:8: error: mesh `note.txt`: expected a mesh of type .obj, .ply, .stl, .off, .3ds, .dae, .gltf or "
@@ -398,6 +405,19 @@ TEST_CASE("a mended mesh is a warning, with what was mended")
     REQUIRE(loaded.scene);
     CHECK(loaded.scene->objects[0].surface->faces.size() == 1);
     CHECK(loaded.diagnostics.find("scene.toml:2:8: warning: mesh `mended.obj`: ") != std::string::npos);
+}
+
+TEST_CASE("an open mesh is a note with the number of its border edges; a closed one and a shape are not")
+{
+    const Folder folder;
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    const std::string three_faces = "f 1 2 4\nf 2 3 4\nf 3 1 4\n", floor = "f 1 3 2\n";
+    folder.write("open.obj", corners + three_faces);
+    folder.write("closed.obj", corners + three_faces + floor);
+    CHECK(load(folder, "[[object]]\nmesh = \"open.obj\"\n").diagnostics.find("open mesh: 3 border edges") !=
+          std::string::npos);
+    CHECK(load(folder, "[[object]]\nmesh = \"closed.obj\"\n").diagnostics.empty());
+    CHECK(load(folder, "[[object]]\nshape = \"plane\"\n").diagnostics.empty());
 }
 
 TEST_CASE("a mesh is read from every common format")
