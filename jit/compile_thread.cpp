@@ -1,6 +1,7 @@
 #include "jit/compile_thread.h"
 
 #include <algorithm>
+#include <exception>
 #include <optional>
 #include <poll.h>
 #include <sys/eventfd.h>
@@ -16,7 +17,7 @@ namespace {
 constexpr auto settle_after_written = 10ms;
 // After a write without an end: the writer is at work, or keeps the file open.
 constexpr auto settle_after_writing = 150ms;
-constexpr auto settle_longest = 1s; // ... since the first such write
+constexpr auto settle_longest = 1s; // since the first sign, however many follow
 // Looks at the files unasked: for what inotify does not tell, and for folders that were not there.
 constexpr auto unasked = 1s;
 
@@ -72,15 +73,31 @@ bool CompileThread::wait(Clock::time_point until)
     return read(wake_event, &count, sizeof count) == sizeof count;
 }
 
+// Nothing that a client does may end the thread, and with it the process and the force in somebody's hand.
+void CompileThread::update(Client& client)
+try {
+    try {
+        client.update();
+    } catch (const std::exception& problem) {
+        client.failed(problem.what());
+    } catch (...) {
+        client.failed("for a reason that has no words");
+    }
+} catch (...) {
+    // Not even telling went well.
+}
+
 void CompileThread::update_clients()
-{
+try {
     const std::lock_guard lock(clients_mutex);
     std::set<std::string> files;
     for (Client* client : clients) {
-        client->update();
+        update(*client);
         files.merge(client->files());
     }
     watch.watch(files);
+} catch (...) {
+    // No memory for the list of files: the watch is as it was, and this is tried again in a moment.
 }
 
 void CompileThread::run()
@@ -93,9 +110,8 @@ void CompileThread::run()
         const auto now = Clock::now();
         if (change != FileWatch::Change::none) {
             if (!first_change) first_change = now;
-            due = change == FileWatch::Change::written
-                      ? now + settle_after_written
-                      : std::min(now + settle_after_writing, *first_change + settle_longest);
+            const auto settled = change == FileWatch::Change::written ? settle_after_written : settle_after_writing;
+            due = std::min(now + settled, *first_change + settle_longest);
         }
         if (now < due && (!woken || first_change)) continue;
         update_clients();

@@ -9,6 +9,7 @@
 #include <mutex>
 #include <set>
 #include <string>
+#include <string_view>
 #include <thread>
 #include <vector>
 
@@ -21,6 +22,8 @@ public:
         virtual ~Client() = default;
         // Looks whether its file has changed, and acts. On the compile thread.
         virtual void update() = 0;
+        // update() threw: said so, in words. The client stays and is asked again like the others.
+        virtual void failed(std::string_view why) = 0;
         // Files to watch for it, as of its last update.
         virtual std::set<std::string> files() const = 0;
     };
@@ -42,6 +45,7 @@ private:
 
     void run();
     void update_clients();
+    static void update(Client& client);
     bool wait(Clock::time_point until); // true: woken by wake()
 
     FileWatch watch;

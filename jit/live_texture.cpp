@@ -52,6 +52,11 @@ public:
     }
 
     void update() override;
+    void failed(std::string_view why) override
+    {
+        report(lang::printable(reference.file) + ": error: this edit could not be taken up: " + std::string(why) +
+               "; the old texture stays\n");
+    }
     std::set<std::string> files() const override { return watched; }
 
 private:

@@ -7,8 +7,10 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <filesystem>
 #include <fstream>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 
 using namespace haptel;
@@ -32,6 +34,7 @@ public:
         request.servo_period_s = servo_period_s;
         jit::LiveCallbacks callbacks;
         callbacks.publish = [this](TextureBinding binding) {
+            if (refuses) throw std::runtime_error("no room in the hand");
             const std::lock_guard lock(mutex);
             height_um = 1e6 * test::sample_at(binding, {0, 0, 0}).height_m;
             ++published;
@@ -67,6 +70,7 @@ public:
         return reported;
     }
 
+    std::atomic<bool> refuses{false}; // to publish throws
     std::unique_ptr<jit::LiveTexture> texture;
 
 private:
@@ -226,6 +230,43 @@ TEST_CASE("values survive a reload by name and type, and sliders need no compile
     CHECK(follower.says("error"));
     follower.texture->set_parameter("depth", "42um");
     CHECK(follower.comes_to(42)); // of the last texture that compiled
+}
+
+TEST_CASE("an exception in a client is told, and the compile thread goes on with it and the others")
+{
+    const test::Folder folder, other_folder;
+    folder.write("t.haptel", constant("1"));
+    other_folder.write("t.haptel", constant("1"));
+    Follower follower(folder), other(other_folder);
+    follower.refuses = true;
+    folder.write("t.haptel", constant("2"));
+    CHECK(follower.says("t.haptel: error: this edit could not be taken up: no room in the hand"));
+    other_folder.write("t.haptel", constant("3"));
+    CHECK(other.comes_to(3));
+    follower.refuses = false;
+    folder.write("t.haptel", constant("4"));
+    CHECK(follower.comes_to(4));
+}
+
+TEST_CASE("a file that is saved all the time is felt all the same")
+{
+    const test::Folder folder;
+    folder.write("t.haptel", constant("1"));
+    Follower follower(folder);
+    std::atomic<bool> enough{false};
+    const auto keep_touching = [&] { // counts as saved: only the time of the file changes
+        while (!enough) {
+            std::filesystem::last_write_time(folder.file("t.haptel"), std::filesystem::file_time_type::clock::now());
+            std::this_thread::sleep_for(200us);
+        }
+    };
+    std::thread one(keep_touching), another(keep_touching);
+    std::this_thread::sleep_for(50ms);
+    folder.write("t.haptel", constant("2"));
+    CHECK(follower.comes_to(2)); // while it is touched
+    enough = true;
+    one.join();
+    another.join();
 }
 
 TEST_CASE("a texture too slow for the servo is refused with the figure")
