@@ -112,7 +112,7 @@ DeviceResult open_simulated(std::string_view variant, const DeviceRequest& reque
 DeviceResult open_recording(std::string_view file, const DeviceRequest& request)
 {
     if (file.empty()) return refused("replay needs a file: replay:trace.csv");
-    return open_replay({request.name, request.recorded_force_max_n, 0, 0}, file, request.rate_hz);
+    return open_replay(request.name, file, request.rate_hz);
 }
 
 // One entry per driver.

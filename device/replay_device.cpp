@@ -46,6 +46,18 @@ Steps steps_of(const std::vector<runtime::TickRecord>& records, double rate_hz)
                         1 / shortest_s, rate_hz, 1 / shortest_s)};
 }
 
+// Ticks that nobody read in time, or that were cut out, in words; empty: none.
+std::string missing_ticks(const std::filesystem::path& trace, const std::vector<runtime::TickRecord>& records)
+{
+    const uint64_t count = records.back().tick - records.size() + 1; // ticks count from 0 and only grow
+    if (count == 0) return {};
+    uint64_t first = 0;
+    while (records[first].tick == first) ++first;
+    return fmt::format("{}: {} of {} ticks are missing, the first of them tick {}: from there on the forces may differ "
+                       "from those that were felt",
+                       trace.string(), count, records.back().tick + 1, first);
+}
+
 } // namespace
 
 ReplayDevice::ReplayDevice(runtime::DeviceInfo info, std::vector<runtime::DevicePose> poses)
@@ -65,7 +77,7 @@ runtime::DeviceStatus ReplayDevice::write(const glm::dvec3&, const glm::dvec3&) 
     return runtime::DeviceStatus::ok;
 }
 
-runtime::DeviceResult open_replay(runtime::DeviceInfo info, const std::filesystem::path& trace, double rate_hz)
+runtime::DeviceResult open_replay(std::string name, const std::filesystem::path& trace, double rate_hz)
 {
     const runtime::TraceResult recorded = runtime::read_trace(trace);
     if (!recorded.error.empty()) return {nullptr, recorded.error};
@@ -83,7 +95,8 @@ runtime::DeviceResult open_replay(runtime::DeviceInfo info, const std::filesyste
             return {nullptr, fmt::format("{}: the pose of tick {} is not finite", trace.string(), record.tick)};
         poses.push_back({record.tip_m, record.tail_m, steps.periods[poses.size()], record.interrupted != 0});
     }
-    return {std::make_unique<ReplayDevice>(std::move(info), std::move(poses)), {}};
+    runtime::DeviceInfo info{std::move(name), records.front().device_force_max_n, 0, 0};
+    return {std::make_unique<ReplayDevice>(std::move(info), std::move(poses)), {}, missing_ticks(trace, records)};
 }
 
 } // namespace haptel::device

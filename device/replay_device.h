@@ -8,6 +8,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 namespace haptel::device {
@@ -28,7 +29,7 @@ private:
 };
 
 // Reads trace.csv. An error if the file is no trace, is empty, holds a pose that is not finite or was recorded at
-// another rate than `rate_hz`.
-runtime::DeviceResult open_replay(runtime::DeviceInfo info, const std::filesystem::path& trace, double rate_hz);
+// another rate than `rate_hz`; a warning if ticks are missing in it. The device can do what the recorded one could.
+runtime::DeviceResult open_replay(std::string name, const std::filesystem::path& trace, double rate_hz);
 
 } // namespace haptel::device

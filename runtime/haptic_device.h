@@ -65,7 +65,6 @@ struct DeviceRequest {
     uint64_t seed = 1;
     double rate_hz = 1000;
     double stylus_length_m = 0;                    // 0: point probe
-    double recorded_force_max_n = 0;               // replay: of the device that was recorded; 0: unknown
     glm::dvec3 box_minimum_m{0}, box_maximum_m{0}; // of the object that the stroke explores, world frame
     // First hit from +z at (x, y), or nothing. Allocates nothing; may be called from read().
     std::function<std::optional<SurfaceHit>(double x_m, double y_m)> surface_below;
@@ -74,6 +73,7 @@ struct DeviceRequest {
 struct DeviceResult {
     std::unique_ptr<HapticDevice> device; // null: see error
     std::string error;
+    std::string warning = {}; // beside a device: what the user should know of it, in words
 };
 
 using DeviceFactory = std::function<DeviceResult(const DeviceRequest&)>;

@@ -171,6 +171,7 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
     TickRecord row;
     row.tick = report_.ticks++;
     row.time_s = result.time_s;
+    row.device_force_max_n = device_->info().force_max_n;
     row.interrupted = result.interrupted;
     row.tip_m = pose.tip_m;
     row.tail_m = pose.tail_m;

@@ -18,14 +18,15 @@ struct TickRecord {
     uint64_t tick = 0; // without gaps: what is missing was dropped on the way to the reader
     double time_s = 0; // periods since the first pose times the period; steps over those without a pose
     glm::dvec3 tip_m{0}, tail_m{0};
-    glm::dvec3 force_n{0};    // as sent to the device, after all limits
-    uint32_t contact = 0;     // number of objects touched
-    double depth_m = 0;       // below the base surface, of the deepest object touched
-    double height_m = 0;      // of its texture, as published (not shifted to the envelope)
-    uint64_t compute_ns = 0;  // pose in hand to force computed
-    uint64_t binding = 0;     // serial of the texture that is felt, or that is being faded in
-    uint32_t faults = 0;      // bits of TickResult::faults
-    uint32_t interrupted = 0; // 1: no force was on the hand since the tick before, and it rises anew
+    glm::dvec3 force_n{0};         // as sent to the device, after all limits
+    uint32_t contact = 0;          // number of objects touched
+    double depth_m = 0;            // below the base surface, of the deepest object touched
+    double height_m = 0;           // of its texture, as published (not shifted to the envelope)
+    uint64_t compute_ns = 0;       // pose in hand to force computed
+    uint64_t binding = 0;          // serial of the texture that is felt, or that is being faded in
+    uint32_t faults = 0;           // bits of TickResult::faults
+    double device_force_max_n = 0; // what the motors can do: a limit of force_n; 0: unknown
+    uint32_t interrupted = 0;      // 1: no force was on the hand since the tick before, and it rises anew
 };
 
 // Lock-free ring of one writer and one reader.

@@ -51,11 +51,7 @@ struct Exploration {
 // The scene's device, or another one in its place.
 runtime::DeviceResult open_device(runtime::DeviceRequest request, const std::string& instead)
 {
-    if (instead.empty()) return device::open_device(request);
-    if (instead.starts_with("replay:")) // limits are those of the device that was recorded
-        if (const auto recorded = device::open_device(request); recorded.device)
-            request.recorded_force_max_n = recorded.device->info().force_max_n;
-    request.name = instead;
+    if (!instead.empty()) request.name = instead;
     return device::open_device(request);
 }
 

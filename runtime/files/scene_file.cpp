@@ -314,6 +314,8 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
             messages.error(text.device_at, "device `" + text.device.name + "`: " + opened.error);
             return loaded;
         }
+        if (!opened.warning.empty())
+            messages.warning(text.device_at, "device `" + text.device.name + "`: " + opened.warning);
         loaded.device = std::move(opened.device);
     }
     loaded.scene = std::move(scene);

@@ -112,6 +112,29 @@ TEST_CASE("a replay repeats the forces after missed deadlines and interruptions"
     }
 }
 
+TEST_CASE("a replay has the limit of the device that was recorded, and says which ticks are missing")
+{
+    const TraceFile file;
+    auto records = spiral(20);
+    for (TickRecord& record : records) record.device_force_max_n = 3.3;
+    file.write(records);
+    const DeviceResult whole = file.open();
+    REQUIRE(whole.device);
+    CHECK(whole.device->info().force_max_n == 3.3);
+    CHECK(whole.warning.empty());
+
+    records.erase(records.begin() + 7, records.begin() + 9);
+    records.erase(records.begin() + 12);
+    file.write(records);
+    const DeviceResult gaps = file.open();
+    REQUIRE(gaps.device);
+    CHECK(gaps.warning.find("3 of 20 ticks are missing, the first of them tick 7:") != std::string::npos);
+
+    records.erase(records.begin(), records.begin() + 2);
+    file.write(records);
+    CHECK(file.open().warning.find("5 of 20 ticks are missing, the first of them tick 0:") != std::string::npos);
+}
+
 TEST_CASE("a trace that cannot be replayed is refused with the reason")
 {
     const TraceFile file;

@@ -123,6 +123,28 @@ TEST_CASE("twin runs on the virtual clock and a replay feel the same, bit for bi
     }
 }
 
+TEST_CASE("a replay knows the limits of the device that was recorded, whatever the scene names, and its own gaps")
+{
+    const Stage stage("press_n = 9"); // on the default device
+    const std::string explore = "explore " + stage.scene + " --clock virtual --json --out ";
+    REQUIRE(run_command(explore + stage.out("one") + " --device simulated:touch --seconds 2").code == 0);
+    const std::string trace = stage.out("one") + "/trace.csv";
+    const Ran ran = run_command(explore + stage.out("replay") + " --device replay:" + trace);
+    CHECK(ran.err.empty());
+    CHECK(felt(stage.out("one")) == felt(stage.out("replay")));
+    CHECK(json_of(ran)["ticks"] == 2000);
+    CHECK(json_of(ran)["seconds"] == 2);
+
+    std::string rows;
+    std::istringstream in(read_file(trace));
+    for (std::string line; std::getline(in, line);)
+        if (!line.starts_with("77,")) rows += line + "\n";
+    const Ran gap = run_command(explore + stage.out("gap") + " --device replay:" + stage.folder.write("gap.csv", rows));
+    CHECK(gap.code == 0);
+    CHECK(contains(gap.err, "warning: "));
+    CHECK(contains(gap.err, "1 of 2000 ticks are missing, the first of them tick 77"));
+}
+
 TEST_CASE("what is wrong with a scene is said, with its place, and is exit code 1")
 {
     const auto refused = [](const Stage& stage, const std::string& arguments = "") {
