@@ -1,0 +1,248 @@
+// Random programs: every engine gives the same, and what is measured lies in the bounds.
+#include "jit/engine.h"
+#include "jit/entry_inputs.h"
+#include "lang/compile.h"
+#include "lang/ir/bounds.h"
+#include "lang/ir/quad.h"
+#include "lang/ir/verify.h"
+#include "tests/fuzz/random_source.h"
+#include "tests/fuzz/target.h"
+
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+namespace haptel::fuzz {
+namespace {
+
+constexpr double box_half_m = 2; // points lie in a cube of this half side
+
+struct Program {
+    std::string source;
+    std::shared_ptr<const lang::Program> compiled;
+    const ir::Module& module() const { return compiled->module; }
+    const ir::Texture& texture() const { return compiled->module.textures.back(); }
+    [[noreturn]] void fail(const std::string& what) const { fuzz::fail(what + "\n" + source); }
+};
+
+// Of the seed that the bytes are. Nothing where the program is larger than the language allows.
+Program program_of(uint64_t seed)
+{
+    Program program{random_source(seed), nullptr};
+    const lang::CompileResult result = lang::compile({"random.haptel", program.source}, {});
+    program.compiled = result.program;
+    if (result.program) return program;
+    for (const lang::Diagnostic& said : result.diagnostics.all())
+        if (said.severity == lang::Severity::error && said.code != "too-large" && said.code != "too-costly")
+            program.fail("a valid program is refused:\n" + lang::render(said, result.sources));
+    count("refused as too large");
+    return program;
+}
+
+uint64_t seed_of(std::string_view bytes)
+{
+    uint64_t seed = 0;
+    std::memcpy(&seed, bytes.data(), std::min(bytes.size(), sizeof seed));
+    return seed;
+}
+
+haptel_point random_point(std::mt19937_64& random)
+{
+    std::uniform_real_distribution<double> in_box(-box_half_m, box_half_m), unit(-1, 1);
+    haptel_point point{};
+    for (double& coordinate : point.p) coordinate = in_box(random);
+    for (double& component : point.n) component = unit(random);
+    for (double& coordinate : point.uv) coordinate = unit(random);
+    for (auto& row : point.n_dp)
+        for (double& entry : row) entry = unit(random);
+    for (auto& row : point.uv_dp)
+        for (double& entry : row) entry = unit(random);
+    return point;
+}
+
+// The block of a texture at its defaults.
+std::vector<double> block_of(const ir::Texture& texture)
+{
+    std::vector<double> block(texture.block_size / sizeof(double) + 1);
+    for (const ir::Parameter& parameter : texture.parameters) {
+        char* const place = reinterpret_cast<char*>(block.data()) + parameter.offset;
+        const auto word = static_cast<int32_t>(parameter.value);
+        if (parameter.type == ir::Type::real)
+            std::memcpy(place, &parameter.value, sizeof parameter.value);
+        else
+            std::memcpy(place, &word, sizeof word);
+    }
+    return block;
+}
+
+template <typename T>
+class Engine {
+public:
+    Engine(const Program& program, const std::vector<double>& block)
+        : texture(program.texture()), interpreter(program.module())
+    {
+        jit::set_block(inputs, texture, block.data());
+        interpreter.watch_decisions(true);
+    }
+    // Height, gradient; `faults` and `decisions` are of the last run.
+    std::array<T, 4> run(const haptel_point& point, T moved = T(0))
+    {
+        jit::set_point(inputs, point);
+        for (size_t i = 0; i < 3; ++i) inputs.input[i] += moved * abs_of(inputs.input[i]);
+        const auto results = interpreter.run(texture.height_gradient, {}, &inputs);
+        faults = results[4].bits;
+        decisions = interpreter.decisions();
+        return {results[0].real, results[1].real, results[2].real, results[3].real};
+    }
+    uint32_t faults = 0;
+    uint64_t decisions = 0;
+
+private:
+    static T abs_of(const T& x) { return x < T(0) ? T(-x) : x; }
+    const ir::Texture& texture;
+    ir::Interpreter<T> interpreter;
+    ir::EntryInputs<T> inputs;
+};
+
+bool same_bits(double a, double b)
+{
+    return std::bit_cast<uint64_t>(a) == std::bit_cast<uint64_t>(b);
+}
+
+std::string shown(const char* engine, const std::array<double, 4>& sample)
+{
+    char text[200];
+    std::snprintf(text, sizeof text, "%-12s %.17g gradient %.17g %.17g %.17g\n", engine, sample[0], sample[1],
+                  sample[2], sample[3]);
+    return text;
+}
+
+std::array<double, 4> rounded(const std::array<ir::Quad, 4>& exact)
+{
+    return {static_cast<double>(exact[0]), static_cast<double>(exact[1]), static_cast<double>(exact[2]),
+            static_cast<double>(exact[3])};
+}
+
+// Height and gradient of one point, double against the truth, in the measure of `haptel test`: the distance over the
+// largest that is right, or over 1: what is computed from numbers of that size may cancel.
+struct Difference {
+    double worst[2] = {0, 0}, largest[2] = {0, 0}, conditioning[2] = {0, 0};
+    std::string where;
+
+    void add(const std::array<double, 4>& found, const std::array<ir::Quad, 4>& truth,
+             const std::array<ir::Quad, 4>& moved)
+    {
+        for (size_t i = 0; i < 4; ++i) {
+            const size_t which = i > 0;
+            const auto off = static_cast<double>(ir::Quad(found[i]) - truth[i]);
+            const auto change = static_cast<double>(moved[i] - truth[i]);
+            if (std::fabs(off) > worst[which]) where = shown("interpreter", found) + shown("oracle", rounded(truth));
+            worst[which] = std::fmax(worst[which], std::fabs(off));
+            conditioning[which] = std::fmax(conditioning[which], std::fabs(change));
+            largest[which] = std::fmax(largest[which], std::fabs(static_cast<double>(truth[i])));
+        }
+    }
+};
+
+} // namespace
+
+void run_program(std::string_view bytes)
+{
+    const uint64_t seed = seed_of(bytes);
+    const Program program = program_of(seed);
+    if (!program.compiled) return;
+    const ir::Texture& texture = program.texture();
+    // Code takes most of the time: the entry of the height alone, and full effort, are for some.
+    std::vector<jit::EntryPoint> entries{{"t'", &texture, jit::EntryPoint::Kind::height_gradient}};
+    if (seed % 8 == 0) entries.push_back({"t", &texture, jit::EntryPoint::Kind::height});
+    const jit::CodeResult made =
+        jit::compile_code(program.module(), entries, seed % 32 == 0 ? jit::Effort::full : jit::Effort::quick);
+    if (!made.code) program.fail("no code: " + made.error);
+    const std::vector<double> block = block_of(texture);
+    Engine<double> interpreter(program, block);
+    Engine<ir::Quad> oracle(program, block);
+    Difference difference;
+    std::mt19937_64 random(seed);
+    for (int i = 0; i < 4; ++i) {
+        const haptel_point point = random_point(random);
+        const std::array<double, 4> slow = interpreter.run(point);
+        haptel_sample sample{};
+        made.code->entry("t'")(&point, block.data(), &sample);
+        const std::array<double, 4> fast = {sample.height_m, sample.gradient[0], sample.gradient[1],
+                                            sample.gradient[2]};
+        for (size_t j = 0; j < 4; ++j)
+            if (!same_bits(fast[j], slow[j]) || sample.faults != interpreter.faults)
+                program.fail("code differs:\n" + shown("interpreter", slow) + shown("code", fast));
+        if (haptel_entry* const alone = made.code->entry("t")) {
+            haptel_sample height{};
+            alone(&point, block.data(), &height);
+            if (!same_bits(height.height_m, sample.height_m)) program.fail("the height alone is another");
+        }
+        for (double number : fast)
+            if (!std::isfinite(number)) program.fail("an entry returned what is not finite");
+        count("points");
+        if (sample.faults != 0) {
+            count("faults");
+            continue;
+        }
+        const std::array<ir::Quad, 4> truth = oracle.run(point);
+        const uint64_t decisions = oracle.decisions;
+        const bool moved_elsewhere = [&] {
+            const ir::Quad half_ulp = ir::Quad(std::numeric_limits<double>::epsilon()) / 2;
+            const std::array<ir::Quad, 4> moved = oracle.run(point, half_ulp);
+            if (oracle.decisions != decisions || interpreter.decisions != decisions || oracle.faults != 0) return true;
+            difference.add(slow, truth, moved);
+            return false;
+        }();
+        count(moved_elsewhere ? "points where rounding decides" : "compared with the oracle", 1);
+    }
+    for (size_t which = 0; which < 2; ++which) {
+        const double allowed = 1e-12 * std::fmax(difference.largest[which], 1) + 8 * difference.conditioning[which];
+        if (difference.worst[which] <= allowed) continue;
+        program.fail("differs from the oracle, seed " + std::to_string(seed) +
+                     (which ? ", gradient by " : ", height by ") + std::to_string(difference.worst[which] / allowed) +
+                     " times what is allowed\n" + difference.where);
+    }
+    count("programs");
+}
+
+void bound_program(std::string_view bytes)
+{
+    const uint64_t seed = seed_of(bytes);
+    const Program program = program_of(seed);
+    if (!program.compiled) return;
+    const ir::Texture& texture = program.texture();
+    if (ir::operations_max(program.module(), texture.height_gradient) > 20'000) return;
+    ir::BoundsBox box;
+    const auto set = [&](ir::Input first, size_t how_many, double half) {
+        for (size_t i = 0; i < how_many; ++i) box.input[static_cast<size_t>(first) + i] = {-half, half};
+    };
+    set(ir::Input::p_x, 3, box_half_m);
+    set(ir::Input::n_x, 3, 1);
+    set(ir::Input::uv_x, 2, 1);
+    for (size_t i = static_cast<size_t>(ir::Input::time) + 1; i < jit::point_inputs; ++i) box.input[i] = {-1, 1};
+    for (const ir::Parameter& parameter : texture.parameters)
+        box.parameters.push_back({parameter.value, parameter.value});
+    const ir::TextureBounds bounds = ir::texture_bounds(program.module(), texture, box, 16);
+    Engine<double> interpreter(program, block_of(texture));
+    std::mt19937_64 random(seed);
+    for (int i = 0; i < 40; ++i) {
+        const std::array<double, 4> sample = interpreter.run(random_point(random));
+        const double slope = std::hypot(sample[1], sample[2], sample[3]);
+        const double slack = 1e-12 * std::fabs(sample[0]);
+        if (sample[0] < bounds.height.minimum - slack || sample[0] > bounds.height.maximum + slack)
+            program.fail("height " + std::to_string(sample[0]) + " outside of " +
+                         std::to_string(bounds.height.minimum) + " .. " + std::to_string(bounds.height.maximum));
+        if (slope > bounds.slope_max * (1 + 1e-12))
+            program.fail("slope " + std::to_string(slope) + " above " + std::to_string(bounds.slope_max));
+        if (interpreter.faults != 0 && bounds.undefined.empty() && bounds.height.is_finite() &&
+            std::isfinite(bounds.slope_max))
+            program.fail("a fault where the bounds exclude one");
+        count("points");
+    }
+    count(std::isfinite(bounds.slope_max) ? "bounded" : "unbounded");
+}
+
+} // namespace haptel::fuzz

@@ -1,0 +1,241 @@
+#include "tests/fuzz/random_expression.h"
+
+namespace haptel::fuzz {
+
+const char* type_of(Kind kind)
+{
+    switch (kind) {
+    case Kind::real: return "float";
+    case Kind::whole: return "int";
+    case Kind::word: return "uint";
+    case Kind::truth: return "bool";
+    case Kind::vec2: return "vec2";
+    case Kind::vec3: return "vec3";
+    case Kind::mat2: return "mat2";
+    }
+    return "";
+}
+
+const Variable* ExpressionWriter::any_variable(const std::function<bool(const Variable&)>& fits)
+{
+    for (int attempt = 0; attempt < 10 && !scope.empty(); ++attempt) {
+        const Variable& one = scope[below(scope.size())];
+        if (fits(one)) return &one;
+    }
+    return nullptr;
+}
+
+const Callable* ExpressionWriter::any_callable(Shape shape)
+{
+    for (int attempt = 0; attempt < 4 && !callables.empty(); ++attempt) {
+        const Callable& one = callables[below(callables.size())];
+        if (one.shape == shape) return &one;
+    }
+    return nullptr;
+}
+
+std::string ExpressionWriter::variable_or(Kind kind, const std::function<std::string()>& other)
+{
+    const Variable* const one = any_variable([&](const Variable& variable) { return variable.kind == kind; });
+    return one ? one->name : other();
+}
+
+std::string ExpressionWriter::number()
+{
+    return one_of({"0.5", "-1.5", "2.0", "0.1", "3.0", "-0.7", "1e-3", "0.0", "-0.0", "1.0", "0.333", "-2.25", "7.5"});
+}
+
+std::string ExpressionWriter::whole_number()
+{
+    return one_of({"0", "1", "2", "5", "(-3)", "17", "100", "2147483647", "(-2147483648)", "(-1)", "0x55AA"});
+}
+
+std::string ExpressionWriter::of(Kind kind, int depth)
+{
+    switch (kind) {
+    case Kind::real: return real(depth);
+    case Kind::whole: return whole(depth);
+    case Kind::word: return word(depth);
+    case Kind::truth: return truth(depth);
+    case Kind::vec2: return vector(2, depth);
+    case Kind::vec3: return vector(3, depth);
+    case Kind::mat2: return matrix(depth);
+    }
+    return "";
+}
+
+std::string ExpressionWriter::tame(int depth)
+{
+    const std::string inner = real(depth - 1);
+    return one_of({"sin(" + inner + ")", "tanh(" + inner + ")", "clamp(" + inner + ", -1.5, 2.0)",
+                   "fract(" + inner + ")", "(" + inner + ")"});
+}
+
+std::string ExpressionWriter::real(int depth)
+{
+    if (depth <= 0) return below(4) ? variable_or(Kind::real, [&] { return number(); }) : number();
+    const auto a = [&] { return real(depth - 1); };
+    switch (below(26)) {
+    case 0:
+    case 1: return "(" + a() + " + " + a() + ")";
+    case 2:
+    case 3: return "(" + a() + " - " + a() + ")";
+    case 4:
+    case 5: return "(" + a() + " * " + a() + ")";
+    case 6: return "(" + a() + " / (1.25 + abs(" + a() + ")))";
+    case 7: return "(" + a() + " / " + a() + ")";
+    case 8: return one_of({"sin(", "cos(", "tanh(", "atan(", "sinturn(", "costurn(", "asinh("}) + a() + ")";
+    case 9: return "exp(-abs(" + a() + "))";
+    case 10:
+        return one_of(
+                   {"sqrt(abs(", "log(0.5 + abs(", "log2(1.0 + abs(", "inversesqrt(0.3 + abs(", "acosh(1.5 + abs("}) +
+               a() + "))";
+    case 11: return "pow(0.2 + abs(" + tame(depth) + "), " + one_of({"0.5", "2.0", "-1.5", "3.0", tame(depth)}) + ")";
+    case 12: return one_of({"asin(", "acos(", "atanh("}) + "0.9 * sin(" + a() + "))";
+    case 13: return one_of({"min(", "max("}) + a() + ", " + a() + ")";
+    case 14: return "clamp(" + a() + ", -0.5, " + one_of({"1.5", "2.0"}) + ")";
+    case 15: return "mix(" + a() + ", " + a() + ", " + tame(depth) + ")";
+    case 16: return "smoothstep(-0.75, 1.25, " + a() + ")";
+    case 17:
+        return one_of({"abs(", "fract(", "floor(", "round(", "sign(", "ceil(", "trunc(", "detach(", "-("}) + a() + ")";
+    case 18: return "mod(" + a() + ", " + one_of({"1.5", "0.7", "-2.0"}) + ")";
+    case 19: return "atan(" + a() + ", " + a() + ")";
+    case 20: return "(" + truth(depth - 1) + " ? " + a() + " : " + a() + ")";
+    case 21: return "T[" + index(4, depth) + "]";
+    case 22: return one_of({"float(", "1e-3 * float(", "sin("}) + "(" + whole(depth - 1) + ") & 1023)";
+    case 23: return "fma(" + a() + ", " + a() + ", " + a() + ")";
+    case 24: return real_of_calls(depth);
+    default: return real_of_vectors(depth);
+    }
+}
+
+std::string ExpressionWriter::real_of_vectors(int depth)
+{
+    const int size = 2 + static_cast<int>(below(2));
+    const std::string v = vector(size, depth - 1), w = vector(size, depth - 1);
+    switch (below(6)) {
+    case 0: return "length(" + v + ")";
+    case 1: return "dot(" + v + ", " + w + ")";
+    case 2: return "distance(" + v + ", " + w + ")";
+    case 3: return "determinant(" + matrix(depth - 1) + ")";
+    case 4: return "(" + v + ")[" + std::to_string(below(2)) + "]";
+    default: return "(" + v + ")" + one_of({".x", ".y", ".yx.y"});
+    }
+}
+
+std::string ExpressionWriter::real_of_calls(int depth)
+{
+    if (const Callable* const two = any_callable(Shape::of_two)) {
+        const std::string x = tame(depth), y = tame(depth);
+        switch (below(4)) {
+        case 0: return "grad(" + two->name + ")(" + x + ", " + y + ")";
+        case 1: return "by_two(" + two->name + ", " + x + ")";
+        default: return two->name + "(" + x + ", " + y + ")";
+        }
+    }
+    if (const Callable* const field = any_callable(Shape::field)) return field->name + "(" + vector(3, depth - 1) + ")";
+    return tame(depth);
+}
+
+// Constants among them lie inside, as the language wants; what depends on the point may be anything.
+std::string ExpressionWriter::index(int size, int depth)
+{
+    return one_of({"int(9.0 * n.x)", "int(" + real(depth - 1) + " + 4.0 * n.y)",
+                   std::to_string(size == 4 ? 3 : 1) + " & " + whole(depth - 1)});
+}
+
+std::string ExpressionWriter::whole(int depth)
+{
+    if (depth <= 0) return below(4) ? variable_or(Kind::whole, [&] { return whole_number(); }) : whole_number();
+    const auto a = [&] { return whole(depth - 1); };
+    switch (below(9)) {
+    case 0: return "(" + a() + one_of({" + ", " - ", " * "}) + a() + ")";
+    case 1: return "(" + a() + one_of({" / ", " % "}) + a() + ")";
+    case 2: return "(" + a() + one_of({" & ", " | ", " ^ "}) + a() + ")";
+    case 3: return "(" + a() + one_of({" << ", " >> "}) + a() + ")";
+    case 4: return one_of({"min(", "max("}) + a() + ", " + a() + ")";
+    case 5: return one_of({"abs(", "~(", "sign(", "-("}) + a() + ")";
+    case 6: return "int(" + one_of({"3.0 * ", "1e9 * ", ""}) + real(depth - 1) + ")";
+    case 7: return "W[" + index(4, depth) + "]";
+    default:
+        if (const Callable* const one = any_callable(Shape::of_ints))
+            return one->name + "(" + a() + ", " + word(depth - 1) + ")";
+        return "int(" + word(depth - 1) + ")";
+    }
+}
+
+std::string ExpressionWriter::word(int depth)
+{
+    if (depth <= 0)
+        return below(4) ? variable_or(Kind::word, [] { return std::string("9u"); })
+                        : one_of({"0u", "3u", "4294967295u"});
+    const auto a = [&] { return word(depth - 1); };
+    switch (below(5)) {
+    case 0: return "(" + a() + one_of({" + ", " - ", " * "}) + a() + ")";
+    case 1: return "(" + a() + one_of({" / ", " % ", " >> ", " << "}) + a() + ")";
+    case 2: return "(" + a() + one_of({" & ", " | ", " ^ "}) + a() + ")";
+    case 3: return "uint(" + whole(depth - 1) + ")";
+    default: return "uint(" + real(depth - 1) + ")";
+    }
+}
+
+std::string ExpressionWriter::truth(int depth)
+{
+    if (depth <= 0)
+        return below(2) ? variable_or(Kind::truth, [&] { return truth(1); })
+                        : variable_or(Kind::real, [&] { return number(); }) + one_of({" < ", " > "}) + number();
+    switch (below(7)) {
+    case 0: return "(" + truth(depth - 1) + one_of({" && ", " || ", " ^^ "}) + truth(depth - 1) + ")";
+    case 1: return "!(" + truth(depth - 1) + ")";
+    case 2: return "(" + whole(depth - 1) + one_of({" < ", " >= ", " == ", " != "}) + whole(depth - 1) + ")";
+    case 3: return "(" + word(depth - 1) + one_of({" < ", " >= ", " == "}) + word(depth - 1) + ")";
+    default: return "(" + real(depth - 1) + one_of({" < ", " <= ", " > ", " >= "}) + real(depth - 1) + ")";
+    }
+}
+
+std::string ExpressionWriter::vector(int size, int depth)
+{
+    const Kind kind = size == 2 ? Kind::vec2 : Kind::vec3;
+    const std::string type = type_of(kind);
+    if (depth <= 0) return variable_or(kind, [&] { return type + "(" + number() + ")"; });
+    const auto v = [&] { return vector(size, depth - 1); };
+    switch (below(10)) {
+    case 0:
+        return type + "(" + real(depth - 1) + ", " + real(depth - 1) + (size == 3 ? ", " + real(depth - 1) : "") + ")";
+    case 1: return "(" + v() + one_of({" + ", " - ", " * "}) + v() + ")";
+    case 2: return "(" + v() + " * " + tame(depth) + ")";
+    case 3: return one_of({"sin(", "abs(", "fract(", "tanh(", "-("}) + v() + ")";
+    case 4: return "normalize(" + v() + ")";
+    case 5: return one_of({"min(", "max(", "reflect("}) + v() + ", " + v() + ")";
+    case 6:
+        return "(" + vector(5 - size, depth - 1) + ")" +
+               (size == 2 ? one_of({".xy", ".zx", ".yy"}) : one_of({".xyx", ".yxx"}));
+    case 7:
+        if (size == 3) return "cross(" + v() + ", " + v() + ")";
+        return "(" + matrix(depth - 1) + " * " + v() + ")";
+    case 8:
+        if (const Callable* const one = any_callable(size == 3 ? Shape::field : Shape::map))
+            return (size == 3 ? "grad(" + one->name + ")(" : one->name + "(") + v() + ")";
+        return v();
+    default: return "mix(" + v() + ", " + v() + ", " + tame(depth) + ")";
+    }
+}
+
+std::string ExpressionWriter::matrix(int depth)
+{
+    if (depth <= 0) return variable_or(Kind::mat2, [&] { return "mat2(" + number() + ")"; });
+    const auto m = [&] { return matrix(depth - 1); };
+    switch (below(6)) {
+    case 0: return "mat2(" + vector(2, depth - 1) + ", " + vector(2, depth - 1) + ")";
+    case 1: return "(" + m() + one_of({" + ", " - ", " * "}) + m() + ")";
+    case 2: return "transpose(" + m() + ")";
+    case 3: return "outerProduct(" + vector(2, depth - 1) + ", " + vector(2, depth - 1) + ")";
+    case 4:
+        if (const Callable* const map = any_callable(Shape::map))
+            return "grad(" + map->name + ")(" + vector(2, depth - 1) + ")";
+        return m();
+    default: return "(" + m() + " * " + tame(depth) + ")";
+    }
+}
+
+} // namespace haptel::fuzz

@@ -1,0 +1,53 @@
+#include "tests/fuzz/target.h"
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+namespace haptel::fuzz {
+namespace {
+
+constexpr Target all[] = {
+    {"parse", "lexer and parser on bytes", false, haptel_corpus, parse_text},
+    {"compile", "checker, lowering and analysis on bytes", false, haptel_corpus, compile_text},
+    {"ir", "reader of IR text, verifier, printer, interpreter", false, ir_corpus, read_ir},
+    {"programs", "random programs: interpreter, 113-bit oracle and machine code", true, nullptr, run_program},
+    {"bounds", "random programs: what is measured lies in the bounds", true, nullptr, bound_program},
+};
+
+std::array<std::pair<const char*, uint64_t>, 16> counters{};
+
+} // namespace
+
+std::span<const Target> targets()
+{
+    return all;
+}
+
+void count(const char* what, uint64_t how_many)
+{
+    for (auto& [name, number] : counters) {
+        if (name && std::strcmp(name, what) != 0) continue;
+        name = what;
+        number += how_many;
+        return;
+    }
+}
+
+std::string figures()
+{
+    std::string text;
+    for (const auto& [name, number] : counters)
+        if (name) text += (text.empty() ? "" : ", ") + std::to_string(number) + " " + name;
+    return text;
+}
+
+void fail(const std::string& what)
+{
+    std::fprintf(stderr, "\nfuzz: %s\n", what.c_str());
+    std::abort();
+}
+
+} // namespace haptel::fuzz
