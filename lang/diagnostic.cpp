@@ -9,17 +9,20 @@ namespace {
 
 constexpr size_t notice_limit = 200; // warnings and notes
 
-// Edit distance with transpositions (optimal string alignment), upper and lower case one half apart.
+// Edit distance with transpositions (optimal string alignment). Upper and lower case are a quarter apart, a letter
+// typed twice or once too few a half.
 double edit_distance(std::string_view a, std::string_view b)
 {
     const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; };
     const auto change = [&](char x, char y) { return x == y ? 0.0 : lower(x) == lower(y) ? 0.25 : 1.0; };
+    const auto skip = [](std::string_view text, size_t i) { return i > 1 && text[i - 1] == text[i - 2] ? 0.5 : 1.0; };
     std::vector<double> before, above(b.size() + 1), row(b.size() + 1);
-    for (size_t j = 0; j <= b.size(); ++j) above[j] = static_cast<double>(j);
+    for (size_t j = 1; j <= b.size(); ++j) above[j] = above[j - 1] + skip(b, j);
     for (size_t i = 1; i <= a.size(); ++i) {
-        row[0] = static_cast<double>(i);
+        row[0] = above[0] + skip(a, i);
         for (size_t j = 1; j <= b.size(); ++j) {
-            row[j] = std::min({above[j] + 1, row[j - 1] + 1, above[j - 1] + change(a[i - 1], b[j - 1])});
+            row[j] =
+                std::min({above[j] + skip(a, i), row[j - 1] + skip(b, j), above[j - 1] + change(a[i - 1], b[j - 1])});
             if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
                 row[j] = std::min(row[j], before[j - 2] + 1);
         }

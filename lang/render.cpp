@@ -110,6 +110,7 @@ void append_place(std::string& out, Span span, std::string_view label, std::stri
     if (!code.empty()) out += std::string(palette.dim) + " [" + std::string(code) + "]" + std::string(palette.off);
     out += "\n";
 
+    if (sources.file(span.file).text.empty()) return; // empty, or not to be read: there is no line to show
     const std::string_view line = sources.line(span.file, start.line);
     const auto line_begin = static_cast<uint32_t>(line.data() - sources.file(span.file).text.data());
     const auto line_size = static_cast<uint32_t>(line.size());

@@ -44,7 +44,7 @@ TEST_CASE("an empty span, also at the end of a line, is one caret")
 {
     CHECK(rendered("ab\ncd", 2, 2) == "t.haptel:1:3: error: message [code]\n   1 | ab\n     |   ^\n");
     CHECK(rendered("ab\ncd", 5, 5) == "t.haptel:2:3: error: message [code]\n   2 | cd\n     |   ^\n");
-    CHECK(rendered("", 0, 0) == "t.haptel:1:1: error: message [code]\n   1 | \n     | ^\n");
+    CHECK(rendered("", 0, 0) == "t.haptel:1:1: error: message [code]\n"); // there is no line
     CHECK(rendered("ab", 900, 900) == "t.haptel:1:3: error: message [code]\n   1 | ab\n     |   ^\n");
 }
 
@@ -104,6 +104,16 @@ TEST_CASE("findings are sorted by file and place")
     CHECK(diagnostics.all()[2].code == "facts");
 }
 
+TEST_CASE("of a file without text only the place is shown")
+{
+    Diagnostic diagnostic;
+    diagnostic.code = "unreadable-file";
+    diagnostic.message = "cannot read this file";
+    diagnostic.hint = "look";
+    CHECK(render(diagnostic, one("")) == "t.haptel:1:1: error: cannot read this file [unreadable-file]\n"
+                                         "     = hint: look\n");
+}
+
 TEST_CASE("colour wraps label and underline and changes no text")
 {
     Diagnostic diagnostic;
@@ -130,4 +140,10 @@ TEST_CASE("the nearest name, if it is near enough")
     CHECK(nearest_name("", names) == "");
     CHECK(nearest_name(std::string(1000, 'a'), names) == "");
     CHECK(nearest_name("pitch", {}) == "");
+    // A letter typed twice, or once where it stands twice, is likelier than another letter.
+    const std::vector<std::string_view> functions = {"sign", "sinh", "sin", "cross", "floor"};
+    CHECK(nearest_name("sinn", functions) == "sin");
+    CHECK(nearest_name("sinhh", functions) == "sinh");
+    CHECK(nearest_name("cros", functions) == "cross");
+    CHECK(nearest_name("sinj", functions) == "sinh"); // no doubling: a slip keeps the length
 }
