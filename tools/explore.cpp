@@ -13,6 +13,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -108,10 +109,11 @@ ExitCode explore(const ExploreOptions& options)
     ExploreStatus status(stderr_is_terminal());
     textures.watch(*exploration->scene);
     runtime::ServoThread servo(exploration->scene, std::move(exploration->device), servo_options(options));
+    // At most one ring: a servo that is faster than its reader must not keep it from hearing Ctrl-C.
     const auto drain = [&] {
         runtime::TickRecord record;
         bool any = false;
-        while (servo.telemetry().pop(record)) {
+        for (std::size_t left = servo.telemetry().capacity(); left > 0 && servo.telemetry().pop(record); --left) {
             any = true;
             if (files) files->add(record);
         }
