@@ -15,7 +15,7 @@ declare -A may_include=(
     [runtime]="!runtime/files/ runtime/ $contract"
     [runtime/files]="runtime/ $contract"
     [device]="device/ !runtime/files/ runtime/ $contract"
-    [tests/lang]='tests/support/ tests/lang/ lang/ stdlib/'
+    [tests/lang]='tests/support/ tests/lang/ tests/conformance/case.h lang/ stdlib/'
     [tests/runtime]="tests/support/ tests/runtime/ runtime/ $contract"
 )
 
