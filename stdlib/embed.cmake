@@ -1,6 +1,7 @@
-# cmake -DOUT=library_text.cpp -DFILES=a.haptel;b.haptel -P embed.cmake: the files as raw strings in one C++ source.
+# cmake -DOUT=library_text.cpp -DNAME=library -DFILES=a.haptel;b.haptel -P embed.cmake: the files as raw strings in one C++
+# source, which the function NAME gives.
 # Literals are cut into pieces, because compilers need accept only 64 KiB in one.
-set(text "// Made by embed.cmake.\n#include \"stdlib/stdlib.h\"\n\nnamespace haptel::stdlib {\n\nstd::span<const LibraryFile> library()\n{\n    static constexpr LibraryFile files[] = {\n")
+set(text "// Made by embed.cmake.\n#include \"stdlib/stdlib.h\"\n\nnamespace haptel::stdlib {\n\nstd::span<const LibraryFile> ${NAME}()\n{\n    static constexpr LibraryFile files[] = {\n")
 foreach(file IN LISTS FILES)
     get_filename_component(name ${file} NAME)
     file(READ ${file} content)

@@ -13,4 +13,7 @@ struct LibraryFile {
 
 std::span<const LibraryFile> library();
 
+// Textures that try the library's functions, one or more for each: examples for people.
+std::span<const LibraryFile> tests();
+
 } // namespace haptel::stdlib

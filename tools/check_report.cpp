@@ -26,23 +26,6 @@ const char* name_of(ir::Type type)
     return "";
 }
 
-std::vector<std::string> inputs_of(const ir::Texture& texture)
-{
-    constexpr const char* names[] = {"p", "n", "uv", "time", "center", "extent", "footprint"}; // by bit
-    std::vector<std::string> read;
-    for (size_t bit = 0; bit < std::size(names); ++bit)
-        if (texture.reads >> bit & 1) read.emplace_back(names[bit]);
-    return read;
-}
-
-std::vector<std::string> outputs_of(const ir::Texture& texture)
-{
-    std::vector<std::string> written;
-    if (texture.writes & HAPTEL_WRITES_STIFFNESS_SCALE) written.emplace_back("stiffness_scale");
-    if (texture.writes & HAPTEL_WRITES_FRICTION_SCALE) written.emplace_back("friction_scale");
-    return written;
-}
-
 Json number_of(const ir::Parameter& parameter, double value)
 {
     if (!std::isfinite(value)) return nullptr; // no range
@@ -110,25 +93,19 @@ uint64_t operations_of(const CheckedTexture& checked)
 
 Json to_json(const CheckedTexture& checked)
 {
-    Json parameters = Json::array();
-    for (const ir::Parameter& parameter : checked.texture->parameters) parameters.push_back(to_json(parameter));
-    return {{"file", checked.file},
-            {"name", checked.texture->name},
-            {"doc", checked.texture->doc},
-            {"parameters", std::move(parameters)},
-            {"inputs", inputs_of(*checked.texture)},
-            {"outputs", outputs_of(*checked.texture)},
-            {"height_m", to_json(checked.analysis.at_values.height)},
-            {"slope_max", finite_or_null(checked.analysis.at_values.slope_max)},
-            {"curvature_max_per_m", curvature_of(checked.analysis.at_values)},
-            {"over_ranges",
-             {{"height_m", to_json(checked.analysis.over_ranges.height)},
-              {"slope_max", finite_or_null(checked.analysis.over_ranges.slope_max)},
-              {"curvature_max_per_m", curvature_of(checked.analysis.over_ranges)}}},
-            {"continuity", continuity_of(checked.analysis.at_values)},
-            {"declared", checked.analysis.at_values.declared},
-            {"operations_max", operations_of(checked)},
-            {"stability", nullptr}};
+    Json json = texture_json(checked.file, *checked.texture);
+    json.update({{"height_m", to_json(checked.analysis.at_values.height)},
+                 {"slope_max", finite_or_null(checked.analysis.at_values.slope_max)},
+                 {"curvature_max_per_m", curvature_of(checked.analysis.at_values)},
+                 {"over_ranges",
+                  {{"height_m", to_json(checked.analysis.over_ranges.height)},
+                   {"slope_max", finite_or_null(checked.analysis.over_ranges.slope_max)},
+                   {"curvature_max_per_m", curvature_of(checked.analysis.over_ranges)}}},
+                 {"continuity", continuity_of(checked.analysis.at_values)},
+                 {"declared", checked.analysis.at_values.declared},
+                 {"operations_max", operations_of(checked)},
+                 {"stability", nullptr}});
+    return json;
 }
 
 // "-60 um": three digits in the unit that suits the size.
@@ -167,6 +144,35 @@ std::string shown_class(const CheckedTexture& checked)
 }
 
 } // namespace
+
+std::vector<std::string> inputs_of(const ir::Texture& texture)
+{
+    constexpr const char* names[] = {"p", "n", "uv", "time", "center", "extent", "footprint"}; // by bit
+    std::vector<std::string> read;
+    for (size_t bit = 0; bit < std::size(names); ++bit)
+        if (texture.reads >> bit & 1) read.emplace_back(names[bit]);
+    return read;
+}
+
+std::vector<std::string> outputs_of(const ir::Texture& texture)
+{
+    std::vector<std::string> written;
+    if (texture.writes & HAPTEL_WRITES_STIFFNESS_SCALE) written.emplace_back("stiffness_scale");
+    if (texture.writes & HAPTEL_WRITES_FRICTION_SCALE) written.emplace_back("friction_scale");
+    return written;
+}
+
+Json texture_json(const std::string& file, const ir::Texture& texture)
+{
+    Json parameters = Json::array();
+    for (const ir::Parameter& parameter : texture.parameters) parameters.push_back(to_json(parameter));
+    return {{"file", file},
+            {"name", texture.name},
+            {"doc", texture.doc},
+            {"parameters", std::move(parameters)},
+            {"inputs", inputs_of(texture)},
+            {"outputs", outputs_of(texture)}};
+}
 
 size_t CheckReport::count(lang::Severity severity) const
 {

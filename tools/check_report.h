@@ -42,4 +42,10 @@ struct CheckReport {
     std::string to_text() const; // a line per texture; findings are rendered with their source lines elsewhere
 };
 
+// Names of what a texture reads and writes, in the order of their bits.
+std::vector<std::string> inputs_of(const ir::Texture& texture);
+std::vector<std::string> outputs_of(const ir::Texture& texture);
+// "file name doc parameters inputs outputs": what is known of a texture before it is analysed.
+Json texture_json(const std::string& file, const ir::Texture& texture);
+
 } // namespace haptel::tools
