@@ -22,8 +22,8 @@ copy, build = work / "source", work / "build"
 # Each file with where its rules begin, and the tests that must notice.
 files = {
     "lang/ir/derivative_rules.cpp": ("Term zero_where_zero", ["derivative*"]),
-    "lang/ir/interval.cpp": ("", ["*interval*,bounds*,slope*"]),
-    "lang/ir/variation.cpp": ("", ["bounds*,slope*,*continuity*,*class*"]),
+    "lang/ir/interval.cpp": ("", ["intervals*,bounds*,slope*,class*"]),
+    "lang/ir/variation.cpp": ("", ["intervals*,bounds*,slope*,class*"]),
 }
 
 # What is broken, and into what: one place of a rule at a time.
@@ -81,6 +81,10 @@ def mutants_of(name, text):
         found = re.search(r"case Op::(\w+):|^(?:\w+ )+(\w+)\(", code)
         if found:
             rule = found.group(1) or found.group(2)
+        # Which operations have rules at all is a promise to callers: without it their rules return nothing, too. What
+        # stands behind the end of the operands is never used.
+        if rule == "has_derivative" or "operands.size()" in code or "tangents.size()" in code:
+            continue
         if position < begin or code.lstrip().startswith(("#", "using", "namespace", "for ", "template")):
             continue
         for pattern, replacement in changes:
