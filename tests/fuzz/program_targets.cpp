@@ -133,10 +133,13 @@ std::array<double, 4> rounded(const std::array<ir::Quad, 4>& exact)
 }
 
 // Height and gradient of one point, double against the truth, in the measure of `haptel test`: the distance over the
-// largest that is right, or over 1: what is computed from numbers of that size may cancel.
+// largest that is right.
 struct Difference {
     double worst[2] = {0, 0}, largest[2] = {0, 0}, conditioning[2] = {0, 0};
     std::string where;
+
+    // What is computed from numbers of that size may cancel.
+    double scale(size_t which) const { return std::fmax(1, which ? std::fmax(largest[0], largest[1]) : largest[0]); }
 
     void add(const std::array<double, 4>& found, const std::array<ir::Quad, 4>& truth,
              const std::array<ir::Quad, 4>& moved)
@@ -206,7 +209,7 @@ void run_program(std::string_view bytes)
         count(decided ? "points where rounding decides" : "compared with the oracle");
     }
     for (size_t which = 0; which < 2; ++which) {
-        const double allowed = 1e-12 * std::fmax(difference.largest[which], 1) + 8 * difference.conditioning[which];
+        const double allowed = 1e-12 * difference.scale(which) + 8 * difference.conditioning[which];
         if (difference.worst[which] <= allowed) continue;
         program.fail("differs from the oracle, seed " + std::to_string(seed) +
                      (which ? ", gradient by " : ", height by ") + std::to_string(difference.worst[which] / allowed) +

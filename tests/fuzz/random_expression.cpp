@@ -102,7 +102,7 @@ std::string ExpressionWriter::real(int depth)
     case 19: return "atan(" + a() + ", " + a() + ")";
     case 20: return "(" + truth(depth - 1) + " ? " + a() + " : " + a() + ")";
     case 21: return "T[" + index(4, depth) + "]";
-    case 22: return one_of({"float(", "1e-3 * float(", "sin("}) + "(" + whole(depth - 1) + ") & 1023)";
+    case 22: return one_of({"float(", "1e-3 * float(", "sin("}) + "(" + whole(depth - 1) + ") & 15)";
     case 23: return "fma(" + a() + ", " + a() + ", " + a() + ")";
     case 24: return real_of_calls(depth);
     default: return real_of_vectors(depth);
