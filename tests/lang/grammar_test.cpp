@@ -1,5 +1,6 @@
 // The grammar in docs/language.md against the parser, both ways: sentences derived from it at random are accepted, and
 // what the library and the examples are made of can be derived from it.
+#include "lang/format.h"
 #include "lang/lexer.h"
 #include "lang/parser.h"
 #include "tests/lang/ebnf.h"
@@ -54,6 +55,20 @@ std::string rendered(const Diagnostics& diagnostics, const SourceSet& sources)
     return render(diagnostics.all(), sources);
 }
 
+// No text that the parser accepts is too odd for the formatter.
+void check_format(const std::string& text, const Ebnf& grammar)
+{
+    SourceSet sources;
+    Diagnostics diagnostics;
+    const std::optional<std::string> once = format(sources, sources.add({"derived", text}), diagnostics);
+    REQUIRE(once);
+    INFO(*once);
+    REQUIRE(terminals_of(*once, grammar) == terminals_of(text, grammar));
+    const std::optional<std::string> twice = format(sources, sources.add({"formatted", *once}), diagnostics);
+    REQUIRE(twice);
+    REQUIRE(*twice == *once);
+}
+
 } // namespace
 
 TEST_CASE("grammar: what it derives, the parser accepts")
@@ -80,6 +95,7 @@ TEST_CASE("grammar: what it derives, the parser accepts")
         parse(sources, file, diagnostics);
         INFO(text);
         REQUIRE(rendered(diagnostics, sources) == "");
+        if (round % 5 == 0) check_format(text, grammar);
     }
     for (const std::string& rule : grammar.rules()) CHECK(used.count(rule) == 1);
 }
