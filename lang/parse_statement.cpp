@@ -290,9 +290,15 @@ bool Grammar::at_declaration() const
     if (!at(Token::name)) return false;
     if (kind(1) == Token::name) return true;
     if (kind(1) == Token::left_bracket) {
+        constexpr size_t longest_size = 1000; // tokens; keeps the whole parse linear
         size_t ahead = 2;
-        while (kind(ahead) == Token::number || kind(ahead) == Token::name) ++ahead;
-        return kind(ahead) == Token::right_bracket && kind(ahead + 1) == Token::name;
+        for (size_t open = 1; open > 0 && ahead < longest_size; ++ahead) {
+            const Token here = kind(ahead);
+            if (here == Token::left_bracket) ++open;
+            if (here == Token::right_bracket) --open;
+            if (here == Token::end || here == Token::semicolon || here == Token::left_brace) return false;
+        }
+        return kind(ahead) == Token::name;
     }
     return is_own_type(text()) && kind(1) != Token::left_paren && kind(1) != Token::dot;
 }

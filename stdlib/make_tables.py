@@ -50,11 +50,11 @@ def solid_directions():
 
 
 def table(kind, name, values):
-    """A constant table in Haptel, wrapped at 120 columns."""
+    """A constant table in Haptel, wrapped at 100 columns, as haptel fmt does."""
     lines, line = [], "   "
     for value in values:
         item = f" {value!r},"
-        if len(line) + len(item) > 120:
+        if len(line) + len(item) > 100:
             lines.append(line)
             line = "   "
         line += item

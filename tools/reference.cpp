@@ -48,11 +48,14 @@ std::vector<TestTexture> test_textures()
             for (const lang::PlacedToken& token : lang::lex(sources, texture.body->span, diagnostics).tokens)
                 if (token.kind == lang::Token::name)
                     made.names.emplace_back(sources.text({index, token.begin, token.end}));
+            const auto reads = [&](std::string_view name) {
+                return std::find(made.names.begin(), made.names.end(), name) != made.names.end();
+            };
             std::string helpers; // the file's own functions that it calls
             for (const lang::ast::Function& function : tree.functions)
-                if (std::find(made.names.begin(), made.names.end(), function.name.text) != made.names.end())
-                    helpers += std::string(sources.text(function.span)) + "\n\n";
-            made.example = {stem(file.name), texture.name.text, helpers + std::string(sources.text(texture.span))};
+                if (reads(function.name.text)) helpers += std::string(sources.text(function.span)) + "\n\n";
+            made.example = {stem(file.name), texture.name.text, helpers + std::string(sources.text(texture.span)),
+                            !reads("extent") && !reads("footprint_in")};
         }
     }
     return all;

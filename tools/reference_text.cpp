@@ -153,7 +153,7 @@ std::string to_markdown(const std::vector<Entry>& entries)
         if (entry.group != group) page += fmt::format("\n## {}.haptel\n", entry.group);
         group = entry.group;
         page += fmt::format("\n### {}\n", entry.name);
-        if (entry.example)
+        if (entry.example && entry.example->has_picture)
             page += fmt::format("\n![{0}](pictures/{1}/{2}.png)\n", entry.name, entry.example->file,
                                 entry.example->texture);
         by_doc(entry, [&](size_t begin, size_t end) {

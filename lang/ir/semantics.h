@@ -41,6 +41,13 @@ bool is_finite(const T& a)
     return a - a == T(0);
 }
 
+// a - b. Boost's float takes a - (what was made in place) as -(that - a), and so turns the sign of a zero.
+template <typename T>
+T difference(const T& a, const T& b)
+{
+    return a - b;
+}
+
 template <typename T>
 T minimum(const T& a, const T& b)
 {
@@ -140,7 +147,7 @@ template <typename T>
 T sine_of_turns(const T& a)
 {
     using std::copysign, std::fabs, std::sin;
-    T r = a - round_to_even(a);
+    T r = difference(a, T(round_to_even(a)));
     T folded = fabs(r);
     if (folded > T(0.25)) folded = T(0.5) - folded;
     return copysign(T(sin(two_pi<T>() * folded)), r);
@@ -150,7 +157,7 @@ template <typename T>
 T cosine_of_turns(const T& a)
 {
     using std::fabs, std::sin;
-    T r = a - round_to_even(a);
+    T r = difference(a, T(round_to_even(a)));
     return sin(two_pi<T>() * (T(0.25) - fabs(r)));
 }
 
@@ -216,8 +223,8 @@ inline void execute(Op op, Slot<T>& result, const Slot<T>& a, const Slot<T>& b, 
     case Op::ceil: result.real = ceil(a.real); return;
     case Op::trunc: result.real = trunc(a.real); return;
     case Op::round: result.real = s::round_to_even(a.real); return;
-    case Op::fract: result.real = a.real - T(floor(a.real)); return;
-    case Op::mod: result.real = a.real - b.real * T(floor(T(a.real / b.real))); return;
+    case Op::fract: result.real = s::difference(a.real, T(floor(a.real))); return;
+    case Op::mod: result.real = s::difference(a.real, T(b.real * T(floor(T(a.real / b.real))))); return;
     case Op::sqrt: result.real = sqrt(a.real); return;
     case Op::length2: {
         const T x[] = {a.real, b.real};

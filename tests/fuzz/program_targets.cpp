@@ -104,6 +104,22 @@ public:
         decisions = interpreter.decisions();
         return {results[0].real, results[1].real, results[2].real, results[3].real};
     }
+    // The height where the contact has moved along an axis, the normal and the mesh coordinates with it.
+    T height_beside(const haptel_point& point, size_t axis, const T& offset)
+    {
+        jit::set_point(inputs, point);
+        ir::EntryInputs<T> used = inputs;
+        const auto move = [&](ir::Input first, size_t i, double by) {
+            used.input[static_cast<size_t>(first) + i] += T(by) * offset;
+        };
+        move(ir::Input::p_x, axis, 1);
+        for (size_t i = 0; i < 3; ++i) move(ir::Input::n_x, i, point.n_dp[i][axis]);
+        for (size_t i = 0; i < 2; ++i) move(ir::Input::uv_x, i, point.uv_dp[i][axis]);
+        const auto results = interpreter.run(texture.height_gradient, {}, &used);
+        faults = results[4].bits;
+        decisions = interpreter.decisions();
+        return results[0].real;
+    }
     uint32_t faults = 0;
     uint64_t decisions = 0;
 
@@ -132,8 +148,8 @@ std::array<double, 4> rounded(const std::array<ir::Quad, 4>& exact)
             static_cast<double>(exact[3])};
 }
 
-// Height and gradient of one point, double against the truth, in the measure of `haptel test`: the distance over the
-// largest that is right.
+// Double against the truth, in a measure like that of `haptel test`, with room for what cancels inside of a program
+// that nobody would write.
 struct Difference {
     double worst[2] = {0, 0}, largest[2] = {0, 0}, conditioning[2] = {0, 0};
     std::string where;
@@ -155,6 +171,37 @@ struct Difference {
         }
     }
 };
+
+// The gradient itself, which every engine takes from the same derivative: against central differences of the 113-bit
+// height with a Richardson step, where no piece ends between.
+void check_gradient(const Program& program, Engine<ir::Quad>& oracle, const haptel_point& point)
+{
+    const std::array<ir::Quad, 4> truth = oracle.run(point);
+    const uint64_t decisions = oracle.decisions;
+    if (oracle.faults != 0) return;
+    for (size_t axis = 0; axis < 3; ++axis) {
+        bool is_smooth = true;
+        const auto height = [&](const ir::Quad& offset) {
+            const ir::Quad result = oracle.height_beside(point, axis, offset);
+            is_smooth = is_smooth && oracle.faults == 0 && oracle.decisions == decisions;
+            return result;
+        };
+        const ir::Quad step = 0x1p-28;
+        const ir::Quad coarse = (height(step) - height(-step)) / (2 * step);
+        const ir::Quad fine = (height(step / 2) - height(-step / 2)) / step;
+        if (!is_smooth) {
+            count("differences across a kink");
+            continue;
+        }
+        const auto difference = static_cast<double>((4 * fine - coarse) / 3);
+        const auto found = static_cast<double>(truth[1 + axis]);
+        const double scale = 1 + std::fabs(found) + std::fabs(static_cast<double>(truth[0]));
+        if (!(std::fabs(found - difference) <= 1e-10 * scale))
+            program.fail("gradient along axis " + std::to_string(axis) + " is " + std::to_string(found) +
+                         ", the difference quotient " + std::to_string(difference));
+        count("differences");
+    }
+}
 
 } // namespace
 
@@ -197,6 +244,8 @@ void run_program(std::string_view bytes)
             count("faults");
             continue;
         }
+        // detach() is for gradients that differ on purpose.
+        if (i == 0 && program.source.find("detach(") == std::string::npos) check_gradient(program, oracle, point);
         const std::array<ir::Quad, 4> truth = oracle.run(point);
         const uint64_t decisions = oracle.decisions;
         bool decided = interpreter.decisions != decisions;
@@ -209,7 +258,7 @@ void run_program(std::string_view bytes)
         count(decided ? "points where rounding decides" : "compared with the oracle");
     }
     for (size_t which = 0; which < 2; ++which) {
-        const double allowed = 1e-12 * difference.scale(which) + 8 * difference.conditioning[which];
+        const double allowed = 1e-11 * difference.scale(which) + 64 * difference.conditioning[which];
         if (difference.worst[which] <= allowed) continue;
         program.fail("differs from the oracle, seed " + std::to_string(seed) +
                      (which ? ", gradient by " : ", height by ") + std::to_string(difference.worst[which] / allowed) +

@@ -83,7 +83,8 @@ std::string ExpressionWriter::real(int depth)
     case 4:
     case 5: return "(" + a() + " * " + a() + ")";
     case 6: return "(" + a() + " / (1.25 + abs(" + a() + ")))";
-    case 7: return "(" + a() + " / " + a() + ")";
+    // By whole numbers, which may be 0: close to 0 rounding would be all that is left.
+    case 7: return "(" + a() + one_of({" / floor(", " / round(2.5 * ", " / sign("}) + a() + "))";
     case 8: return one_of({"sin(", "cos(", "tanh(", "atan(", "sinturn(", "costurn(", "asinh("}) + a() + ")";
     case 9: return "exp(-abs(" + a() + "))";
     case 10:

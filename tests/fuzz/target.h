@@ -28,6 +28,7 @@ void count(const char* what, uint64_t how_many = 1);
 // text_targets.cpp, program_targets.cpp
 void parse_text(std::string_view bytes);
 void compile_text(std::string_view bytes);
+void format_text(std::string_view bytes);
 void read_ir(std::string_view bytes);
 void run_program(std::string_view bytes);
 void bound_program(std::string_view bytes);

@@ -12,6 +12,7 @@ namespace {
 constexpr Target all[] = {
     {"parse", "lexer and parser on bytes", false, haptel_corpus, parse_text},
     {"compile", "checker, lowering and analysis on bytes", false, haptel_corpus, compile_text},
+    {"format", "the formatter: stable, and true to the meaning", false, haptel_corpus, format_text},
     {"ir", "reader of IR text, verifier, printer, interpreter", false, ir_corpus, read_ir},
     {"programs", "random programs: interpreter, 113-bit oracle and machine code", true, nullptr, run_program},
     {"bounds", "random programs: what is measured lies in the bounds", true, nullptr, bound_program},

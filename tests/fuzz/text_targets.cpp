@@ -1,5 +1,6 @@
 // Text of any bytes: source, and the text form of the IR.
 #include "lang/analyse.h"
+#include "lang/format.h"
 #include "lang/ir/interpret.h"
 #include "lang/ir/text.h"
 #include "lang/ir/verify.h"
@@ -115,6 +116,30 @@ void compile_text(std::string_view bytes)
         count("analysed");
     }
     check_findings(result.diagnostics, result.sources);
+}
+
+void format_text(std::string_view bytes)
+{
+    const auto formatted = [](const std::string& text) {
+        SourceSet sources;
+        Diagnostics diagnostics;
+        const uint32_t file = sources.add({"fuzz.haptel", text});
+        const std::optional<std::string> result = format(sources, file, diagnostics);
+        if (!result && !diagnostics.has_errors()) fail("not formatted, and not told why");
+        return result;
+    };
+    const std::string text(bytes);
+    const std::optional<std::string> once = formatted(text);
+    if (!once) return;
+    count("formatted");
+    const std::optional<std::string> twice = formatted(*once);
+    if (!twice) fail("what was formatted is refused:\n" + *once);
+    if (*twice != *once) fail("formatting twice changes:\n" + *once + "\n---- into\n" + *twice);
+    const auto meaning = [](const std::string& source) {
+        const CompileResult result = compile({"fuzz.haptel", source}, {});
+        return result.program ? ir::print(result.program->module) : std::string();
+    };
+    if (meaning(text) != meaning(*once)) fail("formatting changes the meaning:\n" + *once);
 }
 
 void read_ir(std::string_view bytes)

@@ -3,6 +3,7 @@
 #include "lang/format.h"
 #include "lang/ir/text.h"
 #include "stdlib/stdlib.h"
+#include "tests/fuzz/random_source.h"
 #include "tests/support/catch.h"
 #include "tests/tools/run_command.h"
 
@@ -40,7 +41,8 @@ TEST_CASE("fmt: what a file means is what its formatted text means, and formatti
 {
     size_t files = 0;
     for (const char* folder : {"stdlib", "stdlib/tests", "examples/textures", "tests/lang/golden"}) {
-        for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(HAPTEL_SOURCE_DIR) / folder)) {
+        for (const auto& entry :
+             std::filesystem::directory_iterator(std::filesystem::path(HAPTEL_SOURCE_DIR) / folder)) {
             if (entry.path().extension() != ".haptel") continue;
             const std::string text = read_file(entry.path()), result = formatted(text);
             if (result.empty()) continue; // syntax errors, on purpose
@@ -54,6 +56,17 @@ TEST_CASE("fmt: what a file means is what its formatted text means, and formatti
         }
     }
     CHECK(files > 30);
+}
+
+TEST_CASE("fmt: random programs mean what they meant")
+{
+    for (uint64_t seed = 1; seed <= 300; ++seed) {
+        const std::string text = fuzz::random_source(seed), result = formatted(text);
+        CAPTURE(text, result);
+        REQUIRE(result != "");
+        REQUIRE(formatted(result) == result);
+        REQUIRE(meaning("t.haptel", text, false) == meaning("t.haptel", result, false));
+    }
 }
 
 TEST_CASE("fmt: replaces a file, keeps its permissions, and says so; a second time there is nothing to do")
