@@ -42,7 +42,7 @@ std::string ExpressionWriter::variable_or(Kind kind, const std::function<std::st
 
 std::string ExpressionWriter::number()
 {
-    return one_of({"0.5", "-1.5", "2.0", "0.1", "3.0", "-0.7", "1e-3", "0.0", "-0.0", "1.0", "0.333", "-2.25", "7.5"});
+    return one_of({"0.5", "-1.5", "2.0", "0.1", "3.0", "-0.7", "0.0", "-0.0", "1.0", "0.333", "-2.25", "7.5"});
 }
 
 std::string ExpressionWriter::whole_number()
