@@ -196,6 +196,13 @@ void Formatter::controlled(size_t indent)
 
 void Formatter::simple(size_t indent)
 {
+    const bool is_idle = kind() == Token::semicolon && at > 0 && pieces[at - 1].kind == Token::right_brace &&
+                         pieces[at - 1].trailing.empty() && pieces[at].above.empty() && !pieces[at].has_comment;
+    if (is_idle) { // "};", as after a struct
+        page.append(pieces[at++]);
+        if (indent == 0) page.blank_line();
+        return;
+    }
     const size_t end = std::max(behind_statement(at), at + 1);
     table(at, end, indent);
     at = end;

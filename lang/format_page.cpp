@@ -123,6 +123,12 @@ void Page::put_above(const Piece& piece, size_t indent)
     if (piece.blank_above) blank_line();
 }
 
+void Page::append(const Piece& piece)
+{
+    lines.back().text += piece.text;
+    lines.back().trailing = piece.trailing;
+}
+
 void Page::blank_line()
 {
     if (!lines.empty() && !lines.back().text.empty() && !lines.back().text.ends_with('{')) lines.push_back({});

@@ -14,6 +14,8 @@ public:
     // `pieces` as one logical line, broken where it is longer than the page. `lead`: spaces before a piece beyond the
     // usual one, by its index; may be shorter. `hang`: how much deeper lines go on that stand in no bracket.
     void put(std::span<const Piece> pieces, size_t indent, const std::vector<size_t>& lead = {}, size_t hang = step);
+    // At the end of the last line, which has no comment.
+    void append(const Piece& piece);
     // Comments on lines of their own, and the empty line below them.
     void put_above(const Piece& piece, size_t indent);
     // At most one in a row, none at the beginning of a page or block.

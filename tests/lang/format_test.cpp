@@ -105,6 +105,12 @@ TEST_CASE("format: comments stay with what they are at")
         "        x = 2.0;\n    } // then\n    // why\n    else x = 3.0;\n    return x;\n    // end\n}\n");
 }
 
+TEST_CASE("format: a semicolon that does nothing stays at its brace")
+{
+    CHECK(formatted("float f()\n{\n    return 1.0;\n}; // end\nconst float A = 1.0;") ==
+          "float f()\n{\n    return 1.0;\n}; // end\n\nconst float A = 1.0;\n");
+}
+
 TEST_CASE("format: what is no Haptel is refused")
 {
     CHECK(formatted("float f( { return 1.0; }") == "refused");
