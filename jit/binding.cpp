@@ -1,7 +1,9 @@
 #include "jit/facts.h"
+#include "jit/image_file.h"
 #include "jit/texture.h"
 #include "lang/value.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -12,18 +14,23 @@ namespace {
 // What a binding points into.
 struct BindingStorage {
     std::shared_ptr<const CompiledProgram> program;
-    std::vector<uint64_t> block; // of 8 bytes for its alignment
+    std::vector<std::shared_ptr<const ir::SplineImage>> images; // by Texture::parameters
+    std::vector<uint64_t> block;                                // of 8 bytes for its alignment
 };
 
 // Everything wrong with a request, one line each.
 class Complaints {
 public:
-    void add(const std::string& error, const std::string& hint = {})
+    void add(const std::string& error, const std::string& hint = {}) { add(text, "error: " + error, hint); }
+    void warn(const std::string& warning, const std::string& hint) { add(warnings, "warning: " + warning, hint); }
+    std::string text, warnings;
+
+private:
+    static void add(std::string& to, const std::string& what, const std::string& hint)
     {
-        text += "error: " + error + "\n";
-        if (!hint.empty()) text += "  hint: " + hint + "\n";
+        to += what + "\n";
+        if (!hint.empty()) to += "  hint: " + hint + "\n";
     }
-    std::string text;
 };
 
 template <typename Item>
@@ -81,6 +88,29 @@ std::vector<double> values_of(const ir::Texture& texture, const TextureRequest& 
     return values;
 }
 
+// By Texture::parameters; null where there is none, which is flat and worth a warning.
+std::vector<std::shared_ptr<const ir::SplineImage>> images_of(const ir::Texture& texture, const TextureRequest& request,
+                                                              Complaints& complaints)
+{
+    std::vector<std::shared_ptr<const ir::SplineImage>> images;
+    for (const ir::Parameter& parameter : texture.parameters) {
+        images.emplace_back();
+        if (parameter.type != ir::Type::image) continue;
+        const std::string of = "parameter '" + parameter.name + "' of texture '" + texture.name + "'";
+        const auto given = std::find_if(request.parameters.rbegin(), request.parameters.rend(),
+                                        [&](const auto& one) { return one.first == parameter.name; });
+        if (given == request.parameters.rend()) {
+            complaints.warn(of + " has no picture and is flat, 0 everywhere",
+                            "name a file: " + parameter.name + " = \"dents.png\"");
+            continue;
+        }
+        ImageFile read = read_image(given->second, request.folder);
+        if (!read.image) complaints.add(of + ": " + read.error, read.hint);
+        images.back() = std::move(read.image);
+    }
+    return images;
+}
+
 haptel_block_head head_of(const TextureRequest& request, Complaints& complaints)
 {
     haptel_block_head head{};
@@ -108,7 +138,14 @@ void write(std::vector<uint64_t>& block, const ir::Parameter& parameter, double 
     case ir::Type::i32: put(static_cast<int32_t>(value)); break;
     case ir::Type::u32: put(static_cast<uint32_t>(value)); break;
     case ir::Type::boolean: put(static_cast<int32_t>(value != 0)); break;
+    case ir::Type::image: break; // write_image
     }
+}
+
+void write_image(std::vector<uint64_t>& block, const ir::Parameter& parameter, const ir::SplineImage* image)
+{
+    const haptel_image* view = image ? &image->view() : nullptr;
+    std::memcpy(reinterpret_cast<char*>(block.data()) + parameter.offset, &view, sizeof view);
 }
 
 } // namespace
@@ -121,10 +158,13 @@ TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program
     if (!texture) return {std::nullopt, complaints.text};
     const ir::Texture& source = program->source_of(*texture);
     const std::vector<double> values = values_of(source, request, complaints);
+    std::vector<std::shared_ptr<const ir::SplineImage>> images = images_of(source, request, complaints);
     const haptel_block_head head = head_of(request, complaints);
     if (!complaints.text.empty()) return {std::nullopt, complaints.text};
 
-    const haptel_facts facts = facts_over_box(program->module(), source, values, head);
+    std::vector<const ir::SplineImage*> views; // flat where there is none
+    for (const auto& image : images) views.push_back(image ? image.get() : &flat_image());
+    const haptel_facts facts = facts_over_box(program->module(), source, values, views, head);
     const bool is_bounded = std::isfinite(facts.height_min_m) && std::isfinite(facts.height_max_m);
     if (!is_bounded && unbounded == Unbounded::refused) {
         complaints.add("the height of texture '" + source.name +
@@ -140,8 +180,12 @@ TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program
     storage->block.resize((texture->block_size + 7) / 8);
     std::memcpy(storage->block.data(), &head, sizeof head);
     for (size_t i = 0; i < values.size(); ++i) write(storage->block, source.parameters[i], values[i]);
+    for (size_t i = 0; i < images.size(); ++i)
+        if (source.parameters[i].type == ir::Type::image)
+            write_image(storage->block, source.parameters[i], images[i].get());
+    storage->images = std::move(images);
     const void* block = storage->block.data();
-    return {TextureBinding{std::move(storage), texture, block, facts}, {}};
+    return {TextureBinding{std::move(storage), texture, block, facts}, std::move(complaints.warnings)};
 }
 
 } // namespace haptel::jit

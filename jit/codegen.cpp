@@ -207,6 +207,7 @@ llvm::Type* ModuleEmitter::type(ir::Type type)
     case ir::Type::i32:
     case ir::Type::u32: return llvm::Type::getInt32Ty(context);
     case ir::Type::boolean: return llvm::Type::getInt1Ty(context);
+    case ir::Type::image: return llvm::PointerType::getUnqual(context);
     }
     return nullptr;
 }
@@ -256,7 +257,9 @@ void ModuleEmitter::internal_function(uint32_t index)
                                             llvm::GlobalValue::InternalLinkage, from.name, target);
     function->setCallingConv(llvm::CallingConv::Fast);
     function->setDoesNotThrow();
-    function->setDoesNotAccessMemory();
+    const bool reads_images = std::any_of(from.parameters.begin(), from.parameters.end(),
+                                          [&](ir::Value value) { return from.type(value) == ir::Type::image; });
+    reads_images ? function->setOnlyReadsMemory() : function->setDoesNotAccessMemory();
     function->setWillReturn();
     functions[index] = function;
 

@@ -1,6 +1,7 @@
 #include "jit/codegen_operation.h"
 
 #include "jit/codegen.h"
+#include "lang/ir/spline.h"
 
 #include <cmath>
 #include <cstring>
@@ -22,6 +23,11 @@ void* address(Unary function)
 void* address(Binary function)
 {
     return reinterpret_cast<void*>(function);
+}
+
+double spline_of_doubles(const haptel_image* image, double x, double y, uint32_t orders)
+{
+    return ir::spline(image, x, y, orders);
 }
 
 // Operands, in the order of ops.def, are a, b, c, d.
@@ -47,6 +53,7 @@ private:
     Value* choose(Value* condition, Value* x, Value* y) { return builder.CreateSelect(condition, x, y); }
 
     Value* call(const char* name, std::initializer_list<Value*> arguments);
+    Value* read_image(const char* name, llvm::Type* result);
     Value* sign();
     Value* length();
     Value* remainder_of_turn() { return builder.CreateFSub(a(), intrinsic(llvm::Intrinsic::roundeven, a())); }
@@ -70,6 +77,20 @@ Value* Emitter::call(const char* name, std::initializer_list<Value*> arguments)
     function->setDoesNotAccessMemory();
     function->setWillReturn();
     return builder.CreateCall(function, std::vector<Value*>(arguments));
+}
+
+// Total, and reads what no one writes while code runs.
+Value* Emitter::read_image(const char* name, llvm::Type* result)
+{
+    std::vector<llvm::Type*> types;
+    for (Value* operand : operands) types.push_back(operand->getType());
+    auto* type = llvm::FunctionType::get(result, types, false);
+    llvm::Module* module = builder.GetInsertBlock()->getModule();
+    auto* function = llvm::cast<llvm::Function>(module->getOrInsertFunction(name, type).getCallee());
+    function->setDoesNotThrow();
+    function->setOnlyReadsMemory();
+    function->setWillReturn();
+    return builder.CreateCall(function, std::vector<Value*>(operands.begin(), operands.end()));
 }
 
 Value* Emitter::sign()
@@ -221,6 +242,9 @@ Value* Emitter::emit(ir::Op op)
     case Op::u_to_r: return builder.CreateUIToFP(a(), builder.getDoubleTy());
     case Op::r_to_i: return saturate(in::fptosi_sat);
     case Op::r_to_u: return saturate(in::fptoui_sat);
+    case Op::spline: return read_image("haptel_spline", builder.getDoubleTy());
+    case Op::image_width: return read_image("haptel_image_width", builder.getInt32Ty());
+    case Op::image_height: return read_image("haptel_image_height", builder.getInt32Ty());
     case Op::i_as_u:
     case Op::u_as_i:
     case Op::detach: return a();
@@ -256,6 +280,9 @@ std::span<const LibraryFunction> code_library()
         {"haptel_exp2", address(Unary(std::exp2))},
         {"haptel_log", address(Unary(std::log))},
         {"haptel_log2", address(Unary(std::log2))},
+        {"haptel_spline", reinterpret_cast<void*>(&spline_of_doubles)},
+        {"haptel_image_width", reinterpret_cast<void*>(&ir::image_width)},
+        {"haptel_image_height", reinterpret_cast<void*>(&ir::image_height)},
         {"haptel_pow", address(Binary(std::pow))},
         // What the instruction selector calls by itself where the processor has no such instruction. All are exact or
         // correctly rounded.

@@ -78,7 +78,7 @@ haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& text
 }
 
 haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,
-                            const haptel_block_head& head)
+                            std::span<const ir::SplineImage* const> images, const haptel_block_head& head)
 {
     ir::BoundsBox box = anywhere();
     for (size_t i = 0; i < 3; ++i) {
@@ -91,6 +91,7 @@ haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture
     set(box, Input::extent_x, head.extent, head.extent);
     box.input[static_cast<size_t>(Input::footprint)] = {head.footprint_m, head.footprint_m};
     for (double value : values) box.parameters.push_back({value, value});
+    box.images.assign(images.begin(), images.end());
     return facts(module, texture, box, evaluations_over_box);
 }
 

@@ -3,6 +3,7 @@
 
 #include "lang/abi.h"
 #include "lang/ir/ir.h"
+#include "lang/ir/spline_image.h"
 
 #include <span>
 
@@ -11,8 +12,8 @@ namespace haptel::jit {
 // For every point and all values within the parameters' ranges.
 haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& texture);
 
-// For points of the box, these values (by Texture::parameters, SI) and this footprint.
+// For points of the box, these values and images (by Texture::parameters, SI) and this footprint.
 haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,
-                            const haptel_block_head& head);
+                            std::span<const ir::SplineImage* const> images, const haptel_block_head& head);
 
 } // namespace haptel::jit

@@ -21,6 +21,7 @@ haptel_parameter described(const ir::Parameter& parameter)
     case ir::Type::i32: type = HAPTEL_INT; break;
     case ir::Type::u32: type = HAPTEL_UINT; break;
     case ir::Type::boolean: type = HAPTEL_BOOL; break;
+    case ir::Type::image: type = HAPTEL_IMAGE; break;
     }
     return {parameter.name.c_str(), parameter.unit.c_str(), parameter.doc.c_str(), type,
             parameter.offset,       parameter.value,        parameter.minimum,     parameter.maximum};

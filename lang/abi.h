@@ -42,8 +42,21 @@ enum {
     HAPTEL_FLOAT = 0, /* double in the block */
     HAPTEL_INT = 1,   /* int32_t */
     HAPTEL_UINT = 2,  /* uint32_t */
-    HAPTEL_BOOL = 3   /* int32_t, 0 or 1 */
+    HAPTEL_BOOL = 3,  /* int32_t, 0 or 1 */
+    HAPTEL_IMAGE = 4  /* const haptel_image*, aligned to 8; null: flat, 0 everywhere. The binding keeps what it points to */
 };
+
+/* What an image is outside of its edges: the texel at the edge, or the image once more. */
+enum { HAPTEL_EDGE_CLAMPED = 0, HAPTEL_EDGE_TILED = 1 };
+
+/* A picture as textures read it: the cubic B-spline that goes through its texels. Texel (0, 0) is the lower left one,
+ * rows follow each other upwards. `minimum` and `maximum` bound all coefficients, and so the spline.
+ */
+typedef struct {
+    const double* coefficients[2]; /* by HAPTEL_EDGE_*; width * height each, finite */
+    int32_t width, height;         /* in texels, at least 1 */
+    double minimum, maximum;
+} haptel_image;
 
 /* haptel_facts::continuity */
 enum { HAPTEL_CONTINUITY_UNKNOWN = 0, HAPTEL_CONTINUITY_JUMP = 1, HAPTEL_CONTINUITY_C0 = 2, HAPTEL_CONTINUITY_C1 = 3 };

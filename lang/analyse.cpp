@@ -104,9 +104,11 @@ void report(const ir::Undefined& found, Diagnostics& diagnostics)
 } // namespace
 
 Analysis analyse(const Program& program, const ir::Texture& texture, std::span<const double> values,
-                 const AnalysedCube& where, Diagnostics& diagnostics)
+                 std::span<const ir::SplineImage* const> images, const AnalysedCube& where, Diagnostics& diagnostics)
 {
-    ir::BoundsBox at_values = box_of(where), over_ranges = at_values;
+    ir::BoundsBox at_values = box_of(where);
+    at_values.images.assign(images.begin(), images.end());
+    ir::BoundsBox over_ranges = at_values;
     for (size_t i = 0; i < values.size(); ++i) {
         at_values.parameters.push_back({values[i], values[i]});
         over_ranges.parameters.push_back(range_of(texture.parameters[i], values[i]));

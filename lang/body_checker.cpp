@@ -156,6 +156,7 @@ void BodyChecker::check_function(Function& tree, FunctionInfo& info)
             for (Type type : parameter.signature) symbol.parameters.push_back({type});
         } else {
             flow.variables[symbol.slot].assigned = all_parts;
+            if (parameter.type == image_type) symbol.read_only = "it is an image";
         }
         parameter.symbol = &symbol;
     }

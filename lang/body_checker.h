@@ -35,6 +35,9 @@ std::optional<Type> type_named(std::string_view name);
 // Reports what is no type; `what` it is for ("a parameter"). Arrays: the element, the caller looks at is_array.
 Type resolve_type(CheckContext& context, const ast::TypeName& name);
 
+// Where a type is named that cannot be image.
+void report_image(CheckContext& context, const ast::TypeName& name);
+
 // Parts of a variable, a bit each: components; of an array, elements.
 inline constexpr uint64_t all_parts = ~uint64_t{0};
 uint64_t parts_of(Type type);

@@ -28,6 +28,7 @@ Type type_of(char letter, uint8_t generic_size)
     case 'i': return int_type;
     case 'u': return uint_type;
     case 'b': return bool_type;
+    case 't': return image_type;
     case '3': return vec(3);
     case 'g':
     case 'v': return vec(generic_size);

@@ -15,7 +15,7 @@ using namespace ast;
 std::optional<Type> type_named(std::string_view name)
 {
     for (Type type :
-         {float_type, int_type, uint_type, bool_type, vec(2), vec(3), vec(4), mat(2), mat(3), mat(4), void_type})
+         {float_type, int_type, uint_type, bool_type, vec(2), vec(3), vec(4), mat(2), mat(3), mat(4), image_type, void_type})
         if (to_string(type) == name) return type;
     return std::nullopt;
 }
@@ -37,6 +37,13 @@ Type resolve_type(CheckContext& context, const TypeName& name)
         reported.hint = "types are float, int, uint, bool, vec2, vec3, vec4, mat2, mat3 and mat4";
     }
     return Type::error();
+}
+
+void report_image(CheckContext& context, const TypeName& name)
+{
+    context.diagnostics
+        .error(name.base.span, "image", "an image is a parameter of a texture or of a function, and nothing else")
+        .hint = "pass it on as it is: float bark(image picture, vec2 q) { return sample(picture, q); }";
 }
 
 namespace {
@@ -123,7 +130,7 @@ private:
             info.tree = &tree;
             info.file = file;
             info.is_library = program.files[file].is_library;
-            info.result = value_type(tree.result, "a function returns a value", scope);
+            info.result = value_type(tree.result, "a function returns a value", scope, true);
             if (type_named(info.name))
                 context.diagnostics.error(tree.name.span, "reserved-name",
                                           quoted(info.name) + " is a type, expected a name of your own");
@@ -168,10 +175,12 @@ private:
     }
 
     // Of a result or parameter: not void.
-    Type value_type(const TypeName& name, const std::string& why, const FileScope& scope)
+    Type value_type(const TypeName& name, const std::string& why, const FileScope& scope, bool is_result = false)
     {
         const Type type = resolve_type(context, name);
-        if (type == void_type)
+        if (type == image_type && (name.is_array || is_result))
+            report_image(context, name);
+        else if (type == void_type)
             context.diagnostics.error(name.base.span, "type-mismatch", why + ", found void").hint =
                 "write float, int, vec3 ...";
         else

@@ -128,6 +128,11 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
                 "leave this argument out";
             damaged = true;
         }
+        if (!damaged && found == image_type) {
+            diagnostics.error(argument.span, "image", "expected numbers and vectors for " + to_string(type) + ", found image")
+                .hint = "read it: sample(" + excerpt(argument) + ", uv)";
+            damaged = true;
+        }
         if (!damaged && (found.is_array() || (type.is_matrix() && found.is_matrix() && call.arguments.size() > 1))) {
             diagnostics
                 .error(argument.span, "type-mismatch",
@@ -143,6 +148,11 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
     if (damaged) return type;
     if (type == void_type) {
         diagnostics.error(e.span, "type-mismatch", "void has no values");
+        return Type::error();
+    }
+    if (type == image_type) {
+        diagnostics.error(e.span, "image", "an image is not made of values").hint =
+            "it comes with the texture: texture t(image picture) { return 1mm * sample(picture, uv); }";
         return Type::error();
     }
     const bool fills =
@@ -164,7 +174,7 @@ Type BodyChecker::check(Expression& e, GradCall& call)
     const auto chosen = resolve(e, call.function, call.arguments, call.order, call.target, if_unsure);
     if (!chosen) return Type::error();
     const auto first = std::find_if(chosen->parameters.begin(), chosen->parameters.end(),
-                                    [](const ParameterInfo& p) { return !p.is_function; });
+                                    [](const ParameterInfo& p) { return !p.is_function && p.type != image_type; });
     const Type argument = first == chosen->parameters.end() ? void_type : first->type;
     if (argument.scalar != Scalar::float_ || argument.is_matrix() || argument.is_array()) {
         diagnostics

@@ -21,7 +21,8 @@ bool is_integer(Type type)
 // How to get from one type to the other by hand; `text` is the expression as written.
 std::string conversion_hint(Type from, Type to, const std::string& text)
 {
-    if (to.is_array() || to.is_error()) return {};
+    if (to.is_array() || to.is_error() || to == image_type) return {};
+    if (from == image_type) return "read it: sample(" + text + ", uv)";
     if (from.is_array()) return "pick an element: " + text + "[i]";
     if (from.is_matrix() || to.is_matrix()) {
         if (from.is_matrix() && to == from.element()) return "pick a column: " + text + "[0]";
@@ -41,6 +42,7 @@ std::string conversion_hint(Type from, Type to, const std::string& text)
 // The hint is a plain conversion that --fix may apply.
 bool converts_by_constructor(Type from, Type to)
 {
+    if (from == image_type || to == image_type) return false;
     const bool makes_matrix = to.is_matrix() && (from.is_matrix() || from.is_scalar());
     return makes_matrix || (from.is_scalar() && !to.is_array() && !to.is_matrix() && !to.is_error() && to != bool_type);
 }
@@ -282,6 +284,11 @@ Type BodyChecker::check(Expression& e, Conditional& node)
     condition(node.condition, "before '?'");
     const Type a = expression(*node.when_true), b = expression(*node.when_false);
     if (a.is_error() || b.is_error()) return Type::error();
+    if (a == image_type && b == image_type) {
+        diagnostics.error(e.span, "image", "an image cannot be chosen by '?:'").hint =
+            "choose between what is read of them: c ? sample(a, q) : sample(b, q)";
+        return Type::error();
+    }
     if (a == b) return a;
     if (converts_implicitly(a, b)) return b;
     if (converts_implicitly(b, a)) return a;

@@ -44,6 +44,10 @@ void BodyChecker::check(Statement&, ast::Scope& node)
 void BodyChecker::check(Statement&, Declaration& node)
 {
     Type type = resolve_type(context, node.type);
+    if (type == image_type) {
+        report_image(context, node.type);
+        type = Type::error();
+    }
     if (type == void_type) {
         diagnostics.error(node.type.base.span, "type-mismatch", "a variable cannot be void").hint =
             "write float, int, vec3 ...";

@@ -96,10 +96,18 @@ CheckedParameter check_texture_parameter(CheckContext& context, const FileScope&
     if (!symbol.type.is_error() && (!symbol.type.is_scalar() || symbol.type == void_type || tree.type.is_array)) {
         diagnostics
             .error(tree.type.base.span, "type-mismatch",
-                   "a parameter of a texture is a float, int, uint or bool, found " +
+                   "a parameter of a texture is a float, int, uint, bool or image, found " +
                        (tree.type.is_array ? "a table" : to_string(symbol.type)))
             .hint = !symbol.type.is_scalar() ? "take the components as parameters of their own" : "";
         symbol.type = Type::error();
+    }
+    if (symbol.type == image_type) {
+        const Expression* given = tree.value ? tree.value.get() : tree.minimum.get();
+        if (given)
+            diagnostics.error(given->span, "image", "an image has neither default nor range, expected ',' or ')'").hint =
+                "it is flat, 0 everywhere, until a scene names a file: parameters = { " + tree.name.text +
+                " = \"dents.png\" }";
+        return made;
     }
     BodyChecker checker(context, scope, true);
     const Type type = symbol.type;

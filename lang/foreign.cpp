@@ -24,8 +24,9 @@ constexpr std::string_view use_noise =
 constexpr std::string_view use_turns =
     "write const float PI = 3.141592653589793; or use sinturn and costurn, which count full turns";
 constexpr std::string_view use_return = "a texture returns its height: return 1mm;";
-constexpr std::string_view no_image =
-    "heights are computed, not read from images: write noise, fbm(), or a constant table of numbers";
+constexpr std::string_view use_image = "an image is a parameter of a texture: texture t(image picture)";
+constexpr std::string_view use_sample = "write sample(picture, uv), a float; outside of 0 .. 1 sample_tiled repeats";
+constexpr std::string_view use_texel = "write texel(picture, column, row), a float";
 constexpr std::string_view leave_out = "leave it out";
 
 constexpr ForeignWord words[] = {
@@ -134,11 +135,10 @@ constexpr ForeignWord words[] = {
     {ForeignKind::type, "int32_t", "int", "write int"},
     {ForeignKind::type, "uint32_t", "uint", "write uint"},
     {ForeignKind::type, "size_t", "uint", "write uint"},
-    {ForeignKind::type, "sampler2D", "", no_image},
-    {ForeignKind::type, "Texture2D", "", no_image},
-    {ForeignKind::type, "texture2d", "", no_image},
-    {ForeignKind::type, "SamplerState", "", no_image},
-    {ForeignKind::type, "image", "", no_image},
+    {ForeignKind::type, "sampler2D", "image", use_image},
+    {ForeignKind::type, "Texture2D", "image", use_image},
+    {ForeignKind::type, "texture2d", "image", use_image},
+    {ForeignKind::type, "SamplerState", "", "leave it out: sample() and sample_tiled() say what is outside of 0 .. 1"},
     {ForeignKind::type, "matrix", "mat4", "write mat4"},
     {ForeignKind::type, "fn", "", use_function},
     {ForeignKind::type, "func", "", use_function},
@@ -199,11 +199,13 @@ constexpr ForeignWord words[] = {
     {ForeignKind::function, "dpdx", "", use_grad},
     {ForeignKind::function, "Du", "", use_grad},
     {ForeignKind::function, "Dv", "", use_grad},
-    {ForeignKind::function, "tex2D", "", no_image},
-    {ForeignKind::function, "texture2D", "", no_image},
-    {ForeignKind::function, "textureLod", "", no_image},
-    {ForeignKind::function, "texelFetch", "", no_image},
-    {ForeignKind::function, "textureSample", "", no_image},
+    {ForeignKind::function, "tex2D", "sample", use_sample},
+    {ForeignKind::function, "texture2D", "sample", use_sample},
+    {ForeignKind::function, "textureLod", "", use_sample},
+    {ForeignKind::function, "texelFetch", "", use_texel},
+    {ForeignKind::function, "imageLoad", "", use_texel},
+    {ForeignKind::function, "textureSize", "", "write image_width(picture) and image_height(picture)"},
+    {ForeignKind::function, "textureSample", "", use_sample},
     {ForeignKind::function, "clip", "", "a texture has a height everywhere: return 0.0"},
 
     {ForeignKind::operation, "and", "&&", "write &&"},

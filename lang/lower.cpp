@@ -11,6 +11,7 @@ namespace {
 
 uint32_t size_in_block(ir::Type type)
 {
+    if (type == ir::Type::image) return sizeof(const haptel_image*);
     return type == ir::Type::real ? sizeof(double) : sizeof(int32_t);
 }
 

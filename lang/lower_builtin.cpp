@@ -1,5 +1,6 @@
 // What the composed built-in functions are made of. Each is a function of its name in builtins.def: either of one
 // component of every argument (Value), or of whole arguments (Values).
+#include "lang/ir/spline.h"
 #include "lang/lowering.h"
 
 #include <numbers>
@@ -37,6 +38,14 @@ public:
     }
     Value isnan(Parts x) { return no(equal(x[0], x[0])); }
     Value isinf(Parts x) { return make(Op::land, equal(x[0], x[0]), no(builder.operation(Op::is_finite, {x[0]}))); }
+
+    Value texel(Parts x)
+    {
+        const Value column = builder.operation(Op::i_to_r, {x[1]}), row = builder.operation(Op::i_to_r, {x[2]});
+        return spline_of(x[0], column, row, HAPTEL_EDGE_CLAMPED);
+    }
+    Value spline(Parts x) { return spline_of(x[0], x[1], x[2], HAPTEL_EDGE_CLAMPED); }
+    Value spline_tiled(Parts x) { return spline_of(x[0], x[1], x[2], HAPTEL_EDGE_TILED); }
 
     Values length(Whole x) { return {length_of(x[0])}; }
     Values stretch(Whole x)
@@ -139,6 +148,12 @@ public:
     }
 
 private:
+    Value spline_of(Value image, Value x, Value y, int edge)
+    {
+        const uint32_t orders = ir::spline_order(0, 0, edge == HAPTEL_EDGE_TILED);
+        return builder.operation(Op::spline, {image, x, y, builder.i32(static_cast<int32_t>(orders))});
+    }
+
     using Lines = std::vector<size_t>; // rows or columns of a matrix
 
     static size_t size_of(const Values& matrix) { return matrix.size() == 4 ? 2 : matrix.size() == 9 ? 3 : 4; }

@@ -16,6 +16,9 @@ namespace {
 constexpr uint32_t depth_max = 256;
 constexpr size_t value_count_max = 250'000;
 
+// Functions of the IR take images behind their other arguments: derivatives and facts are with respect to the first ones.
+constexpr bool images_last[] = {false, true};
+
 uint32_t reads_of(const FunctionReference& reference)
 {
     auto source = std::get_if<const FunctionInfo*>(&reference);
@@ -113,7 +116,10 @@ Values BodyLowering::call(const Expression& e, const CallTarget& target, const s
     if (owner.is_too_large(here)) return zeros(e.type);
     const LoweredFunction function = owner.function(callee, passed, order);
     Values flat;
-    for (const Values& value : values) flat.insert(flat.end(), value.begin(), value.end());
+    for (const bool are_images : images_last)
+        for (const Values& value : values)
+            if ((builder.type(value[0]) == ir::Type::image) == are_images)
+                flat.insert(flat.end(), value.begin(), value.end());
     for (uint32_t name = 0; name < input_name_count; ++name) {
         if (!(function.reads >> name & 1)) continue;
         const Values parts = input(static_cast<InputName>(name));
@@ -175,10 +181,14 @@ LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector
     }
     BodyLowering body(*this, unique(std::move(name)), info.slot_count);
     ir::Function& function = body.builder.function();
-    for (const ParameterInfo& parameter : info.parameters) {
-        if (parameter.is_function) continue;
-        if (function.first_argument_size == 0) function.first_argument_size = parameter.type.components();
-        body.value_parameter(parameter.type);
+    for (const bool are_images : images_last) {
+        uint32_t slot = 0;
+        for (const ParameterInfo& parameter : info.parameters) {
+            if (parameter.is_function || (slot++, (parameter.type == image_type) != are_images)) continue;
+            if (function.first_argument_size == 0 && !are_images)
+                function.first_argument_size = parameter.type.components();
+            body.value_parameter(slot - 1, parameter.type);
+        }
     }
     body.input_parameters(made.reads);
     body.bind_functions(passed);
@@ -194,13 +204,15 @@ LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector
 LoweredFunction ModuleLowering::make(const BuiltinOverload& overload)
 {
     ir::Builder builder(module, unique(to_string(candidate_of(overload))));
-    std::vector<Values> arguments;
-    for (const ParameterInfo& parameter : overload.parameters) {
-        Values& parts = arguments.emplace_back();
-        for (uint32_t i = 0; i < parameter.type.components(); ++i)
-            parts.push_back(builder.parameter(ir_type(parameter.type)));
-    }
-    builder.function().first_argument_size = overload.parameters.front().type.components();
+    std::vector<Values> arguments(overload.parameters.size());
+    uint32_t& first_size = builder.function().first_argument_size;
+    for (const bool are_images : images_last)
+        for (size_t p = 0; p < arguments.size(); ++p) {
+            const Type type = overload.parameters[p].type;
+            if ((type == image_type) != are_images) continue;
+            if (first_size == 0 && !are_images) first_size = type.components();
+            for (uint32_t i = 0; i < type.components(); ++i) arguments[p].push_back(builder.parameter(ir_type(type)));
+        }
     return {builder.finish(lower_builtin(*this, builder, overload, arguments)), 0, 0};
 }
 

@@ -39,6 +39,7 @@ Value conversion(ir::Builder& builder, Value value, Scalar from, Scalar to)
         if (from == Scalar::int_) return op(Op::lnot, builder.operation(Op::ieq, {value, builder.i32(0)}));
         return op(Op::lnot, builder.operation(Op::ueq, {value, builder.u32(0)}));
     case Scalar::error:
+    case Scalar::image_:
     case Scalar::void_: break;
     }
     return value;
@@ -61,6 +62,7 @@ ir::Type ir_type(Type type)
     case Scalar::int_: return ir::Type::i32;
     case Scalar::uint_: return ir::Type::u32;
     case Scalar::bool_: return ir::Type::boolean;
+    case Scalar::image_: return ir::Type::image;
     case Scalar::error:
     case Scalar::void_:
     case Scalar::float_: break;
@@ -74,6 +76,7 @@ Values BodyLowering::zeros(Type type)
     case ir::Type::i32: return Values(type.components(), builder.i32(0));
     case ir::Type::u32: return Values(type.components(), builder.u32(0));
     case ir::Type::boolean: return Values(type.components(), builder.boolean(false));
+    case ir::Type::image: // no variable is one
     case ir::Type::real: break;
     }
     return Values(type.components(), builder.real(0));

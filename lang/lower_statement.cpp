@@ -34,9 +34,9 @@ BodyLowering::BodyLowering(ModuleLowering& module_lowering, std::string name, ui
 {
 }
 
-void BodyLowering::value_parameter(Type type)
+void BodyLowering::value_parameter(uint32_t slot, Type type)
 {
-    Values& parts = variables[parameter_count++];
+    Values& parts = variables[slot];
     for (uint32_t i = 0; i < type.components(); ++i) parts.push_back(builder.parameter(ir_type(type)));
 }
 

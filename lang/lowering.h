@@ -83,7 +83,7 @@ public:
     BodyLowering(ModuleLowering& owner, std::string name, uint32_t slot_count);
 
     // Parameters first: values, then inputs. A texture has neither: it reads.
-    void value_parameter(Type type);
+    void value_parameter(uint32_t slot, Type type);
     void input_parameters(uint32_t reads);
     void bind_functions(const std::vector<FunctionReference>& passed) { functions = passed; }
     Values& variable(const Symbol& local) { return variables[local.slot]; }
@@ -150,7 +150,6 @@ private:
 
     ModuleLowering& owner;
     std::vector<Values> variables; // by Symbol::slot, then the three of the flow
-    uint32_t parameter_count = 0;
     std::vector<FunctionReference> functions; // parameters that are functions, by Symbol::slot
     Values passed_inputs[input_name_count];
     Type result_type;

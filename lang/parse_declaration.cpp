@@ -302,7 +302,7 @@ TextureParameter Grammar::texture_parameter()
     array_suffix(parameter.type);
     if (accept(Token::assign)) {
         parameter.value = expression();
-    } else if (!parameter.is_output && !lost) {
+    } else if (!parameter.is_output && !lost && parameter.type.base.text != "image") {
         diagnostics
             .error(parameter.name.span, "missing-default",
                    "the parameter '" + parameter.name.text + "' needs a default value")

@@ -14,6 +14,7 @@ std::string to_string(Type type)
     case Scalar::int_: return "int";
     case Scalar::uint_: return "uint";
     case Scalar::bool_: return "bool";
+    case Scalar::image_: return "image";
     }
     return {};
 }

@@ -1,4 +1,4 @@
-// Types of the language: scalars, vectors and square matrices of 2 to 4, and arrays of them.
+// Types of the language: scalars, vectors and square matrices of 2 to 4, arrays of them, and images.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace haptel::lang {
 
-enum class Scalar : uint8_t { error, void_, float_, int_, uint_, bool_ };
+enum class Scalar : uint8_t { error, void_, float_, int_, uint_, bool_, image_ };
 
 struct Type {
     Scalar scalar = Scalar::error;
@@ -33,7 +33,8 @@ struct Type {
 };
 
 inline constexpr Type float_type{Scalar::float_, 1, 0, 1}, int_type{Scalar::int_, 1, 0, 1},
-    uint_type{Scalar::uint_, 1, 0, 1}, bool_type{Scalar::bool_, 1, 0, 1}, void_type{Scalar::void_, 1, 0, 1};
+    uint_type{Scalar::uint_, 1, 0, 1}, bool_type{Scalar::bool_, 1, 0, 1}, void_type{Scalar::void_, 1, 0, 1},
+    image_type{Scalar::image_, 1, 0, 1};
 inline constexpr Type vec(uint8_t size)
 {
     return {Scalar::float_, size, 0, 1};

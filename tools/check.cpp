@@ -1,4 +1,5 @@
 // haptel check: what is wrong with a texture file, and what is known of its textures before anybody touches them.
+#include "jit/image_file.h"
 #include "jit/source_file.h"
 #include "lang/value.h"
 #include "stdlib/stdlib.h"
@@ -64,6 +65,7 @@ public:
 private:
     void fix(const std::string& path);
     // Defaults, but for what --set says.
+    std::vector<std::shared_ptr<const ir::SplineImage>> images_of(const std::string& path, const ir::Texture& texture);
     std::vector<double> values_of(const std::string& path, const ir::Texture& texture);
     // A finding that belongs to no line.
     void say(lang::ErrorCode code, std::string message, std::string hint, const std::string& file);
@@ -116,6 +118,24 @@ std::vector<double> CheckRun::values_of(const std::string& path, const ir::Textu
     return values;
 }
 
+// Null where none is set: then bounds are those of any image.
+std::vector<std::shared_ptr<const ir::SplineImage>> CheckRun::images_of(const std::string& path,
+                                                                        const ir::Texture& texture)
+{
+    std::vector<std::shared_ptr<const ir::SplineImage>> images;
+    for (const ir::Parameter& parameter : texture.parameters) {
+        images.emplace_back();
+        if (parameter.type != ir::Type::image) continue;
+        for (const auto& [name, text] : options.parameters) {
+            if (name != parameter.name) continue;
+            jit::ImageFile read = jit::read_image(text);
+            if (!read.image) say("bad-value", "--set " + name + " for " + texture.name + ": " + read.error, read.hint, path);
+            images.back() = std::move(read.image);
+        }
+    }
+    return images;
+}
+
 void CheckRun::check(const std::string& path)
 {
     if (options.fix) fix(path);
@@ -124,9 +144,12 @@ void CheckRun::check(const std::string& path)
     if (result.program) {
         for (const ir::Texture& texture : result.program->module.textures) {
             const std::vector<double> values = values_of(path, texture);
+            const auto images = images_of(path, texture);
+            std::vector<const ir::SplineImage*> views;
+            for (const auto& image : images) views.push_back(image.get());
             report.textures.push_back(
                 {path, result.program, &texture,
-                 lang::analyse(*result.program, texture, values, {options.box_m, options.footprint_m}, diagnostics)});
+                 lang::analyse(*result.program, texture, values, views, {options.box_m, options.footprint_m}, diagnostics)});
         }
         if (options.strict) diagnostics.make_warnings_errors();
         diagnostics.sort_by_place();

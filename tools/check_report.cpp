@@ -22,6 +22,7 @@ const char* name_of(ir::Type type)
     case ir::Type::i32: return "int";
     case ir::Type::u32: return "uint";
     case ir::Type::boolean: return "bool";
+    case ir::Type::image: return "image";
     }
     return "";
 }

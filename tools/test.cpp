@@ -6,6 +6,7 @@
 #include "tools/quantity.h"
 #include "tools/terminal.h"
 #include "tools/test_report.h"
+#include "tools/texture_argument.h"
 
 #include <algorithm>
 #include <chrono>
@@ -25,6 +26,7 @@ namespace {
 
 struct TestOptions {
     std::vector<std::string> paths;
+    ParameterTexts parameters;
     double box_m = 0.05, footprint_m = 0;
     uint32_t points = jit::default_check_points;
     uint64_t seed = 1;
@@ -89,7 +91,7 @@ public:
 private:
     const TestOptions& options;
     jit::CheckBox box;
-    TextureRequest request; // parameters at their defaults
+    TextureRequest request; // parameters at their defaults, or as set
 
     void test(const Target& target, const std::shared_ptr<const jit::CompiledProgram>& program, const char* name);
 };
@@ -97,6 +99,10 @@ private:
 void TestRun::test(const Target& target, const std::shared_ptr<const jit::CompiledProgram>& program, const char* name)
 {
     TestedTexture tested{target.file, name, {}, {}, 0};
+    request.parameters.clear(); // each texture takes the values whose names it has
+    for (const ir::Parameter& parameter : program->source_of(*program->find(name)).parameters)
+        for (const auto& value : options.parameters)
+            if (value.first == parameter.name) request.parameters.push_back(value);
     const auto start = std::chrono::steady_clock::now();
     const TextureResult bound = jit::make_binding(program, name, request, jit::Unbounded::allowed);
     if (bound.binding)
@@ -161,6 +167,7 @@ Command test_command(CLI::App& app)
     command->add_option("paths", options->paths, "Texture files, FILE:NAME, or folders of them")
         ->required()
         ->type_name("PATH");
+    add_parameters(*command, options->parameters);
     add_length(*command, "--box", options->box_m, "Side of the cube of test points round the origin [50mm]");
     add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
                LengthRange::not_negative);

@@ -7,6 +7,7 @@
 
 #include "lang/ir/interval.h"
 #include "lang/ir/ir.h"
+#include "lang/ir/spline_image.h"
 #include "lang/ir/variation.h"
 
 #include <span>
@@ -17,7 +18,8 @@ namespace haptel::ir {
 // Where a texture is asked about. All inputs that it reads must be set.
 struct BoundsBox {
     Interval input[input_count] = {};
-    std::vector<Interval> parameters; // by Texture::parameters; integers and booleans as numbers
+    std::vector<Interval> parameters; // by Texture::parameters; integers and booleans as numbers; of an image: any
+    std::vector<const SplineImage*> images = {}; // likewise; null or missing: any image
 };
 
 // An operation whose operands can leave what it is defined for.

@@ -1,6 +1,7 @@
 #include "lang/ir/derivative_rules.h"
 
 #include "lang/ir/op_info.h"
+#include "lang/ir/spline.h"
 
 #include <algorithm>
 #include <numbers>
@@ -179,6 +180,16 @@ Tangent differentiate(Builder& builder, Op op, std::span<const Value> operands, 
         if (!db.is_zero()) slope_b = db * zero_where_zero(a, r * apply(Op::log, a));
         return (slope_a + slope_b).value;
     }
+    case Op::spline: { // the fourth of a cubic is 0
+        const auto along = [&](const Term& by, uint32_t axis) {
+            const uint32_t step = spline_order(axis == 0, axis == 1);
+            const std::optional<uint32_t> order = builder.int_constant(operands[3]);
+            if (by.is_zero() || (order && spline_order_along(*order, axis) >= 3)) return Term{&builder, {}};
+            const Value next = builder.operation(Op::iadd, {operands[3], builder.i32(static_cast<int32_t>(step))});
+            return by * Term{&builder, builder.operation(Op::spline, {operands[0], operands[1], operands[2], next})};
+        };
+        return (along(db, 0) + along(dc, 1)).value;
+    }
     case Op::select: return where(operands[0], db, dc).value;
     case Op::sign:
     case Op::floor:
@@ -186,6 +197,8 @@ Tangent differentiate(Builder& builder, Op op, std::span<const Value> operands, 
     case Op::trunc:
     case Op::round:
     case Op::detach:
+    case Op::image_width:
+    case Op::image_height:
     case Op::i_to_r:
     case Op::u_to_r:
     case Op::lt:

@@ -87,7 +87,8 @@ private:
     }
     void lower(const Instruction& made, const ReadParameter& read)
     {
-        step({Kind::parameter, {}, made.results[0].index, {read.parameter, 0, 0, 0}});
+        const bool is_image = function.type(made.results[0]) == Type::image;
+        step({is_image ? Kind::image : Kind::parameter, {}, made.results[0].index, {read.parameter, 0, 0, 0}});
     }
     void lower(const Instruction& made, const ReadTable& read)
     {

@@ -16,6 +16,7 @@ struct FlatStep {
         word_constant, // result = bits in operand 0
         input,         // result = input number operand 0
         parameter,     // result = texture parameter number operand 0
+        image,         // result = image of texture parameter number operand 0
         table,         // result = table operand 0 at index operand 1, forced into its range
         call,          // function operand 0; its arguments, then where its results go: lists[operand 1 ...]
         copy,          // result = operand 0

@@ -55,6 +55,7 @@ public:
         case Type::boolean: return boolean();
         case Type::i32:
         case Type::u32: return operands.size() == 1 ? cast() : integer();
+        case Type::image: break; // known when a texture is bound
         }
         return std::nullopt;
     }
@@ -93,6 +94,7 @@ private:
         case Type::i32: return builder.i32(static_cast<int32_t>(out.bits));
         case Type::u32: return builder.u32(out.bits);
         case Type::boolean: return builder.boolean(out.bits != 0);
+        case Type::image: break; // there are no constants of it
         }
         return {};
     }

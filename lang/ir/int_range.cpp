@@ -44,7 +44,8 @@ IntRange full_range(Type type)
     case Type::i32: return {INT32_MIN, INT32_MAX};
     case Type::u32: return {0, UINT32_MAX};
     case Type::boolean: return {0, 1};
-    case Type::real: return {0, 0};
+    case Type::real:
+    case Type::image: return {0, 0};
     }
     return {0, 0};
 }
@@ -84,6 +85,7 @@ IntRange range_of(Op op, Type type, std::span<const IntRange> operands)
     if (op == Op::imax || op == Op::umax) return {std::max(a.minimum, b.minimum), std::max(a.maximum, b.maximum)};
     if (op == Op::i_as_u || op == Op::u_as_i) return wrapped(a, type);
     if (op == Op::b_to_i) return a;
+    if (op == Op::image_width || op == Op::image_height) return {1, full.maximum};
     if (op == Op::select) return join(b, operands[2]);
     return full;
 }

@@ -82,6 +82,9 @@ struct Interpreter<T>::Machine {
             case FlatStep::Kind::word_constant: frame[step.result].bits = operand[0]; break;
             case FlatStep::Kind::input: frame[step.result].real = inputs->input[operand[0]]; break;
             case FlatStep::Kind::parameter: frame[step.result] = slot_of<T>(inputs->parameters[operand[0]]); break;
+            case FlatStep::Kind::image:
+                frame[step.result].image = operand[0] < inputs->images.size() ? inputs->images[operand[0]] : nullptr;
+                break;
             case FlatStep::Kind::table: frame[step.result] = table_cell(operand[0], frame[operand[1]]); break;
             case FlatStep::Kind::copy: frame[step.result] = frame[operand[0]]; break;
             case FlatStep::Kind::jump: next = operand[1]; break;
@@ -174,6 +177,7 @@ std::vector<Scalar<T>> interpret(const Module& module, uint32_t function, std::s
         case Type::i32:
         case Type::u32: results.emplace_back(made[i].bits); break;
         case Type::boolean: results.emplace_back(made[i].bits != 0); break;
+        case Type::image: results.emplace_back(uint32_t{0}); break; // no scalar; no function of the language yields one
         }
     }
     return results;

@@ -334,6 +334,9 @@ Interval value_of(Op op, std::span<const Interval> x)
     case Op::log: return rising_within(a, 0, infinity, [](double v) { return std::log(v); });
     case Op::log2: return rising_within(a, 0, infinity, [](double v) { return std::log2(v); });
     case Op::pow: return power(a, b);
+    case Op::spline: return {-infinity, infinity, true}; // images are the evaluator's to know
+    case Op::image_width:
+    case Op::image_height: return {1, INT32_MAX};
     case Op::detach: return a;
     case Op::lt:
     case Op::ilt:
@@ -388,6 +391,7 @@ bool Interval::is_finite() const
 Interval everything(Type type)
 {
     if (type == Type::real) return {-infinity, infinity, true};
+    if (type == Type::image) return any_image;
     IntRange full = full_range(type);
     return {static_cast<double>(full.minimum), static_cast<double>(full.maximum)};
 }

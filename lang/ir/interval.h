@@ -21,6 +21,9 @@ struct Interval {
     bool is_finite() const; // and never NaN
 };
 
+// Of an image: the index of the texture parameter that it is.
+inline constexpr Interval any_image{-1, -1};
+
 Interval everything(Type type);
 Interval join(const Interval& a, const Interval& b);
 Interval intersect(const Interval& a, const Interval& b); // of what is known by two ways: NaN only if both allow it

@@ -182,6 +182,9 @@ Interval IntervalEvaluator::sharpened(const Frame& frame, const Instruction& mad
         auto* operation = by ? std::get_if<Operation>(&by->kind) : nullptr;
         return operation && operation->op == which;
     };
+    if (op == Op::sub && made_by(maker(1), Op::detach) && maker(1)->operands[0] == made.operands[0] &&
+        frame.values[made.operands[0].index].is_finite())
+        sharp = {0, 0}; // x - detach(x): a derivative, no value
     if (op == Op::mul && made.operands[0] == made.operands[1]) sharp.minimum = std::max(sharp.minimum, 0.0);
     if (op == Op::div) {
         const Instruction* divisor = maker(1);
@@ -217,7 +220,8 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Opera
     Interval operands[operands_max];
     for (size_t i = 0; i < made.operands.size(); ++i) operands[i] = frame.values[made.operands[i].index];
     const std::span<const Interval> all{operands, made.operands.size()};
-    Interval result = evaluate(operation.op, all);
+    const bool reads_image = op_info(operation.op).operands[0] == 'm';
+    Interval result = reads_image ? of_image(operation.op, all) : evaluate(operation.op, all);
     if (varying) note_undefined(made, operation.op, all, result);
     result = sharpened(frame, made, operation.op, result);
     frame.values[made.results[0].index] = result;
@@ -260,8 +264,15 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
     } else {
         const OpInfo& info = op_info(op);
         const bool of_reals = info.result == 'r' && info.operands.find_first_not_of('r') == std::string_view::npos;
-        if (of_reals) partials = rules.of(op, operands, active, true);
-        variation = chain(op, operands, {variations, operands.size()}, partials, of_reals);
+        if (op == Op::spline)
+            partials = spline_partials(operands);
+        else if (of_reals)
+            partials = rules.of(op, operands, active, true);
+        variation = chain(op, operands, {variations, operands.size()}, partials, of_reals || op == Op::spline);
+    }
+    if (op == Op::detach) { // the gradient that is returned is another function's, which may bend anyhow
+        variation.curvature = infinity;
+        variation.hessian.fill({-infinity, infinity});
     }
     const Smoothness own = smoothness_of(op, operands, active, result, partials);
     const bool was_smooth = variation.smoothness == Smoothness::smooth;
@@ -297,6 +308,11 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadI
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadParameter& read)
 {
+    if (frame.function.type(made.results[0]) == Type::image) {
+        const double index = read.parameter;
+        frame.values[made.results[0].index] = {index, index};
+        return;
+    }
     frame.values[made.results[0].index] = box && read.parameter < box->parameters.size()
                                               ? box->parameters[read.parameter]
                                               : everything(frame.function.type(made.results[0]));

@@ -75,6 +75,9 @@ private:
     std::optional<Interval> by_slope(uint32_t function, const Results& arguments, double useful_radius);
     Variation variation_of(Frame& frame, const Instruction& made, Op op, std::span<const Interval> operands,
                            const Interval& result);
+    // Operations of images, in interval_image.cpp.
+    Interval of_image(Op op, std::span<const Interval> operands) const;
+    Partials spline_partials(std::span<const Interval> operands) const;
     Variation chosen(Frame& frame, const Instruction& made, bool first, bool second, const Variation* by) const;
     void block(Frame& frame, const Block& block);
     // How smooth each result of an undecided `if` is where its arms meet: they may meet in value, and in slope.

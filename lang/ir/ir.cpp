@@ -32,7 +32,7 @@ constexpr bool arities_fit_signatures()
 {
     return std::all_of(std::begin(table), std::end(table), [](const OpInfo& info) {
         return info.operands.size() == info.arity && info.arity <= 4 &&
-               info.operands.find_first_not_of("riub*") == std::string_view::npos;
+               info.operands.find_first_not_of("riubm*") == std::string_view::npos;
     });
 }
 static_assert(arities_fit_signatures());
@@ -46,7 +46,7 @@ constexpr std::array<std::string_view, input_count> input_names = {
     "center_x", "center_y", "center_z", "extent_x", "extent_y", "extent_z", "footprint"};
 static_assert(input_names.back() == "footprint");
 
-constexpr std::array<std::string_view, 4> type_names = {"real", "i32", "u32", "bool"};
+constexpr std::array<std::string_view, 5> type_names = {"real", "i32", "u32", "bool", "image"};
 
 char letter(Type type)
 {
@@ -55,6 +55,7 @@ char letter(Type type)
     case Type::i32: return 'i';
     case Type::u32: return 'u';
     case Type::boolean: return 'b';
+    case Type::image: return 'm';
     }
     return '?';
 }

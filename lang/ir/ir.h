@@ -17,7 +17,7 @@ namespace haptel::ir {
 
 using lang::Span;
 
-enum class Type : uint8_t { real, i32, u32, boolean };
+enum class Type : uint8_t { real, i32, u32, boolean, image };
 
 enum class Op : uint8_t {
 #define OP(name, ...) name,

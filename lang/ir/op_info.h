@@ -16,7 +16,7 @@ struct OpInfo {
     Op op;
     std::string_view name;
     uint32_t arity;
-    std::string_view operands; // one letter each: r real, i i32, u u32, b boolean, * any one type
+    std::string_view operands; // one letter each: r real, i i32, u u32, b boolean, m image, * any one type
     char result;               // likewise
     Continuity continuity;
     bool reducing; // folds its argument into one period or cell
@@ -27,7 +27,7 @@ const OpInfo& op_info(Op op);
 std::span<const OpInfo> all_ops();
 std::optional<Op> op_named(std::string_view name);
 
-std::string_view to_string(Type type);   // "real", "i32", "u32", "bool"
+std::string_view to_string(Type type);   // "real", "i32", "u32", "bool", "image"
 std::string_view to_string(Input input); // "p_x"
 std::optional<Type> type_named(std::string_view name);
 std::optional<Input> input_named(std::string_view name);

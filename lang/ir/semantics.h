@@ -1,7 +1,8 @@
 // The meaning of every operation on numbers, once, for any real type T: the interpreter executes it, the builder folds
 // constants by it, and code generation must agree with it bit for bit over double.
 //
-// Two classes for code generation:
+// Three classes for code generation:
+//   image calls    spline image_width image_height call the functions of spline.h
 //   library calls  sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp exp2 log log2 pow atan2 call the C
 //                  library's function of that name (atan2 after the test for the origin). sinturn and costurn call
 //                  sin after the reduction below.
@@ -12,6 +13,7 @@
 #pragma once
 
 #include "lang/ir/ir.h"
+#include "lang/ir/spline.h"
 
 #include <bit>
 #include <cmath>
@@ -25,6 +27,7 @@ template <typename T>
 struct Slot {
     T real{};
     uint32_t bits = 0;
+    const haptel_image* image = nullptr;
 };
 
 namespace semantics {
@@ -300,6 +303,9 @@ inline void execute(Op op, Slot<T>& result, const Slot<T>& a, const Slot<T>& b, 
     case Op::i_as_u: result.bits = a.bits; return;
     case Op::u_as_i: result.bits = a.bits; return;
     case Op::b_to_i: result.bits = a.bits; return;
+    case Op::spline: result.real = spline(a.image, b.real, c.real, d.bits); return;
+    case Op::image_width: result.bits = static_cast<uint32_t>(image_width(a.image)); return;
+    case Op::image_height: result.bits = static_cast<uint32_t>(image_height(a.image)); return;
     case Op::detach: result.real = a.real; return;
     }
 }

@@ -1,6 +1,7 @@
 #include "lang/ir/smoothness.h"
 
 #include "lang/ir/op_info.h"
+#include "lang/ir/spline.h"
 
 #include <algorithm>
 #include <cmath>
@@ -67,6 +68,12 @@ Smoothness smoothness_of(Op op, std::span<const Interval> operands, uint32_t act
     }
     if (op == Op::div && b.contains(0) && (active & 2)) return Smoothness::jump;
     if (op == Op::atan2) return b.minimum <= 0 && a.contains(0) ? Smoothness::jump : Smoothness::smooth;
+    if (op == Op::spline) { // cubic; what it depends on in which direction is not looked at
+        const auto orders = static_cast<uint32_t>(operands[3].minimum);
+        constexpr Smoothness classes[] = {Smoothness::c2, Smoothness::c1, Smoothness::c0, Smoothness::jump};
+        const uint32_t order = std::max(spline_order_along(orders, 0), spline_order_along(orders, 1));
+        return result.is_point() || order > 3 ? Smoothness::smooth : operands[3].is_point() ? classes[order] : Smoothness::jump;
+    }
     // Choices, comparisons and integers can only change by a step.
     const OpInfo& info = op_info(op);
     if (info.result != 'r' || info.operands.find_first_not_of('r') != std::string_view::npos)

@@ -221,6 +221,7 @@ void load_texture(ObjectText& text, const SceneText& scene, const std::filesyste
     request.reference = std::filesystem::absolute(folder / text.texture.substr(0, colon)).lexically_normal().string() +
                         text.texture.substr(colon);
     request.parameters = text.parameters;
+    request.folder = std::filesystem::absolute(folder).lexically_normal().string();
     for (int i = 0; i < 3; ++i) {
         request.box_minimum_m[i] = text.object.surface->box_minimum_m[i];
         request.box_maximum_m[i] = text.object.surface->box_maximum_m[i];

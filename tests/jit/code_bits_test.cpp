@@ -102,13 +102,16 @@ const std::vector<double>& special_values()
 TEST_CASE("every operation gives the interpreter's bits, special values included")
 {
     std::string text, textures;
-    for (const ir::OpInfo& op : ir::all_ops())
+    size_t of_images = 0;
+    for (const ir::OpInfo& op : ir::all_ops()) {
+        if (op.operands[0] == 'm' && ++of_images) continue; // image_test.cpp
         for (char any : op.operands.find('*') == std::string_view::npos ? std::string("r") : std::string("riub")) {
             text += operation_text(op, any);
             textures += texture_text(std::string(op.name) + any);
         }
+    }
     const ir::Module module = parsed(text + textures);
-    REQUIRE(module.textures.size() >= ir::all_ops().size());
+    REQUIRE(module.textures.size() >= ir::all_ops().size() - of_images);
     Engines engines(module);
 
     const std::vector<double>& values = special_values();

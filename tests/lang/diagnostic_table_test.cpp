@@ -28,7 +28,7 @@ CompileResult compiled(std::string_view text, bool with_bounds = false)
     for (const haptel::ir::Texture& texture : result.program->module.textures) {
         std::vector<double> values;
         for (const haptel::ir::Parameter& parameter : texture.parameters) values.push_back(parameter.value);
-        analyse(*result.program, texture, values, {}, result.diagnostics);
+        analyse(*result.program, texture, values, {}, {}, result.diagnostics);
     }
     return result;
 }

@@ -12,6 +12,7 @@ ir::Scalar<double> scalar(ir::Type type, double value)
     switch (type) {
     case ir::Type::real: return value;
     case ir::Type::boolean: return value != 0;
+    case ir::Type::image: return uint32_t{0};
     case ir::Type::i32: return static_cast<uint32_t>(static_cast<int32_t>(value));
     case ir::Type::u32: return static_cast<uint32_t>(value);
     }

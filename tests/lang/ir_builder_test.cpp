@@ -166,6 +166,7 @@ TEST_CASE("folding: constants in any place give the same bits as the operation i
     const uint32_t words[] = {0, 1, 2, 5, 31, 33, 0x7fffffff, 0x80000000, 0xffffffff, 0xfffffffe};
     std::mt19937 random(7);
     for (const OpInfo& info : all_ops()) {
+        if (info.operands[0] == 'm') continue; // of images: ir_spline_test.cpp
         CAPTURE(info.name);
         for (int round = 0; round < 800; ++round) {
             Module module;
@@ -251,7 +252,7 @@ TEST_CASE("integer ranges hold what the operations give")
 {
     std::mt19937 random(3);
     for (const OpInfo& info : all_ops()) {
-        if (info.operands.find_first_of("r*") != std::string_view::npos) continue;
+        if (info.operands.find_first_of("r*m") != std::string_view::npos) continue;
         CAPTURE(info.name);
         auto type_of = [](char kind) { return kind == 'i' ? Type::i32 : kind == 'u' ? Type::u32 : Type::boolean; };
         if (info.result == 'r') continue;

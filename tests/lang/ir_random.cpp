@@ -71,6 +71,7 @@ private:
         case Type::boolean: return add(block, BoolConstant{below(2) == 1}, {}, type);
         case Type::i32:
         case Type::u32: return add(block, IntConstant{special_words[below(std::size(special_words))]}, {}, type);
+        case Type::image: break;
         }
         return {};
     }
@@ -93,6 +94,7 @@ private:
     {
         const OpInfo& info = is_tame() ? op_info(tame_ops[below(std::size(tame_ops))])
                                        : all_ops()[below(static_cast<uint32_t>(all_ops().size()))];
+        if (info.operands[0] == 'm') return; // images have no constants
         Type any = is_tame() ? Type::real : static_cast<Type>(below(4));
         std::vector<Value> operands;
         for (char letter : info.operands) operands.push_back(pick(block, letter == '*' ? any : type_of(letter)));
@@ -230,6 +232,7 @@ std::vector<Slot<double>> random_arguments(const Function& function, uint32_t se
             slot.bits = below(2) ? special_words[below(std::size(special_words))] : static_cast<uint32_t>(below(9));
             break;
         case Type::boolean: slot.bits = static_cast<uint32_t>(below(2)); break;
+        case Type::image: break;
         }
         arguments.push_back(slot);
     }

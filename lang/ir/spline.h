@@ -1,0 +1,123 @@
+// The cubic B-spline of an image at a place, and its derivatives: what Op::spline means, for any real type T.
+//
+// Places are in texels: texel (i, j) is at (i, j). Each operation asks for one derivative, `orders`: so often by x, so
+// often by y, and what is outside of the edges. A cubic has three derivatives: a fourth is 0. Far outside a clamped image
+// is flat; a tiled one has no value at an infinite place.
+#pragma once
+
+#include "lang/abi.h"
+
+#include <cmath>
+#include <cstdint>
+
+namespace haptel::ir {
+
+constexpr uint32_t spline_order(uint32_t by_x, uint32_t by_y, bool is_tiled = false)
+{
+    return by_x | by_y << 8 | uint32_t{is_tiled} << 16;
+}
+constexpr uint32_t spline_order_along(uint32_t orders, uint32_t axis)
+{
+    return orders >> 8 * axis & 255;
+}
+constexpr bool spline_is_tiled(uint32_t orders)
+{
+    return (orders >> 16 & 1) != 0;
+}
+
+inline int32_t image_width(const haptel_image* image)
+{
+    return image ? image->width : 1;
+}
+inline int32_t image_height(const haptel_image* image)
+{
+    return image ? image->height : 1;
+}
+
+// How much each of four neighbouring coefficients counts, `fraction` (0 to 1) of the way from the second to the third.
+template <typename T>
+void spline_weights(const T& fraction, uint32_t order, T (&weights)[4])
+{
+    const T f = fraction, g = T(1) - f;
+    switch (order) {
+    case 0:
+        weights[0] = g * g * g / T(6);
+        weights[1] = (T(4) - f * f * (T(6) - T(3) * f)) / T(6);
+        weights[2] = (T(4) - g * g * (T(6) - T(3) * g)) / T(6);
+        weights[3] = f * f * f / T(6);
+        return;
+    case 1:
+        weights[0] = -(g * g) / T(2);
+        weights[1] = f * (T(1.5) * f - T(2));
+        weights[2] = -(g * (T(1.5) * g - T(2)));
+        weights[3] = f * f / T(2);
+        return;
+    case 2:
+        weights[0] = g;
+        weights[1] = T(3) * f - T(2);
+        weights[2] = T(3) * g - T(2);
+        weights[3] = f;
+        return;
+    case 3:
+        weights[0] = T(-1);
+        weights[1] = T(3);
+        weights[2] = T(-3);
+        weights[3] = T(1);
+        return;
+    default:
+        for (T& weight : weights) weight = T(0);
+    }
+}
+
+// One of `count` texels, for any index not too far outside.
+inline int64_t spline_texel(int64_t index, int64_t count, bool is_tiled)
+{
+    if (is_tiled) return (index % count + count) % count;
+    return index < 0 ? 0 : index < count ? index : count - 1;
+}
+
+// Where along one axis: four texels and how much each counts.
+template <typename T>
+struct SplineSpan {
+    int64_t texel[4];
+    T weight[4];
+
+    // False where `at` is no place.
+    bool set(T at, int64_t count, uint32_t order, bool is_tiled)
+    {
+        using std::floor;
+        const T size = T(static_cast<double>(count));
+        if (is_tiled)
+            at = at - size * T(floor(T(at / size)));
+        else
+            at = at < T(-3) ? T(-3) : at > size + T(2) ? size + T(2) : at; // flat from there on
+        if (!(at - at == T(0))) return false;
+        const T cell = floor(at);
+        const auto first = static_cast<int64_t>(static_cast<double>(cell)) - 1;
+        for (int i = 0; i < 4; ++i) texel[i] = spline_texel(first + i, count, is_tiled);
+        spline_weights(T(at - cell), order, weight);
+        return true;
+    }
+};
+
+template <typename T>
+T spline(const haptel_image* image, const T& x, const T& y, uint32_t orders)
+{
+    if (!image) return T(0);
+    const bool is_tiled = spline_is_tiled(orders);
+    SplineSpan<T> column, row;
+    const bool is_place = column.set(x, image->width, spline_order_along(orders, 0), is_tiled) &&
+                          row.set(y, image->height, spline_order_along(orders, 1), is_tiled);
+    if (!is_place) return x - x + (y - y);
+    const double* coefficients = image->coefficients[is_tiled ? HAPTEL_EDGE_TILED : HAPTEL_EDGE_CLAMPED];
+    T sum(0);
+    for (int j = 0; j < 4; ++j) {
+        const double* line = coefficients + row.texel[j] * image->width;
+        T along(0);
+        for (int i = 0; i < 4; ++i) along = along + column.weight[i] * T(line[column.texel[i]]);
+        sum = sum + row.weight[j] * along;
+    }
+    return sum;
+}
+
+} // namespace haptel::ir

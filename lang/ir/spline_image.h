@@ -1,0 +1,43 @@
+// An image as textures read it, with what is known of its derivatives: made once from texels, then immutable.
+#pragma once
+
+#include "lang/abi.h"
+#include "lang/ir/interval.h"
+
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace haptel::ir {
+
+class SplineImage {
+public:
+    static constexpr int32_t side_max = 1 << 15;
+    static constexpr int64_t texels_max = int64_t{1} << 26;
+
+    // Row after row, the lowest first. Null, with the reason in `error`: sides below 1 or beyond the greatest, texels
+    // that are no finite numbers.
+    static std::shared_ptr<const SplineImage> make(std::span<const double> texels, int64_t width, int64_t height,
+                                                   std::string& error);
+    SplineImage(const SplineImage&) = delete;
+    SplineImage& operator=(const SplineImage&) = delete;
+
+    const haptel_image& view() const { return image; }
+
+    // Everything that spline(&view(), x, y, orders) can be for places in these intervals, rounding included.
+    Interval bounds(const Interval& x, const Interval& y, uint32_t orders) const;
+
+private:
+    SplineImage() = default;
+    Interval differences(uint32_t orders, int64_t first_column, int64_t columns, int64_t first_row,
+                         int64_t rows) const;
+    Interval over_all(uint32_t orders) const;
+
+    std::vector<double> clamped, tiled;
+    haptel_image image{};
+    static constexpr uint32_t known_order = 2; // by x and y together
+    Interval known[2][known_order + 1][known_order + 1]{};
+};
+
+} // namespace haptel::ir
