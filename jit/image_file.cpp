@@ -34,8 +34,10 @@ std::shared_ptr<const ir::SplineImage> image_of(const stbi_us* gray, int width, 
     std::vector<double> texels(static_cast<size_t>(width) * static_cast<size_t>(height));
     for (int row = 0; row < height; ++row) // files begin at the top
         for (int column = 0; column < width; ++column) {
-            const auto to = static_cast<size_t>(height - 1 - row) * static_cast<size_t>(width) + static_cast<size_t>(column);
-            texels[to] = gray[static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column)] / 65535.0;
+            const auto to =
+                static_cast<size_t>(height - 1 - row) * static_cast<size_t>(width) + static_cast<size_t>(column);
+            texels[to] =
+                gray[static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column)] / 65535.0;
         }
     return ir::SplineImage::make(texels, width, height, error);
 }
@@ -53,7 +55,8 @@ ImageFile decode(const fs::path& file, const std::string& shown)
         return fail("'" + shown + "' is no picture that can be read", formats);
     if (width > ir::SplineImage::side_max || height > ir::SplineImage::side_max ||
         int64_t{width} * height > ir::SplineImage::texels_max)
-        return fail("'" + shown + "' is too large: " + std::to_string(width) + " x " + std::to_string(height) + " texels",
+        return fail("'" + shown + "' is too large: " + std::to_string(width) + " x " + std::to_string(height) +
+                        " texels",
                     "a side may have " + std::to_string(ir::SplineImage::side_max) + ", the whole " +
                         std::to_string(ir::SplineImage::texels_max));
     const std::unique_ptr<stbi_us, void (*)(void*)> gray(
@@ -82,8 +85,8 @@ ImageFile read_image(const std::string& path, const std::string& folder)
     std::error_code fault;
     const fs::path file = fs::absolute(fs::path(folder) / path, fault).lexically_normal();
     if (!fs::exists(file, fault))
-        return fail("there is no file '" + shown + "'",
-                    "it was looked for at " + lang::printable(file.string()) + "; a scene's pictures lie beside the scene");
+        return fail("there is no file '" + shown + "'", "it was looked for at " + lang::printable(file.string()) +
+                                                            "; a scene's pictures lie beside the scene");
     if (!fs::is_regular_file(file, fault)) return fail("'" + shown + "' is not a file");
     const uintmax_t size = fs::file_size(file, fault);
     if (fault || size > image_bytes_max) return fail("'" + shown + "' is too large to read");
@@ -92,7 +95,8 @@ ImageFile read_image(const std::string& path, const std::string& folder)
     const std::lock_guard lock(mutex);
     std::erase_if(all, [](const auto& known) { return known.second.image.expired(); });
     Known& known = all[file.string()];
-    if (auto image = known.image.lock(); image && known.size == size && known.written == written) return {image, {}, {}};
+    if (auto image = known.image.lock(); image && known.size == size && known.written == written)
+        return {image, {}, {}};
     ImageFile made = decode(file, shown);
     known = {written, size, made.image};
     return made;

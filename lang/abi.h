@@ -43,7 +43,8 @@ enum {
     HAPTEL_INT = 1,   /* int32_t */
     HAPTEL_UINT = 2,  /* uint32_t */
     HAPTEL_BOOL = 3,  /* int32_t, 0 or 1 */
-    HAPTEL_IMAGE = 4  /* const haptel_image*, aligned to 8; null: flat, 0 everywhere. The binding keeps what it points to */
+    HAPTEL_IMAGE =
+        4 /* const haptel_image*, aligned to 8; null: flat, 0 everywhere. The binding keeps what it points to */
 };
 
 /* What an image is outside of its edges: the texel at the edge, or the image once more. */

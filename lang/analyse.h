@@ -19,9 +19,9 @@ struct AnalysedCube {
     double footprint_m = 0; // smallest wavelength worth rendering
 };
 
-// `values` of the parameters by ir::Texture::parameters, SI, and images likewise; null or missing: any image. Says what it finds as diagnostics, not sorted: the warnings `jump`,
-// `division` and `domain` and the note `kink`; jumps and kinks where the values allow them, the others where the ranges
-// do.
+// `values` of the parameters by ir::Texture::parameters, SI, and images likewise; null or missing: any image. Says what
+// it finds as diagnostics, not sorted: the warnings `jump`, `division` and `domain` and the note `kink`; jumps and
+// kinks where the values allow them, the others where the ranges do.
 Analysis analyse(const Program& program, const ir::Texture& texture, std::span<const double> values,
                  std::span<const ir::SplineImage* const> images, const AnalysedCube& where, Diagnostics& diagnostics);
 

@@ -14,8 +14,8 @@ using namespace ast;
 
 std::optional<Type> type_named(std::string_view name)
 {
-    for (Type type :
-         {float_type, int_type, uint_type, bool_type, vec(2), vec(3), vec(4), mat(2), mat(3), mat(4), image_type, void_type})
+    for (Type type : {float_type, int_type, uint_type, bool_type, vec(2), vec(3), vec(4), mat(2), mat(3), mat(4),
+                      image_type, void_type})
         if (to_string(type) == name) return type;
     return std::nullopt;
 }

@@ -129,7 +129,8 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
             damaged = true;
         }
         if (!damaged && found == image_type) {
-            diagnostics.error(argument.span, "image", "expected numbers and vectors for " + to_string(type) + ", found image")
+            diagnostics
+                .error(argument.span, "image", "expected numbers and vectors for " + to_string(type) + ", found image")
                 .hint = "read it: sample(" + excerpt(argument) + ", uv)";
             damaged = true;
         }

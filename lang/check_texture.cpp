@@ -104,9 +104,9 @@ CheckedParameter check_texture_parameter(CheckContext& context, const FileScope&
     if (symbol.type == image_type) {
         const Expression* given = tree.value ? tree.value.get() : tree.minimum.get();
         if (given)
-            diagnostics.error(given->span, "image", "an image has neither default nor range, expected ',' or ')'").hint =
-                "it is flat, 0 everywhere, until a scene names a file: parameters = { " + tree.name.text +
-                " = \"dents.png\" }";
+            diagnostics.error(given->span, "image", "an image has neither default nor range, expected ',' or ')'")
+                .hint = "it is flat, 0 everywhere, until a scene names a file: parameters = { " + tree.name.text +
+                        " = \"dents.png\" }";
         return made;
     }
     BodyChecker checker(context, scope, true);

@@ -41,8 +41,11 @@ public:
 
     Value texel(Parts x)
     {
-        const Value column = builder.operation(Op::i_to_r, {x[1]}), row = builder.operation(Op::i_to_r, {x[2]});
-        return spline_of(x[0], column, row, HAPTEL_EDGE_CLAMPED);
+        const auto inside = [&](Value index, Op count) {
+            const Value last = make(Op::isub, builder.operation(count, {x[0]}), builder.i32(1));
+            return builder.operation(Op::i_to_r, {make(Op::imin, make(Op::imax, index, builder.i32(0)), last)});
+        };
+        return spline_of(x[0], inside(x[1], Op::image_width), inside(x[2], Op::image_height), HAPTEL_EDGE_CLAMPED);
     }
     Value spline(Parts x) { return spline_of(x[0], x[1], x[2], HAPTEL_EDGE_CLAMPED); }
     Value spline_tiled(Parts x) { return spline_of(x[0], x[1], x[2], HAPTEL_EDGE_TILED); }

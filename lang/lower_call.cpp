@@ -16,7 +16,8 @@ namespace {
 constexpr uint32_t depth_max = 256;
 constexpr size_t value_count_max = 250'000;
 
-// Functions of the IR take images behind their other arguments: derivatives and facts are with respect to the first ones.
+// Functions of the IR take images behind their other arguments: derivatives and facts are with respect to the first
+// ones.
 constexpr bool images_last[] = {false, true};
 
 uint32_t reads_of(const FunctionReference& reference)

@@ -149,7 +149,7 @@ private:
     uint32_t broken_slot() const { return static_cast<uint32_t>(variables.size()) - 1; }
 
     ModuleLowering& owner;
-    std::vector<Values> variables; // by Symbol::slot, then the three of the flow
+    std::vector<Values> variables;            // by Symbol::slot, then the three of the flow
     std::vector<FunctionReference> functions; // parameters that are functions, by Symbol::slot
     Values passed_inputs[input_name_count];
     Type result_type;

@@ -30,11 +30,11 @@ struct TextureBinding {
 struct TextureRequest {
     std::string reference; // "rock.haptel:rock" (a path, absolute after scene loading, a colon, a texture's name)
     std::vector<std::pair<std::string, std::string>> parameters; // name, value as written: "60um", "5"
-    std::string folder; // that relative paths among the values start from; empty: the working directory
     double box_minimum_m[3] = {0, 0, 0};                         // the object's bounding box, object space
     double box_maximum_m[3] = {0, 0, 0};
     double footprint_m = 0;    // smallest wavelength worth rendering
     double servo_period_s = 0; // of the servo that will call it and must not be held up; 0: none
+    std::string folder = {};   // that relative paths among the values start from; empty: the working directory
 };
 
 // Either a binding or none and the reason. Diagnostics may hold warnings beside a binding; rendered as text, ready to

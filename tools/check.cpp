@@ -129,7 +129,8 @@ std::vector<std::shared_ptr<const ir::SplineImage>> CheckRun::images_of(const st
         for (const auto& [name, text] : options.parameters) {
             if (name != parameter.name) continue;
             jit::ImageFile read = jit::read_image(text);
-            if (!read.image) say("bad-value", "--set " + name + " for " + texture.name + ": " + read.error, read.hint, path);
+            if (!read.image)
+                say("bad-value", "--set " + name + " for " + texture.name + ": " + read.error, read.hint, path);
             images.back() = std::move(read.image);
         }
     }
@@ -147,9 +148,9 @@ void CheckRun::check(const std::string& path)
             const auto images = images_of(path, texture);
             std::vector<const ir::SplineImage*> views;
             for (const auto& image : images) views.push_back(image.get());
-            report.textures.push_back(
-                {path, result.program, &texture,
-                 lang::analyse(*result.program, texture, values, views, {options.box_m, options.footprint_m}, diagnostics)});
+            report.textures.push_back({path, result.program, &texture,
+                                       lang::analyse(*result.program, texture, values, views,
+                                                     {options.box_m, options.footprint_m}, diagnostics)});
         }
         if (options.strict) diagnostics.make_warnings_errors();
         diagnostics.sort_by_place();

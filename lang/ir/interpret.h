@@ -22,7 +22,7 @@ using Scalar = std::variant<T, uint32_t, bool>; // real; i32 and u32 as bits; bo
 template <typename T>
 struct EntryInputs {
     T input[input_count] = {};
-    std::vector<Scalar<T>> parameters;        // of an image: any
+    std::vector<Scalar<T>> parameters;            // of an image: any
     std::vector<const haptel_image*> images = {}; // by the same index; missing: flat
 };
 

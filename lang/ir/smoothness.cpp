@@ -72,7 +72,9 @@ Smoothness smoothness_of(Op op, std::span<const Interval> operands, uint32_t act
         const auto orders = static_cast<uint32_t>(operands[3].minimum);
         constexpr Smoothness classes[] = {Smoothness::c2, Smoothness::c1, Smoothness::c0, Smoothness::jump};
         const uint32_t order = std::max(spline_order_along(orders, 0), spline_order_along(orders, 1));
-        return result.is_point() || order > 3 ? Smoothness::smooth : operands[3].is_point() ? classes[order] : Smoothness::jump;
+        return result.is_point() || order > 3 ? Smoothness::smooth
+               : operands[3].is_point()       ? classes[order]
+                                              : Smoothness::jump;
     }
     // Choices, comparisons and integers can only change by a step.
     const OpInfo& info = op_info(op);

@@ -1,8 +1,8 @@
 // The cubic B-spline of an image at a place, and its derivatives: what Op::spline means, for any real type T.
 //
 // Places are in texels: texel (i, j) is at (i, j). Each operation asks for one derivative, `orders`: so often by x, so
-// often by y, and what is outside of the edges. A cubic has three derivatives: a fourth is 0. Far outside a clamped image
-// is flat; a tiled one has no value at an infinite place.
+// often by y, and what is outside of the edges. A cubic has three derivatives: a fourth is 0. Far outside a clamped
+// image is flat; a tiled one has no value at an infinite place.
 #pragma once
 
 #include "lang/abi.h"

@@ -95,7 +95,8 @@ std::shared_ptr<const SplineImage> SplineImage::make(std::span<const double> tex
     made->clamped = solved(texels, width, height, [&](std::span<double> line) { solve_clamped(line, pivots); });
     made->tiled = solved(texels, width, height, [&](std::span<double> line) { solve_tiled(line, pivots, corner); });
     haptel_image& image = made->image;
-    image = {{made->clamped.data(), made->tiled.data()}, static_cast<int32_t>(width), static_cast<int32_t>(height), 0, 0};
+    image = {
+        {made->clamped.data(), made->tiled.data()}, static_cast<int32_t>(width), static_cast<int32_t>(height), 0, 0};
     for (uint32_t by_x = 0; by_x <= known_order; ++by_x)
         for (uint32_t by_y = 0; by_x + by_y <= known_order; ++by_y)
             for (bool is_tiled : {false, true})
@@ -106,8 +107,8 @@ std::shared_ptr<const SplineImage> SplineImage::make(std::span<const double> tex
     return made;
 }
 
-// A derivative of the spline is a mean, with weights of sum 1, of differences of the coefficients: `orders` by column and
-// by row, here over all that start in these columns and rows.
+// A derivative of the spline is a mean, with weights of sum 1, of differences of the coefficients: `orders` by column
+// and by row, here over all that start in these columns and rows.
 Interval SplineImage::differences(uint32_t orders, int64_t first_column, int64_t columns, int64_t first_row,
                                   int64_t rows) const
 {
@@ -142,7 +143,8 @@ Interval SplineImage::over_all(uint32_t orders) const
     for (; by_x + by_y > known_order; ++more) --(by_x > by_y ? by_x : by_y);
     const Interval& found = known[spline_is_tiled(orders)][by_x][by_y];
     if (more == 0) return found;
-    const double size = std::ldexp(std::max(std::fabs(found.minimum), std::fabs(found.maximum)), static_cast<int>(more));
+    const double size =
+        std::ldexp(std::max(std::fabs(found.minimum), std::fabs(found.maximum)), static_cast<int>(more));
     return {-size, size};
 }
 
@@ -150,8 +152,9 @@ Interval SplineImage::bounds(const Interval& x, const Interval& y, uint32_t orde
 {
     if (x.is_empty() || y.is_empty()) return {infinity, -infinity, true};
     const bool is_tiled = spline_is_tiled(orders);
-    const bool may_be_nan = x.may_be_nan || y.may_be_nan ||
-                            (is_tiled && !(std::isfinite(x.maximum - x.minimum) && std::isfinite(y.maximum - y.minimum)));
+    const bool may_be_nan =
+        x.may_be_nan || y.may_be_nan ||
+        (is_tiled && !(std::isfinite(x.maximum - x.minimum) && std::isfinite(y.maximum - y.minimum)));
     const uint32_t by_x = spline_order_along(orders, 0), by_y = spline_order_along(orders, 1);
     if (by_x > 3 || by_y > 3) return {0, 0, may_be_nan};
 

@@ -30,8 +30,7 @@ public:
 
 private:
     SplineImage() = default;
-    Interval differences(uint32_t orders, int64_t first_column, int64_t columns, int64_t first_row,
-                         int64_t rows) const;
+    Interval differences(uint32_t orders, int64_t first_column, int64_t columns, int64_t first_row, int64_t rows) const;
     Interval over_all(uint32_t orders) const;
 
     std::vector<double> clamped, tiled;

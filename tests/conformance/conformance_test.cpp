@@ -28,7 +28,7 @@ lang::CompileResult compiled(const Case& wanted)
     for (const ir::Texture& texture : result.program->module.textures) {
         std::vector<double> values;
         for (const ir::Parameter& parameter : texture.parameters) values.push_back(parameter.value);
-        lang::analyse(*result.program, texture, values, {}, result.diagnostics);
+        lang::analyse(*result.program, texture, values, {}, {}, result.diagnostics);
     }
     return result;
 }
@@ -41,6 +41,7 @@ ir::Scalar<T> scalar(ir::Type type, double value)
     case ir::Type::boolean: return value != 0;
     case ir::Type::i32: return static_cast<uint32_t>(static_cast<int32_t>(value));
     case ir::Type::u32: return static_cast<uint32_t>(value);
+    case ir::Type::image: return uint32_t{0};
     }
     return T(value);
 }

@@ -96,8 +96,7 @@ TEST_CASE("spline: values and derivatives are those of the closed form at 113 bi
     std::mt19937 random(1);
     for (bool is_tiled : {false, true})
         for (auto [by_x, by_y] : {std::pair{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}, {2, 2}}) {
-            const uint32_t orders =
-                spline_order(static_cast<uint32_t>(by_x), static_cast<uint32_t>(by_y), is_tiled);
+            const uint32_t orders = spline_order(static_cast<uint32_t>(by_x), static_cast<uint32_t>(by_y), is_tiled);
             const Module module = spline_module(orders);
             REQUIRE(verify(module).empty());
             Interpreter<Quad> oracle(module);
@@ -119,8 +118,7 @@ TEST_CASE("spline: the derivative is the operation's own, the fourth is 0, and i
     for (uint32_t order = 0; order < 4; ++order) {
         Module module = spline_module(spline_order(order, 0));
         Differentiator differentiator(module);
-        const Derivative made =
-            differentiator.derivative(0, {{Seed::none}, {Seed::unit}, {Seed::none}});
+        const Derivative made = differentiator.derivative(0, {{Seed::none}, {Seed::unit}, {Seed::none}});
         CHECK(made.exists[0][0] == (order < 3));
         CHECK(verify(module).empty());
         if (order == 3) continue;
