@@ -95,8 +95,13 @@ void report(const ir::Undefined& found, Diagnostics& diagnostics)
             .hint = "add a small constant, or keep it away from 0 with max(); where it is 0 the height counts as 0";
         return;
     }
+    if (!found.op) {
+        diagnostics.warning(found.span, "domain", "a constant here is not a finite number").hint =
+            "a division by 0, or a function outside of where it is defined, was computed once and for all";
+        return;
+    }
     Diagnostic& said = diagnostics.warning(found.span, "domain",
-                                           std::string(ir::op_info(found.op).name) +
+                                           std::string(ir::op_info(*found.op).name) +
                                                "() may be not a number: its argument lies in " + shown(found.operand));
     said.hint = "keep it where the function is defined, with clamp(), max() or abs(); else the height counts as 0";
 }

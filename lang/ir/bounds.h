@@ -10,6 +10,7 @@
 #include "lang/ir/spline_image.h"
 #include "lang/ir/variation.h"
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,11 +23,11 @@ struct BoundsBox {
     std::vector<const SplineImage*> images = {}; // likewise; null or missing: any image
 };
 
-// An operation whose operands can leave what it is defined for.
+// An operation whose operands can leave what it is defined for, or a constant that is not finite.
 struct Undefined {
-    Op op;
-    Interval operand; // the divisor, the radicand, ...
-    Span span;        // innermost user code
+    std::optional<Op> op; // nothing: a constant
+    Interval operand;     // the divisor, the radicand, ...
+    Span span;            // innermost user code
 };
 
 // What is known of a texture over a box; infinite where nothing was found.

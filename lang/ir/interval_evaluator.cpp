@@ -167,10 +167,16 @@ void IntervalEvaluator::note_undefined(const Instruction& made, Op op, std::span
     const bool divides_by_zero = op == Op::div && operands[1].contains(0);
     const bool overflows = op == Op::add || op == Op::sub || op == Op::mul || op == Op::fma; // of what has no bound
     if (!divides_by_zero && (overflows || !result.may_be_nan)) return;
-    const Span span = user.value_or(made.span);
+    note({op, operands[op == Op::div ? 1 : 0], made.span});
+}
+
+// Each place once; the library's is the call.
+void IntervalEvaluator::note(const Undefined& found)
+{
+    const Span span = user.value_or(found.span);
     for (const Undefined& known : undefined_operations)
-        if (known.op == op && known.span.file == span.file && known.span.begin == span.begin) return;
-    undefined_operations.push_back({op, operands[op == Op::div ? 1 : 0], span});
+        if (known.op == found.op && known.span.file == span.file && known.span.begin == span.begin) return;
+    undefined_operations.push_back({found.op, found.operand, span});
 }
 
 // What the operands say together: a square, a component of a unit vector, a division whose divisor was looked at.
@@ -285,6 +291,7 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const RealConstant& constant)
 {
+    if (varying && !is_trying && !std::isfinite(constant.value)) note({{}, {}, made.span});
     frame.values[made.results[0].index] =
         std::isnan(constant.value) ? Interval{infinity, -infinity, true} : Interval{constant.value, constant.value};
 }

@@ -262,6 +262,18 @@ TEST_CASE("check: what each line costs adds up to the whole")
     CHECK(text.find("return 1um * (h + fbm") < text.find("return sin(x) * sin(x);"));
 }
 
+TEST_CASE("check: a constant that is not finite is found")
+{
+    const Folder folder;
+    const std::string file = folder.write("never.haptel", "const float A = 1.0 / 0.0;\n"
+                                                          "texture t() { return 1um * A; }\n");
+    const Json found = Json::parse(run_command("check --json '" + file + "'").out)["diagnostics"];
+    REQUIRE(found.size() == 1);
+    CHECK(found[0]["code"] == "domain");
+    CHECK(found[0]["line"] == 2);
+    CHECK(contains(found[0]["message"], "not a finite number"));
+}
+
 TEST_CASE("check: a verdict that rests on declared facts says so")
 {
     const Folder folder;
