@@ -273,8 +273,11 @@ Interval on_integers(Op op, Type type, std::span<const Interval> operands)
     IntRange ranges[4];
     for (const Interval& operand : operands)
         if (operand.is_empty()) return operand; // comes of an arm that is never entered
-    for (size_t i = 0; i < operands.size(); ++i)
-        ranges[i] = {static_cast<int64_t>(operands[i].minimum), static_cast<int64_t>(operands[i].maximum)};
+    // A parameter without a range has no ends; it has 32 bits all the same.
+    const auto end = [](double value) {
+        return static_cast<int64_t>(std::clamp(value, static_cast<double>(INT32_MIN), static_cast<double>(UINT32_MAX)));
+    };
+    for (size_t i = 0; i < operands.size(); ++i) ranges[i] = {end(operands[i].minimum), end(operands[i].maximum)};
     IntRange range = range_of(op, type, {ranges, operands.size()});
     return {static_cast<double>(range.minimum), static_cast<double>(range.maximum)};
 }

@@ -255,3 +255,12 @@ TEST_CASE("bounds: work is limited, whatever the program asks for")
                              {-1, 1});
     CHECK((costly.may_be_nan && costly.minimum == -infinity && costly.maximum == infinity));
 }
+
+TEST_CASE("intervals: integers without ends have 32 bits")
+{
+    const Interval all{-infinity, infinity}, zero{0, 0}, one{1, 1};
+    const Interval negated[] = {zero, all}, shifted[] = {all, one};
+    CHECK(evaluate(Op::isub, negated).minimum == INT32_MIN);
+    CHECK(evaluate(Op::isub, negated).maximum == INT32_MAX);
+    CHECK(evaluate(Op::ushr, shifted).maximum >= INT32_MAX);
+}
