@@ -287,7 +287,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
         messages.error("the scene could not be read: is the path right?");
         return loaded;
     }
-    const std::filesystem::path folder = file.parent_path();
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
     SceneText text;
     try {
         text = read_scene(toml::parse(source), folder, messages);

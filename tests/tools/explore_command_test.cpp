@@ -182,6 +182,17 @@ TEST_CASE("a folder that cannot be written is an error before anything runs")
     CHECK(contains(ran.err, "trace.csv"));
 }
 
+TEST_CASE("a scene of the current folder is named without a path")
+{
+    const Stage stage;
+    const std::filesystem::path scene = stage.scene;
+    const Ran ran = run_command("explore '" + scene.filename().string() + "' --seconds 0.1 --clock virtual --json",
+                                "cd '" + scene.parent_path().string() + "' &&");
+    INFO(ran.err);
+    CHECK(ran.code == 0);
+    CHECK(json_of(ran)["ticks"] == 100);
+}
+
 TEST_CASE("misuse of explore is exit code 2")
 {
     const Stage stage;
