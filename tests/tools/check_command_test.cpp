@@ -331,7 +331,8 @@ TEST_CASE("check: a few lines per texture for people")
     CHECK(contains(ran.out, "reads p, time\n"));
 }
 
-TEST_CASE("check: what reads the normal is as steep as normals turn: those of a ball that fills the box, or --normal-turn")
+TEST_CASE(
+    "check: what reads the normal is as steep as normals turn: those of a ball that fills the box, or --normal-turn")
 {
     const Folder folder;
     const std::string file = folder.write("lean.haptel", "texture lean() { return 1um * n.z; }\n");
