@@ -1,4 +1,4 @@
-// IR to LLVM IR, f64, one point at a time.
+// IR to LLVM IR, f64, one point at a time or many.
 //
 // Every operation means what lang/ir/semantics.h says, bit for bit: no fast-math flags, no contraction, elementary
 // functions by calls to the C library under names that LLVM does not know, so that it cannot rewrite them. Functions
@@ -27,16 +27,18 @@ struct LibraryFunction {
 };
 std::span<const LibraryFunction> code_library();
 
-// One entry point to be emitted: a haptel_entry of this name.
+// One entry point to be emitted: a haptel_entry of this name, or a haptel_batch_entry.
 struct EntryPoint {
     enum class Kind : uint8_t { height, height_gradient };
     std::string name;
     const ir::Texture* texture;
     Kind kind;
+    bool is_batch = false;
 };
 
-// Data layout and triple are the caller's to set before optimisation.
-std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const EntryPoint> entries,
+// `lanes`: points that batch entries evaluate at once, above 1. Data layout and triple are the caller's to set before
+// optimisation.
+std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const EntryPoint> entries, uint32_t lanes,
                                        llvm::LLVMContext& context);
 
 } // namespace haptel::jit

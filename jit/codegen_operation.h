@@ -8,6 +8,7 @@
 
 namespace haptel::jit {
 
+// On scalars, or on vectors of as many lanes; an image is the same for all lanes.
 llvm::Value* emit_operation(llvm::IRBuilder<>& builder, ir::Op op, std::span<llvm::Value* const> operands);
 
 } // namespace haptel::jit

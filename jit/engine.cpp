@@ -13,6 +13,8 @@ namespace {
 
 namespace orc = llvm::orc;
 
+constexpr uint32_t batch_lanes = 8; // doubles in the widest register there is
+
 std::string text(llvm::Error error)
 {
     return llvm::toString(std::move(error));
@@ -65,7 +67,13 @@ public:
         Engine::get().remove(library);
         --alive;
     }
-    void add(const std::string& name, haptel_entry* address) { entries[name] = address; }
+    void add(const EntryPoint& entry, orc::ExecutorAddr address)
+    {
+        if (entry.is_batch)
+            batch_entries[entry.name] = address.toPtr<haptel_batch_entry*>();
+        else
+            entries[entry.name] = address.toPtr<haptel_entry*>();
+    }
 
 private:
     orc::JITDylib& library;
@@ -135,7 +143,7 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     auto start = std::chrono::steady_clock::now();
 
     llvm::LLVMContext context;
-    std::unique_ptr<llvm::Module> generated = generate(module, entries, context);
+    std::unique_ptr<llvm::Module> generated = generate(module, entries, batch_lanes, context);
     generated->setDataLayout(machine(effort)->createDataLayout());
     generated->setTargetTriple(machine(effort)->getTargetTriple().str());
     std::string problem;
@@ -160,7 +168,7 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     for (const EntryPoint& entry : entries) {
         auto found = jit->lookup(*own, entry.name);
         if (!found) return {nullptr, "linking " + entry.name + " failed: " + text(found.takeError())};
-        code->add(entry.name, found->toPtr<haptel_entry*>());
+        code->add(entry, *found);
     }
     times.link_s = seconds_since(start);
     code->times = times;
@@ -179,6 +187,12 @@ haptel_entry* Code::entry(const std::string& name) const
 {
     const auto found = entries.find(name);
     return found == entries.end() ? nullptr : found->second;
+}
+
+haptel_batch_entry* Code::batch_entry(const std::string& name) const
+{
+    const auto found = batch_entries.find(name);
+    return found == batch_entries.end() ? nullptr : found->second;
 }
 
 CodeResult compile_code(const ir::Module& module, std::span<const EntryPoint> entries, Effort effort)

@@ -11,7 +11,8 @@ namespace haptel::jit {
 
 namespace {
 
-constexpr char with_gradient = '\''; // h' of the texture h, among the names of entry points
+// Of the texture h among the names of entry points: h' with the gradient, h* and h'* for many points.
+constexpr char with_gradient = '\'', of_many = '*';
 
 haptel_parameter described(const ir::Parameter& parameter)
 {
@@ -31,11 +32,14 @@ std::vector<EntryPoint> entry_points(const ir::Module& module, Entries wanted)
 {
     std::vector<EntryPoint> entries;
     for (const ir::Texture& texture : module.textures) {
-        if (texture.height != UINT32_MAX && wanted == Entries::both)
+        if (texture.height != UINT32_MAX && wanted != Entries::height_gradient)
             entries.push_back({texture.name, &texture, EntryPoint::Kind::height});
         if (texture.height_gradient != UINT32_MAX)
             entries.push_back({texture.name + with_gradient, &texture, EntryPoint::Kind::height_gradient});
     }
+    const size_t of_one = wanted == Entries::both_and_batches ? entries.size() : 0;
+    for (size_t i = 0; i < of_one; ++i)
+        entries.push_back({entries[i].name + of_many, entries[i].texture, entries[i].kind, true});
     return entries;
 }
 
@@ -62,7 +66,8 @@ CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, s
         table.push_back({HAPTEL_ABI_VERSION, sizeof(haptel_texture), texture.reads, texture.writes, texture.block_size,
                          static_cast<uint32_t>(list.size()), texture.name.c_str(), list.data(),
                          facts_over_ranges(module(), texture), code->entry(texture.name),
-                         code->entry(texture.name + with_gradient)});
+                         code->entry(texture.name + with_gradient), code->batch_entry(texture.name + of_many),
+                         code->batch_entry(texture.name + with_gradient + of_many)});
     }
 }
 
