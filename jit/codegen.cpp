@@ -44,9 +44,10 @@ public:
     {
         llvm::Function& function = declare({pointer(), pointer(), pointer()}, 1);
         llvm::BasicBlock::Create(context(), "", &function);
-        FunctionEmitter emitter(module, source(), function, {},
+        const ValueForms forms = entry_forms();
+        FunctionEmitter emitter(module, source(), function, forms,
                                 {.points = function.getArg(0), .block = function.getArg(1), .texture = entry.texture});
-        const std::vector<Value*> yields = emitter.body(false);
+        const std::vector<Value*> yields = emitter.body(results({}));
         llvm::IRBuilder<>& builder = emitter.at_end();
         for (const Output& output : outputs_of(entry))
             builder.CreateStore(result(output, yields), place(builder, function.getArg(2), output.offset));
@@ -78,9 +79,10 @@ public:
         Value* index =
             outside.CreateAdd(outside.CreateVectorSplat(module.lanes, first), outside.CreateStepVector(indices));
         Value* is_there = outside.CreateICmpULT(index, outside.CreateVectorSplat(module.lanes, count));
-        FunctionEmitter emitter(module, source(), function, {},
+        const ValueForms forms = entry_forms();
+        FunctionEmitter emitter(module, source(), function, forms,
                                 {function.getArg(0), function.getArg(2), entry.texture, first, is_there});
-        const std::vector<Value*> yields = emitter.body(true);
+        const std::vector<Value*> yields = emitter.body(results({.in_lanes = true}));
         llvm::IRBuilder<>& builder = emitter.at_end();
         for (const Output& output : outputs_of(entry))
             store_lanes(builder, result(output, yields), place(builder, function.getArg(3), output.array_offset), first,
@@ -95,12 +97,13 @@ private:
 
     llvm::LLVMContext& context() { return module.target.getContext(); }
     llvm::Type* pointer() { return llvm::PointerType::getUnqual(context()); }
-    const ir::Function& source()
+    uint32_t index() const
     {
-        const ir::Texture& texture = *entry.texture;
-        return module.source
-            .functions[entry.kind == EntryPoint::Kind::height ? texture.height : texture.height_gradient];
+        return entry.kind == EntryPoint::Kind::height ? entry.texture->height : entry.texture->height_gradient;
     }
+    const ir::Function& source() const { return module.source.functions[index()]; }
+    ValueForms entry_forms() const { return module.forms(index(), {}, std::vector<bool>(source().body.yields.size())); }
+    std::vector<Form> results(Form form) const { return std::vector(source().body.yields.size(), form); }
 
     // The last argument is what is written.
     llvm::Function& declare(std::vector<llvm::Type*> arguments, unsigned block)
@@ -141,15 +144,18 @@ private:
 
 } // namespace
 
-std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const EntryPoint> entries, uint32_t lanes,
-                                       llvm::LLVMContext& context)
+std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const EntryPoint> entries,
+                                       const Processor& processor, llvm::LLVMContext& context)
 {
     auto generated = std::make_unique<llvm::Module>("textures", context);
-    ModuleEmitter one(module, *generated, 1), many(module, *generated, lanes);
-    for (const EntryPoint& entry : entries)
-        entry.is_batch ? EntryEmitter(many, entry).batch() : EntryEmitter(one, entry).one_point();
-    one.finish();
-    many.finish();
+    std::map<std::pair<bool, Precision>, ModuleEmitter> emitters;
+    for (const EntryPoint& entry : entries) {
+        const std::pair form{entry.is_batch, entry.precision};
+        ModuleEmitter& emitter =
+            emitters.try_emplace(form, module, *generated, processor, entry.is_batch, entry.precision).first->second;
+        entry.is_batch ? EntryEmitter(emitter, entry).batch() : EntryEmitter(emitter, entry).one_point();
+    }
+    for (auto& [form, emitter] : emitters) emitter.finish();
     return generated;
 }
 

@@ -3,6 +3,8 @@
 // In lanes, what varies between points is a vector with an element for each, and the rest stays a scalar. A branch on
 // what varies runs both arms and selects; a loop whose count varies runs to the largest, and a lane that is through
 // keeps what it has. Operations are total and pure, so each lane has the bits of the form for one point.
+//
+// An operation with an f64 operand that varies computes in f64 and rounds its result to what it is held in.
 #pragma once
 
 #include "jit/codegen_module.h"
@@ -22,35 +24,32 @@ struct EntryArguments {
 
 class FunctionEmitter {
 public:
-    // Writes to the end of `to`'s last block; `parameters` tells which of the function's vary.
-    FunctionEmitter(ModuleEmitter& owner, const ir::Function& from, llvm::Function& to,
-                    const std::vector<bool>& parameters, const EntryArguments& entry = {});
+    // Writes to the end of `to`'s last block.
+    FunctionEmitter(ModuleEmitter& owner, const ir::Function& from, llvm::Function& to, const ValueForms& value_forms,
+                    const EntryArguments& entry = {});
 
     void define(ir::Value value, llvm::Value* made) { values[value.index] = made; }
-    // The function's results: all vectors, or all scalars.
-    std::vector<llvm::Value*> body(bool in_lanes)
-    {
-        return block(source.body, std::vector<bool>(source.body.yields.size(), in_lanes));
-    }
+    // The function's results in those forms.
+    std::vector<llvm::Value*> body(const std::vector<Form>& results) { return block(source.body, results); }
     llvm::IRBuilder<>& at_end() { return builder; }
 
 private:
     ModuleEmitter& module;
     const ir::Function& source;
     llvm::Function& target;
+    const ValueForms& forms;
     const EntryArguments arguments;
-    const std::vector<bool> varies; // by ir::Value::index
     llvm::IRBuilder<> builder;
-    std::vector<llvm::Value*> values; // likewise
+    std::vector<llvm::Value*> values; // by ir::Value::index
 
-    bool is_varying(ir::Value value) const { return varies[value.index]; }
     llvm::Value* value(ir::Value used) const { return values[used.index]; }
-    llvm::Value* value(ir::Value used, bool in_lanes);
-    llvm::Type* type(ir::Value of) { return module.type(source.type(of), is_varying(of)); }
+    llvm::Value* value(ir::Value used, Form wanted);
+    llvm::Value* rounded(llvm::Value* real, bool to_single);
+    llvm::Type* type(ir::Value of) { return module.type(source.type(of), forms[of]); }
     llvm::BasicBlock* new_block(const char* name);
     llvm::Value* at_offset(llvm::Value* base, size_t offset);
 
-    std::vector<llvm::Value*> block(const ir::Block& from, const std::vector<bool>& yields_in_lanes);
+    std::vector<llvm::Value*> block(const ir::Block& from, const std::vector<Form>& yields);
     void emit(const ir::Instruction& made, const ir::Operation& operation);
     void emit(const ir::Instruction& made, const ir::RealConstant& constant);
     void emit(const ir::Instruction& made, const ir::IntConstant& constant);

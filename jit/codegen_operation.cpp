@@ -33,8 +33,11 @@ double spline_of_doubles(const haptel_image* image, double x, double y, uint32_t
 // Operands, in the order of ops.def, are a, b, c, d.
 class Emitter {
 public:
-    Emitter(llvm::IRBuilder<>& to, std::span<Value* const> from)
-        : builder(to), operands(from), vector(llvm::dyn_cast<llvm::FixedVectorType>(from.back()->getType()))
+    Emitter(llvm::IRBuilder<>& to, std::span<Value* const> from, llvm::Type* scalar_real)
+        : builder(to)
+        , operands(from)
+        , scalar(scalar_real)
+        , vector(llvm::dyn_cast<llvm::FixedVectorType>(from.back()->getType()))
     {
     }
 
@@ -43,16 +46,18 @@ public:
 private:
     llvm::IRBuilder<>& builder;
     std::span<Value* const> operands;
+    llvm::Type* const scalar;                  // double or float
     const llvm::FixedVectorType* const vector; // of the operands; null: they are scalars
 
     Value* a() const { return operands[0]; }
     Value* b() const { return operands[1]; }
 
-    llvm::Type* as(llvm::Type* scalar)
+    llvm::Type* as(llvm::Type* element)
     {
-        return vector ? llvm::FixedVectorType::get(scalar, vector->getNumElements()) : scalar;
+        return vector ? llvm::FixedVectorType::get(element, vector->getNumElements()) : element;
     }
-    llvm::Type* reals() { return as(builder.getDoubleTy()); }
+    bool is_single() const { return scalar->isFloatTy(); }
+    llvm::Type* reals() { return as(scalar); }
     llvm::Type* words() { return as(builder.getInt32Ty()); }
     Value* real(double value) { return llvm::ConstantFP::get(reals(), value); }
     Value* word(uint32_t value) { return llvm::ConstantInt::get(words(), value); }
@@ -65,9 +70,8 @@ private:
     Value* call(const char* name) { return call(name, operands); }
     Value* call(const char* name, std::span<Value* const> arguments);
     Value* read_image(const char* name, llvm::Type* result);
-    llvm::Function* function(const char* name, llvm::Type* result, std::span<Value* const> arguments,
-                             llvm::MemoryEffects effects);
-    Value* call(llvm::Function* function, std::span<Value* const> arguments);
+    Value* call(const char* name, llvm::Type* result, std::span<Value* const> arguments, llvm::MemoryEffects effects);
+    Value* in_each_lane(llvm::Function* function, const std::vector<Value*>& arguments);
     Value* sign();
     Value* length();
     Value* remainder_of_turn() { return builder.CreateFSub(a(), intrinsic(llvm::Intrinsic::roundeven, a())); }
@@ -83,33 +87,38 @@ private:
 // Pure and total: may be moved, shared or dropped.
 Value* Emitter::call(const char* name, std::span<Value* const> arguments)
 {
-    return call(function(name, builder.getDoubleTy(), arguments, llvm::MemoryEffects::none()), arguments);
+    return call(name, builder.getDoubleTy(), arguments, llvm::MemoryEffects::none());
 }
 
 // Total, and reads what no one writes while code runs.
 Value* Emitter::read_image(const char* name, llvm::Type* result)
 {
-    return call(function(name, result, operands, llvm::MemoryEffects::readOnly()), operands);
+    return call(name, result, operands, llvm::MemoryEffects::readOnly());
 }
 
-llvm::Function* Emitter::function(const char* name, llvm::Type* result, std::span<Value* const> arguments,
-                                  llvm::MemoryEffects effects)
+// Lane by lane, in f64.
+Value* Emitter::call(const char* name, llvm::Type* result, std::span<Value* const> arguments,
+                     llvm::MemoryEffects effects)
 {
+    std::vector<Value*> wide;
     std::vector<llvm::Type*> types;
-    for (Value* argument : arguments) types.push_back(argument->getType()->getScalarType());
+    for (Value* argument : arguments) {
+        const bool is_float = argument->getType()->getScalarType()->isFloatTy();
+        wide.push_back(is_float ? builder.CreateFPExt(argument, as(builder.getDoubleTy())) : argument);
+        types.push_back(wide.back()->getType()->getScalarType());
+    }
     llvm::Module* module = builder.GetInsertBlock()->getModule();
     auto* type = llvm::FunctionType::get(result, types, false);
     auto* function = llvm::cast<llvm::Function>(module->getOrInsertFunction(name, type).getCallee());
     function->setDoesNotThrow();
     function->setMemoryEffects(effects);
     function->setWillReturn();
-    return function;
+    Value* results = vector ? in_each_lane(function, wide) : builder.CreateCall(function, wide);
+    return result->isDoubleTy() && is_single() ? builder.CreateFPTrunc(results, reals()) : results;
 }
 
-// Lane by lane.
-Value* Emitter::call(llvm::Function* function, std::span<Value* const> arguments)
+Value* Emitter::in_each_lane(llvm::Function* function, const std::vector<Value*>& arguments)
 {
-    if (!vector) return builder.CreateCall(function, std::vector<Value*>(arguments.begin(), arguments.end()));
     Value* results = llvm::PoisonValue::get(as(function->getReturnType()));
     for (uint64_t lane = 0; lane < vector->getNumElements(); ++lane) {
         std::vector<Value*> scalars;
@@ -131,10 +140,11 @@ Value* Emitter::length()
 {
     Value* largest = absolute(operands[0]);
     for (Value* x : operands.subspan(1)) largest = intrinsic(llvm::Intrinsic::maximum, largest, absolute(x));
-    Value* huge = builder.CreateFCmpOGT(largest, real(0x1p500));
-    Value* tiny = builder.CreateFCmpOLT(largest, real(0x1p-500));
-    Value* scale = choose(huge, real(0x1p-600), choose(tiny, real(0x1p600), real(1)));
-    Value* unscale = choose(huge, real(0x1p600), choose(tiny, real(0x1p-600), real(1)));
+    const double limit = is_single() ? 0x1p60 : 0x1p500, factor = is_single() ? 0x1p80 : 0x1p600;
+    Value* huge = builder.CreateFCmpOGT(largest, real(limit));
+    Value* tiny = builder.CreateFCmpOLT(largest, real(1 / limit));
+    Value* scale = choose(huge, real(1 / factor), choose(tiny, real(factor), real(1)));
+    Value* unscale = choose(huge, real(factor), choose(tiny, real(1 / factor), real(1)));
     Value* sum = nullptr;
     for (Value* x : operands) {
         Value* scaled = builder.CreateFMul(x, scale);
@@ -284,9 +294,10 @@ Value* Emitter::emit(ir::Op op)
 
 } // namespace
 
-llvm::Value* emit_operation(llvm::IRBuilder<>& builder, ir::Op op, std::span<llvm::Value* const> operands)
+llvm::Value* emit_operation(llvm::IRBuilder<>& builder, ir::Op op, std::span<llvm::Value* const> operands,
+                            llvm::Type* real)
 {
-    return Emitter(builder, operands).emit(op);
+    return Emitter(builder, operands, real).emit(op);
 }
 
 std::span<const LibraryFunction> code_library()

@@ -13,8 +13,6 @@ namespace {
 
 namespace orc = llvm::orc;
 
-constexpr uint32_t batch_lanes = 8; // doubles in the widest register there is
-
 std::string text(llvm::Error error)
 {
     return llvm::toString(std::move(error));
@@ -51,6 +49,7 @@ private:
     std::mutex compiling;
     std::string fault; // why there is no engine; empty: there is
     std::string machine_name;
+    Processor processor;
     std::unique_ptr<llvm::TargetMachine> quick_machine, full_machine;
     std::unique_ptr<orc::LLJIT> jit;
     orc::JITDylib* library = nullptr; // holds code_library()
@@ -101,6 +100,11 @@ std::string Engine::start()
         (quick ? quick_machine : full_machine) = std::move(*made);
     }
 
+    // Singles of two registers' width, where registers are narrow, hide the latency of one another's operations.
+    const llvm::MCSubtargetInfo& features = *quick_machine->getMCSubtargetInfo();
+    const bool has_avx512 = features.checkFeatures("+avx512f"), has_avx2 = features.checkFeatures("+avx2");
+    processor = {has_avx512 || has_avx2 ? 16u : 8u, has_avx512, features.checkFeatures("+avx512vbmi")};
+
     auto layout = quick_machine->createDataLayout();
     auto built = orc::LLJITBuilder()
                      .setJITTargetMachineBuilder(*host)
@@ -143,7 +147,7 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     auto start = std::chrono::steady_clock::now();
 
     llvm::LLVMContext context;
-    std::unique_ptr<llvm::Module> generated = generate(module, entries, batch_lanes, context);
+    std::unique_ptr<llvm::Module> generated = generate(module, entries, processor, context);
     generated->setDataLayout(machine(effort)->createDataLayout());
     generated->setTargetTriple(machine(effort)->getTargetTriple().str());
     std::string problem;

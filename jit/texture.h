@@ -54,6 +54,7 @@ struct TextureOptions {
     lang::ImportLoader load_import = {}; // empty: imports are errors
     std::string only_texture = {};       // compile this one alone; empty: all
     Effort effort = Effort::quick;
+    Precision precision = Precision::f64; // of every entry
 };
 
 struct CompiledTextures {

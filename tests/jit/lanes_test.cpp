@@ -76,11 +76,13 @@ std::vector<std::string> texture_files()
 
 TEST_CASE("batches of every texture of the library and of the examples have the bits of single points")
 {
+    const jit::Precision precision = GENERATE(jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32);
     std::mt19937_64 random(5);
     size_t compared = 0;
     for (const std::string& file : texture_files()) {
         jit::TextureOptions options;
         options.entries = jit::Entries::both_and_batches;
+        options.precision = precision;
         const jit::CompiledTextures compiled = jit::compile_texture_file(file, options);
         INFO(compiled.rendered());
         REQUIRE(compiled.program);
@@ -105,6 +107,48 @@ TEST_CASE("batches of every texture of the library and of the examples have the 
         }
     }
     CHECK(compared > 100);
+}
+
+TEST_CASE("mixed precision keeps its place within a cell, however far away; f32 does not")
+{
+    const std::string source = R"(
+        texture fractal() { return 1mm * fbm(p / 1mm, 8); }
+        texture hills() { return 1mm * perlin(p / 1mm); }
+        texture paper() { return 1mm * noise(p / 1mm); }
+        texture warped() { return 1mm * perlin(p / 1mm + 0.5 * vec3(perlin(p / 3mm))); }
+        texture waves() { return 1mm * fourier(p.xy / 1mm, 7); })";
+    jit::TextureOptions options;
+    const jit::CompiledTextures exact = jit::compile_texture(source, options);
+    options.precision = jit::Precision::mixed;
+    const jit::CompiledTextures mixed = jit::compile_texture(source, options);
+    options.precision = jit::Precision::f32;
+    const jit::CompiledTextures single = jit::compile_texture(source, options);
+    REQUIRE((exact.program && mixed.program && single.program));
+    std::mt19937_64 random(6);
+    for (size_t i = 0; i < exact.program->textures().size(); ++i) {
+        const haptel_texture& texture = exact.program->textures()[i];
+        for (const double cells : {1.0, 1e3, 1e7}) {
+            std::uniform_real_distribution<double> place(-cells * 1e-3, cells * 1e-3);
+            double largest = 0, off[2] = {};
+            const haptel_block_head block{};
+            for (int k = 0; k < 1000; ++k) {
+                const haptel_point point{{place(random), place(random), place(random)}, {}, {}, 0, {}, {}};
+                haptel_sample truth{}, found{};
+                texture.height_gradient(&point, &block, &truth);
+                for (const auto& [program, worst] : {std::pair{&mixed, &off[0]}, std::pair{&single, &off[1]}}) {
+                    program->program->textures()[i].height_gradient(&point, &block, &found);
+                    for (size_t axis = 0; axis < 3; ++axis) {
+                        largest = std::max(largest, std::fabs(truth.gradient[axis]));
+                        *worst = std::max(*worst, std::fabs(found.gradient[axis] - truth.gradient[axis]));
+                    }
+                }
+            }
+            INFO(texture.name << " at " << cells << " cells: mixed " << off[0] / largest << ", f32 "
+                              << off[1] / largest);
+            CHECK(off[0] < (std::string(texture.name) == "fractal" ? 2e-6 : 4e-6) * largest);
+            CHECK((cells < 1e7 || off[1] > 1e-2 * largest));
+        }
+    }
 }
 
 TEST_CASE("what the block holds is one for all lanes, what the point holds is not")
