@@ -12,8 +12,10 @@ namespace haptel::jit {
 // For every point and all values within the parameters' ranges.
 haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& texture);
 
-// For points of the box, these values and images (by Texture::parameters, SI) and this footprint.
+// For points of the box, these values and images (by Texture::parameters, SI), this footprint and normals that turn no
+// faster than that.
 haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,
-                            std::span<const ir::SplineImage* const> images, const haptel_block_head& head);
+                            std::span<const ir::SplineImage* const> images, const haptel_block_head& head,
+                            double normal_turn_max_per_m);
 
 } // namespace haptel::jit

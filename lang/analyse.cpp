@@ -18,7 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 ir::BoundsBox box_of(const AnalysedCube& where)
 {
-    const auto [side_m, footprint_m] = where;
+    const auto [side_m, footprint_m, turn_per_m] = where;
     ir::BoundsBox box;
     const auto set = [&](Input first, size_t count, ir::Interval interval) {
         std::fill_n(box.input + static_cast<size_t>(first), count, interval);
@@ -26,7 +26,8 @@ ir::BoundsBox box_of(const AnalysedCube& where)
     set(Input::p_x, 3, {-side_m / 2, side_m / 2});
     set(Input::n_x, 3, {-1, 1});
     set(Input::uv_x, 2, {-infinity, infinity});
-    set(Input::n_dp_00, 9, {-infinity, infinity});
+    set(Input::n_dp_00, 9, {-turn_per_m, turn_per_m});
+    box.normal_turn_max_per_m = turn_per_m;
     set(Input::uv_dp_00, 6, {-infinity, infinity});
     set(Input::time, 1, {0, infinity});
     set(Input::center_x, 3, {0, 0});

@@ -4,6 +4,7 @@
 #include "lang/compile.h"
 #include "lang/ir/bounds.h"
 
+#include <limits>
 #include <span>
 
 namespace haptel::lang {
@@ -13,10 +14,11 @@ struct Analysis {
     ir::TextureBounds over_ranges; // wherever their ranges allow; those without a range at their values
 };
 
-// A cube round the origin, wherever else the contact may be: any uv, any time.
+// A cube round the origin, wherever else the contact may be: any uv, any time, any normal.
 struct AnalysedCube {
     double side_m = 0.2;
-    double footprint_m = 0; // smallest wavelength worth rendering
+    double footprint_m = 0;                                                 // smallest wavelength worth rendering
+    double normal_turn_max_per_m = std::numeric_limits<double>::infinity(); // of the surface: spectral norm of n_dp
 };
 
 // `values` of the parameters by ir::Texture::parameters, SI, and images likewise; null or missing: any image. Says what

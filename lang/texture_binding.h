@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -32,7 +33,10 @@ struct TextureRequest {
     std::vector<std::pair<std::string, std::string>> parameters; // name, value as written: "60um", "5"
     double box_minimum_m[3] = {0, 0, 0};                         // the object's bounding box, object space
     double box_maximum_m[3] = {0, 0, 0};
-    double footprint_m = 0;    // smallest wavelength worth rendering
+    double footprint_m = 0; // smallest wavelength worth rendering
+    // How fast the object's normals turn along its surface (spectral norm of n_dp); infinite where that is not known,
+    // and then what is mapped by the normal has no bound of its slope.
+    double normal_turn_max_per_m = std::numeric_limits<double>::infinity();
     double servo_period_s = 0; // of the servo that will call it and must not be held up; 0: none
     std::string folder = {};   // that relative paths among the values start from; empty: the working directory
 };

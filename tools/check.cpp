@@ -15,6 +15,7 @@
 #include <algorithm>
 #include <fmt/format.h>
 #include <memory>
+#include <optional>
 
 namespace haptel::tools {
 
@@ -24,6 +25,7 @@ struct CheckOptions {
     std::vector<std::string> files;
     ParameterTexts parameters;
     double box_m = 0.2, footprint_m = 0;
+    std::optional<double> normal_turn_per_m; // nothing: of a ball that fills the box
     bool strict = false, fix = false, cost = false, json = false;
     const CLI::Option* explain = nullptr; // given: nothing is checked, a code is explained
     std::string code;                     // empty: all are listed
@@ -54,6 +56,7 @@ public:
     explicit CheckRun(const CheckOptions& chosen) : options(chosen), is_set(chosen.parameters.size(), false)
     {
         report.box_m = chosen.box_m;
+        report.normal_turn_per_m = chosen.normal_turn_per_m.value_or(2 / chosen.box_m);
         report.with_cost = chosen.cost;
     }
 
@@ -148,9 +151,10 @@ void CheckRun::check(const std::string& path)
             const auto images = images_of(path, texture);
             std::vector<const ir::SplineImage*> views;
             for (const auto& image : images) views.push_back(image.get());
-            report.textures.push_back({path, result.program, &texture,
-                                       lang::analyse(*result.program, texture, values, views,
-                                                     {options.box_m, options.footprint_m}, diagnostics)});
+            report.textures.push_back(
+                {path, result.program, &texture,
+                 lang::analyse(*result.program, texture, values, views,
+                               {options.box_m, options.footprint_m, report.normal_turn_per_m}, diagnostics)});
         }
         if (options.strict) diagnostics.make_warnings_errors();
         diagnostics.sort_by_place();
@@ -201,6 +205,11 @@ Command check_command(CLI::App& app)
     add_length(*command, "--box", options->box_m, "Side of the cube round the origin that bounds are for [0.2m]");
     add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
                LengthRange::not_negative);
+    command
+        ->add_option("--normal-turn", options->normal_turn_per_m,
+                     "How fast the object's normals turn at most, radians per metre [2 / box: a ball that fills it]")
+        ->type_name("PER_M")
+        ->check(CLI::NonNegativeNumber);
     add_parameters(*command, options->parameters);
     command->add_flag("--strict", options->strict, "Warnings are errors");
     command->add_flag("--fix", options->fix, "Write what the compiler proposes into the files");

@@ -209,6 +209,8 @@ Json CheckReport::to_json() const
     for (const CheckFinding& finding : findings) diagnostics.push_back(tools::to_json(finding));
     for (const CheckedTexture& checked : textures) {
         all.push_back(tools::to_json(checked));
+        const bool reads_normal = (checked.texture->reads & HAPTEL_READS_NORMAL) != 0;
+        all.back()["normal_turn_max_per_m"] = reads_normal ? Json(normal_turn_per_m) : Json(nullptr);
         if (with_cost) all.back()["cost"] = cost_json(checked);
     }
     return {{"diagnostics", std::move(diagnostics)}, {"textures", std::move(all)}};
@@ -229,6 +231,9 @@ std::string CheckReport::to_text() const
             text += fmt::format("  curvature  at most {} ({})\n", shown_bound(here.curvature_max_per_m, " /m"),
                                 has_curvature(ranges) ? shown_bound(ranges.curvature_max_per_m, " /m") : "none");
         text += fmt::format("  class      {}\n", shown_class(checked));
+        if (checked.texture->reads & HAPTEL_READS_NORMAL)
+            text += fmt::format("  normals    turn at most {:.3g} per metre, or it is steeper (--normal-turn)\n",
+                                normal_turn_per_m);
         if (!here.declared.empty())
             text += fmt::format("  declared   believes the facts of {}(); haptel test tries them\n",
                                 fmt::join(here.declared, "(), "));

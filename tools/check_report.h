@@ -27,8 +27,9 @@ struct CheckedTexture {
 };
 
 struct CheckReport {
-    double box_m = 0;       // side of the cube
-    bool with_cost = false; // by line
+    double box_m = 0;             // side of the cube
+    double normal_turn_per_m = 0; // that slopes of what reads normals are for
+    bool with_cost = false;       // by line
     std::vector<CheckFinding> findings;
     std::vector<CheckedTexture> textures;
 

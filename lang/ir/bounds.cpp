@@ -13,6 +13,9 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr uint64_t operations_per_evaluation = 1'000'000;
 constexpr uint64_t operations_in_all = 4'000'000; // keeps a reload short, whatever the program
+// A height in metres, a slope or a curvature per metre beyond this says as little as none: no piece that holds a pole
+// is small enough yet, and cutting goes on although nothing improves.
+constexpr double useless = 1e9;
 
 // The point inputs that an entry reads.
 void find_inputs(const Block& block, std::vector<bool>& is_read)
@@ -59,15 +62,20 @@ public:
     void run(uint32_t evaluations)
     {
         std::vector<double> before(goals.size(), infinity);
+        uint32_t limit = evaluations;
         for (uint32_t target = 16; !sides.empty() && !is_settled; target *= 2) {
-            while (pieces.size() < std::min(target, evaluations) && used < operations_in_all && !is_settled) cut();
+            while (pieces.size() < std::min(target, limit) && used < operations_in_all && !is_settled) cut();
             bool has_improved = false;
             for (size_t g = 0; g < goals.size(); ++g) {
+                if (!is_wanted(g)) continue;
                 const double now = bound(g);
-                has_improved |= target == 16 || now < before[g] - 0.05 * std::fabs(before[g]);
+                has_improved |= target == 16 || now > useless || now < before[g] - 0.05 * std::fabs(before[g]);
+                if (now >
+                    useless) // within reason: what has a pole takes more pieces, to come to a bound at all and after it
+                    limit = std::min(4 * evaluations, static_cast<uint32_t>(pieces.size()) + 2 * evaluations);
                 before[g] = now;
             }
-            if (pieces.size() >= evaluations || used >= operations_in_all || !has_improved) break;
+            if (pieces.size() >= limit || used >= operations_in_all || !has_improved) break;
         }
     }
 
@@ -136,6 +144,9 @@ private:
         pieces.push_back(std::move(piece));
     }
 
+    // A curvature is of a gradient without jumps; of others it is not looked for, only told as it comes.
+    bool is_wanted(size_t goal) const { return goals[goal] != Goal::curvature || whole.smoothness >= Smoothness::c1; }
+
     size_t next_of(Queue& queue)
     {
         while (pieces[queue.top().second].is_cut) queue.pop();
@@ -144,6 +155,7 @@ private:
 
     void cut()
     {
+        while (!is_wanted(turn % goals.size())) ++turn;
         const size_t chosen = next_of(queues[turn++ % goals.size()]);
         std::vector<Interval> left = pieces[chosen].sides, right = left;
         size_t widest = sides.size();

@@ -10,6 +10,7 @@
 #include "lang/ir/spline_image.h"
 #include "lang/ir/variation.h"
 
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,6 +22,8 @@ struct BoundsBox {
     Interval input[input_count] = {};
     std::vector<Interval> parameters; // by Texture::parameters; integers and booleans as numbers; of an image: any
     std::vector<const SplineImage*> images = {}; // likewise; null or missing: any image
+    // Spectral norm of the normal's Jacobian, which says more than bounds of its nine numbers.
+    double normal_turn_max_per_m = std::numeric_limits<double>::infinity();
 };
 
 // An operation whose operands can leave what it is defined for, or a constant that is not finite.

@@ -414,14 +414,16 @@ Interval evaluate(Op op, std::span<const Interval> operands)
     const OpInfo& info = op_info(op);
     if (info.operands[0] != 'r' || info.result != 'r') return value_of(op, operands);
     // reals to a real: no value in, none out; NaN in, NaN out
-    bool may_be_nan = false;
+    bool may_be_nan = false, is_empty = false;
     for (const Interval& operand : operands) {
-        if (operand.is_empty()) return empty;
+        is_empty |= operand.is_empty();
         may_be_nan |= operand.may_be_nan;
     }
-    Interval result = value_of(op, operands);
+    Interval result = is_empty ? empty : value_of(op, operands);
     result.may_be_nan |= may_be_nan;
-    return result;
+    const bool swallows_nan = op == Op::pow && ((operands[0].may_be_nan && operands[1].contains(0)) ||
+                                                (operands[1].may_be_nan && operands[0].contains(1)));
+    return swallows_nan ? join(result, {1, 1}) : result; // pow(NaN, 0) and pow(1, NaN)
 }
 
 } // namespace haptel::ir

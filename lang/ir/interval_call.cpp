@@ -1,6 +1,7 @@
 // Calls: what a function's facts say of its results, and what its body does.
 #include "lang/ir/interval_evaluator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -60,16 +61,41 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     return results;
 }
 
-// By the chain rule where only the first argument moves; else nothing but the class.
-Variation IntervalEvaluator::by_facts(const Function& function, const Facts& facts, const Results& arguments) const
+// What the body does with its first argument held still; no variations where no other argument moves.
+IntervalEvaluator::Results IntervalEvaluator::by_other_arguments(uint32_t index, const Results& arguments, Span span)
+{
+    const Function& function = module.functions[index];
+    const auto others = std::span(arguments.variations).subspan(function.first_argument_size);
+    const auto first = std::span(arguments.variations).first(function.first_argument_size);
+    const auto moves = [](const Variation& argument) { return argument.is_active; };
+    const bool has_slope = std::any_of(function.facts.begin(), function.facts.end(),
+                                       [](const Facts& facts) { return facts.slope.has_value(); });
+    if (!has_slope || std::none_of(others.begin(), others.end(), moves) ||
+        std::none_of(first.begin(), first.end(), moves))
+        return {};
+    Results held = arguments;
+    std::fill_n(held.variations.begin(), first.size(), Variation{});
+    return look_inside(index, held, span);
+}
+
+// By the chain rule: of the first argument by the facts, of the others, where they move too, as found (`by_others`;
+// null: not looked for). Of how it bends by both, only the class is known.
+Variation IntervalEvaluator::by_facts(const Function& function, const Facts& facts, const Results& arguments,
+                                      const Variation* by_others) const
 {
     const std::span<const Variation> all(arguments.variations);
     const auto first = all.first(function.first_argument_size), others = all.subspan(first.size());
-    Variation variation = chain(facts, first);
+    const Variation of_first = chain(facts, first);
+    Variation variation = of_first;
     for (const Variation& other : others) {
         if (!other.is_active) continue;
         const Variation before = variation;
         variation = unknown_variation(other.cause.span);
+        if (by_others) {
+            for (size_t j = 0; j < before.gradient.size(); ++j)
+                variation.gradient[j] = add(of_first.gradient[j], by_others->gradient[j]);
+            variation.slope = (of_first.slope + by_others->slope) * (1 + 1e-15);
+        }
         variation.smoothness = facts.smoothness.value_or(Smoothness::unknown);
         roughen(variation, before.smoothness, before.cause);
         roughen(variation, other.smoothness, other.cause);
@@ -92,6 +118,7 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
     if (may_be_nan || function.facts.empty()) return look_inside(index, arguments, span);
 
     Results declared;
+    const Results others = varying ? by_other_arguments(index, arguments, span) : Results{};
     bool is_all_told = function.facts.size() >= count; // nothing is left to find out inside
     for (size_t r = 0; r < count; ++r) {
         const Facts facts = r < function.facts.size() ? function.facts[r] : Facts{};
@@ -100,7 +127,8 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
         if (varying && says_something && !facts.proven) believed_functions.insert(index);
         is_all_told &= facts.value_minimum && facts.value_maximum && facts.slope;
         if (!varying) continue;
-        Variation& variation = declared.variations.emplace_back(by_facts(function, facts, arguments));
+        Variation& variation = declared.variations.emplace_back(
+            by_facts(function, facts, arguments, others.variations.empty() ? nullptr : &others.variations[r]));
         if (variation.is_active && variation.cause.span.end == 0) variation.cause = {span, {}, function.is_library};
         is_all_told &= !variation.is_active || (facts.smoothness && variation.curvature < infinity);
     }

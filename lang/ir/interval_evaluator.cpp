@@ -59,7 +59,11 @@ Variation variation_of_input(const BoundsBox& box, Input input, Span span)
         return carried_along(box, static_cast<Input>(static_cast<uint32_t>(partials) + stride * component), span);
     };
     if (input <= Input::p_z) return axis(static_cast<size_t>(input));
-    if (input <= Input::n_z) return from(Input::n_x, Input::n_dp_00, 3);
+    if (input <= Input::n_z) {
+        Variation normal = from(Input::n_x, Input::n_dp_00, 3);
+        normal.slope = std::min(normal.slope, box.normal_turn_max_per_m);
+        return normal;
+    }
     if (input <= Input::uv_y) return from(Input::uv_x, Input::uv_dp_00, 3);
     return {};
 }

@@ -72,7 +72,9 @@ private:
 
     Results call(uint32_t function, const Results& arguments, Span span);
     Results look_inside(uint32_t function, const Results& arguments, Span span);
-    Variation by_facts(const Function& function, const Facts& facts, const Results& arguments) const;
+    Variation by_facts(const Function& function, const Facts& facts, const Results& arguments,
+                       const Variation* by_others) const;
+    Results by_other_arguments(uint32_t function, const Results& arguments, Span span);
     std::optional<Interval> by_slope(uint32_t function, const Results& arguments, double useful_radius);
     Variation variation_of(Frame& frame, const Instruction& made, Op op, std::span<const Interval> operands,
                            const Interval& result);

@@ -191,15 +191,18 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
 {
     Variation made = roughest_of(variations);
     if (!made.is_active) return made;
-    // The direction of a length is a unit vector, and turns the slower the longer it is.
-    const bool is_norm = is_length(op);
+    // The direction of a length is a unit vector, and turns the slower the longer it is: as an angle does.
+    const bool is_norm = is_length(op), is_angle = op == Op::atan2;
     Partials by = partials;
     double shortest = 0;
-    for (size_t i = 0; i < operands.size() && is_norm; ++i) {
-        by.first[i] = intersect(by.first[i], {-1, 1});
+    for (size_t i = 0; i < operands.size() && (is_norm || is_angle); ++i) {
         const double least = std::max({0.0, operands[i].minimum, -operands[i].maximum});
         shortest += least * least;
     }
+    shortest = std::sqrt(shortest) / rounding_up;
+    const double steepest = is_norm ? 1 : 1 / shortest;
+    for (size_t i = 0; i < operands.size() && (is_norm || is_angle); ++i)
+        by.first[i] = intersect(by.first[i], around_zero(steepest));
 
     double slope = 0, curvature = 0;
     for (size_t i = 0; i < variations.size(); ++i) {
@@ -225,11 +228,11 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
                 }
         }
     }
-    if (is_norm) {
+    if (is_norm || is_angle) { // second partials: 1 / r at most of a length r, 1 / r^2 of an angle
         const double turns = jacobian_norm(variations);
-        slope = std::min(slope, turns);
-        const double bend = times(turns * turns, 1 / (std::sqrt(shortest) / rounding_up));
-        curvature = std::min(curvature, bend + second_norm(variations));
+        slope = std::min(slope, times(turns, steepest));
+        const double bend = times(turns * turns, steepest / shortest);
+        curvature = std::min(curvature, bend + times(steepest, second_norm(variations)));
     }
     made.slope = slope * rounding_up;
     made.curvature = curvature * rounding_up;

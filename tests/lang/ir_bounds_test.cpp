@@ -43,10 +43,13 @@ public:
             return {std::min(a, b), std::max(a, b)};
         }
         double a = edge(type), b = below(3) ? edge(type) : a;
-        return {std::min(a, b), std::max(a, b)};
+        const bool may_be_nan = type == Type::real && below(6) == 0;
+        if (may_be_nan && below(4) == 0) return {infinity, -infinity, true};
+        return {std::min(a, b), std::max(a, b), may_be_nan};
     }
     double inside(const Interval& interval, Type type)
     {
+        if (interval.is_empty() || (interval.may_be_nan && below(3) == 0)) return std::nan("");
         const uint32_t how = below(5);
         if (how == 0) return interval.minimum;
         if (how == 1) return interval.maximum;

@@ -82,6 +82,33 @@ TEST_CASE("slope and curvature: closed forms")
         CHECK(is_near(egg.slope_max, std::sin(1.5), 0.3)); // |(cos x sin y, sin x cos y)|, at (0, 1.5)
         CHECK(is_near(egg.curvature_max_per_m, std::sin(1.5), 0.6));
     }
+    SECTION("an angle: 1 over the least distance, curved by its square")
+    {
+        const std::string angle = "%x = input p_x %y = input p_y %h = atan2 %y, %x return %h";
+        const TextureBounds turn = bounds_of(angle, {{0.5, 1}, {-1, 1}});
+        CHECK(is_near(turn.slope_max, 2, 0.1));
+        CHECK(is_near(turn.curvature_max_per_m, 4, 0.1));
+        CHECK(bounds_of(angle, {{0, 1}, {-1, 1}}).slope_max == infinity);
+    }
+    SECTION("an angle that ends flat before its pole: cutting goes on until no piece holds both")
+    {
+        const std::string angle = "%x = input p_x %y = input p_y %a = atan2 %y, %x %r = length2 %x, %y "
+                                  "%least = real 0.1 %zero = real 0 %d = sub %r, %least %fade = max %d, %zero "
+                                  "%h = mul %fade, %a return %h";
+        // fade' a + fade a': sqrt(pi^2 + (1 - 0.1 / r)^2), at r = sqrt(2)
+        const double exact = std::hypot(M_PI, 1 - 0.1 / std::sqrt(2));
+        CHECK(is_near(bounds_of(angle, {{-1, 1}, {-1, 1}}, {}, 512).slope_max, exact, 0.5));
+    }
+    SECTION("a normal: as steep as it turns, and no more than the object's normals do")
+    {
+        const Module module = parsed("function \"t\" () { %n = input n_x return %n }");
+        BoundsBox box;
+        box.input[static_cast<size_t>(Input::n_x)] = {-1, 1};
+        for (size_t i = 0; i < 9; ++i) box.input[static_cast<size_t>(Input::n_dp_00) + i] = {-3, 3};
+        CHECK(is_near(texture_bounds(module, texture_of(module), box).slope_max, 3 * std::sqrt(3)));
+        box.normal_turn_max_per_m = 3;
+        CHECK(is_near(texture_bounds(module, texture_of(module), box).slope_max, 3));
+    }
     SECTION("a distance: slope 1 wherever it is, curved by 1 over the least")
     {
         const std::string length = "%x = input p_x %y = input p_y %z = input p_z %h = length3 %x, %y, %z return %h";

@@ -232,6 +232,23 @@ TEST_CASE("the slope facts of cellular are 1 and what its factor adds at most, r
     CHECK((space_fact > space && space_fact < space * 1.01));
 }
 
+TEST_CASE("the slope of a triplanar share is that of its formula in two numbers")
+{
+    double steepest = 0;
+    for (double sum = 0.001; sum < 4; sum += 0.001) {
+        const double t = std::max(1 - std::fabs(sum - 0.2) / 0.13, 0.0); // smoothmax(sum, 0.2, 0.13)
+        const double held = std::max(sum, 0.2) + 0.25 * 0.13 * t * t, change = sum > 0.2 ? 1 - t / 2 : t / 2;
+        for (double part = 0; part < 1; part += 0.001) {
+            const double u = part * sum / held;
+            const double along = 4 * std::pow(u, 0.75) / std::pow(held, 0.25) * (1 - u * change);
+            const double across = 4 * u * change * std::pow(sum - u * held, 0.75) / held;
+            steepest = std::max(steepest, std::hypot(along, across));
+        }
+    }
+    const double fact = facts_of("triplanar_share(vec3)", "triplanar_share(q)").slope.value();
+    CHECK((fact > steepest && fact < steepest * 1.01));
+}
+
 TEST_CASE("no fact is exceeded anywhere")
 {
     const auto check = [](const std::string& function, const std::string& call, double size) {
@@ -270,7 +287,9 @@ TEST_CASE("no fact is exceeded anywhere")
         check("cellular(vec2,float)", "cellular(q.xy, " + smoothing + ")", 50);
     }
     check("triplanar_share(vec3)", "triplanar_share(q)", 1.5);
+    check("triplanar_blend(vec3,vec3)", "triplanar_blend(q, vec3(0.36, 0.48, -0.8))", 1);
     check("pole_fade(vec3,vec3,vec3,float)", "pole_fade(q, vec3(0.0), vec3(2.0), 0.2)", 1);
+    check("center_fade(vec3,vec3,vec3,float)", "center_fade(q, vec3(0.0), vec3(2.0), 0.2)", 1);
     check("weave(vec2)", "weave(q.xy)", 5);
     check("flank_profile(float)", "flank_profile(q.x)", 1.5);
     check("bump_profile(vec2)", "bump_profile(q.xy)", 1.5);

@@ -330,3 +330,18 @@ TEST_CASE("check: a few lines per texture for people")
     CHECK(contains(ran.out, "slope      at most unbounded (unbounded)\n"));
     CHECK(contains(ran.out, "reads p, time\n"));
 }
+
+TEST_CASE(
+    "check: what reads the normal is as steep as normals turn: those of a ball that fills the box, or --normal-turn")
+{
+    const Folder folder;
+    const std::string file = folder.write("lean.haptel", "texture lean() { return 1um * n.z; }\n");
+    const auto slope = [&](const std::string& options) {
+        return Json::parse(run_command("check --json " + options + " '" + file + "'").out)["textures"][0];
+    };
+    CHECK(near(slope("--box 0.1m")["slope_max"], 1e-6 * 20));
+    CHECK(near(slope("--box 0.1m --normal-turn 50")["slope_max"], 1e-6 * 50));
+    CHECK(slope("--box 0.1m --normal-turn 50")["normal_turn_max_per_m"] == 50);
+    CHECK(contains(run_command("check --box 0.1m '" + file + "'").out, "normals    turn at most 20 per metre"));
+    CHECK(run_command("check --normal-turn -1 '" + file + "'").code == 2);
+}
