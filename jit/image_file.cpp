@@ -76,6 +76,12 @@ struct Known {
 
 } // namespace
 
+std::string image_file(const std::string& path, const std::string& folder)
+{
+    std::error_code fault;
+    return fs::absolute(fs::path(folder) / path, fault).lexically_normal().string();
+}
+
 ImageFile read_image(const std::string& path, const std::string& folder)
 {
     static std::mutex mutex;
@@ -83,7 +89,7 @@ ImageFile read_image(const std::string& path, const std::string& folder)
 
     const std::string shown = lang::printable(path);
     std::error_code fault;
-    const fs::path file = fs::absolute(fs::path(folder) / path, fault).lexically_normal();
+    const fs::path file = image_file(path, folder);
     if (!fs::exists(file, fault))
         return fail("there is no file '" + shown + "'", "it was looked for at " + lang::printable(file.string()) +
                                                             "; a scene's pictures lie beside the scene");

@@ -19,6 +19,9 @@ struct ImageFile {
 ImageFile read_image(const std::string& path, const std::string& folder = {});
 inline constexpr uintmax_t image_bytes_max = 256u << 20;
 
+// Where read_image() looks for it.
+std::string image_file(const std::string& path, const std::string& folder = {});
+
 // One texel of 0: what a texture has that got no picture.
 const ir::SplineImage& flat_image();
 

@@ -2,6 +2,7 @@
 
 #include "jit/call_time.h"
 #include "jit/compile_thread.h"
+#include "jit/image_file.h"
 #include "jit/source_file.h"
 #include "lang/value.h"
 
@@ -38,6 +39,7 @@ public:
         , in_hand(options.cache->known(reference.file))
         , thread(CompileThread::shared())
     {
+        if (in_hand && in_hand->program) pictures_in_hand = pictures_of(*in_hand->program);
         thread->add(this);
     }
     ~Client() override { thread->remove(this); }
@@ -67,6 +69,12 @@ private:
 
     std::shared_ptr<const CompiledTextures> in_hand; // what was looked at last; broken ones too
     std::shared_ptr<const CompiledTextures> usable;  // the last one that has a program
+    struct Picture {
+        std::string file;
+        std::shared_ptr<const ir::SplineImage> image; // null: it cannot be read
+        bool operator==(const Picture&) const = default;
+    };
+    std::vector<Picture> pictures_in_hand; // as of the last look
     std::optional<Clock::time_point> absent_since;
     std::string reported; // the last report, not to be repeated
     std::set<std::string> watched = {reference.file};
@@ -77,6 +85,9 @@ private:
     const std::shared_ptr<CompileThread> thread;
 
     bool take_edits();
+    const haptel_texture* texture_in(const CompiledProgram& program) const;
+    std::vector<Picture> pictures_of(const CompiledProgram& program) const;
+    bool is_forgiven(bool is_absent);
     TextureRequest request_for(const CompiledProgram& program, std::string& notes) const;
     void make_and_publish(const CompiledTextures& compiled);
     void report(std::string text)
@@ -104,13 +115,42 @@ bool LiveTexture::Client::take_edits()
     return any;
 }
 
+// Null: the program has no such texture.
+const haptel_texture* LiveTexture::Client::texture_in(const CompiledProgram& program) const
+{
+    return reference.texture.empty() && program.textures().size() == 1 ? &program.textures()[0]
+                                                                       : program.find(reference.texture);
+}
+
+// As they are on disk now; read only where that is not what is in use.
+std::vector<LiveTexture::Client::Picture> LiveTexture::Client::pictures_of(const CompiledProgram& program) const
+{
+    std::vector<Picture> pictures;
+    const haptel_texture* texture = texture_in(program);
+    if (!texture) return pictures;
+    for (const ir::Parameter& parameter : program.source_of(*texture).parameters)
+        for (const auto& [name, value] : request.parameters)
+            if (parameter.type == ir::Type::image && name == parameter.name)
+                pictures.push_back({image_file(value, request.folder), read_image(value, request.folder).image});
+    return pictures;
+}
+
+// Whether what is gone may be about to come back.
+bool LiveTexture::Client::is_forgiven(bool is_absent)
+{
+    if (!is_absent) {
+        absent_since.reset();
+        return false;
+    }
+    if (!absent_since) absent_since = Clock::now();
+    return Clock::now() - *absent_since < absence_forgiven;
+}
+
 // The request without values that do not fit this program; each is noted.
 TextureRequest LiveTexture::Client::request_for(const CompiledProgram& program, std::string& notes) const
 {
     TextureRequest fitting = request;
-    const haptel_texture* texture = reference.texture.empty() && program.textures().size() == 1
-                                        ? &program.textures()[0]
-                                        : program.find(reference.texture);
+    const haptel_texture* texture = texture_in(program);
     if (!texture) return fitting; // make_binding says so
     const std::vector<ir::Parameter>& known = program.source_of(*texture).parameters;
     std::erase_if(fitting.parameters, [&, &file = reference.file](const auto& parameter) {
@@ -147,18 +187,20 @@ void LiveTexture::Client::update()
     watched.insert(compiled->files.begin(), compiled->files.end());
     watched.insert(reference.file);
     if (compiled->program) {
-        absent_since.reset();
-        const bool changed = compiled != in_hand;
+        std::vector<Picture> pictures = pictures_of(*compiled->program);
+        for (const Picture& picture : pictures) watched.insert(picture.file);
+        const bool is_absent =
+            std::any_of(pictures.begin(), pictures.end(), [](const Picture& picture) { return !picture.image; });
+        if (is_forgiven(is_absent) && !edited && compiled == in_hand) return;
+        const bool changed = compiled != in_hand || pictures != pictures_in_hand;
         in_hand = usable = compiled;
+        pictures_in_hand = std::move(pictures);
         if (changed || edited) make_and_publish(*usable);
         return;
     }
     in_hand = compiled;
     if (edited && usable) make_and_publish(*usable); // a slider works on while the file is broken
-    if (is_unreadable(*compiled)) {
-        if (!absent_since) absent_since = Clock::now();
-        if (Clock::now() - *absent_since < absence_forgiven) return;
-    }
+    if (is_forgiven(is_unreadable(*compiled))) return;
     report(compiled->rendered());
 }
 

@@ -1,4 +1,4 @@
-// A texture that follows its file: every edit of the file, or of what it imports, becomes a new binding.
+// A texture that follows its file: every edit of the file, of what it imports or of its pictures becomes a new binding.
 //
 // All live textures of a process share one compile thread: it watches the files, compiles, times the result and calls
 // back; the servo never waits for it. A file that is broken, gone, half written or too slow leaves the old texture in

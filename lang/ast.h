@@ -11,6 +11,7 @@
 
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -128,6 +129,7 @@ struct Index {
 struct BraceList {
     std::vector<ExpressionPtr> elements;
     std::optional<TypeName> type = std::nullopt;
+    bool is_damaged = false; // nobody knows how many elements were meant
 };
 
 struct Expression {
@@ -198,15 +200,21 @@ struct FactsComment {
     Span span;
 };
 
+// Syntax errors were reported inside: what may follow from them ("no return") is better not said.
+struct Damage {
+    bool any = false;
+    bool in_head = false;                      // in the parameters: nobody knows how it is called
+    std::set<std::string, std::less<>> unread; // names in text that could not be read: it may have declared them
+};
+
 struct Function {
     std::string doc; // without the slashes, without @facts
     std::optional<FactsComment> facts;
     TypeName result;
     Name name;
     std::vector<FunctionParameter> parameters;
-    StatementPtr body; // a Scope; null where there is none
-    bool damaged =
-        false; // a syntax error was reported inside: what may follow from it ("no return") is better not said
+    StatementPtr body; // a Scope; null where there is none, or where its braces do not fit
+    Damage damage;
     Span span;
 };
 
@@ -223,8 +231,8 @@ struct Texture {
     std::string doc;
     Name name;
     std::vector<TextureParameter> parameters;
-    StatementPtr body;    // a Scope; null where there is none
-    bool damaged = false; // as in Function
+    StatementPtr body; // as in Function
+    Damage damage;
     Span span;
 };
 
@@ -244,6 +252,9 @@ struct File {
     std::vector<Constant> constants;
     std::vector<Function> functions;
     std::vector<Texture> textures;
+    // Functions that could not be read may have any name, other declarations one of those that stand there.
+    bool lacks_functions = false;
+    std::set<std::string, std::less<>> unread;
 };
 
 } // namespace haptel::lang::ast

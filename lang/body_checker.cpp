@@ -42,7 +42,8 @@ Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
         diagnostics.error(name.span, "reserved-name", quoted(name.text) + " is a type, expected a name of your own");
     }
     const size_t depth = scope_marks.size();
-    if (Symbol* other = find_local(name.text); other && by_name.find(name.text)->second.back().depth == depth) {
+    if (Symbol* other = find_local(name.text);
+        other && !type.is_error() && !other->type.is_error() && by_name.find(name.text)->second.back().depth == depth) {
         other->is_read = other->is_assigned = true; // whichever was meant
         diagnostics.error(name.span, "duplicate-name", quoted(name.text) + " is declared twice in one block")
             .related.push_back({other->span, "first declared here"});
@@ -83,9 +84,14 @@ void BodyChecker::report_unused(const Symbol& symbol)
         diagnostics.warning(symbol.span, "unused-variable", quoted(symbol.name) + " is never read");
 }
 
+bool BodyChecker::may_be_unread(const std::string& name) const
+{
+    return scope.may_be_unread(name) || (damage && (damage->in_head || damage->unread.contains(name)));
+}
+
 void BodyChecker::report_unknown_name(Span span, const std::string& name)
 {
-    if (!unknown_names.insert(name).second) return diagnostics.count_consequence();
+    if (may_be_unread(name) || !unknown_names.insert(name).second) return diagnostics.count_consequence();
     const auto report = [&]() -> Diagnostic& {
         return diagnostics.error(span, "unknown-name", "unknown name " + quoted(name));
     };
@@ -118,14 +124,16 @@ void BodyChecker::report_unknown_name(Span span, const std::string& name)
 
 // ---- bodies
 
-void BodyChecker::whole_body(StatementPtr& tree, const Name& name, Type result, const char* what, bool damaged)
+void BodyChecker::whole_body(StatementPtr& tree, const Name& name, Type result, const char* what,
+                             const Damage& body_damage)
 {
     result_type = result;
-    in_damaged_body = damaged;
+    damage = &body_damage;
+    in_damaged_body = body_damage.any;
     if (!tree) return;
     if (auto block = std::get_if<Scope>(&tree->node))
         statements(block->statements); // in the parameters' scope, as in C
-    if (flow.reachable && !damaged && !result.is_error()) {
+    if (flow.reachable && !in_damaged_body && !result.is_error()) {
         diagnostics
             .error(name.span, "missing-return",
                    std::string(what) + " " + quoted(name.text) + " can end without returning a " + to_string(result))
@@ -160,7 +168,7 @@ void BodyChecker::check_function(Function& tree, FunctionInfo& info)
         }
         parameter.symbol = &symbol;
     }
-    whole_body(tree.body, tree.name, info.result, "function", tree.damaged);
+    whole_body(tree.body, tree.name, info.result, "function", tree.damage);
     close_scope();
     info.slot_count = static_cast<uint32_t>(flow.variables.size());
     info.reads = reads;
@@ -189,9 +197,9 @@ void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
         symbol.is_parameter = true;
         parameter.symbol = &symbol;
     }
-    whole_body(tree.body, tree.name, float_type, "texture", tree.damaged);
+    whole_body(tree.body, tree.name, float_type, "texture", tree.damage);
     for (const CheckedOutput& output : texture.outputs)
-        if (!output.symbol->is_assigned && !is_library)
+        if (!output.symbol->is_assigned && !is_library && !in_damaged_body)
             diagnostics
                 .warning(output.symbol->span, "unassigned-output",
                          "output " + quoted(output.symbol->name) + " is never assigned: it is always 1")

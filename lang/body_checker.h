@@ -21,7 +21,8 @@ struct CheckContext {
     const SourceSet& sources;
     Diagnostics& diagnostics;
     CheckedProgram& program;
-    std::vector<const Symbol*> inputs; // by InputName
+    std::vector<const Symbol*> inputs;                    // by InputName
+    std::set<std::string, std::less<>> unknown_functions; // those without a guess: each is reported once
 };
 
 // 'text', as names stand in messages.
@@ -85,6 +86,7 @@ private:
     const Symbol* find(std::string_view name) const;
     void mark_read(std::string_view name);
     void report_unused(const Symbol& symbol);
+    bool may_be_unread(const std::string& name) const; // declared in text that could not be read
     void report_unknown_name(Span span, const std::string& name);
 
     // ---- expressions: each sets and returns the type, Type::error() once something was reported
@@ -141,7 +143,8 @@ private:
     void check(ast::Statement& s, ast::Return& node);
     void condition(ast::ExpressionPtr& e, const char* of_what);
     void merge(Flow& into, const Flow& other) const;
-    void whole_body(ast::StatementPtr& tree, const ast::Name& name, Type result, const char* what, bool damaged);
+    void whole_body(ast::StatementPtr& tree, const ast::Name& name, Type result, const char* what,
+                    const ast::Damage& body_damage);
 
     // ---- arrays, and variables with parts
     // What is assigned to, and which of its parts.
@@ -169,6 +172,7 @@ private:
     const FileScope& scope;
     bool is_library;
     std::set<std::string, std::less<>> unknown_names; // each is reported once
+    const ast::Damage* damage = nullptr;              // of the body
     bool in_damaged_body = false; // a syntax error was reported inside: what may follow from it is better not said
 
     std::unordered_map<std::string_view, std::vector<Binding>> by_name;

@@ -26,8 +26,8 @@ Type resolve_type(CheckContext& context, const TypeName& name)
     if (const auto type = type_named(name.base.text)) return *type;
     Diagnostic& reported =
         context.diagnostics.error(name.base.span, "unknown-type", "unknown type " + quoted(name.base.text));
-    const std::string_view nearest =
-        nearest_name(name.base.text, {"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4"});
+    const std::string_view nearest = nearest_name(
+        name.base.text, {"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "image"});
     if (name.base.text.starts_with("mat") && name.base.text.find('x') != std::string::npos) {
         reported.hint = "matrices are square: mat2, mat3 and mat4";
     } else if (!nearest.empty()) {
@@ -66,7 +66,7 @@ constexpr SharedInput inputs[] = {
 class ProgramChecker {
 public:
     ProgramChecker(const SourceSet& sources, CheckedProgram& checked, Diagnostics& diagnostics)
-        : program(checked), context{sources, diagnostics, checked, {}}, declarations(checked.files.size())
+        : program(checked), context{sources, diagnostics, checked, {}, {}}, declarations(checked.files.size())
     {
         for (const SharedInput& input : inputs) {
             Symbol& symbol = program.symbols.emplace_back();
@@ -88,6 +88,10 @@ public:
                               [&](uint32_t file) { return program.files[file].is_library; });
         std::vector<FileScope> scopes;
         for (uint32_t file = 0; file < program.files.size(); ++file) scopes.push_back(scope_of(file));
+        for (uint32_t file : order) {
+            declarations_of(file).lacks_functions |= program.files[file].tree.lacks_functions;
+            declarations_of(file).unread.merge(program.files[file].tree.unread);
+        }
         // Sizes of arrays in heads of functions are constants, and constants may name functions.
         for (uint32_t file : order) declare_functions(file, scopes[file], false);
         for (uint32_t file : order) check_constants(file, scopes[file]);
@@ -134,7 +138,7 @@ private:
             if (type_named(info.name))
                 context.diagnostics.error(tree.name.span, "reserved-name",
                                           quoted(info.name) + " is a type, expected a name of your own");
-            info.is_valid = !info.result.is_error();
+            info.is_valid = !info.result.is_error() && !tree.damage.in_head;
             for (const FunctionParameter& parameter : tree.parameters) {
                 ParameterInfo made{value_type(parameter.type, "a parameter holds a value", scope), parameter.name.text,
                                    parameter.is_function};
@@ -153,7 +157,8 @@ private:
     {
         auto& overloads = declarations_of(info.file).functions[info.name];
         const auto same = [&](auto* other) { return std::ranges::equal(other->parameters, info.parameters); };
-        if (auto twin = std::find_if(overloads.begin(), overloads.end(), same);
+        const auto same_and_valid = [&](auto* other) { return other->is_valid && same(other); };
+        if (auto twin = std::find_if(overloads.begin(), overloads.end(), same_and_valid);
             twin != overloads.end() && info.is_valid) {
             context.diagnostics
                 .error(tree.name.span, "duplicate-name", quoted(signature_of(info)) + " is defined twice")

@@ -118,6 +118,7 @@ Symbol* BodyChecker::array(Declaration& node, Type element)
         element = Type::error();
     }
 
+    if (list && list->is_damaged) return of_no_type();
     auto declared_size = size_of_array(node.type);
     if (is_typed && list) { // const float A[] = float[](1.0, 2.0);
         const auto own_size = size_of_array(*list->type);

@@ -388,9 +388,12 @@ void BodyChecker::report_unknown_function(const Expression& e, const Name& calle
             "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)";
         return;
     }
-    Diagnostic& reported =
-        diagnostics.error(callee.span, "unknown-function", "unknown function " + quoted(callee.text));
+    if (scope.lacks_functions() || may_be_unread(callee.text)) return diagnostics.count_consequence();
+    const auto report = [&]() -> Diagnostic& {
+        return diagnostics.error(callee.span, "unknown-function", "unknown function " + quoted(callee.text));
+    };
     if (const ForeignWord* foreign = foreign_word(ForeignKind::function, callee.text)) {
+        Diagnostic& reported = report();
         reported.hint = foreign->hint;
         const bool is_call = std::holds_alternative<CallExpression>(e.node);
         if (foreign->replacement.find('$') == std::string_view::npos) {
@@ -402,6 +405,7 @@ void BodyChecker::report_unknown_function(const Expression& e, const Name& calle
     }
     const std::string_view stem = std::string_view(callee.text).substr(0, callee.text.size() - 1);
     if (callee.text.ends_with('f') && !builtin_overloads(stem).empty()) { // sinf of C
+        Diagnostic& reported = report();
         reported.hint = "write " + std::string(stem);
         reported.fix = FixIt{callee.span, std::string(stem)};
         return;
@@ -410,8 +414,13 @@ void BodyChecker::report_unknown_function(const Expression& e, const Name& calle
                                         "vec4",  "mat2", "mat3", "mat4", "grad"};
     scope.collect_function_names(names);
     if (const std::string_view nearest = nearest_name(callee.text, names); !nearest.empty()) {
+        Diagnostic& reported = report();
         reported.hint = "did you mean " + quoted(nearest) + "?";
         reported.fix = FixIt{callee.span, std::string(nearest)};
+    } else if (context.unknown_functions.insert(callee.text).second) {
+        report();
+    } else {
+        diagnostics.count_consequence();
     }
 }
 

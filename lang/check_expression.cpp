@@ -167,6 +167,11 @@ Type BodyChecker::check(Expression& e, NameExpression& node)
 Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
 {
     const Symbol* symbol = find(node.name);
+    const bool is_shared = !symbol || symbol->kind == SymbolKind::input;
+    if (is_shared && may_be_unread(node.name)) {
+        diagnostics.count_consequence();
+        return Type::error();
+    }
     if (!symbol && scope.is_function(node.name)) {
         diagnostics.error(e.span, "not-a-value", quoted(node.name) + " is a function, expected a value").hint =
             "call it: " + node.name + "(...)";

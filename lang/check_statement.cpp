@@ -14,7 +14,7 @@ void BodyChecker::statements(std::vector<StatementPtr>& list)
     bool reported = false;
     for (StatementPtr& s : list) {
         if (!s) continue;
-        if (!flow.reachable && !reported && !is_library) {
+        if (!flow.reachable && !reported && !is_library && !in_damaged_body) {
             diagnostics.warning(s->span, "unreachable-code", "this is never reached");
             reported = true;
         }
@@ -138,7 +138,7 @@ void BodyChecker::check(Statement& s, Assignment& node)
 
 void BodyChecker::check(Statement& s, ExpressionStatement& node)
 {
-    if (expression(*node.expression).is_error()) return;
+    if (expression(*node.expression).is_error() || in_damaged_body) return;
     diagnostics
         .warning(s.span, "useless-statement",
                  "this value is not used: functions only return values, they change nothing")
@@ -199,9 +199,10 @@ void BodyChecker::check(Statement&, If& node)
 
 void BodyChecker::check(Statement& s, Break&)
 {
-    if (loop_depth == 0)
-        diagnostics.error(s.span, "misplaced-break", "'break' leaves a loop, and there is none round it");
     flow.reachable = false;
+    if (loop_depth > 0 || in_damaged_body) return;
+    diagnostics.error(s.span, "misplaced-break", "'break' leaves a loop, and there is none round it");
+    in_damaged_body = true; // what follows is reached, if it is left out
 }
 
 void BodyChecker::check(Statement& s, Return& node)

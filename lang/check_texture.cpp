@@ -68,6 +68,7 @@ uint32_t BodyChecker::check_output(TextureParameter& tree)
         const std::string_view nearest = nearest_name(tree.name.text, {output_names[0].name, output_names[1].name});
         reported.hint = nearest.empty() ? names : "did you mean " + quoted(nearest) + "?";
         if (!nearest.empty()) reported.fix = FixIt{tree.name.span, std::string(nearest)};
+        unknown_names.emplace(nearest); // where it is meant it is not news
     }
     const Type type = resolve_type(context, tree.type);
     if (!type.is_error() && (type != float_type || tree.type.is_array)) {

@@ -146,6 +146,8 @@ CompileResult compile(SourceFile main, const CompileOptions& options)
                 reported.hint = "did you mean '" + std::string(nearest) + "'?";
         }
     }
+    if (!diagnostics.has_errors() && diagnostics.reports() > 0) // never: what is not said follows from what is
+        diagnostics.error({}, "internal-error", "the compiler found a mistake and did not say which");
     if (!diagnostics.has_errors()) check_dimensions(result.sources, checked, diagnostics);
     if (!diagnostics.has_errors()) {
         auto program = std::make_shared<Program>();

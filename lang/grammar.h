@@ -6,6 +6,7 @@
 #include "lang/foreign.h"
 #include "lang/token_cursor.h"
 
+#include <span>
 #include <vector>
 
 namespace haptel::lang {
@@ -34,8 +35,6 @@ private:
     void function(ast::File& result, ast::TypeName result_type, ast::Name name, size_t doc_token);
     ast::FunctionParameter function_parameter();
     void function_signature(ast::FunctionParameter& parameter);
-    void close_head(Span opener);
-    ast::StatementPtr body_of(std::string_view what);
 
     // parse_statement.cpp
     void statement(Statements& into);
@@ -53,7 +52,31 @@ private:
     bool at_declaration() const;
     bool is_used_as_name() const;
     bool at_top_level_start() const;
+
+    // parse_head.cpp
+    void close_head(Span opener);
+    ast::StatementPtr body_of(std::string_view what);
+    bool ends_parameter(Span opener);
+    bool next_parameter();
+    void find_next_parameter(size_t first_position);
+    void find_body();
+    bool body_follows() const;
+    bool is_texture_without_its_word() const;
+    void skip_doubled_bracket();
+    void mend_words_of_head();
+
+    // parse_slip.cpp
+    std::optional<ast::Name> declared_name(ast::TypeName& type);
+    void read_misspelt_in();
+    bool statements_follow() const;
+
+    // parse_recovery.cpp
     void find_footing();
+    void forget(std::span<ast::StatementPtr> statements);
+    void forget(ast::TextureParameter& parameter);
+    ast::ExpressionPtr unknown_value(const ast::Expression& read);
+    void note_unread(size_t first_position);
+    ast::Damage take_damage(uint32_t mistakes_before, ast::StatementPtr& body);
 
     // parse_expression.cpp
     ast::ExpressionPtr expression();
@@ -90,6 +113,12 @@ private:
     ast::ExpressionPtr make(Span where, Node node);
     template <class Node>
     ast::StatementPtr make_statement(Span where, Node node);
+
+    // Of the function or texture that is being read:
+    std::set<std::string, std::less<>> unread; // as in Damage
+    bool is_head_damaged = false;              // likewise
+    bool is_misshapen = false;                 // its braces do not fit
+    bool has_stray_brace = false;              // nor can they: one was found where none can stand
 };
 
 // Of a binary operator, higher binds tighter; 0 for any other token.

@@ -147,6 +147,7 @@ private:
     }
 
     // number = (digit {digit} ["." {digit}] | "." digit {digit}) [("e" | "E") ["+" | "-"] digit {digit}] [suffix]
+    // (a sign without digits behind is taken too, for its message)
     //        | "0" ("x" | "X") hex_digit {hex_digit} [suffix]
     // suffix = letter {letter | digit}, glued to the number: a unit, "f" or "u".
     // A dot that is followed by another dot begins a range: "0..1" is 0, "..", 1.
@@ -161,7 +162,7 @@ private:
                 while (is_digit(peek())) ++at;
             }
             const uint32_t sign = peek(1) == '+' || peek(1) == '-' ? 1 : 0;
-            if ((peek() == 'e' || peek() == 'E') && is_digit(peek(1 + sign))) {
+            if ((peek() == 'e' || peek() == 'E') && (sign == 1 || is_digit(peek(1)))) { // no unit ends with e
                 at += 1 + sign;
                 while (is_digit(peek())) ++at;
             }

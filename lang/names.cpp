@@ -97,6 +97,16 @@ std::vector<Candidate> FileScope::functions(std::string_view name) const
     return found;
 }
 
+bool FileScope::lacks_functions() const
+{
+    return std::any_of(layers.begin(), layers.end(), [](const Declarations* layer) { return layer->lacks_functions; });
+}
+
+bool FileScope::may_be_unread(std::string_view name) const
+{
+    return std::any_of(layers.begin(), layers.end(), [&](auto* layer) { return layer->unread.contains(name); });
+}
+
 void FileScope::collect_function_names(std::vector<std::string_view>& names) const
 {
     for (const Declarations* layer : layers)

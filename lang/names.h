@@ -18,6 +18,8 @@ struct Declarations {
     std::map<std::string, std::vector<FunctionInfo*>, std::less<>> functions;
     std::map<std::string, const Symbol*, std::less<>> constants; // those above the place that is being checked
     std::set<std::string, std::less<>> constant_names;           // all, for a hint
+    bool lacks_functions = false;                                // some could not be read
+    std::set<std::string, std::less<>> unread;                   // names where declarations could not be read
 };
 
 // A function that a call may mean.
@@ -49,6 +51,9 @@ public:
     bool is_function(std::string_view name) const;
     // Every function of that name; of equal signatures only the nearest, so that a file may replace what it imports.
     std::vector<Candidate> functions(std::string_view name) const;
+
+    bool lacks_functions() const;                    // an unknown function may be one that could not be read
+    bool may_be_unread(std::string_view name) const; // likewise a constant
 
     void collect_function_names(std::vector<std::string_view>& names) const;
     void collect_constant_names(std::vector<std::string_view>& names) const;

@@ -150,6 +150,12 @@ Number read_number(std::string_view text)
     }
 
     const std::string_view suffix = text.substr(at);
+    const bool has_e = suffix.starts_with('e') || suffix.starts_with('E');
+    if (has_e && suffix.substr(1).find_first_not_of("+-") == suffix.npos) {
+        number.error = "expected digits behind the exponent's '" + std::string(suffix) + "'";
+        number.hint = "a thousandth is 1e-3";
+        return number;
+    }
     const auto unit = std::find_if(std::begin(units), std::end(units), [&](const Unit& u) { return u.name == suffix; });
     if (unit != std::end(units)) {
         number.unit = suffix;

@@ -102,6 +102,7 @@ void Grammar::constants(File& result)
     std::string doc = doc_before(position, nullptr);
     Statements made;
     declarations(made);
+    if (lost) forget(made);
     for (StatementPtr& statement : made) {
         Declaration& declaration = std::get<Declaration>(statement->node);
         if (!declaration.initializer && !lost) {
@@ -119,7 +120,9 @@ void Grammar::function_or_variable(File& result)
 {
     const Span first = span();
     const size_t first_token = position;
-    if (kind(1) == Token::name && kind(2) != Token::left_paren) {
+    const bool is_head = body_follows();
+    if (is_head) mend_words_of_head();
+    if (kind(1) == Token::name && kind(2) != Token::left_paren && !is_head) {
         Diagnostic& reported =
             diagnostics.error(first, "global-variable", "a variable of a whole file must be constant");
         reported.hint = "write 'const' before it, or make it a parameter of the texture";
@@ -128,7 +131,13 @@ void Grammar::function_or_variable(File& result)
         if (!result.constants.empty()) result.constants.back().declaration.is_const = true;
         return;
     }
-    TypeName type = type_name();
+    TypeName type;
+    if (kind(1) == Token::left_paren && !is_type_word(text())) // "f(float x) {...}"
+        error(span(), "syntax", "expected the type of the result before '" + std::string(text()) + "'").hint =
+            "write float " + std::string(text());
+    else
+        type = type_name();
+    if (type.base.text.empty()) stand_again();
     std::optional<Name> function_name = lost ? std::nullopt : name("after '" + type.base.text + "'");
     if (function_name) function(result, std::move(type), std::move(*function_name), first_token);
 }
@@ -146,17 +155,23 @@ void Grammar::function(File& result, TypeName result_type, Name function_name, s
     made.name = std::move(function_name);
     const uint32_t mistakes_before = mistakes;
     const Span opener = span();
-    if (!expect(Token::left_paren, "after the name of the function")) return;
-    const bool takes_void = text() == "void" && kind(1) == Token::right_paren;
-    if (takes_void) advance();
-    if (!at(Token::right_paren)) {
-        do {
-            lost = false;
-            made.parameters.push_back(function_parameter());
-            if (lost) skip_to({Token::comma, Token::right_paren});
-        } while (accept(Token::comma));
+    if (expect(Token::left_paren, "after the name of the function")) {
+        const bool takes_void = text() == "void" && kind(1) == Token::right_paren;
+        if (takes_void) advance();
+        skip_doubled_bracket();
+        if (!at(Token::right_paren) && !at(Token::left_brace)) {
+            do {
+                const size_t first_position = position;
+                made.parameters.push_back(function_parameter());
+                if (ends_parameter(opener)) continue;
+                is_head_damaged = true;
+                find_next_parameter(first_position);
+            } while (next_parameter());
+        }
+        close_head(opener);
     }
-    close_head(opener);
+    if (lost && !made.parameters.empty()) made.parameters.back().type = {};
+    is_head_damaged |= lost;
     if (at(Token::semicolon) && !lost) {
         advance();
         Diagnostic& reported = diagnostics.warning(since(first), "prototype",
@@ -166,7 +181,8 @@ void Grammar::function(File& result, TypeName result_type, Name function_name, s
         return;
     }
     made.body = body_of("the function '" + made.name.text + "'");
-    made.damaged = mistakes != mistakes_before;
+    made.damage = take_damage(mistakes_before, made.body);
+    result.lacks_functions |= is_head_damaged;
     made.span = since(first);
     result.functions.push_back(std::move(made));
 }
@@ -189,7 +205,7 @@ FunctionParameter Grammar::function_parameter()
         error(span(), "no-pointers", "there are no pointers or references in Haptel");
         return parameter;
     }
-    std::optional<Name> declared = name("after '" + parameter.type.base.text + "'");
+    std::optional<Name> declared = declared_name(parameter.type);
     if (!declared) return parameter;
     parameter.name = std::move(*declared);
     array_suffix(parameter.type);
@@ -216,32 +232,6 @@ void Grammar::function_signature(FunctionParameter& parameter)
     close(Token::right_paren, opener, true);
 }
 
-// Behind the parameters. Where the body begins without ')', it is not skipped.
-void Grammar::close_head(Span opener)
-{
-    if (at(Token::left_brace))
-        report_unclosed(Token::right_paren, opener, true);
-    else
-        close(Token::right_paren, opener, true);
-}
-
-StatementPtr Grammar::body_of(std::string_view what)
-{
-    if (lost) { // in the brackets before
-        skip_to({Token::left_brace});
-        while (accept(Token::right_paren)) skip_to({Token::left_brace});
-    }
-    lost = false;
-    if (!at(Token::left_brace)) {
-        error(span(), "syntax", "expected '{' and the body of " + std::string(what) + found());
-        if (at(Token::semicolon) || at(Token::end) || at(Token::invalid) || at_top_level_start()) return nullptr;
-    }
-    depth = 0;
-    StatementPtr body = at(Token::left_brace) ? block() : rest_of_block(span()); // the brace was forgotten
-    depth = Nesting::bracket;
-    return body;
-}
-
 // texture = "texture" name "(" [texture_parameter {"," texture_parameter}] ")" block
 void Grammar::texture(File& result)
 {
@@ -253,7 +243,7 @@ void Grammar::texture(File& result)
                           "facts belong to functions; those of a texture are found by the compiler");
     const Span first = span();
     const uint32_t mistakes_before = mistakes;
-    advance();
+    accept(Token::kw_texture); // missing and reported, or here
     std::optional<Name> texture_name = name("after 'texture'");
     if (!texture_name) return;
     made.name = std::move(*texture_name);
@@ -262,21 +252,26 @@ void Grammar::texture(File& result)
         diagnostics.error(made.name.span, "syntax", "expected '(' after the name of the texture").hint =
             "write 'texture " + made.name.text + "()' if it has no parameters";
     } else if (expect(Token::left_paren, "after the name of the texture")) {
-        if (!at(Token::right_paren)) {
+        skip_doubled_bracket();
+        if (!at(Token::right_paren) && !at(Token::left_brace)) {
             do {
-                lost = false;
                 if (at(Token::right_paren)) break; // a comma behind the last parameter
+                const size_t first_position = position;
                 TextureParameter parameter = texture_parameter();
+                if (!ends_parameter(opener)) {
+                    forget(parameter);
+                    is_head_damaged = true;
+                    find_next_parameter(first_position);
+                }
                 if (!parameter.name.text.empty()) made.parameters.push_back(std::move(parameter));
-                if (lost) skip_to({Token::comma, Token::right_paren});
-            } while (accept(Token::comma));
+            } while (next_parameter());
         }
         close_head(opener);
     } else {
         return;
     }
     made.body = body_of("the texture '" + made.name.text + "'");
-    made.damaged = mistakes != mistakes_before;
+    made.damage = take_damage(mistakes_before, made.body);
     made.span = since(first);
     result.textures.push_back(std::move(made));
 }
@@ -296,13 +291,16 @@ TextureParameter Grammar::texture_parameter()
     }
     parameter.type = type_name();
     if (lost) return parameter;
-    std::optional<Name> declared = name("after '" + parameter.type.base.text + "'");
+    std::optional<Name> declared = declared_name(parameter.type);
     if (!declared) return parameter;
     parameter.name = std::move(*declared);
     array_suffix(parameter.type);
+    const bool needs_default = !parameter.is_output && parameter.type.base.text != "image";
     if (accept(Token::assign)) {
         parameter.value = expression();
-    } else if (!parameter.is_output && !lost && parameter.type.base.text != "image") {
+    } else if (needs_default && !lost && !is_type_word(parameter.type.base.text)) {
+        parameter.value = make(parameter.name.span, ErrorExpression{}); // of no type: enough is said
+    } else if (needs_default && !lost) {
         diagnostics
             .error(parameter.name.span, "missing-default",
                    "the parameter '" + parameter.name.text + "' needs a default value")
@@ -310,6 +308,7 @@ TextureParameter Grammar::texture_parameter()
         parameter.value = make(parameter.name.span, ErrorExpression{});
         lost = !at(Token::kw_in) && !at(Token::comma) && !at(Token::right_paren); // "float depth 1mm": enough is said
     }
+    read_misspelt_in();
     if (!lost && accept(Token::kw_in)) {
         parameter.minimum = binary(1);
         if (!lost && at(Token::dot_dot)) {

@@ -215,6 +215,7 @@ ExpressionPtr Grammar::primary()
             error(span(), "syntax", "expected ')', found ','").hint =
                 "a vector is made by its constructor: vec3(x, y, z)";
             skip_to({Token::right_paren});
+            inner = unknown_value(*inner);
         }
         close(Token::right_paren, first);
         inner->span = since(first);
@@ -233,7 +234,9 @@ ExpressionPtr Grammar::primary()
     }
     if (at(Token::left_brace)) {
         error(first, "syntax", "braces may only stand behind '=' of a constant table");
-        return brace_list();
+        has_stray_brace = true;
+        skip_brackets();
+        return make(since(first), ErrorExpression{});
     }
     if (at(Token::ampersand) || at(Token::star)) {
         const bool is_power = at(Token::star) && position > 0 && list.tokens[position - 1].kind == Token::star;
@@ -271,7 +274,9 @@ ExpressionPtr Grammar::number()
     Number read = read_number(text());
     advance();
     if (!read.error.empty()) {
-        diagnostics.error(where, read.code, std::move(read.error)).hint = std::move(read.hint);
+        if (!lost) diagnostics.error(where, read.code, std::move(read.error)).hint = std::move(read.hint);
+        list.tokens[position - 1].kind = Token::invalid; // who knows what was glued together
+        ++mistakes;
         return make(where, ErrorExpression{});
     }
     const auto kind_of = [](Number::Kind kind) {
@@ -396,9 +401,14 @@ ExpressionPtr Grammar::brace_list()
         } else {
             list_of.elements.push_back(expression());
         }
-        if (!accept(Token::comma)) break;
+        if (accept(Token::comma)) continue;
+        if (lost || !(at(Token::number) || at(Token::minus) || at(Token::name))) break;
+        report_unclosed(Token::right_brace, opener, true); // a comma was forgotten
+        lost = false;
+        list_of.is_damaged = true;
     }
     close(Token::right_brace, opener, true);
+    list_of.is_damaged |= lost;
     return make(since(opener), std::move(list_of));
 }
 

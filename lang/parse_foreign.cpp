@@ -12,7 +12,10 @@ void Grammar::skip_foreign_qualifiers()
 {
     while (at(Token::name) && (kind(1) == Token::name || kind(1) == Token::kw_const)) {
         const ForeignWord* word = foreign_word(ForeignKind::qualifier, text());
-        if (!word) return;
+        const bool stands_before_type = kind(2) == Token::name ||
+                                        (kind(2) == Token::left_bracket && is_type_word(text(1))) ||
+                                        kind(2) == Token::less || kind(1) == Token::kw_const;
+        if (!word || !stands_before_type) return; // "flat x": a type that is misspelt
         Diagnostic& reported =
             diagnostics.error(span(), "foreign-word", "there is no '" + std::string(text()) + "' in Haptel");
         reported.hint = word->hint;
@@ -151,7 +154,8 @@ void Grammar::skip_foreign_declaration(const ForeignWord& word)
     lost = false;
 }
 
-// "while (...) {...}", "switch (...) {...}": says what to write. A loop's body is still read for its own mistakes.
+// "while (...) {...}", "switch (...) {...}": says what to write. A loop's body, which may never
+// run, is still read for its own mistakes.
 void Grammar::foreign_statement(const ForeignWord& word, Statements& into)
 {
     Diagnostic& reported = error(span(), "foreign-word", "there is no '" + std::string(word.word) + "' in Haptel");
@@ -159,14 +163,19 @@ void Grammar::foreign_statement(const ForeignWord& word, Statements& into)
     if (!word.replacement.empty()) reported.fix = FixIt{span(), std::string(word.replacement)};
     advance();
     const bool is_loop = word.word == "while" || word.word == "do";
+    const Span head = since(span());
     if (at(Token::left_paren)) skip_brackets();
-    if (is_loop && at(Token::left_brace)) {
-        into.push_back(block());
+    if (is_loop) {
+        lost = false;
+        If::Arm arm;
+        arm.condition = make(head, ErrorExpression{});
+        arm.body = single_statement("the loop's head");
+        If loop;
+        loop.arms.push_back(std::move(arm));
+        into.push_back(make_statement(since(head), std::move(loop)));
         if (word.word == "do" && at(Token::name) && text() == "while") advance(), skip_to({});
     } else if (at(Token::left_brace)) {
         skip_brackets();
-    } else if (is_loop) {
-        return; // its body is the next statement
     } else {
         skip_to({Token::colon}); // "case 1:", "default:", "continue;"
         accept(Token::colon);

@@ -49,7 +49,7 @@ void Grammar::statement(Statements& into)
 {
     lost = false;
     const Span first = span();
-    const size_t first_position = position;
+    const size_t first_position = position, first_made = into.size();
     if (accept(Token::semicolon)) return;
     skip_foreign_qualifiers();
     read_misspelt_keyword();
@@ -82,7 +82,12 @@ void Grammar::statement(Statements& into)
         if (!lost) expect_semicolon("the statement");
         into.push_back(std::move(made));
     }
-    if (lost) find_footing();
+    if (lost) {
+        find_footing();
+        forget(std::span(into).subspan(first_made));
+        note_unread(first_position);
+        stand_again();
+    }
     if (position == first_position) advance();
 }
 
@@ -91,19 +96,6 @@ bool Grammar::is_used_as_name() const
 {
     return assigner_of(kind(1)) || kind(1) == Token::dot || kind(1) == Token::plus_plus ||
            kind(1) == Token::minus_minus;
-}
-
-// After a mistake: to behind the next ';', or before what begins or ends a statement.
-void Grammar::find_footing()
-{
-    if (position > 0 && list.tokens[position - 1].kind == Token::right_brace && !at(Token::semicolon)) return;
-    skip_to({Token::left_brace});
-    while (at(Token::right_paren) || at(Token::right_bracket)) { // of a bracket that was never opened
-        advance();
-        skip_to({Token::left_brace});
-    }
-    if (at(Token::left_brace)) skip_brackets();
-    accept(Token::semicolon);
 }
 
 // A function or texture begins here: a '}' must be missing above.
@@ -143,7 +135,9 @@ StatementPtr Grammar::rest_of_block(Span opener)
     while (!at(Token::right_brace) && !at(Token::end) && !at_top_level_start()) statement(scope.statements);
     if (!accept(Token::right_brace)) {
         lost = false;
-        report_unclosed(Token::right_brace, opener);
+        const bool is_news = sources.text(opener) == "{" && !has_stray_brace; // or else enough has been said
+        if (is_news) report_unclosed(Token::right_brace, opener);
+        is_misshapen = true;
     }
     return make_statement(since(opener), std::move(scope));
 }
@@ -189,6 +183,7 @@ StatementPtr Grammar::if_statement()
                 close(Token::right_paren, opener);
             else
                 accept(Token::right_paren);
+            if (lost) arm.condition = unknown_value(*arm.condition);
         }
         arm.body = single_statement(conditional_arm ? "the condition" : "'else'");
         result.arms.push_back(std::move(arm));
@@ -201,6 +196,7 @@ StatementPtr Grammar::if_statement()
 StatementPtr Grammar::for_statement()
 {
     const Span first = span();
+    const size_t first_position = position;
     advance();
     For loop;
     const Span opener = span();
@@ -230,6 +226,11 @@ StatementPtr Grammar::for_statement()
                 "put the others at the end of its body";
         while (!close(Token::right_paren, opener) && accept(Token::semicolon)) {
         }
+    }
+    if (lost) {
+        if (loop.init) forget({&loop.init, 1});
+        if (loop.condition) loop.condition = unknown_value(*loop.condition);
+        note_unread(first_position);
     }
     loop.body = single_statement("the loop's head");
     return make_statement(since(first), std::move(loop));
@@ -337,7 +338,7 @@ Declaration Grammar::declarator(bool is_const, TypeName type)
 {
     Declaration result;
     result.is_const = is_const;
-    std::optional<Name> declared = name("after '" + type.base.text + "'");
+    std::optional<Name> declared = declared_name(type);
     if (!declared) return result;
     result.name = std::move(*declared);
     array_suffix(type);

@@ -24,6 +24,8 @@ File Grammar::parse_file()
     File result;
     while (!at(Token::end)) {
         lost = false;
+        unread.clear();
+        is_head_damaged = is_misshapen = has_stray_brace = false;
         depth = Nesting::bracket;
         const size_t first_position = position;
         if (accept(Token::semicolon)) continue;
@@ -43,7 +45,13 @@ File Grammar::parse_file()
             strayed = true;
         }
         if (strayed) report_stray(result);
-        if (lost) find_top_level(strayed);
+        if (lost) {
+            find_top_level(strayed);
+            note_unread(first_position);
+            result.unread.merge(unread);
+            result.lacks_functions = true;
+            stand_again();
+        }
         if (position == first_position) advance();
     }
     return result;
@@ -57,13 +65,17 @@ void Grammar::report_stray(File& result)
     if (!statement_like) return;
     reported.hint = "statements stand inside functions and textures; is there a '}' too many above?";
     // Then the body above has ended too early.
+    const auto spoil = [](auto& above) {
+        above.damage.any = true;
+        above.body = nullptr;
+    };
     const bool has_texture = !result.textures.empty(), has_function = !result.functions.empty();
     const bool is_texture =
         has_texture && (!has_function || result.functions.back().span.end < result.textures.back().span.end);
     if (is_texture)
-        result.textures.back().damaged = true;
+        spoil(result.textures.back());
     else if (has_function)
-        result.functions.back().damaged = true;
+        spoil(result.functions.back());
 }
 
 // A name at the top: a function's type; or a slip. False if nothing at all can begin like this.
@@ -86,10 +98,21 @@ bool Grammar::top_level_name(File& result)
         reported.fix = FixIt{span(), std::string(guess)};
         ++mistakes;
         if (guess == "const") list.tokens[position].kind = Token::kw_const;
+        if (guess == "texture") list.tokens[position].kind = Token::kw_texture;
         guess == "texture" ? texture(result) : guess == "import" ? import_declaration(result) : constants(result);
         return true;
     }
-    if (kind(1) != Token::name && kind(1) != Token::left_bracket && !is_type_word(text())) return false;
+    if (kind(1) != Token::name && kind(1) != Token::left_bracket && !is_type_word(text()) && !body_follows())
+        return false;
+    if (statements_follow()) return false;
+    if (is_texture_without_its_word()) {
+        const Span before{file, span().begin, span().begin};
+        error(span(), "syntax", "expected 'texture' before '" + std::string(text()) + "'").fix =
+            FixIt{before, "texture "};
+        lost = false;
+        texture(result);
+        return true;
+    }
     function_or_variable(result);
     return true;
 }

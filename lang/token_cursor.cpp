@@ -63,7 +63,7 @@ bool TokenCursor::expect_semicolon(std::string_view what)
     if (on_new_line() || at(Token::right_brace) || at(Token::end)) {
         error(after_previous(), "syntax", "expected ';' at the end of " + std::string(what)).fix =
             FixIt{after_previous(), ";"};
-        lost = false; // nothing else is wrong
+        stand_again(); // nothing else is wrong
         return true;
     }
     error(span(), "syntax", "expected ';' at the end of " + std::string(what) + found());
@@ -90,6 +90,7 @@ bool TokenCursor::close(Token closer, Span opener, bool list_may_go_on)
 {
     if (accept(closer)) return true;
     report_unclosed(closer, opener, list_may_go_on);
+    if (at(Token::right_brace) && kind(1) == Token::semicolon) advance(); // in the place of ')'
     skip_to({closer});
     return accept(closer);
 }
@@ -99,12 +100,27 @@ bool TokenCursor::beside_invalid() const
     return at(Token::invalid) || (position > 0 && list.tokens[position - 1].kind == Token::invalid);
 }
 
+void TokenCursor::stand_again()
+{
+    lost = false;
+    footing = position;
+}
+
+// On the line where we stood again, or before it.
+bool TokenCursor::lingers(Span where) const
+{
+    if (footing == SIZE_MAX) return false;
+    const uint32_t from = footing > 0 ? list.tokens[footing - 1].end : 0;
+    return sources.text({file, from, where.begin}).find_first_of("\r\n") == std::string_view::npos;
+}
+
 Diagnostic& TokenCursor::error(Span where, ErrorCode code, std::string message)
 {
-    const bool silent = lost || beside_invalid();
+    const bool silent = lost || beside_invalid() || lingers(where) || (at(Token::end) && end_is_reported);
     lost = true;
     ++mistakes;
     if (silent) return unheard = {};
+    end_is_reported = at(Token::end);
     Diagnostic& reported = diagnostics.error(where, code, std::move(message));
     if (diagnostics.full()) position = list.tokens.size() - 1; // enough is said: run off the end
     return reported;
@@ -134,7 +150,7 @@ void TokenCursor::skip_to(std::initializer_list<Token> stops)
     uint32_t open = 0, open_braces = 0;
     for (;; advance()) {
         const Token here = kind();
-        if (begins_anew(here) && open_braces == 0) return;
+        if (begins_anew(here) && open_braces == 0 && (here == Token::end || on_new_line())) return;
         if (here == Token::end || at_texture_or_import()) return;
         if (here == Token::semicolon && open_braces == 0) return;
         if (open == 0 && std::find(stops.begin(), stops.end(), here) != stops.end()) return;

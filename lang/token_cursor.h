@@ -1,8 +1,9 @@
 // A place in the tokens of a file, and the rules of recovery that every part of the grammar shares.
 //
 // One mistake makes one message: after an error the cursor is `lost` and says nothing more until the grammar has found
-// its footing at the next statement, parameter or declaration; beside an `invalid` token it is silent, because the
-// lexer has spoken. Every skip moves forward, so that parsing takes linear time whatever the text.
+// its footing at the next statement, parameter or declaration, nor on the rest of that line, where a mistake often
+// lingers; beside an `invalid` token it is silent, because the lexer has spoken; and the end of the file
+// is reported once. Every skip moves forward, so that parsing takes linear time whatever the text.
 #pragma once
 
 #include "lang/lexer.h"
@@ -74,11 +75,15 @@ protected:
     size_t position = 0;
     uint32_t depth = 0;
     bool lost = false;
+    void stand_again();    // no longer lost: what comes is read as it stands
     uint32_t mistakes = 0; // grows with every error, heard or not
 
 private:
     Span span_of(const PlacedToken& placed) const { return {file, placed.begin, placed.end}; }
     bool beside_invalid() const;
+    bool lingers(Span where) const;
+    size_t footing = SIZE_MAX; // where we last stood again
+    bool end_is_reported = false;
     Diagnostic unheard;
 };
 

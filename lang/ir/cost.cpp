@@ -1,5 +1,7 @@
 #include "lang/ir/cost.h"
 
+#include "lang/ir/op_cost.h"
+
 #include <map>
 #include <optional>
 #include <tuple>
@@ -69,6 +71,10 @@ private:
     void count(Spent& spent, const Instruction& made, const Other&)
     {
         spent.add(made.span, 1);
+    }
+    void count(Spent& spent, const Instruction& made, const Operation& operation)
+    {
+        spent.add(made.span, operations_of(operation.op));
     }
     void count(Spent&, const Instruction&, const RealConstant&) {}
     void count(Spent&, const Instruction&, const IntConstant&) {}

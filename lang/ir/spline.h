@@ -12,6 +12,9 @@
 
 namespace haptel::ir {
 
+// Coefficients that matter along each axis.
+constexpr uint32_t spline_support = 4;
+
 constexpr uint32_t spline_order(uint32_t by_x, uint32_t by_y, bool is_tiled = false)
 {
     return by_x | by_y << 8 | uint32_t{is_tiled} << 16;
@@ -36,7 +39,7 @@ inline int32_t image_height(const haptel_image* image)
 
 // How much each of four neighbouring coefficients counts, `fraction` (0 to 1) of the way from the second to the third.
 template <typename T>
-void spline_weights(const T& fraction, uint32_t order, T (&weights)[4])
+void spline_weights(const T& fraction, uint32_t order, T (&weights)[spline_support])
 {
     const T f = fraction, g = T(1) - f;
     switch (order) {
@@ -79,8 +82,8 @@ inline int64_t spline_texel(int64_t index, int64_t count, bool is_tiled)
 // Where along one axis: four texels and how much each counts.
 template <typename T>
 struct SplineSpan {
-    int64_t texel[4];
-    T weight[4];
+    int64_t texel[spline_support];
+    T weight[spline_support];
 
     // False where `at` is no place.
     bool set(T at, int64_t count, uint32_t order, bool is_tiled)
@@ -94,7 +97,7 @@ struct SplineSpan {
         if (!(at - at == T(0))) return false;
         const T cell = floor(at);
         const auto first = static_cast<int64_t>(static_cast<double>(cell)) - 1;
-        for (int i = 0; i < 4; ++i) texel[i] = spline_texel(first + i, count, is_tiled);
+        for (uint32_t i = 0; i < spline_support; ++i) texel[i] = spline_texel(first + i, count, is_tiled);
         spline_weights(T(at - cell), order, weight);
         return true;
     }
@@ -111,10 +114,10 @@ T spline(const haptel_image* image, const T& x, const T& y, uint32_t orders)
     if (!is_place) return x - x + (y - y);
     const double* coefficients = image->coefficients[is_tiled ? HAPTEL_EDGE_TILED : HAPTEL_EDGE_CLAMPED];
     T sum(0);
-    for (int j = 0; j < 4; ++j) {
+    for (uint32_t j = 0; j < spline_support; ++j) {
         const double* line = coefficients + row.texel[j] * image->width;
         T along(0);
-        for (int i = 0; i < 4; ++i) along = along + column.weight[i] * T(line[column.texel[i]]);
+        for (uint32_t i = 0; i < spline_support; ++i) along = along + column.weight[i] * T(line[column.texel[i]]);
         sum = sum + row.weight[j] * along;
     }
     return sum;

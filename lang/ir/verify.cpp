@@ -2,6 +2,7 @@
 
 #include "lang/abi.h"
 #include "lang/ir/int_range.h"
+#include "lang/ir/op_cost.h"
 #include "lang/ir/op_info.h"
 
 #include <algorithm>
@@ -256,6 +257,7 @@ uint64_t cost(const Instruction& made, const std::vector<uint64_t>& functions)
     }
     if (auto* loop = std::get_if<For>(&made.kind))
         return add(multiply(add(cost(loop->body[0], functions), 1), loop->trip_max), 1);
+    if (auto* operation = std::get_if<Operation>(&made.kind)) return operations_of(operation->op);
     bool is_constant = std::holds_alternative<RealConstant>(made.kind) ||
                        std::holds_alternative<IntConstant>(made.kind) ||
                        std::holds_alternative<BoolConstant>(made.kind);

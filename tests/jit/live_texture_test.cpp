@@ -213,6 +213,41 @@ TEST_CASE("an import is part of the texture")
     CHECK(follower.comes_to(6));
 }
 
+TEST_CASE("a picture is part of the texture")
+{
+    // 2 x 1 texels of one gray: flat, whatever is between them
+    const auto gray = [](int value) { return "P5 2 1 255\n" + std::string(2, static_cast<char>(value)); };
+    const test::Folder folder;
+    folder.write("t.haptel", "texture t(image relief) { return 1um * sample(relief, vec2(0.5)); }");
+    folder.write("relief.pgm", gray(51));
+    Follower follower(folder, {{"relief", folder.file("relief.pgm")}});
+    SECTION("changed in place")
+    {
+        folder.write("relief.pgm", gray(102));
+        CHECK(follower.comes_to(0.4));
+        CHECK(follower.publications() == 1);
+    }
+    SECTION("replaced by rename")
+    {
+        folder.write("new.pgm", gray(255));
+        std::filesystem::rename(folder.file("new.pgm"), folder.file("relief.pgm"));
+        CHECK(follower.comes_to(1));
+    }
+    SECTION("broken, then mended: the old picture stays meanwhile")
+    {
+        folder.write("relief.pgm", "no picture");
+        CHECK(follower.says("is no picture that can be read"));
+        CHECK(follower.publications() == 0);
+        folder.write("relief.pgm", gray(204));
+        CHECK(follower.comes_to(0.8));
+    }
+    SECTION("left alone")
+    {
+        std::this_thread::sleep_for(1500ms);
+        CHECK(follower.publications() == 0);
+    }
+}
+
 TEST_CASE("values survive a reload by name and type, and sliders need no compiler")
 {
     const test::Folder folder;

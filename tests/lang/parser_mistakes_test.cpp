@@ -59,8 +59,8 @@ TEST_CASE("a body left open ends where the next texture or function begins")
                                "7:1-6 syntax: expected '}' to close '{' at line 5, found 'float'\n");
     CHECK(parsed.file.textures.size() == 2);
     CHECK(parsed.file.functions.size() == 2);
-    CHECK(parsed.file.textures[0].damaged);
-    CHECK_FALSE(parsed.file.textures[1].damaged);
+    CHECK(parsed.file.textures[0].damage.any);
+    CHECK_FALSE(parsed.file.textures[1].damage.any);
 }
 
 TEST_CASE("expressions that are none")
@@ -113,10 +113,10 @@ TEST_CASE("textures and functions that are incomplete")
     CHECK(in_file("texture { }") == "1:9 syntax: expected a name after 'texture', found '{'\n");
     CHECK(in_file("texture t { return 1; }") == "1:9 syntax: expected '(' after the name of the texture\n");
     CHECK(in_file("texture t();") == "1:12 syntax: expected '{' and the body of the texture 't', found ';'\n");
-    CHECK(in_file("texture t(float a, float b = 1 in 2, int = 3) {}") ==
+    CHECK(in_file("texture t(float a, float b = 1 in 2,\n int = 3) {}") ==
           "1:17 missing-default: the parameter 'a' needs a default value\n"
           "1:36 range: expected '..' and the upper end of the range, found ','\n"
-          "1:42 syntax: expected a name after 'int', found '='\n");
+          "2:6 syntax: expected a name after 'int', found '='\n");
     CHECK(in_file("textur t() { return 1; }") ==
           "1:1-7 syntax: expected 'texture' or the type of a function, found 'textur'\n");
     CHECK(in_file("float g = 1;") == "1:1-6 global-variable: a variable of a whole file must be constant\n");
@@ -127,7 +127,7 @@ TEST_CASE("textures and functions that are incomplete")
           "1:9-12 output-parameter: a function cannot write its parameters\n");
     CHECK(in_file("float f(inout float a) { return a; }") ==
           "1:9-14 output-parameter: a function cannot write its parameters\n");
-    CHECK(in_file("float f(float a, b) { return a; }") == "1:19 syntax: expected a name after 'b', found ')'\n");
+    CHECK(in_file("float f(float a, b) { return a; }") == "1:18 syntax: expected a type and a name, found only 'b'\n");
     CHECK(in_file("float grad(float a) { return a; }") ==
           "1:7-11 reserved-name: 'grad' is the derivative of functions\n");
     CHECK(in_file("float f(float a);\n") ==
@@ -135,9 +135,9 @@ TEST_CASE("textures and functions that are incomplete")
     CHECK(in_file("import 3;\nimport wood.;") ==
           "1:8 syntax: expected a name of a library or a path in quotes after 'import', found '3'\n"
           "2:13 syntax: expected a name after '.', found ';'\n");
-    CHECK(in_file("a = 3; texture t() { return 1 1; }") ==
+    CHECK(in_file("a = 3;\ntexture t() { return 1 1; }") ==
           "1:1 syntax: expected a texture, function, constant or import, found 'a'\n"
-          "1:31 syntax: expected ';' at the end of 'return', found '1'\n");
+          "2:24 syntax: expected ';' at the end of 'return', found '1'\n");
     CHECK(in_file("} float f() {}") == "1:1 syntax: expected a texture, function, constant or import, found '}'\n");
 }
 

@@ -129,7 +129,7 @@ texture brushed "Long irregular grooves,|  as left by a brush."
     CHECK(facts.curvature == 11.59);
     CHECK(facts.continuity == "C1");
     CHECK(parsed.sources.text(facts.span) == "@facts value -2 .. 2, slope 1.5e2, curvature 11.59, class C1");
-    CHECK_FALSE(parsed.file.functions[0].damaged);
+    CHECK_FALSE(parsed.file.functions[0].damage.any);
 }
 
 TEST_CASE("facts may have units and be given in part")

@@ -331,7 +331,8 @@ TEST_CASE("check: a few lines per texture for people")
     CHECK(contains(ran.out, "reads p, time\n"));
 }
 
-TEST_CASE("check: what reads the normal is as steep as normals turn: those of a ball that fills the box, or --normal-turn")
+TEST_CASE(
+    "check: what reads the normal is as steep as normals turn: those of a ball that fills the box, or --normal-turn")
 {
     const Folder folder;
     const std::string file = folder.write("lean.haptel", "texture lean() { return 1um * n.z; }\n");
@@ -343,4 +344,20 @@ TEST_CASE("check: what reads the normal is as steep as normals turn: those of a 
     CHECK(slope("--box 0.1m --normal-turn 50")["normal_turn_max_per_m"] == 50);
     CHECK(contains(run_command("check --box 0.1m '" + file + "'").out, "normals    turn at most 20 per metre"));
     CHECK(run_command("check --normal-turn -1 '" + file + "'").code == 2);
+}
+
+TEST_CASE("check: octaves that fade along a surface leave no jump, and a choice that does not fade is one")
+{
+    const Folder folder;
+    const std::string file = folder.write(
+        "fades.haptel", "vec3 bent() { return p / 5mm * (1.0 + 0.1 * sinturn(p.x / 5mm)); }\n"
+                        "texture one() { return 50um * fbm(noise, bent(), 4, 2.0, 0.5); }\n"
+                        "texture two() { return 50um * hybrid(perlin, bent(), 4, 2.0, 0.5); }\n"
+                        "texture cut() { return footprint_in(bent()) < 1.0 ? 50um * noise(p / 5mm) : 0.0; }\n");
+    const Ran ran = run_command("check --json --footprint 3mm '" + file + "'");
+    const Json textures = Json::parse(ran.out)["textures"];
+    CHECK(textures[0]["continuity"] == "C1");
+    CHECK(textures[1]["continuity"] == "C1");
+    CHECK(textures[2]["continuity"] == "jump");
+    CHECK(run_command("test --footprint 3mm '" + file + "'").code == 0); // nothing rougher than that is measured
 }
