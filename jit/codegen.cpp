@@ -1,10 +1,10 @@
 #include "jit/codegen.h"
 
-#include "jit/codegen_operation.h"
-#include "jit/llvm.h"
+#include "jit/codegen_function.h"
 #include "lang/abi.h"
 
 #include <cstddef>
+#include <optional>
 
 namespace haptel::jit {
 
@@ -12,316 +12,150 @@ namespace {
 
 using llvm::Value;
 
-// ir::Input counts the doubles of haptel_point, then those of haptel_block_head.
-constexpr size_t point_inputs = static_cast<size_t>(ir::Input::center_x);
-static_assert(sizeof(haptel_point) == point_inputs * sizeof(double));
-static_assert(sizeof(haptel_block_head) == (ir::input_count - point_inputs) * sizeof(double));
-static_assert(offsetof(haptel_point, time_s) == static_cast<size_t>(ir::Input::time) * sizeof(double));
-static_assert(offsetof(haptel_point, uv_dp) == static_cast<size_t>(ir::Input::uv_dp_00) * sizeof(double));
-static_assert(offsetof(haptel_block_head, footprint_m) ==
-              (static_cast<size_t>(ir::Input::footprint) - point_inputs) * sizeof(double));
-
-// Of the entry being emitted; null in other functions.
-struct EntryArguments {
-    Value* point = nullptr;
-    Value* block = nullptr;
-    const ir::Texture* texture = nullptr;
+// A number of the sample: where it stands in haptel_sample and in haptel_samples, and which result of the entry it is.
+struct Output {
+    size_t offset, array_offset;
+    std::optional<size_t> yield; // none: 1
 };
 
-class ModuleEmitter {
+std::vector<Output> outputs_of(const EntryPoint& entry)
+{
+    const bool with_gradient = entry.kind == EntryPoint::Kind::height_gradient;
+    std::vector<Output> outputs{{offsetof(haptel_sample, height_m), offsetof(haptel_samples, height_m), 0},
+                                {offsetof(haptel_sample, faults), offsetof(haptel_samples, faults), 1}};
+    if (!with_gradient) return outputs;
+    outputs[1].yield = 4;
+    for (size_t i = 0; i < 3; ++i)
+        outputs.push_back({offsetof(haptel_sample, gradient) + i * sizeof(double),
+                           offsetof(haptel_samples, gradient) + i * sizeof(double*), 1 + i});
+    outputs.push_back({offsetof(haptel_sample, stiffness_scale), offsetof(haptel_samples, stiffness_scale), {}});
+    outputs.push_back({offsetof(haptel_sample, friction_scale), offsetof(haptel_samples, friction_scale), {}});
+    size_t next = 5;
+    for (uint32_t bit = 0; bit < 2; ++bit)
+        if (entry.texture->writes >> bit & 1) outputs[5 + bit].yield = next++;
+    return outputs;
+}
+
+class EntryEmitter {
 public:
-    ModuleEmitter(const ir::Module& from, llvm::Module& to) : source(from), target(to) {}
+    EntryEmitter(ModuleEmitter& owner, const EntryPoint& point) : module(owner), entry(point) {}
 
-    void entry(const EntryPoint& point);
-    llvm::Function* function(uint32_t index) { return functions[index]; }
-    llvm::GlobalVariable* table(uint32_t index);
-    llvm::Type* type(ir::Type type);
-
-    const ir::Module& source;
-    llvm::Module& target;
-
-private:
-    void internal_function(uint32_t index);
-    void reach(uint32_t index);
-
-    std::vector<llvm::Function*> functions = std::vector<llvm::Function*>(source.functions.size());
-    std::vector<llvm::GlobalVariable*> tables = std::vector<llvm::GlobalVariable*>(source.tables.size());
-};
-
-// Emits the body of one function; structured regions become basic blocks and phis.
-class FunctionEmitter {
-public:
-    FunctionEmitter(ModuleEmitter& owner, const ir::Function& from, llvm::Function& to, EntryArguments entry)
-        : module(owner)
-        , source(from)
-        , target(to)
-        , arguments(entry)
-        , builder(llvm::BasicBlock::Create(to.getContext(), "", &to))
-        , values(from.value_types.size())
+    void one_point()
     {
+        llvm::Function& function = declare({pointer(), pointer(), pointer()}, 1);
+        llvm::BasicBlock::Create(context(), "", &function);
+        const ValueForms forms = entry_forms();
+        FunctionEmitter emitter(module, source(), function, forms,
+                                {.points = function.getArg(0), .block = function.getArg(1), .texture = entry.texture});
+        const std::vector<Value*> yields = emitter.body(results({}));
+        llvm::IRBuilder<>& builder = emitter.at_end();
+        for (const Output& output : outputs_of(entry))
+            builder.CreateStore(result(output, yields), place(builder, function.getArg(2), output.offset));
+        builder.CreateRetVoid();
     }
 
-    void define(ir::Value value, Value* made) { values[value.index] = made; }
-    std::vector<Value*> body() { return block(source.body); }
-    llvm::IRBuilder<>& at_end() { return builder; }
+    // A loop over groups of lanes, the last of which may be short.
+    void batch()
+    {
+        llvm::Type* index_type = llvm::Type::getInt64Ty(context());
+        llvm::Function& function = declare({pointer(), index_type, pointer(), pointer()}, 2);
+        llvm::BasicBlock* before = llvm::BasicBlock::Create(context(), "", &function);
+        llvm::BasicBlock* head = llvm::BasicBlock::Create(context(), "points", &function);
+        llvm::BasicBlock* after = llvm::BasicBlock::Create(context(), "done", &function);
+        llvm::BasicBlock* group = llvm::BasicBlock::Create(context(), "group", &function);
+        Value* const count = function.getArg(1);
+
+        llvm::IRBuilder<> outside(before);
+        outside.CreateBr(head);
+        outside.SetInsertPoint(head);
+        llvm::PHINode* first = outside.CreatePHI(index_type, 2);
+        first->addIncoming(outside.getInt64(0), before);
+        outside.CreateCondBr(outside.CreateICmpULT(first, count), group, after);
+        outside.SetInsertPoint(after);
+        outside.CreateRetVoid();
+
+        outside.SetInsertPoint(group);
+        llvm::Type* indices = llvm::FixedVectorType::get(index_type, module.lanes);
+        Value* index =
+            outside.CreateAdd(outside.CreateVectorSplat(module.lanes, first), outside.CreateStepVector(indices));
+        Value* is_there = outside.CreateICmpULT(index, outside.CreateVectorSplat(module.lanes, count));
+        const ValueForms forms = entry_forms();
+        FunctionEmitter emitter(module, source(), function, forms,
+                                {function.getArg(0), function.getArg(2), entry.texture, first, is_there});
+        const std::vector<Value*> yields = emitter.body(results({.in_lanes = true}));
+        llvm::IRBuilder<>& builder = emitter.at_end();
+        for (const Output& output : outputs_of(entry))
+            store_lanes(builder, result(output, yields), place(builder, function.getArg(3), output.array_offset), first,
+                        is_there);
+        first->addIncoming(builder.CreateAdd(first, builder.getInt64(module.lanes)), builder.GetInsertBlock());
+        builder.CreateBr(head);
+    }
 
 private:
     ModuleEmitter& module;
-    const ir::Function& source;
-    llvm::Function& target;
-    const EntryArguments arguments;
-    llvm::IRBuilder<> builder;
-    std::vector<Value*> values; // by ir::Value::index
+    const EntryPoint& entry;
 
-    Value* value(ir::Value used) const { return values[used.index]; }
-    std::vector<Value*> all(const std::vector<ir::Value>& used) const
+    llvm::LLVMContext& context() { return module.target.getContext(); }
+    llvm::Type* pointer() { return llvm::PointerType::getUnqual(context()); }
+    uint32_t index() const
     {
-        std::vector<Value*> result;
-        for (ir::Value one : used) result.push_back(value(one));
-        return result;
+        return entry.kind == EntryPoint::Kind::height ? entry.texture->height : entry.texture->height_gradient;
     }
-    llvm::BasicBlock* new_block(const char* name)
-    {
-        return llvm::BasicBlock::Create(target.getContext(), name, &target);
-    }
-    llvm::Type* type(ir::Value of) { return module.type(source.type(of)); }
-    Value* load(llvm::Type* loaded, Value* base, size_t offset)
-    {
-        return builder.CreateLoad(loaded, builder.CreateConstInBoundsGEP1_64(builder.getInt8Ty(), base, offset));
-    }
+    const ir::Function& source() const { return module.source.functions[index()]; }
+    ValueForms entry_forms() const { return module.forms(index(), {}, std::vector<bool>(source().body.yields.size())); }
+    std::vector<Form> results(Form form) const { return std::vector(source().body.yields.size(), form); }
 
-    std::vector<Value*> block(const ir::Block& from)
+    // The last argument is what is written.
+    llvm::Function& declare(std::vector<llvm::Type*> arguments, unsigned block)
     {
-        for (const ir::Instruction& instruction : from.instructions)
-            std::visit([&](const auto& kind) { emit(instruction, kind); }, instruction.kind);
-        return all(from.yields);
-    }
-
-    void emit(const ir::Instruction& made, const ir::Operation& operation)
-    {
-        Value* operands[4];
-        const size_t count = made.operands.size();
-        for (size_t i = 0; i < count; ++i) operands[i] = value(made.operands[i]);
-        define(made.results[0], emit_operation(builder, operation.op, {operands, count}));
-    }
-    void emit(const ir::Instruction& made, const ir::RealConstant& constant)
-    {
-        define(made.results[0], llvm::ConstantFP::get(builder.getDoubleTy(), constant.value));
-    }
-    void emit(const ir::Instruction& made, const ir::IntConstant& constant)
-    {
-        define(made.results[0], builder.getInt32(constant.bits));
-    }
-    void emit(const ir::Instruction& made, const ir::BoolConstant& constant)
-    {
-        define(made.results[0], builder.getInt1(constant.value));
-    }
-    void emit(const ir::Instruction& made, const ir::ReadInput& read)
-    {
-        const auto index = static_cast<size_t>(read.input);
-        const bool of_point = index < point_inputs;
-        define(made.results[0], load(builder.getDoubleTy(), of_point ? arguments.point : arguments.block,
-                                     (of_point ? index : index - point_inputs) * sizeof(double)));
-    }
-    void emit(const ir::Instruction& made, const ir::ReadParameter& read)
-    {
-        const ir::Parameter& parameter = arguments.texture->parameters[read.parameter];
-        const bool is_boolean = parameter.type == ir::Type::boolean; // held as int32_t
-        Value* held =
-            load(is_boolean ? builder.getInt32Ty() : module.type(parameter.type), arguments.block, parameter.offset);
-        define(made.results[0], is_boolean ? builder.CreateICmpNE(held, builder.getInt32(0)) : held);
-    }
-    void emit(const ir::Instruction& made, const ir::ReadTable& read)
-    {
-        llvm::GlobalVariable* table = module.table(read.table);
-        Value* index = builder.CreateZExt(value(made.operands[0]), builder.getInt64Ty());
-        Value* cell = builder.CreateInBoundsGEP(table->getValueType(), table, {builder.getInt64(0), index});
-        define(made.results[0], builder.CreateLoad(type(made.results[0]), cell));
-    }
-    void emit(const ir::Instruction& made, const ir::Call& call)
-    {
-        llvm::CallInst* result = builder.CreateCall(module.function(call.function), all(made.operands));
-        result->setCallingConv(llvm::CallingConv::Fast);
-        if (made.results.size() == 1) return define(made.results[0], result);
-        for (unsigned i = 0; i < made.results.size(); ++i)
-            define(made.results[i], builder.CreateExtractValue(result, i));
-    }
-    void emit(const ir::Instruction& made, const ir::PointDerivative&) // in no program that passes `verify`
-    {
-        define(made.results[0], llvm::ConstantFP::getNaN(builder.getDoubleTy()));
-    }
-    void emit(const ir::Instruction& made, const ir::If& choice)
-    {
-        llvm::BasicBlock* arms[] = {new_block("then"), new_block("else")};
-        llvm::BasicBlock* join = new_block("join");
-        builder.CreateCondBr(value(made.operands[0]), arms[0], arms[1]);
-        std::vector<Value*> yields[2];
-        for (size_t i = 0; i < 2; ++i) {
-            builder.SetInsertPoint(arms[i]);
-            yields[i] = block(choice.arms[i]);
-            arms[i] = builder.GetInsertBlock(); // where the arm ends
-            builder.CreateBr(join);
+        auto* type = llvm::FunctionType::get(llvm::Type::getVoidTy(context()), arguments, false);
+        auto* function = llvm::Function::Create(type, llvm::GlobalValue::ExternalLinkage, entry.name, module.target);
+        function->setDoesNotThrow();
+        for (unsigned i : {0u, block, block + 1}) {
+            function->addParamAttr(i, llvm::Attribute::NoAlias);
+            function->addParamAttr(i, llvm::Attribute::NoCapture);
         }
-        builder.SetInsertPoint(join);
-        for (size_t i = 0; i < made.results.size(); ++i) {
-            llvm::PHINode* phi = builder.CreatePHI(type(made.results[i]), 2);
-            phi->addIncoming(yields[0][i], arms[0]);
-            phi->addIncoming(yields[1][i], arms[1]);
-            define(made.results[i], phi);
-        }
+        for (unsigned i : {0u, block}) function->addParamAttr(i, llvm::Attribute::ReadOnly);
+        return *function;
     }
-    void emit(const ir::Instruction& made, const ir::For& loop)
+    Value* place(llvm::IRBuilder<>& builder, Value* base, size_t offset)
     {
-        const ir::Block& body = loop.body[0];
-        llvm::BasicBlock* before = builder.GetInsertBlock();
-        llvm::BasicBlock* head = new_block("loop");
-        llvm::BasicBlock* inside = new_block("body");
-        llvm::BasicBlock* after = new_block("done");
-        builder.CreateBr(head);
-
-        builder.SetInsertPoint(head);
-        std::vector<llvm::PHINode*> carried;
-        for (size_t i = 0; i < body.parameters.size(); ++i) {
-            carried.push_back(builder.CreatePHI(type(body.parameters[i]), 2));
-            carried[i]->addIncoming(i == 0 ? builder.getInt32(0) : value(made.operands[i]), before);
-            define(body.parameters[i], carried[i]);
-        }
-        builder.CreateCondBr(builder.CreateICmpSLT(carried[0], value(made.operands[0])), inside, after);
-
-        builder.SetInsertPoint(inside);
-        std::vector<Value*> next = block(body);
-        next.insert(next.begin(), builder.CreateNSWAdd(carried[0], builder.getInt32(1)));
-        for (size_t i = 0; i < carried.size(); ++i) carried[i]->addIncoming(next[i], builder.GetInsertBlock());
-        builder.CreateBr(head);
-
-        builder.SetInsertPoint(after);
-        for (size_t i = 0; i < made.results.size(); ++i) define(made.results[i], carried[i + 1]);
+        return builder.CreateConstInBoundsGEP1_64(builder.getInt8Ty(), base, offset);
+    }
+    Value* result(const Output& output, const std::vector<Value*>& yields)
+    {
+        return output.yield ? yields[*output.yield] : llvm::ConstantFP::get(yields[0]->getType(), 1);
+    }
+    // To an array that may be absent.
+    void store_lanes(llvm::IRBuilder<>& builder, Value* lanes, Value* array_place, Value* first, Value* is_there)
+    {
+        Value* array = builder.CreateLoad(pointer(), array_place);
+        llvm::BasicBlock* wanted = llvm::BasicBlock::Create(context(), "wanted", builder.GetInsertBlock()->getParent());
+        llvm::BasicBlock* next = llvm::BasicBlock::Create(context(), "next", builder.GetInsertBlock()->getParent());
+        builder.CreateCondBr(builder.CreateIsNull(array), next, wanted);
+        builder.SetInsertPoint(wanted);
+        llvm::Type* element = lanes->getType()->getScalarType();
+        builder.CreateMaskedStore(lanes, builder.CreateInBoundsGEP(element, array, first),
+                                  llvm::Align(element->getPrimitiveSizeInBits() / 8), is_there);
+        builder.CreateBr(next);
+        builder.SetInsertPoint(next);
     }
 };
-
-llvm::Type* ModuleEmitter::type(ir::Type type)
-{
-    llvm::LLVMContext& context = target.getContext();
-    switch (type) {
-    case ir::Type::real: return llvm::Type::getDoubleTy(context);
-    case ir::Type::i32:
-    case ir::Type::u32: return llvm::Type::getInt32Ty(context);
-    case ir::Type::boolean: return llvm::Type::getInt1Ty(context);
-    case ir::Type::image: return llvm::PointerType::getUnqual(context);
-    }
-    return nullptr;
-}
-
-llvm::GlobalVariable* ModuleEmitter::table(uint32_t index)
-{
-    if (tables[index]) return tables[index];
-    const ir::Table& table = source.tables[index];
-    llvm::LLVMContext& context = target.getContext();
-    llvm::Constant* cells = table.element == ir::Type::real ? llvm::ConstantDataArray::get(context, table.reals)
-                                                            : llvm::ConstantDataArray::get(context, table.words);
-    tables[index] = new llvm::GlobalVariable(target, cells->getType(), true, llvm::GlobalValue::InternalLinkage, cells);
-    tables[index]->setUnnamedAddr(llvm::GlobalValue::UnnamedAddr::Global);
-    return tables[index];
-}
-
-template <typename Visit>
-void for_each_call(const ir::Block& block, Visit&& visit)
-{
-    for (const ir::Instruction& instruction : block.instructions) {
-        if (auto* call = std::get_if<ir::Call>(&instruction.kind)) visit(call->function);
-        if (auto* choice = std::get_if<ir::If>(&instruction.kind))
-            for (const ir::Block& arm : choice->arms) for_each_call(arm, visit);
-        if (auto* loop = std::get_if<ir::For>(&instruction.kind)) for_each_call(loop->body[0], visit);
-    }
-}
-
-// Emits what the function calls, callees first: a call refers to a smaller index.
-void ModuleEmitter::reach(uint32_t index)
-{
-    std::vector<bool> needed(index + 1, false);
-    needed[index] = true;
-    for (uint32_t i = index + 1; i-- > 0;)
-        if (needed[i]) for_each_call(source.functions[i].body, [&](uint32_t callee) { needed[callee] = true; });
-    for (uint32_t i = 0; i < index; ++i)
-        if (needed[i] && !functions[i]) internal_function(i);
-}
-
-void ModuleEmitter::internal_function(uint32_t index)
-{
-    const ir::Function& from = source.functions[index];
-    std::vector<llvm::Type*> parameters, results;
-    for (ir::Value parameter : from.parameters) parameters.push_back(type(from.type(parameter)));
-    for (ir::Value result : from.body.yields) results.push_back(type(from.type(result)));
-    llvm::Type* result = results.size() == 1 ? results[0] : llvm::StructType::get(target.getContext(), results);
-    auto* function = llvm::Function::Create(llvm::FunctionType::get(result, parameters, false),
-                                            llvm::GlobalValue::InternalLinkage, from.name, target);
-    function->setCallingConv(llvm::CallingConv::Fast);
-    function->setDoesNotThrow();
-    const bool reads_images = std::any_of(from.parameters.begin(), from.parameters.end(),
-                                          [&](ir::Value value) { return from.type(value) == ir::Type::image; });
-    reads_images ? function->setOnlyReadsMemory() : function->setDoesNotAccessMemory();
-    function->setWillReturn();
-    functions[index] = function;
-
-    FunctionEmitter emitter(*this, from, *function, {});
-    for (size_t i = 0; i < from.parameters.size(); ++i)
-        emitter.define(from.parameters[i], function->getArg(static_cast<unsigned>(i)));
-    const std::vector<Value*> yields = emitter.body();
-    if (yields.size() == 1)
-        emitter.at_end().CreateRet(yields[0]);
-    else
-        emitter.at_end().CreateAggregateRet(yields.data(), static_cast<unsigned>(yields.size()));
-}
-
-void ModuleEmitter::entry(const EntryPoint& point)
-{
-    const bool with_gradient = point.kind == EntryPoint::Kind::height_gradient;
-    const uint32_t index = with_gradient ? point.texture->height_gradient : point.texture->height;
-    reach(index);
-
-    llvm::LLVMContext& context = target.getContext();
-    llvm::Type* pointer = llvm::PointerType::getUnqual(context);
-    auto* type = llvm::FunctionType::get(llvm::Type::getVoidTy(context), {pointer, pointer, pointer}, false);
-    auto* function = llvm::Function::Create(type, llvm::GlobalValue::ExternalLinkage, point.name, target);
-    function->setDoesNotThrow();
-    for (unsigned i = 0; i < 3; ++i) {
-        function->addParamAttr(i, llvm::Attribute::NoAlias);
-        function->addParamAttr(i, llvm::Attribute::NoCapture);
-    }
-    function->addParamAttr(0, llvm::Attribute::ReadOnly);
-    function->addParamAttr(1, llvm::Attribute::ReadOnly);
-
-    FunctionEmitter emitter(*this, source.functions[index], *function,
-                            {function->getArg(0), function->getArg(1), point.texture});
-    const std::vector<Value*> yields = emitter.body();
-    llvm::IRBuilder<>& builder = emitter.at_end();
-    Value* sample = function->getArg(2);
-    auto store = [&](Value* value, size_t offset) {
-        builder.CreateStore(value, builder.CreateConstInBoundsGEP1_64(builder.getInt8Ty(), sample, offset));
-    };
-    store(yields[0], offsetof(haptel_sample, height_m));
-    if (with_gradient) {
-        for (size_t i = 0; i < 3; ++i) store(yields[1 + i], offsetof(haptel_sample, gradient) + i * sizeof(double));
-        const std::pair<uint32_t, size_t> outputs[] = {
-            {HAPTEL_WRITES_STIFFNESS_SCALE, offsetof(haptel_sample, stiffness_scale)},
-            {HAPTEL_WRITES_FRICTION_SCALE, offsetof(haptel_sample, friction_scale)}};
-        size_t next = 5;
-        for (const auto& [bit, offset] : outputs)
-            store(point.texture->writes & bit ? yields[next++] : llvm::ConstantFP::get(builder.getDoubleTy(), 1),
-                  offset);
-    }
-    store(yields[with_gradient ? 4 : 1], offsetof(haptel_sample, faults));
-    builder.CreateRetVoid();
-}
 
 } // namespace
 
 std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const EntryPoint> entries,
-                                       llvm::LLVMContext& context)
+                                       const Processor& processor, llvm::LLVMContext& context)
 {
     auto generated = std::make_unique<llvm::Module>("textures", context);
-    ModuleEmitter emitter(module, *generated);
-    for (const EntryPoint& entry : entries) emitter.entry(entry);
+    std::map<std::pair<bool, Precision>, ModuleEmitter> emitters;
+    for (const EntryPoint& entry : entries) {
+        const std::pair form{entry.is_batch, entry.precision};
+        ModuleEmitter& emitter =
+            emitters.try_emplace(form, module, *generated, processor, entry.is_batch, entry.precision).first->second;
+        entry.is_batch ? EntryEmitter(emitter, entry).batch() : EntryEmitter(emitter, entry).one_point();
+    }
+    for (auto& [form, emitter] : emitters) emitter.finish();
     return generated;
 }
 

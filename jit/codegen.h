@@ -1,12 +1,12 @@
-// IR to LLVM IR, f64, one point at a time.
+// IR to LLVM IR, one point at a time or many, in one of three precisions.
 //
-// Every operation means what lang/ir/semantics.h says, bit for bit: no fast-math flags, no contraction, elementary
-// functions by calls to the C library under names that LLVM does not know, so that it cannot rewrite them. Functions
-// that an entry reaches become internal LLVM functions; tables become constant globals. The module must be verified
-// (lang/ir/verify.h): table indices and trip counts are trusted here.
+// In f64 every operation means what lang/ir/semantics.h says, bit for bit: no fast-math flags, no contraction,
+// elementary functions by calls to the C library under names that LLVM does not know, so that it cannot rewrite them.
+// Functions that an entry reaches become internal LLVM functions; tables become constant globals. The module must be
+// verified (lang/ir/verify.h): table indices and trip counts are trusted here.
 #pragma once
 
-#include "lang/ir/ir.h"
+#include "jit/precision.h"
 
 #include <memory>
 #include <span>
@@ -27,16 +27,25 @@ struct LibraryFunction {
 };
 std::span<const LibraryFunction> code_library();
 
-// One entry point to be emitted: a haptel_entry of this name.
+// What code may be written for.
+struct Processor {
+    uint32_t lanes = 4;          // points that a batch evaluates at once
+    bool permutes_words = false; // AVX-512F: dynamic permutation of two registers of 32- and 64-bit words
+    bool permutes_bytes = false; // AVX-512VBMI: of bytes
+};
+
+// One entry point to be emitted: a haptel_entry of this name, or a haptel_batch_entry.
 struct EntryPoint {
     enum class Kind : uint8_t { height, height_gradient };
     std::string name;
     const ir::Texture* texture;
     Kind kind;
+    bool is_batch = false;
+    Precision precision = Precision::f64;
 };
 
 // Data layout and triple are the caller's to set before optimisation.
 std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const EntryPoint> entries,
-                                       llvm::LLVMContext& context);
+                                       const Processor& processor, llvm::LLVMContext& context);
 
 } // namespace haptel::jit

@@ -33,27 +33,45 @@ double spline_of_doubles(const haptel_image* image, double x, double y, uint32_t
 // Operands, in the order of ops.def, are a, b, c, d.
 class Emitter {
 public:
-    Emitter(llvm::IRBuilder<>& to, std::span<Value* const> from) : builder(to), operands(from) {}
+    Emitter(llvm::IRBuilder<>& to, std::span<Value* const> from, llvm::Type* scalar_real)
+        : builder(to)
+        , operands(from)
+        , scalar(scalar_real)
+        , vector(llvm::dyn_cast<llvm::FixedVectorType>(from.back()->getType()))
+    {
+    }
 
     Value* emit(ir::Op op);
 
 private:
     llvm::IRBuilder<>& builder;
     std::span<Value* const> operands;
+    llvm::Type* const scalar;                  // double or float
+    const llvm::FixedVectorType* const vector; // of the operands; null: they are scalars
 
     Value* a() const { return operands[0]; }
     Value* b() const { return operands[1]; }
 
-    Value* real(double value) { return llvm::ConstantFP::get(builder.getDoubleTy(), value); }
-    Value* word(uint32_t value) { return builder.getInt32(value); }
+    llvm::Type* as(llvm::Type* element)
+    {
+        return vector ? llvm::FixedVectorType::get(element, vector->getNumElements()) : element;
+    }
+    bool is_single() const { return scalar->isFloatTy(); }
+    llvm::Type* reals() { return as(scalar); }
+    llvm::Type* words() { return as(builder.getInt32Ty()); }
+    Value* real(double value) { return llvm::ConstantFP::get(reals(), value); }
+    Value* word(uint32_t value) { return llvm::ConstantInt::get(words(), value); }
     Value* intrinsic(llvm::Intrinsic::ID id, Value* x) { return builder.CreateUnaryIntrinsic(id, x); }
     Value* intrinsic(llvm::Intrinsic::ID id, Value* x, Value* y) { return builder.CreateBinaryIntrinsic(id, x, y); }
     Value* absolute(Value* x) { return intrinsic(llvm::Intrinsic::fabs, x); }
     Value* floor(Value* x) { return intrinsic(llvm::Intrinsic::floor, x); }
     Value* choose(Value* condition, Value* x, Value* y) { return builder.CreateSelect(condition, x, y); }
 
-    Value* call(const char* name, std::initializer_list<Value*> arguments);
+    Value* call(const char* name) { return call(name, operands); }
+    Value* call(const char* name, std::span<Value* const> arguments);
     Value* read_image(const char* name, llvm::Type* result);
+    Value* call(const char* name, llvm::Type* result, std::span<Value* const> arguments, llvm::MemoryEffects effects);
+    Value* in_each_lane(llvm::Function* function, const std::vector<Value*>& arguments);
     Value* sign();
     Value* length();
     Value* remainder_of_turn() { return builder.CreateFSub(a(), intrinsic(llvm::Intrinsic::roundeven, a())); }
@@ -67,30 +85,49 @@ private:
 };
 
 // Pure and total: may be moved, shared or dropped.
-Value* Emitter::call(const char* name, std::initializer_list<Value*> arguments)
+Value* Emitter::call(const char* name, std::span<Value* const> arguments)
 {
-    llvm::Module* module = builder.GetInsertBlock()->getModule();
-    const std::vector<llvm::Type*> types(arguments.size(), builder.getDoubleTy());
-    auto* type = llvm::FunctionType::get(builder.getDoubleTy(), types, false);
-    auto* function = llvm::cast<llvm::Function>(module->getOrInsertFunction(name, type).getCallee());
-    function->setDoesNotThrow();
-    function->setDoesNotAccessMemory();
-    function->setWillReturn();
-    return builder.CreateCall(function, std::vector<Value*>(arguments));
+    return call(name, builder.getDoubleTy(), arguments, llvm::MemoryEffects::none());
 }
 
 // Total, and reads what no one writes while code runs.
 Value* Emitter::read_image(const char* name, llvm::Type* result)
 {
+    return call(name, result, operands, llvm::MemoryEffects::readOnly());
+}
+
+// Lane by lane, in f64.
+Value* Emitter::call(const char* name, llvm::Type* result, std::span<Value* const> arguments,
+                     llvm::MemoryEffects effects)
+{
+    std::vector<Value*> wide;
     std::vector<llvm::Type*> types;
-    for (Value* operand : operands) types.push_back(operand->getType());
-    auto* type = llvm::FunctionType::get(result, types, false);
+    for (Value* argument : arguments) {
+        const bool is_float = argument->getType()->getScalarType()->isFloatTy();
+        wide.push_back(is_float ? builder.CreateFPExt(argument, as(builder.getDoubleTy())) : argument);
+        types.push_back(wide.back()->getType()->getScalarType());
+    }
     llvm::Module* module = builder.GetInsertBlock()->getModule();
+    auto* type = llvm::FunctionType::get(result, types, false);
     auto* function = llvm::cast<llvm::Function>(module->getOrInsertFunction(name, type).getCallee());
     function->setDoesNotThrow();
-    function->setOnlyReadsMemory();
+    function->setMemoryEffects(effects);
     function->setWillReturn();
-    return builder.CreateCall(function, std::vector<Value*>(operands.begin(), operands.end()));
+    Value* results = vector ? in_each_lane(function, wide) : builder.CreateCall(function, wide);
+    return result->isDoubleTy() && is_single() ? builder.CreateFPTrunc(results, reals()) : results;
+}
+
+Value* Emitter::in_each_lane(llvm::Function* function, const std::vector<Value*>& arguments)
+{
+    Value* results = llvm::PoisonValue::get(as(function->getReturnType()));
+    for (uint64_t lane = 0; lane < vector->getNumElements(); ++lane) {
+        std::vector<Value*> scalars;
+        for (Value* argument : arguments)
+            scalars.push_back(argument->getType()->isVectorTy() ? builder.CreateExtractElement(argument, lane)
+                                                                : argument);
+        results = builder.CreateInsertElement(results, builder.CreateCall(function, scalars), lane);
+    }
+    return results;
 }
 
 Value* Emitter::sign()
@@ -103,10 +140,11 @@ Value* Emitter::length()
 {
     Value* largest = absolute(operands[0]);
     for (Value* x : operands.subspan(1)) largest = intrinsic(llvm::Intrinsic::maximum, largest, absolute(x));
-    Value* huge = builder.CreateFCmpOGT(largest, real(0x1p500));
-    Value* tiny = builder.CreateFCmpOLT(largest, real(0x1p-500));
-    Value* scale = choose(huge, real(0x1p-600), choose(tiny, real(0x1p600), real(1)));
-    Value* unscale = choose(huge, real(0x1p600), choose(tiny, real(0x1p-600), real(1)));
+    const double limit = is_single() ? 0x1p60 : 0x1p500, factor = is_single() ? 0x1p80 : 0x1p600;
+    Value* huge = builder.CreateFCmpOGT(largest, real(limit));
+    Value* tiny = builder.CreateFCmpOLT(largest, real(1 / limit));
+    Value* scale = choose(huge, real(1 / factor), choose(tiny, real(factor), real(1)));
+    Value* unscale = choose(huge, real(factor), choose(tiny, real(1 / factor), real(1)));
     Value* sum = nullptr;
     for (Value* x : operands) {
         Value* scaled = builder.CreateFMul(x, scale);
@@ -121,20 +159,21 @@ Value* Emitter::sine_of_turns()
     Value* rest = remainder_of_turn();
     Value* size = absolute(rest);
     Value* folded = choose(builder.CreateFCmpOGT(size, real(0.25)), builder.CreateFSub(real(0.5), size), size);
-    Value* sine = call("haptel_sin", {builder.CreateFMul(real(2 * std::numbers::pi), folded)});
-    return intrinsic(llvm::Intrinsic::copysign, sine, rest);
+    Value* radians = builder.CreateFMul(real(2 * std::numbers::pi), folded);
+    return intrinsic(llvm::Intrinsic::copysign, call("haptel_sin", {&radians, 1}), rest);
 }
 
 Value* Emitter::cosine_of_turns()
 {
     Value* from_zero = builder.CreateFSub(real(0.25), absolute(remainder_of_turn()));
-    return call("haptel_sin", {builder.CreateFMul(real(2 * std::numbers::pi), from_zero)});
+    Value* radians = builder.CreateFMul(real(2 * std::numbers::pi), from_zero);
+    return call("haptel_sin", {&radians, 1});
 }
 
 Value* Emitter::angle()
 {
     Value* at_origin = builder.CreateAnd(builder.CreateFCmpOEQ(a(), real(0)), builder.CreateFCmpOEQ(b(), real(0)));
-    return choose(at_origin, real(0), call("haptel_atan2", {a(), b()}));
+    return choose(at_origin, real(0), call("haptel_atan2"));
 }
 
 // The processor's division traps at 0 and at INT_MIN / -1: it gets a divisor of 1 there.
@@ -158,7 +197,7 @@ Value* Emitter::divide_unsigned(bool want_remainder)
 
 Value* Emitter::saturate(llvm::Intrinsic::ID id)
 {
-    return builder.CreateIntrinsic(id, {builder.getInt32Ty(), builder.getDoubleTy()}, {a()});
+    return builder.CreateIntrinsic(id, {words(), reals()}, {a()});
 }
 
 Value* Emitter::emit(ir::Op op)
@@ -171,7 +210,7 @@ Value* Emitter::emit(ir::Op op)
     case Op::mul: return builder.CreateFMul(a(), b());
     case Op::div: return builder.CreateFDiv(a(), b());
     case Op::neg: return builder.CreateFNeg(a());
-    case Op::fma: return builder.CreateIntrinsic(in::fma, {builder.getDoubleTy()}, {a(), b(), operands[2]});
+    case Op::fma: return builder.CreateIntrinsic(in::fma, {reals()}, {a(), b(), operands[2]});
     case Op::min: return intrinsic(in::minimum, a(), b());
     case Op::max: return intrinsic(in::maximum, a(), b());
     case Op::abs: return absolute(a());
@@ -186,26 +225,26 @@ Value* Emitter::emit(ir::Op op)
     case Op::length2:
     case Op::length3:
     case Op::length4: return length();
-    case Op::sin: return call("haptel_sin", {a()});
-    case Op::cos: return call("haptel_cos", {a()});
-    case Op::tan: return call("haptel_tan", {a()});
+    case Op::sin: return call("haptel_sin");
+    case Op::cos: return call("haptel_cos");
+    case Op::tan: return call("haptel_tan");
     case Op::sinturn: return sine_of_turns();
     case Op::costurn: return cosine_of_turns();
-    case Op::asin: return call("haptel_asin", {a()});
-    case Op::acos: return call("haptel_acos", {a()});
-    case Op::atan: return call("haptel_atan", {a()});
+    case Op::asin: return call("haptel_asin");
+    case Op::acos: return call("haptel_acos");
+    case Op::atan: return call("haptel_atan");
     case Op::atan2: return angle();
-    case Op::sinh: return call("haptel_sinh", {a()});
-    case Op::cosh: return call("haptel_cosh", {a()});
-    case Op::tanh: return call("haptel_tanh", {a()});
-    case Op::asinh: return call("haptel_asinh", {a()});
-    case Op::acosh: return call("haptel_acosh", {a()});
-    case Op::atanh: return call("haptel_atanh", {a()});
-    case Op::exp: return call("haptel_exp", {a()});
-    case Op::exp2: return call("haptel_exp2", {a()});
-    case Op::log: return call("haptel_log", {a()});
-    case Op::log2: return call("haptel_log2", {a()});
-    case Op::pow: return call("haptel_pow", {a(), b()});
+    case Op::sinh: return call("haptel_sinh");
+    case Op::cosh: return call("haptel_cosh");
+    case Op::tanh: return call("haptel_tanh");
+    case Op::asinh: return call("haptel_asinh");
+    case Op::acosh: return call("haptel_acosh");
+    case Op::atanh: return call("haptel_atanh");
+    case Op::exp: return call("haptel_exp");
+    case Op::exp2: return call("haptel_exp2");
+    case Op::log: return call("haptel_log");
+    case Op::log2: return call("haptel_log2");
+    case Op::pow: return call("haptel_pow");
     case Op::lt: return builder.CreateFCmpOLT(a(), b());
     case Op::le: return builder.CreateFCmpOLE(a(), b());
     case Op::eq: return builder.CreateFCmpOEQ(a(), b());
@@ -238,8 +277,8 @@ Value* Emitter::emit(ir::Op op)
     case Op::ushr: return builder.CreateLShr(a(), shift_count());
     case Op::umin: return intrinsic(in::umin, a(), b());
     case Op::umax: return intrinsic(in::umax, a(), b());
-    case Op::i_to_r: return builder.CreateSIToFP(a(), builder.getDoubleTy());
-    case Op::u_to_r: return builder.CreateUIToFP(a(), builder.getDoubleTy());
+    case Op::i_to_r: return builder.CreateSIToFP(a(), reals());
+    case Op::u_to_r: return builder.CreateUIToFP(a(), reals());
     case Op::r_to_i: return saturate(in::fptosi_sat);
     case Op::r_to_u: return saturate(in::fptoui_sat);
     case Op::spline: return read_image("haptel_spline", builder.getDoubleTy());
@@ -248,16 +287,17 @@ Value* Emitter::emit(ir::Op op)
     case Op::i_as_u:
     case Op::u_as_i:
     case Op::detach: return a();
-    case Op::b_to_i: return builder.CreateZExt(a(), builder.getInt32Ty());
+    case Op::b_to_i: return builder.CreateZExt(a(), words());
     }
     return nullptr;
 }
 
 } // namespace
 
-llvm::Value* emit_operation(llvm::IRBuilder<>& builder, ir::Op op, std::span<llvm::Value* const> operands)
+llvm::Value* emit_operation(llvm::IRBuilder<>& builder, ir::Op op, std::span<llvm::Value* const> operands,
+                            llvm::Type* real)
 {
-    return Emitter(builder, operands).emit(op);
+    return Emitter(builder, operands, real).emit(op);
 }
 
 std::span<const LibraryFunction> code_library()

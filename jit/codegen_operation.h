@@ -8,6 +8,9 @@
 
 namespace haptel::jit {
 
-llvm::Value* emit_operation(llvm::IRBuilder<>& builder, ir::Op op, std::span<llvm::Value* const> operands);
+// On scalars, or on vectors of as many lanes; an image is the same for all lanes. `real`: double or float, as the reals
+// among the operands are and the result will be.
+llvm::Value* emit_operation(llvm::IRBuilder<>& builder, ir::Op op, std::span<llvm::Value* const> operands,
+                            llvm::Type* real);
 
 } // namespace haptel::jit

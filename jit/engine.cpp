@@ -49,6 +49,7 @@ private:
     std::mutex compiling;
     std::string fault; // why there is no engine; empty: there is
     std::string machine_name;
+    Processor processor;
     std::unique_ptr<llvm::TargetMachine> quick_machine, full_machine;
     std::unique_ptr<orc::LLJIT> jit;
     orc::JITDylib* library = nullptr; // holds code_library()
@@ -65,7 +66,13 @@ public:
         Engine::get().remove(library);
         --alive;
     }
-    void add(const std::string& name, haptel_entry* address) { entries[name] = address; }
+    void add(const EntryPoint& entry, orc::ExecutorAddr address)
+    {
+        if (entry.is_batch)
+            batch_entries[entry.name] = address.toPtr<haptel_batch_entry*>();
+        else
+            entries[entry.name] = address.toPtr<haptel_entry*>();
+    }
 
 private:
     orc::JITDylib& library;
@@ -92,6 +99,11 @@ std::string Engine::start()
         if (!made) return "no code generator for " + machine_name + ": " + text(made.takeError());
         (quick ? quick_machine : full_machine) = std::move(*made);
     }
+
+    // Singles of two registers' width, where registers are narrow, hide the latency of one another's operations.
+    const llvm::MCSubtargetInfo& features = *quick_machine->getMCSubtargetInfo();
+    const bool has_avx512 = features.checkFeatures("+avx512f"), has_avx2 = features.checkFeatures("+avx2");
+    processor = {has_avx512 || has_avx2 ? 16u : 8u, has_avx512, features.checkFeatures("+avx512vbmi")};
 
     auto layout = quick_machine->createDataLayout();
     auto built = orc::LLJITBuilder()
@@ -135,7 +147,7 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     auto start = std::chrono::steady_clock::now();
 
     llvm::LLVMContext context;
-    std::unique_ptr<llvm::Module> generated = generate(module, entries, context);
+    std::unique_ptr<llvm::Module> generated = generate(module, entries, processor, context);
     generated->setDataLayout(machine(effort)->createDataLayout());
     generated->setTargetTriple(machine(effort)->getTargetTriple().str());
     std::string problem;
@@ -160,7 +172,7 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     for (const EntryPoint& entry : entries) {
         auto found = jit->lookup(*own, entry.name);
         if (!found) return {nullptr, "linking " + entry.name + " failed: " + text(found.takeError())};
-        code->add(entry.name, found->toPtr<haptel_entry*>());
+        code->add(entry, *found);
     }
     times.link_s = seconds_since(start);
     code->times = times;
@@ -179,6 +191,12 @@ haptel_entry* Code::entry(const std::string& name) const
 {
     const auto found = entries.find(name);
     return found == entries.end() ? nullptr : found->second;
+}
+
+haptel_batch_entry* Code::batch_entry(const std::string& name) const
+{
+    const auto found = batch_entries.find(name);
+    return found == batch_entries.end() ? nullptr : found->second;
 }
 
 CodeResult compile_code(const ir::Module& module, std::span<const EntryPoint> entries, Effort effort)

@@ -32,10 +32,12 @@ public:
     virtual ~Code() = default;
     // Of an entry point by its name; null if there is none.
     haptel_entry* entry(const std::string& name) const;
+    haptel_batch_entry* batch_entry(const std::string& name) const;
     CompileTimes times;
 
 protected:
     std::map<std::string, haptel_entry*> entries;
+    std::map<std::string, haptel_batch_entry*> batch_entries;
 };
 
 struct CodeResult {

@@ -11,7 +11,8 @@ namespace haptel::jit {
 
 namespace {
 
-constexpr char with_gradient = '\''; // h' of the texture h, among the names of entry points
+// Of the texture h among the names of entry points: h' with the gradient, h* and h'* for many points.
+constexpr char with_gradient = '\'', of_many = '*';
 
 haptel_parameter described(const ir::Parameter& parameter)
 {
@@ -27,15 +28,19 @@ haptel_parameter described(const ir::Parameter& parameter)
             parameter.offset,       parameter.value,        parameter.minimum,     parameter.maximum};
 }
 
-std::vector<EntryPoint> entry_points(const ir::Module& module, Entries wanted)
+std::vector<EntryPoint> entry_points(const ir::Module& module, Entries wanted, Precision precision)
 {
     std::vector<EntryPoint> entries;
     for (const ir::Texture& texture : module.textures) {
-        if (texture.height != UINT32_MAX && wanted == Entries::both)
-            entries.push_back({texture.name, &texture, EntryPoint::Kind::height});
+        if (texture.height != UINT32_MAX && wanted != Entries::height_gradient)
+            entries.push_back({texture.name, &texture, EntryPoint::Kind::height, false, precision});
         if (texture.height_gradient != UINT32_MAX)
-            entries.push_back({texture.name + with_gradient, &texture, EntryPoint::Kind::height_gradient});
+            entries.push_back(
+                {texture.name + with_gradient, &texture, EntryPoint::Kind::height_gradient, false, precision});
     }
+    const size_t of_one = wanted == Entries::both_and_batches ? entries.size() : 0;
+    for (size_t i = 0; i < of_one; ++i)
+        entries.push_back({entries[i].name + of_many, entries[i].texture, entries[i].kind, true, precision});
     return entries;
 }
 
@@ -62,7 +67,8 @@ CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, s
         table.push_back({HAPTEL_ABI_VERSION, sizeof(haptel_texture), texture.reads, texture.writes, texture.block_size,
                          static_cast<uint32_t>(list.size()), texture.name.c_str(), list.data(),
                          facts_over_ranges(module(), texture), code->entry(texture.name),
-                         code->entry(texture.name + with_gradient)});
+                         code->entry(texture.name + with_gradient), code->batch_entry(texture.name + of_many),
+                         code->batch_entry(texture.name + with_gradient + of_many)});
     }
 }
 
@@ -88,8 +94,8 @@ CompiledTextures compile_texture(std::string_view text, const TextureOptions& op
     std::string fault = ir::verify(checked.program->module);
     CodeResult code;
     if (fault.empty()) {
-        code = compile_code(checked.program->module, entry_points(checked.program->module, options.entries),
-                            options.effort);
+        code = compile_code(checked.program->module,
+                            entry_points(checked.program->module, options.entries, options.precision), options.effort);
         fault = code.error;
     }
     if (!fault.empty()) {

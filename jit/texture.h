@@ -43,8 +43,9 @@ private:
     std::vector<haptel_texture> table;
 };
 
-// Which entries of each texture become code. A servo calls height_gradient alone.
-enum class Entries : uint8_t { height_gradient, both };
+// Which entries of each texture become code. A servo calls height_gradient alone; the batches are for pictures and
+// figures.
+enum class Entries : uint8_t { height_gradient, both, both_and_batches };
 
 struct TextureOptions {
     std::string name = "texture.haptel"; // of the text, in messages
@@ -53,6 +54,7 @@ struct TextureOptions {
     lang::ImportLoader load_import = {}; // empty: imports are errors
     std::string only_texture = {};       // compile this one alone; empty: all
     Effort effort = Effort::quick;
+    Precision precision = Precision::f64; // of every entry
 };
 
 struct CompiledTextures {

@@ -105,6 +105,22 @@ typedef struct {
 
 typedef void haptel_entry(const haptel_point*, const void* block, haptel_sample*);
 
+/* Many points and their samples, an array per number: what one point holds, each a pointer to as many values as there
+ * are points. Of the inputs only those that `reads` names need an array; an output without one (null) is not written.
+ * No output may share memory with an input.
+ */
+typedef struct {
+    const double *p[3], *n[3], *uv[2], *time_s, *n_dp[3][3], *uv_dp[2][3];
+} haptel_points;
+
+typedef struct {
+    double *height_m, *gradient[3], *stiffness_scale, *friction_scale;
+    uint32_t* faults;
+} haptel_samples;
+
+/* Each sample is that of the entry for one point, bit for bit. */
+typedef void haptel_batch_entry(const haptel_points*, uint64_t count, const void* block, const haptel_samples*);
+
 /* `size` is sizeof(haptel_texture) of the writer: entries appended later are absent where it is smaller. */
 typedef struct {
     uint32_t abi, size;
@@ -115,6 +131,7 @@ typedef struct {
     haptel_facts facts;            /* over the parameters' ranges and any point; a binding carries sharper ones */
     haptel_entry* height;          /* height_m and faults only; 0: not compiled */
     haptel_entry* height_gradient; /* the same height, bit for bit, and the gradient; 0: not compiled */
+    haptel_batch_entry *height_batch, *height_gradient_batch; /* of many points; 0: not compiled */
 } haptel_texture;
 
 #ifdef __cplusplus

@@ -138,6 +138,7 @@ TEST_CASE("every operation gives the interpreter's bits, special values included
         INFO(texture.name << " differs for " << different << " inputs, first " << first[0] << ", " << first[1] << ", "
                           << first[2] << ", " << first[3]);
         CHECK(different == 0);
+        CHECK(engines.batches_agree(texture));
     }
 }
 
@@ -163,5 +164,7 @@ TEST_CASE("random programs with branches, loops, calls and tables give the inter
                 REQUIRE(agree);
             }
         }
+        INFO("seed " << seed);
+        REQUIRE(engines.batches_agree(module.textures[0]));
     }
 }

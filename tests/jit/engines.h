@@ -1,4 +1,4 @@
-// One module on every engine: interpreter, code compiled quickly, code compiled with full effort.
+// One module on every engine: interpreter, code compiled quickly, code compiled with full effort, batches of both.
 #pragma once
 
 #include "jit/engine.h"
@@ -44,6 +44,7 @@ public:
             entries.push_back({texture.name, &texture, jit::EntryPoint::Kind::height});
             if (texture.height_gradient != UINT32_MAX)
                 entries.push_back({texture.name + "'", &texture, jit::EntryPoint::Kind::height_gradient});
+            entries.push_back({texture.name + "*", &texture, jit::EntryPoint::Kind::height, true});
         }
         for (jit::Effort effort : {jit::Effort::quick, jit::Effort::full}) {
             jit::CodeResult result = jit::compile_code(module, entries, effort);
@@ -69,7 +70,34 @@ public:
             one->entry(texture.name)(&arguments.point, arguments.block.data(), &sample);
             agree = agree && same(sample.height_m, expected);
         }
+        for (size_t i = 0; i < 4; ++i) asked[i].push_back(input[i]);
+        answers.push_back(expected);
         return expected;
+    }
+
+    // Whether batches of all sizes over the points asked for since the last call give the same heights.
+    bool batches_agree(const ir::Texture& texture)
+    {
+        bool agree = true;
+        const Arguments arguments;
+        for (const auto& one : code) {
+            size_t size = 1;
+            for (size_t first = 0; first < answers.size(); first += size, size = size % 19 + 1) {
+                size = std::min(size, answers.size() - first);
+                std::vector<double> heights(size + 1, 123.0); // the last is not the batch's to write
+                haptel_points points{};
+                for (size_t i = 0; i < 3; ++i) points.p[i] = asked[i].data() + first;
+                points.n[0] = asked[3].data() + first;
+                haptel_samples samples{};
+                samples.height_m = heights.data();
+                one->batch_entry(texture.name + "*")(&points, size, arguments.block.data(), &samples);
+                for (size_t i = 0; i < size; ++i) agree = agree && same(heights[i], answers[first + i]);
+                agree = agree && heights[size] == 123.0;
+            }
+        }
+        for (auto& coordinate : asked) coordinate.clear();
+        answers.clear();
+        return agree;
     }
 
     std::vector<std::shared_ptr<const jit::Code>> code; // quick, full
@@ -77,6 +105,7 @@ public:
 private:
     const ir::Module& module;
     ir::Interpreter<double> interpreter;
+    std::vector<double> asked[4], answers; // since batches_agree
 };
 
 } // namespace haptel::test

@@ -1,0 +1,241 @@
+#include "jit/codegen_function.h"
+
+#include "jit/codegen_operation.h"
+#include "jit/codegen_table.h"
+#include "lang/abi.h"
+
+#include <cstddef>
+
+namespace haptel::jit {
+
+namespace {
+
+using llvm::Value;
+
+// ir::Input counts the doubles of haptel_point, then those of haptel_block_head.
+constexpr size_t point_inputs = static_cast<size_t>(ir::Input::center_x);
+static_assert(sizeof(haptel_point) == point_inputs * sizeof(double));
+static_assert(sizeof(haptel_points) == point_inputs * sizeof(double*));
+static_assert(sizeof(haptel_block_head) == (ir::input_count - point_inputs) * sizeof(double));
+static_assert(offsetof(haptel_point, time_s) == static_cast<size_t>(ir::Input::time) * sizeof(double));
+static_assert(offsetof(haptel_points, time_s) == static_cast<size_t>(ir::Input::time) * sizeof(double*));
+static_assert(offsetof(haptel_point, uv_dp) == static_cast<size_t>(ir::Input::uv_dp_00) * sizeof(double));
+static_assert(offsetof(haptel_points, uv_dp) == static_cast<size_t>(ir::Input::uv_dp_00) * sizeof(double*));
+static_assert(offsetof(haptel_block_head, footprint_m) ==
+              (static_cast<size_t>(ir::Input::footprint) - point_inputs) * sizeof(double));
+
+} // namespace
+
+FunctionEmitter::FunctionEmitter(ModuleEmitter& owner, const ir::Function& from, llvm::Function& to,
+                                 const ValueForms& value_forms, const EntryArguments& entry)
+    : module(owner)
+    , source(from)
+    , target(to)
+    , forms(value_forms)
+    , arguments(entry)
+    , builder(&to.back())
+    , values(from.value_types.size())
+{
+}
+
+Value* FunctionEmitter::value(ir::Value used, Form wanted)
+{
+    Value* held = value(used);
+    if (source.type(used) == ir::Type::image) return held;
+    if (source.type(used) == ir::Type::real) held = rounded(held, wanted.is_single);
+    return wanted.in_lanes && !forms[used].in_lanes ? builder.CreateVectorSplat(module.lanes, held) : held;
+}
+
+Value* FunctionEmitter::rounded(Value* real, bool to_single)
+{
+    llvm::Type* from = real->getType();
+    if (from->getScalarType()->isFloatTy() == to_single) return real;
+    llvm::Type* to = from->getWithNewType(to_single ? builder.getFloatTy() : builder.getDoubleTy());
+    return to_single ? builder.CreateFPTrunc(real, to) : builder.CreateFPExt(real, to);
+}
+
+llvm::BasicBlock* FunctionEmitter::new_block(const char* name)
+{
+    return llvm::BasicBlock::Create(target.getContext(), name, &target);
+}
+
+Value* FunctionEmitter::at_offset(Value* base, size_t offset)
+{
+    return builder.CreateConstInBoundsGEP1_64(builder.getInt8Ty(), base, offset);
+}
+
+std::vector<Value*> FunctionEmitter::block(const ir::Block& from, const std::vector<Form>& yield_forms)
+{
+    for (const ir::Instruction& instruction : from.instructions)
+        std::visit([&](const auto& kind) { emit(instruction, kind); }, instruction.kind);
+    std::vector<Value*> yields;
+    for (size_t i = 0; i < from.yields.size(); ++i) yields.push_back(value(from.yields[i], yield_forms[i]));
+    return yields;
+}
+
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::Operation& operation)
+{
+    const Form form = forms[made.results[0]];
+    bool in_singles = forms.is_varying(made.results[0]) && !forms.is_wide(made.results[0]);
+    for (ir::Value used : made.operands)
+        if (source.type(used) == ir::Type::real && forms.is_varying(used) && forms.is_wide(used)) in_singles = false;
+    Value* operands[4];
+    const size_t count = made.operands.size();
+    for (size_t i = 0; i < count; ++i) operands[i] = value(made.operands[i], {form.in_lanes, in_singles});
+    llvm::Type* real = in_singles ? builder.getFloatTy() : builder.getDoubleTy();
+    Value* result = emit_operation(builder, operation.op, {operands, count}, real);
+    define(made.results[0], source.type(made.results[0]) == ir::Type::real ? rounded(result, form.is_single) : result);
+}
+
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::RealConstant& constant)
+{
+    define(made.results[0], llvm::ConstantFP::get(builder.getDoubleTy(), constant.value));
+}
+
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::IntConstant& constant)
+{
+    define(made.results[0], builder.getInt32(constant.bits));
+}
+
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::BoolConstant& constant)
+{
+    define(made.results[0], builder.getInt1(constant.value));
+}
+
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::ReadInput& read)
+{
+    const auto index = static_cast<size_t>(read.input);
+    llvm::Type* real = builder.getDoubleTy();
+    if (index >= point_inputs)
+        return define(made.results[0],
+                      builder.CreateLoad(real, at_offset(arguments.block, (index - point_inputs) * sizeof(double))));
+    if (!arguments.is_there)
+        return define(made.results[0],
+                      rounded(builder.CreateLoad(real, at_offset(arguments.points, index * sizeof(double))),
+                              forms[made.results[0]].is_single));
+    Value* array = builder.CreateLoad(builder.getPtrTy(), at_offset(arguments.points, index * sizeof(double*)));
+    llvm::Type* lanes = llvm::FixedVectorType::get(real, module.lanes);
+    Value* loaded =
+        builder.CreateMaskedLoad(lanes, builder.CreateInBoundsGEP(real, array, arguments.first),
+                                 llvm::Align(alignof(double)), arguments.is_there, llvm::Constant::getNullValue(lanes));
+    define(made.results[0], rounded(loaded, forms[made.results[0]].is_single));
+}
+
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::ReadParameter& read)
+{
+    const ir::Parameter& parameter = arguments.texture->parameters[read.parameter];
+    const bool is_boolean = parameter.type == ir::Type::boolean; // held as int32_t
+    llvm::Type* held_as = is_boolean ? builder.getInt32Ty() : module.type(parameter.type, {});
+    Value* held = builder.CreateLoad(held_as, at_offset(arguments.block, parameter.offset));
+    define(made.results[0], is_boolean ? builder.CreateICmpNE(held, builder.getInt32(0)) : held);
+}
+
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::ReadTable& read)
+{
+    const Form form = forms[made.results[0]];
+    Value* const index = value(made.operands[0]);
+    if (form.in_lanes)
+        return define(made.results[0], read_in_lanes(module, builder, read.table, index, form.is_single));
+    llvm::Type* cells = type(made.results[0]);
+    Value* wide = builder.CreateZExt(index, builder.getInt64Ty());
+    Value* cell = builder.CreateInBoundsGEP(cells, module.table(read.table, form.is_single), wide);
+    define(made.results[0], builder.CreateLoad(cells, cell));
+}
+
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::Call& call)
+{
+    std::vector<bool> varying, wide;
+    for (ir::Value operand : made.operands) varying.push_back(forms.is_varying(operand));
+    for (ir::Value result : made.results) wide.push_back(forms.is_wide(result));
+    const ModuleEmitter::Function& callee = module.function(call.function, varying, wide);
+    std::vector<Value*> operands;
+    for (size_t i = 0; i < made.operands.size(); ++i)
+        operands.push_back(
+            value(made.operands[i], (*callee.forms)[module.source.functions[call.function].parameters[i]]));
+    llvm::CallInst* result = builder.CreateCall(callee.code, operands);
+    result->setCallingConv(llvm::CallingConv::Fast);
+    if (made.results.size() == 1) return define(made.results[0], result);
+    for (unsigned i = 0; i < made.results.size(); ++i) define(made.results[i], builder.CreateExtractValue(result, i));
+}
+
+// In no program that passes `verify`.
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::PointDerivative&)
+{
+    define(made.results[0], llvm::ConstantFP::getNaN(type(made.results[0])));
+}
+
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::If& choice)
+{
+    std::vector<Form> results;
+    for (ir::Value result : made.results) results.push_back(forms[result]);
+    Value* condition = value(made.operands[0]);
+    std::vector<Value*> yields[2];
+    if (forms[made.operands[0]].in_lanes) {
+        for (size_t i = 0; i < 2; ++i) yields[i] = block(choice.arms[i], results);
+        for (size_t i = 0; i < made.results.size(); ++i)
+            define(made.results[i], builder.CreateSelect(condition, yields[0][i], yields[1][i]));
+        return;
+    }
+    llvm::BasicBlock* arms[] = {new_block("then"), new_block("else")};
+    llvm::BasicBlock* join = new_block("join");
+    builder.CreateCondBr(condition, arms[0], arms[1]);
+    for (size_t i = 0; i < 2; ++i) {
+        builder.SetInsertPoint(arms[i]);
+        yields[i] = block(choice.arms[i], results);
+        arms[i] = builder.GetInsertBlock(); // where the arm ends
+        builder.CreateBr(join);
+    }
+    builder.SetInsertPoint(join);
+    for (size_t i = 0; i < made.results.size(); ++i) {
+        llvm::PHINode* phi = builder.CreatePHI(type(made.results[i]), 2);
+        phi->addIncoming(yields[0][i], arms[0]);
+        phi->addIncoming(yields[1][i], arms[1]);
+        define(made.results[i], phi);
+    }
+}
+
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::For& loop)
+{
+    const ir::Block& body = loop.body[0];
+    Value* const count = value(made.operands[0]);
+    const bool count_varies = forms[made.operands[0]].in_lanes;
+    Value* const largest = count_varies ? builder.CreateIntMaxReduce(count, true) : count;
+    std::vector<Value*> initial;
+    std::vector<Form> held;
+    for (size_t i = 1; i < body.parameters.size(); ++i) {
+        held.push_back(forms[body.parameters[i]]);
+        initial.push_back(value(made.operands[i], held.back()));
+    }
+    llvm::BasicBlock* before = builder.GetInsertBlock();
+    llvm::BasicBlock* head = new_block("loop");
+    llvm::BasicBlock* inside = new_block("body");
+    llvm::BasicBlock* after = new_block("done");
+    builder.CreateBr(head);
+
+    builder.SetInsertPoint(head);
+    llvm::PHINode* iteration = builder.CreatePHI(builder.getInt32Ty(), 2);
+    iteration->addIncoming(builder.getInt32(0), before);
+    define(body.parameters[0], iteration);
+    std::vector<llvm::PHINode*> carried;
+    for (size_t i = 0; i < initial.size(); ++i) {
+        carried.push_back(builder.CreatePHI(initial[i]->getType(), 2));
+        carried[i]->addIncoming(initial[i], before);
+        define(body.parameters[i + 1], carried[i]);
+    }
+    builder.CreateCondBr(builder.CreateICmpSLT(iteration, largest), inside, after);
+
+    builder.SetInsertPoint(inside);
+    std::vector<Value*> next = block(body, held);
+    if (count_varies) {
+        Value* goes_on = builder.CreateICmpSLT(builder.CreateVectorSplat(module.lanes, iteration), count);
+        for (size_t i = 0; i < next.size(); ++i) next[i] = builder.CreateSelect(goes_on, next[i], carried[i]);
+    }
+    iteration->addIncoming(builder.CreateNSWAdd(iteration, builder.getInt32(1)), builder.GetInsertBlock());
+    for (size_t i = 0; i < next.size(); ++i) carried[i]->addIncoming(next[i], builder.GetInsertBlock());
+    builder.CreateBr(head);
+
+    builder.SetInsertPoint(after);
+    for (size_t i = 0; i < made.results.size(); ++i) define(made.results[i], carried[i]);
+}
+
+} // namespace haptel::jit

@@ -1,0 +1,66 @@
+// One IR function as the body of an LLVM function, for one point or for many lanes: points side by side in a register.
+//
+// In lanes, what varies between points is a vector with an element for each, and the rest stays a scalar. A branch on
+// what varies runs both arms and selects; a loop whose count varies runs to the largest, and a lane that is through
+// keeps what it has. Operations are total and pure, so each lane has the bits of the form for one point.
+//
+// An operation with an f64 operand that varies computes in f64 and rounds its result to what it is held in.
+#pragma once
+
+#include "jit/codegen_module.h"
+
+#include <vector>
+
+namespace haptel::jit {
+
+// What an entry reads from; null in other functions.
+struct EntryArguments {
+    llvm::Value* points = nullptr; // haptel_point; in lanes, haptel_points
+    llvm::Value* block = nullptr;
+    const ir::Texture* texture = nullptr;
+    llvm::Value* first = nullptr;    // in lanes: which point is in the first of them,
+    llvm::Value* is_there = nullptr; // and in which there is one at all
+};
+
+class FunctionEmitter {
+public:
+    // Writes to the end of `to`'s last block.
+    FunctionEmitter(ModuleEmitter& owner, const ir::Function& from, llvm::Function& to, const ValueForms& value_forms,
+                    const EntryArguments& entry = {});
+
+    void define(ir::Value value, llvm::Value* made) { values[value.index] = made; }
+    // The function's results in those forms.
+    std::vector<llvm::Value*> body(const std::vector<Form>& results) { return block(source.body, results); }
+    llvm::IRBuilder<>& at_end() { return builder; }
+
+private:
+    ModuleEmitter& module;
+    const ir::Function& source;
+    llvm::Function& target;
+    const ValueForms& forms;
+    const EntryArguments arguments;
+    llvm::IRBuilder<> builder;
+    std::vector<llvm::Value*> values; // by ir::Value::index
+
+    llvm::Value* value(ir::Value used) const { return values[used.index]; }
+    llvm::Value* value(ir::Value used, Form wanted);
+    llvm::Value* rounded(llvm::Value* real, bool to_single);
+    llvm::Type* type(ir::Value of) { return module.type(source.type(of), forms[of]); }
+    llvm::BasicBlock* new_block(const char* name);
+    llvm::Value* at_offset(llvm::Value* base, size_t offset);
+
+    std::vector<llvm::Value*> block(const ir::Block& from, const std::vector<Form>& yields);
+    void emit(const ir::Instruction& made, const ir::Operation& operation);
+    void emit(const ir::Instruction& made, const ir::RealConstant& constant);
+    void emit(const ir::Instruction& made, const ir::IntConstant& constant);
+    void emit(const ir::Instruction& made, const ir::BoolConstant& constant);
+    void emit(const ir::Instruction& made, const ir::ReadInput& read);
+    void emit(const ir::Instruction& made, const ir::ReadParameter& read);
+    void emit(const ir::Instruction& made, const ir::ReadTable& read);
+    void emit(const ir::Instruction& made, const ir::Call& call);
+    void emit(const ir::Instruction& made, const ir::PointDerivative& derivative);
+    void emit(const ir::Instruction& made, const ir::If& choice);
+    void emit(const ir::Instruction& made, const ir::For& loop);
+};
+
+} // namespace haptel::jit

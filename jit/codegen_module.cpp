@@ -1,0 +1,117 @@
+#include "jit/codegen_module.h"
+
+#include "jit/codegen_function.h"
+#include "jit/uniformity.h"
+
+#include <algorithm>
+
+namespace haptel::jit {
+
+namespace {
+
+bool any(const std::vector<bool>& flags)
+{
+    return std::find(flags.begin(), flags.end(), true) != flags.end();
+}
+
+} // namespace
+
+llvm::Type* ModuleEmitter::type(ir::Type type, Form form)
+{
+    llvm::LLVMContext& context = target.getContext();
+    const auto lanes_of = [&](llvm::Type* scalar) -> llvm::Type* {
+        return form.in_lanes ? llvm::FixedVectorType::get(scalar, lanes) : scalar;
+    };
+    switch (type) {
+    case ir::Type::real:
+        return lanes_of(form.is_single ? llvm::Type::getFloatTy(context) : llvm::Type::getDoubleTy(context));
+    case ir::Type::i32:
+    case ir::Type::u32: return lanes_of(llvm::Type::getInt32Ty(context));
+    case ir::Type::boolean: return lanes_of(llvm::Type::getInt1Ty(context));
+    case ir::Type::image: return llvm::PointerType::getUnqual(context); // the same for every point
+    }
+    return nullptr;
+}
+
+llvm::GlobalVariable* ModuleEmitter::table(uint32_t index, bool is_single)
+{
+    llvm::GlobalVariable*& made = tables[{index, is_single}];
+    if (made) return made;
+    const ir::Table& table = source.tables[index];
+    llvm::LLVMContext& context = target.getContext();
+    const std::vector<float> singles(table.reals.begin(), table.reals.end());
+    llvm::Constant* cells = table.element != ir::Type::real ? llvm::ConstantDataArray::get(context, table.words)
+                            : is_single                     ? llvm::ConstantDataArray::get(context, singles)
+                                                            : llvm::ConstantDataArray::get(context, table.reals);
+    made = new llvm::GlobalVariable(target, cells->getType(), true, llvm::GlobalValue::InternalLinkage, cells);
+    made->setUnnamedAddr(llvm::GlobalValue::UnnamedAddr::Global);
+    return made;
+}
+
+ValueForms ModuleEmitter::forms(uint32_t index, const std::vector<bool>& arguments,
+                                const std::vector<bool>& wide_results) const
+{
+    const ir::Function& from = source.functions[index];
+    return {from, varying_values(from, arguments), plan.wide_values(index, wide_results), lanes};
+}
+
+// The results of a function vary together.
+Form ModuleEmitter::Key::result(const ir::Function& of, size_t i, uint32_t lane_count) const
+{
+    const bool varies = any(arguments), is_real = of.type(of.body.yields[i]) == ir::Type::real;
+    return {lane_count > 1 && varies, is_real && varies && !wide_results[i]};
+}
+
+const ModuleEmitter::Function& ModuleEmitter::function(uint32_t index, const std::vector<bool>& arguments,
+                                                       const std::vector<bool>& wide_results)
+{
+    const auto [place, is_new] = functions.try_emplace({index, arguments, wide_results});
+    Function& made = place->second;
+    if (!is_new) return made;
+    const ir::Function& from = source.functions[index];
+    made.forms = std::make_shared<const ValueForms>(forms(index, arguments, wide_results));
+    std::vector<llvm::Type*> parameters, results;
+    for (ir::Value parameter : from.parameters)
+        parameters.push_back(type(from.type(parameter), (*made.forms)[parameter]));
+    for (size_t i = 0; i < from.body.yields.size(); ++i)
+        results.push_back(type(from.type(from.body.yields[i]), place->first.result(from, i, lanes)));
+    llvm::Type* result = results.size() == 1 ? results[0] : llvm::StructType::get(target.getContext(), results);
+    made.code = llvm::Function::Create(llvm::FunctionType::get(result, parameters, false),
+                                       llvm::GlobalValue::InternalLinkage, from.name, target);
+    made.code->setCallingConv(llvm::CallingConv::Fast);
+    made.code->setDoesNotThrow();
+    const bool reads_images = std::any_of(from.parameters.begin(), from.parameters.end(),
+                                          [&](ir::Value value) { return from.type(value) == ir::Type::image; });
+    reads_images ? made.code->setOnlyReadsMemory() : made.code->setDoesNotAccessMemory();
+    made.code->setWillReturn();
+    unfinished.push_back(place);
+    return made;
+}
+
+// A list, not a recursion: functions may call each other in long chains.
+void ModuleEmitter::finish()
+{
+    while (!unfinished.empty()) {
+        const auto next = unfinished.back();
+        unfinished.pop_back();
+        write_body(next->first, next->second);
+    }
+}
+
+void ModuleEmitter::write_body(const Key& key, const Function& function)
+{
+    const ir::Function& from = source.functions[key.index];
+    llvm::BasicBlock::Create(target.getContext(), "", function.code);
+    FunctionEmitter emitter(*this, from, *function.code, *function.forms);
+    for (size_t i = 0; i < from.parameters.size(); ++i)
+        emitter.define(from.parameters[i], function.code->getArg(static_cast<unsigned>(i)));
+    std::vector<Form> results;
+    for (size_t i = 0; i < from.body.yields.size(); ++i) results.push_back(key.result(from, i, lanes));
+    const std::vector<llvm::Value*> yields = emitter.body(results);
+    if (yields.size() == 1)
+        emitter.at_end().CreateRet(yields[0]);
+    else
+        emitter.at_end().CreateAggregateRet(yields.data(), static_cast<unsigned>(yields.size()));
+}
+
+} // namespace haptel::jit

@@ -1,0 +1,191 @@
+// Many points at once: each sample of a batch is that of the entry for one point, bit for bit.
+#include "jit/uniformity.h"
+#include "lang/ir/text.h"
+#include "tests/jit/samples.h"
+
+#include <filesystem>
+#include <random>
+
+using namespace haptel;
+
+namespace {
+
+constexpr size_t reals = sizeof(haptel_point) / sizeof(double);
+
+// Numbers of a batch, an array each, as haptel_points and haptel_samples want them.
+struct Batch {
+    explicit Batch(const std::vector<haptel_point>& of) : count(of.size()), inputs(reals, std::vector<double>(count))
+    {
+        for (size_t i = 0; i < count; ++i)
+            for (size_t j = 0; j < inputs.size(); ++j)
+                std::memcpy(&inputs[j][i], reinterpret_cast<const char*>(&of[i]) + j * sizeof(double), sizeof(double));
+        const double* arrays[reals];
+        for (size_t j = 0; j < inputs.size(); ++j) arrays[j] = inputs[j].data();
+        static_assert(sizeof points == sizeof arrays);
+        std::memcpy(&points, arrays, sizeof points);
+        samples = {outputs[0].data(),
+                   {outputs[1].data(), outputs[2].data(), outputs[3].data()},
+                   outputs[4].data(),
+                   outputs[5].data(),
+                   faults.data()};
+    }
+    haptel_sample sample(size_t i) const
+    {
+        return {outputs[0][i], {outputs[1][i], outputs[2][i], outputs[3][i]}, outputs[4][i], outputs[5][i], faults[i]};
+    }
+
+    size_t count;
+    std::vector<std::vector<double>> inputs, outputs = std::vector(6, std::vector<double>(count));
+    std::vector<uint32_t> faults = std::vector<uint32_t>(count);
+    haptel_points points{};
+    haptel_samples samples{};
+};
+
+bool same(const haptel_sample& a, const haptel_sample& b)
+{
+    bool equal = a.faults == b.faults && test::same(a.height_m, b.height_m) &&
+                 test::same(a.stiffness_scale, b.stiffness_scale) && test::same(a.friction_scale, b.friction_scale);
+    for (size_t i = 0; i < 3; ++i) equal = equal && test::same(a.gradient[i], b.gradient[i]);
+    return equal;
+}
+
+std::vector<haptel_point> random_points(size_t count, std::mt19937_64& random)
+{
+    std::uniform_real_distribution<double> unit(-1, 1), exponent(-6, 3);
+    std::vector<haptel_point> points(count);
+    for (haptel_point& point : points) {
+        double held[reals];
+        for (double& real : held) real = unit(random) * (random() % 8 == 0 ? std::pow(10, exponent(random)) : 0.05);
+        std::memcpy(&point, held, sizeof point);
+    }
+    points[0] = {}; // whole zeros
+    return points;
+}
+
+std::vector<std::string> texture_files()
+{
+    std::vector<std::string> files;
+    for (const char* folder : {"/stdlib/tests", "/examples/textures"})
+        for (const auto& entry : std::filesystem::directory_iterator(HAPTEL_SOURCE_DIR + std::string(folder)))
+            if (entry.path().extension() == ".haptel") files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+} // namespace
+
+TEST_CASE("batches of every texture of the library and of the examples have the bits of single points")
+{
+    const jit::Precision precision = GENERATE(jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32);
+    std::mt19937_64 random(5);
+    size_t compared = 0;
+    for (const std::string& file : texture_files()) {
+        jit::TextureOptions options;
+        options.entries = jit::Entries::both_and_batches;
+        options.precision = precision;
+        const jit::CompiledTextures compiled = jit::compile_texture_file(file, options);
+        INFO(compiled.rendered());
+        REQUIRE(compiled.program);
+        for (const haptel_texture& texture : compiled.program->textures()) {
+            const TextureResult result =
+                jit::make_binding(compiled.program, texture.name, test::request_over(0.05), jit::Unbounded::allowed);
+            INFO(file << " " << texture.name << " " << result.diagnostics);
+            REQUIRE(result.binding);
+            const std::vector<haptel_point> points = random_points(203, random);
+            Batch batch(points), heights(points);
+            texture.height_gradient_batch(&batch.points, batch.count, result.binding->block, &batch.samples);
+            heights.samples = {heights.outputs[0].data(), {}, nullptr, nullptr, nullptr};
+            texture.height_batch(&heights.points, heights.count, result.binding->block, &heights.samples);
+            size_t different = 0;
+            for (size_t i = 0; i < points.size(); ++i) {
+                haptel_sample one{};
+                texture.height_gradient(&points[i], result.binding->block, &one);
+                different += !same(one, batch.sample(i)) || !test::same(one.height_m, heights.outputs[0][i]);
+            }
+            CHECK(different == 0);
+            ++compared;
+        }
+    }
+    CHECK(compared > 100);
+}
+
+TEST_CASE("mixed precision keeps its place within a cell, however far away; f32 does not")
+{
+    const std::string source = R"(
+        texture fractal() { return 1mm * fbm(p / 1mm, 8); }
+        texture hills() { return 1mm * perlin(p / 1mm); }
+        texture paper() { return 1mm * noise(p / 1mm); }
+        texture warped() { return 1mm * perlin(p / 1mm + 0.5 * vec3(perlin(p / 3mm))); }
+        texture waves() { return 1mm * fourier(p.xy / 1mm, 7); })";
+    jit::TextureOptions options;
+    const jit::CompiledTextures exact = jit::compile_texture(source, options);
+    options.precision = jit::Precision::mixed;
+    const jit::CompiledTextures mixed = jit::compile_texture(source, options);
+    options.precision = jit::Precision::f32;
+    const jit::CompiledTextures single = jit::compile_texture(source, options);
+    REQUIRE((exact.program && mixed.program && single.program));
+    std::mt19937_64 random(6);
+    for (size_t i = 0; i < exact.program->textures().size(); ++i) {
+        const haptel_texture& texture = exact.program->textures()[i];
+        for (const double cells : {1.0, 1e3, 1e7}) {
+            std::uniform_real_distribution<double> place(-cells * 1e-3, cells * 1e-3);
+            double largest = 0, off[2] = {};
+            const haptel_block_head block{};
+            for (int k = 0; k < 1000; ++k) {
+                const haptel_point point{{place(random), place(random), place(random)}, {}, {}, 0, {}, {}};
+                haptel_sample truth{}, found{};
+                texture.height_gradient(&point, &block, &truth);
+                for (const auto& [program, worst] : {std::pair{&mixed, &off[0]}, std::pair{&single, &off[1]}}) {
+                    program->program->textures()[i].height_gradient(&point, &block, &found);
+                    for (size_t axis = 0; axis < 3; ++axis) {
+                        largest = std::max(largest, std::fabs(truth.gradient[axis]));
+                        *worst = std::max(*worst, std::fabs(found.gradient[axis] - truth.gradient[axis]));
+                    }
+                }
+            }
+            INFO(texture.name << " at " << cells << " cells: mixed " << off[0] / largest << ", f32 "
+                              << off[1] / largest);
+            CHECK(off[0] < (std::string(texture.name) == "fractal" ? 2e-6 : 4e-6) * largest);
+            CHECK((cells < 1e7 || off[1] > 1e-2 * largest));
+        }
+    }
+}
+
+TEST_CASE("what the block holds is one for all lanes, what the point holds is not")
+{
+    const ir::ParsedModule parsed = ir::parse(R"(function "f" () {
+  %0 = input p_x
+  %1 = input extent_x
+  %2 = r_to_i %1
+  %3 = i32 9
+  %4 = imin %2, %3
+  %5, %6 = for %4 max 9 (%7, %8, %9) from (%1, %1) {
+    %10 = add %8, %0
+    %11 = mul %9, %9
+    yield %10, %11
+  }
+  %12 = lt %1, %0
+  %13, %14 = if %12 {
+    yield %1, %1
+  } else {
+    yield %6, %1
+  }
+  %15 = lt %1, %6
+  %16, %17 = if %15 {
+    yield %0, %1
+  } else {
+    yield %1, %6
+  }
+  return %5, %16
+})");
+    INFO(parsed.error);
+    REQUIRE(parsed.module);
+    const ir::Function& function = parsed.module->functions[0];
+    const std::vector<bool> varies = jit::varying_values(function, {});
+    std::string results; // of the instructions in their order
+    for (const ir::Instruction& made : function.body.instructions) {
+        for (ir::Value result : made.results) results += varies[result.index] ? 'v' : 'u';
+        results += ' ';
+    }
+    CHECK(results == "v u u u u vu v vv u vu ");
+}
