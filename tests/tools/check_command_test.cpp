@@ -201,6 +201,7 @@ TEST_CASE("check: --strict makes warnings errors, in the exit code and in JSON")
     CHECK(Json::parse(lenient.out)["textures"].size() == 1);
     expected["severity"] = "error";
     CHECK(Json::parse(strict.out)["diagnostics"] == Json::array({expected}));
+    CHECK(Json::parse(strict.out)["textures"] == Json::parse(lenient.out)["textures"]);
 }
 
 TEST_CASE("check: --explain tells what a code means, lists all, and knows a slip of the pen")
