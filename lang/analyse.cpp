@@ -130,6 +130,30 @@ void report(const ir::Undefined& found, Diagnostics& diagnostics)
     }
 }
 
+// A scale that is no number, or would pull instead of push, counts as 1: no author means that.
+void report_scales(const ir::Texture& texture, std::span<const ir::Interval> scales, Diagnostics& diagnostics)
+{
+    constexpr const char* names[] = {"stiffness_scale", "friction_scale"}; // by bit
+    size_t next = 0;
+    for (uint32_t bit = 0; bit < std::size(names); ++bit) {
+        if (!(texture.writes >> bit & 1)) continue;
+        const ir::Interval& scale = scales[next];
+        const Span span = next < texture.output_spans.size() ? texture.output_spans[next] : texture.span;
+        ++next;
+        const bool is_negative = scale.is_finite(); // else that is worse
+        if (is_negative && scale.minimum >= 0) continue;
+        const std::string what = scale.is_empty() ? "is not a number" : "lies in " + shown(scale);
+        diagnostics
+            .warning(span, "scale",
+                     std::string(names[bit]) + " of '" + texture.name + "' may be " +
+                         (is_negative ? "negative" : "not finite") + ": it " + what)
+            .hint = is_negative
+                        ? "keep it at 0 or above, with max(x, 0.0) or clamp(); where it is negative it counts as 1"
+                        : "keep it bounded, with clamp(), or its divisors away from 0; where it is not finite it "
+                          "counts as 1";
+    }
+}
+
 } // namespace
 
 Analysis analyse(const Program& program, const ir::Texture& texture, std::span<const double> values,
@@ -143,7 +167,10 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
         over_ranges.parameters.push_back(range_of(texture.parameters[i], values[i]));
     }
     const Analysis found{ir::texture_bounds(program.module, texture, at_values),
-                         ir::texture_bounds(program.module, texture, over_ranges)};
+                         ir::texture_bounds(program.module, texture, over_ranges),
+                         ir::output_bounds(program.module, texture, at_values),
+                         ir::output_bounds(program.module, texture, over_ranges)};
+    report_scales(texture, found.outputs_over_ranges, diagnostics);
 
     const std::vector<ir::Undefined> said = ir::undefined_in(program.module, texture, over_ranges);
     for (const ir::Undefined& undefined : said) report(undefined, diagnostics);

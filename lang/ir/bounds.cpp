@@ -41,9 +41,12 @@ enum class Goal : uint8_t { highest, lowest, slope, curvature, faults }; // faul
 // The box, cut into pieces: the one that holds the greatest bound is cut next, for each goal in turn.
 class Bisection {
 public:
-    Bisection(const Module& module, const Texture& texture, BoundsBox around, std::vector<Goal> which)
+    // `result` of the body: 0 is the height, then the outputs.
+    Bisection(const Module& module, const Texture& texture, BoundsBox around, std::vector<Goal> which,
+              size_t result = 0)
         : evaluator(module, operations_per_evaluation)
         , entry(texture.body)
+        , of_result(result)
         , box(std::move(around))
         , goals(std::move(which))
         , queues(goals.size())
@@ -108,6 +111,7 @@ private:
 
     IntervalEvaluator evaluator;
     uint32_t entry;
+    size_t of_result;
     BoundsBox box;
     std::vector<Goal> goals;
     std::vector<Interval*> sides; // of `box` that can be cut
@@ -133,7 +137,7 @@ private:
         Variation variation;
         bool may_fault = false;
         if (of_height) {
-            height = evaluator.run(entry, {}, &box)[0];
+            height = evaluator.run(entry, {}, &box)[of_result];
         } else {
             IntervalEvaluator::Results results = evaluator.run_varying(entry, box);
             height = results.values[0];
@@ -201,6 +205,19 @@ Interval height_bounds(const Module& module, const Texture& texture, const Bound
     height.may_be_nan |= may_be_infinite;
     if (height.may_be_nan) height = {std::min(height.minimum, 0.0), std::max(height.maximum, 0.0), true};
     return height;
+}
+
+std::vector<Interval> output_bounds(const Module& module, const Texture& texture, const BoundsBox& box,
+                                    uint32_t evaluations)
+{
+    std::vector<Interval> outputs;
+    const size_t results = module.functions[texture.body].body.yields.size();
+    for (size_t result = 1; result < results; ++result) {
+        Bisection bisection(module, texture, box, {Goal::highest, Goal::lowest}, result);
+        bisection.run(evaluations);
+        outputs.push_back({-bisection.bound(1), bisection.bound(0), bisection.may_be_nan()});
+    }
+    return outputs;
 }
 
 TextureBounds texture_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations)

@@ -58,6 +58,10 @@ std::vector<Undefined> undefined_in(const Module& module, const Texture& texture
 // Its height alone, which is cheaper.
 Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations = 4096);
 
+// Its material outputs, by bit of Texture::writes. One that may be NaN says so; the rest holds where it is a number.
+std::vector<Interval> output_bounds(const Module& module, const Texture& texture, const BoundsBox& box,
+                                    uint32_t evaluations = 4096);
+
 // Every result of a function that is no entry, for arguments that lie in these intervals.
 std::vector<Interval> function_bounds(const Module& module, uint32_t function, std::span<const Interval> arguments);
 
