@@ -107,16 +107,23 @@ void BodyChecker::check(Statement& s, For& node)
 {
     open_scope();
     Symbol* counter = nullptr;
+    bool is_const = false;
     if (node.init) {
         statement(*node.init);
-        if (auto declaration = std::get_if<Declaration>(&node.init->node))
+        if (auto declaration = std::get_if<Declaration>(&node.init->node)) {
             counter = const_cast<Symbol*>(declaration->symbol);
+            is_const = declaration->is_const;
+        }
     }
     if (node.body) forget_ranges_assigned_in(*node.body);
     if (node.condition) condition(node.condition, "as the condition of a loop");
     if (counter && !counter->type.is_error() && counter->type != int_type && counter->type != uint_type) {
         diagnostics.error(counter->span, "unbounded-loop", "a loop counts in int, found " + to_string(counter->type))
             .hint = "count in int and compute the " + to_string(counter->type) + " from it: float x = 0.1 * i;";
+        counter = nullptr;
+    } else if (counter && is_const && !counter->type.is_error()) {
+        diagnostics.error(counter->span, "read-only", quoted(counter->name) + " counts the loop and cannot be constant")
+            .hint = "leave 'const' out";
         counter = nullptr;
     } else if (!counter && in_damaged_body) {
         diagnostics.count_consequence(); // most likely what declares it could not be read

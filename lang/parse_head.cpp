@@ -135,13 +135,13 @@ void Grammar::mend_words_of_head()
         error(span(surplus), "syntax",
               "expected a type and a name before '(', found '" + std::string(text(surplus)) + "' too")
             .hint = "leave it out";
-        if (surplus == 1) std::swap(list.tokens[position], list.tokens[position + 1]);
+        if (surplus == 1 && !at(Token::end)) std::swap(list.tokens[position], list.tokens[position + 1]);
         advance();
     } else {
         return;
     }
     lost = false;
-    if (is_swapped) std::swap(list.tokens[position], list.tokens[position + 1]);
+    if (is_swapped && !at(Token::end)) std::swap(list.tokens[position], list.tokens[position + 1]);
 }
 
 } // namespace haptel::lang

@@ -54,11 +54,12 @@ void Grammar::read_misspelt_in()
 {
     const bool is_word = (at(Token::name) && !is_type_word(text())) || at(Token::kw_if);
     if (lost || !is_word || nearest_name(text(), {"in"}).empty()) return;
-    Diagnostic& reported = error(span(), "syntax", "expected 'in', ',' or ')'" + found());
-    reported.hint = "did you mean 'in'?";
-    reported.fix = FixIt{span(), "in"};
-    lost = false;
+    const Span word = span();
     list.tokens[position].kind = Token::kw_in;
+    Diagnostic& reported = error(word, "syntax", "expected 'in', ',' or ')'" + found());
+    reported.hint = "did you mean 'in'?";
+    reported.fix = FixIt{word, "in"};
+    lost = false;
 }
 
 // Behind the ';' of what begins here stands what only bodies hold: all of it has strayed.

@@ -31,20 +31,19 @@ struct CheckOptions {
     std::string code;                     // empty: all are listed
 };
 
-lang::CompileResult compile_text(const std::string& path, std::string text, bool strict)
+lang::CompileResult compile_text(const std::string& path, std::string text)
 {
     lang::CompileOptions options;
-    options.strict = strict;
     for (const stdlib::LibraryFile& file : stdlib::library())
         options.library.push_back({std::string(file.name), std::string(file.text)});
     options.load_import = jit::load_beside;
     return lang::compile({path, std::move(text)}, options);
 }
 
-lang::CompileResult compile_file(const std::string& path, bool strict)
+lang::CompileResult compile_file(const std::string& path)
 {
     jit::SourceText source = jit::read_source(path);
-    if (source.error.empty()) return compile_text(path, std::move(source.text), strict);
+    if (source.error.empty()) return compile_text(path, std::move(source.text));
     lang::CompileResult result;
     result.sources.add({path, {}});
     result.diagnostics.error({}, "unreadable-file", source.error).hint = source.hint;
@@ -89,7 +88,7 @@ void CheckRun::fix(const std::string& path)
 {
     const jit::SourceText source = jit::read_source(path);
     if (!source.error.empty()) return; // said where it is compiled
-    const Mended mended = mend(source.text, [&](const std::string& text) { return compile_text(path, text, false); });
+    const Mended mended = mend(source.text, [&](const std::string& text) { return compile_text(path, text); });
     if (mended.applied > 0) {
         const std::string fault = replace_file(path, mended.text);
         if (!fault.empty())
@@ -143,7 +142,7 @@ std::vector<std::shared_ptr<const ir::SplineImage>> CheckRun::images_of(const st
 void CheckRun::check(const std::string& path)
 {
     if (options.fix) fix(path);
-    lang::CompileResult result = compile_file(path, options.strict);
+    lang::CompileResult result = compile_file(path);
     lang::Diagnostics& diagnostics = result.diagnostics;
     if (result.program) {
         for (const ir::Texture& texture : result.program->module.textures) {
@@ -156,9 +155,9 @@ void CheckRun::check(const std::string& path)
                  lang::analyse(*result.program, texture, values, views,
                                {options.box_m, options.footprint_m, report.normal_turn_per_m}, diagnostics)});
         }
-        if (options.strict) diagnostics.make_warnings_errors();
         diagnostics.sort_by_place();
     }
+    if (options.strict) diagnostics.make_warnings_errors(); // last: what is known of the textures stays known
     fmt::print(stderr, "{}", lang::render(diagnostics.all(), result.sources, stderr_has_color()));
     report.add(result);
 }

@@ -134,8 +134,12 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
     }
     const Interval& value = declared.values[0];
     const std::optional<Interval> near = by_slope(index, arguments, (value.maximum - value.minimum) / 2);
-    // Where the slope says nothing, a box is too wide for natural evaluation to say more than the facts do.
-    if (is_all_told && !near) return declared;
+    // Where the slope says nothing, a box is too wide for natural evaluation to say more than the facts do; unless
+    // there is one value alone.
+    const auto first = std::span(arguments.values).first(function.first_argument_size);
+    const bool is_point =
+        std::all_of(first.begin(), first.end(), [](const Interval& argument) { return argument.is_point(); });
+    if (is_all_told && !near && !is_point) return declared;
 
     Results results = look_inside(index, arguments, span);
     for (size_t r = 0; r < count; ++r) {

@@ -2,7 +2,8 @@
 //
 // With a condition `v < c` that is where v = c. There both arms are evaluated, and once more with v as the only thing
 // that moves: arms of equal value make the result continuous, of equal slope in v as well C1, for what else they depend
-// on is the same on both sides and so is its derivative.
+// on is the same on both sides and so is its derivative. What one arm only adds to what the other leaves as it is
+// counts alone: it must come to 0.
 #include "lang/ir/interval_evaluator.h"
 
 #include <algorithm>
@@ -22,6 +23,15 @@ bool are_equal(const Interval& a, const Interval& b, double size)
 double size_of(const Interval& a)
 {
     return std::max(std::fabs(a.minimum), std::fabs(a.maximum));
+}
+
+// What is added to `unchanged` where it became `changed`; null: it became something else.
+const Value* added_to(Value unchanged, const Instruction* changed)
+{
+    auto* operation = changed ? std::get_if<Operation>(&changed->kind) : nullptr;
+    if (!operation || operation->op != Op::add) return nullptr;
+    if (changed->operands[0] == unchanged) return &changed->operands[1];
+    return changed->operands[1] == unchanged ? &changed->operands[0] : nullptr;
 }
 
 } // namespace
@@ -51,6 +61,16 @@ std::vector<Smoothness> IntervalEvaluator::meeting(Frame& frame, const Instructi
         block(there, choice.arms[side]);
         sides[side] = gather(there, choice.arms[side].yields);
     }
+    for (size_t side : {0, 1})
+        for (size_t i = 0; i < meets.size(); ++i) {
+            const Value changed = choice.arms[side].yields[i], unchanged = choice.arms[1 - side].yields[i];
+            const Value* added = added_to(unchanged, frame.makers[changed.index]);
+            if (!added) continue;
+            sides[side].values[i] = there.values[added->index];
+            sides[side].variations[i] = there.variations[added->index];
+            sides[1 - side].values[i] = {0, 0};
+            sides[1 - side].variations[i] = {};
+        }
     --depth;
     is_trying = false;
     if (left == 0) return meets;

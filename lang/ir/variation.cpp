@@ -107,6 +107,24 @@ Smoothness of_power(uint32_t power)
     return power == 1 ? Smoothness::c0 : power == 2 ? Smoothness::c1 : Smoothness::c2;
 }
 
+bool is_length(Op op)
+{
+    return op == Op::length2 || op == Op::length3 || op == Op::length4;
+}
+
+// A length that is not 0 is smooth in the squares of its parts: of kinks where they are 0, twice the power is left.
+void smooth_in_length(std::span<const Variation> parts, Variation& made)
+{
+    Variation rest;
+    for (const Variation& part : parts) {
+        if (!part.is_active) continue;
+        const Smoothness left = part.kink != 0 ? of_power(2 * part.kink_power) : part.smoothness;
+        roughen(rest, std::max(left, part.smoothness), part.cause);
+    }
+    made.smoothness = rest.smoothness;
+    made.cause = rest.cause;
+}
+
 // Operations that keep a kink where the value is 0: products raise it to a power, what is smooth may be a factor.
 void keep_kink(Op op, std::span<const Variation> variations, Variation& made)
 {
@@ -125,11 +143,6 @@ void keep_kink(Op op, std::span<const Variation> variations, Variation& made)
     made.kink = kink;
     made.kink_power = power;
     made.smoothness = of_power(power);
-}
-
-bool is_length(Op op)
-{
-    return op == Op::length2 || op == Op::length3 || op == Op::length4;
 }
 
 } // namespace
@@ -238,6 +251,7 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
     made.curvature = curvature * rounding_up;
     tighten(made, second);
     keep_kink(op, variations, made);
+    if (is_norm && shortest > 0) smooth_in_length(variations, made);
     return made;
 }
 

@@ -26,7 +26,8 @@ struct Variation {
     bool is_active = false; // depends on the point at all; else the rest stays as it is here
     Smoothness smoothness = Smoothness::smooth;
     Cause cause; // of the roughest part
-    // Not 0: the value is smooth but where it is 0, as |u| and max(u, 0) are; its powers of 2, 3.. are C1, C2..
+    // Not 0: the value is smooth but where it is 0, as |u|, a length and max(u, 0) are; its powers of 2, 3.. are C1,
+    // C2..
     uint32_t kink = 0;                     // which kink: values that share it are 0 in the same places
     uint32_t kink_power = 0;               // of max(u, 0) in it
     std::array<Interval, 3> gradient = {}; // by axis

@@ -4,6 +4,8 @@
 #include "lang/ir/interpret.h"
 #include "tests/support/catch.h"
 
+#include <cmath>
+
 namespace haptel::lang::test {
 namespace {
 
@@ -57,6 +59,22 @@ Sample evaluate(const std::string& source, const Inputs& inputs)
 double value_of(const std::string& expression, const std::string& declarations, const Inputs& inputs)
 {
     return evaluate(declarations + "\ntexture t() { return " + expression + "; }\n", inputs).height;
+}
+
+void check_values(const std::vector<ExpressionValue>& cases, const std::string& declarations, const Inputs& inputs)
+{
+    for (const ExpressionValue& c : cases) {
+        INFO(c.expression);
+        CHECK(value_of(c.expression, declarations, inputs) == c.value);
+    }
+}
+
+void check_values_near(const std::vector<ExpressionValue>& cases, const std::string& declarations, const Inputs& inputs)
+{
+    for (const ExpressionValue& c : cases) {
+        INFO(c.expression);
+        CHECK(std::fabs(value_of(c.expression, declarations, inputs) - c.value) <= 4e-16 * std::fabs(c.value));
+    }
 }
 
 } // namespace haptel::lang::test

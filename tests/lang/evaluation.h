@@ -28,4 +28,14 @@ Sample evaluate(const std::string& source, const Inputs& inputs = {});
 // Height of `texture t() { return EXPRESSION; }` behind `declarations`.
 double value_of(const std::string& expression, const std::string& declarations = {}, const Inputs& inputs = {});
 
+struct ExpressionValue {
+    std::string expression;
+    double value;
+};
+void check_values(const std::vector<ExpressionValue>& cases, const std::string& declarations = {},
+                  const Inputs& inputs = {});
+// Within a few roundings.
+void check_values_near(const std::vector<ExpressionValue>& cases, const std::string& declarations = {},
+                       const Inputs& inputs = {});
+
 } // namespace haptel::lang::test

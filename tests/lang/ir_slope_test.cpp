@@ -190,6 +190,19 @@ TEST_CASE("class: a kink where the value is 0 is smoothed by a power")
     CHECK(class_of(ramp + "%s = mul %r, %r %q = sqrt %s return %q") == Smoothness::c0);
 }
 
+TEST_CASE("class: a length of lengths is smooth where it is not 0")
+{
+    const std::string inner = "%x = input p_x %y = input p_y %r = length2 %x, %y ";
+    const auto class_of = [&](const std::string& rest) {
+        return bounds_of(inner + rest + " return %h", {{-1, 1}, {-1, 1}}).smoothness;
+    };
+    CHECK(class_of("%k = real 2 %h = length2 %r, %k") == Smoothness::c1);
+    CHECK(class_of("%a = abs %x %k = real 2 %h = length2 %a, %k") == Smoothness::c1);
+    CHECK(class_of("%h = length2 %r, %x") == Smoothness::c0);
+    CHECK(class_of("%k = real 0.5 %a = sub %r, %k %t = real 2 %h = length2 %a, %t") ==
+          Smoothness::c0); // the tip is elsewhere
+}
+
 TEST_CASE("class: arms of an if that meet")
 {
     const auto class_of = [](const std::string& arms) {
@@ -215,6 +228,12 @@ TEST_CASE("class: arms of an if that meet")
     CHECK(along_x(
               "%s = mul %x, %x yield %s } else { %a = mul %x, %two %b = add %a, %a %d = add %two, %two %e = sub %b, %d "
               "yield %e }") == Smoothness::c1); // x^2, 4 x - 4
+    // y + (x - 2)^2, y: what is added comes to 0, and so does its slope; (x - 2) y: its slope does not; x y: nothing
+    // does
+    const std::string short_of = "%s = sub %x, %two ";
+    CHECK(along_x(short_of + "%q = mul %s, %s %b = add %y, %q yield %b } else { yield %y }") == Smoothness::c1);
+    CHECK(along_x(short_of + "%q = mul %s, %y %b = add %y, %q yield %b } else { yield %y }") == Smoothness::c0);
+    CHECK(along_x("yield %y } else { %q = mul %x, %y %b = add %q, %y yield %b }") == Smoothness::jump);
     CHECK(along_x("%s = mul %x, %y yield %s } else { %t = mul %two, %y yield %t }") == Smoothness::jump); // not told
 }
 

@@ -109,6 +109,20 @@ TEST_CASE("megabytes of nonsense are read in one go")
     check_sane(std::string(megabyte, '\0'));
 }
 
+TEST_CASE("slips in a file with more mistakes than are said")
+{
+    const std::string unreadable = repeated("$\n", 60); // the lexer says all that is ever said
+    for (const char* slip :
+         {"texture t(float a = 1 if 0 .. 2) {}\n", "float float f(float x) {}\n", "f float(float x) {}\n",
+          "texture t({ ) return 1; }\n", "float f((float x) {}\n", "float f(x float, y) {}\n",
+          "float f(float x float y) {}\n", "t(float a = 1) {}\n", "float f() { q vec3 = p; }\n",
+          "const float A[2] = {1 2};\n", "float f() { for (i) ++ { a = {1, 2; } }\n"}) {
+        CAPTURE(slip);
+        check_sane(slip + unreadable);
+        check_sane(unreadable + slip);
+    }
+}
+
 TEST_CASE("random bytes")
 {
     std::mt19937 random(1);

@@ -201,6 +201,7 @@ TEST_CASE("check: --strict makes warnings errors, in the exit code and in JSON")
     CHECK(Json::parse(lenient.out)["textures"].size() == 1);
     expected["severity"] = "error";
     CHECK(Json::parse(strict.out)["diagnostics"] == Json::array({expected}));
+    CHECK(Json::parse(strict.out)["textures"] == Json::parse(lenient.out)["textures"]);
 }
 
 TEST_CASE("check: --explain tells what a code means, lists all, and knows a slip of the pen")
@@ -344,4 +345,20 @@ TEST_CASE(
     CHECK(slope("--box 0.1m --normal-turn 50")["normal_turn_max_per_m"] == 50);
     CHECK(contains(run_command("check --box 0.1m '" + file + "'").out, "normals    turn at most 20 per metre"));
     CHECK(run_command("check --normal-turn -1 '" + file + "'").code == 2);
+}
+
+TEST_CASE("check: octaves that fade along a surface leave no jump, and a choice that does not fade is one")
+{
+    const Folder folder;
+    const std::string file = folder.write(
+        "fades.haptel", "vec3 bent() { return p / 5mm * (1.0 + 0.1 * sinturn(p.x / 5mm)); }\n"
+                        "texture one() { return 50um * fbm(noise, bent(), 4, 2.0, 0.5); }\n"
+                        "texture two() { return 50um * hybrid(perlin, bent(), 4, 2.0, 0.5); }\n"
+                        "texture cut() { return footprint_in(bent()) < 1.0 ? 50um * noise(p / 5mm) : 0.0; }\n");
+    const Ran ran = run_command("check --json --footprint 3mm '" + file + "'");
+    const Json textures = Json::parse(ran.out)["textures"];
+    CHECK(textures[0]["continuity"] == "C1");
+    CHECK(textures[1]["continuity"] == "C1");
+    CHECK(textures[2]["continuity"] == "jump");
+    CHECK(run_command("test --footprint 3mm '" + file + "'").code == 0); // nothing rougher than that is measured
 }

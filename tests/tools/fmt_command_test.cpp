@@ -58,6 +58,15 @@ TEST_CASE("fmt: what a file means is what its formatted text means, and formatti
     CHECK(files > 30);
 }
 
+TEST_CASE("fmt: the library and the examples are in its style")
+{
+    for (const char* folder : {"stdlib", "stdlib/tests", "examples/textures"}) {
+        const Ran ran = run_command("fmt --check " + std::string(HAPTEL_SOURCE_DIR) + "/" + folder + "/*.haptel");
+        CAPTURE(folder, ran.out, ran.err);
+        CHECK(ran.code == 0);
+    }
+}
+
 TEST_CASE("fmt: random programs mean what they meant")
 {
     for (uint64_t seed = 1; seed <= 300; ++seed) {
