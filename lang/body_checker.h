@@ -104,7 +104,7 @@ private:
     Type check(ast::Expression& e, ast::Index& node);
     Type check(ast::Expression& e, ast::BraceList& node);
     Type read(ast::Expression& e, ast::NameExpression& node, uint64_t parts);
-    void check_index(const ast::Expression& index, uint32_t size, const std::string& of_what);
+    void check_index(const ast::Expression& index, const ast::Expression& object);
     // Reports unless `e` has or becomes that type; `where` as a clause: " for 'x'".
     bool require(ast::Expression& e, Type wanted, const std::string& where);
     Type report_operator(ast::BinaryOp op, Span span, Type left, const ast::Expression& right);

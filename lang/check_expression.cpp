@@ -362,20 +362,27 @@ Type BodyChecker::check(Expression& e, Index& node)
         reported.hint = conversion_hint(index, int_type, excerpt(*node.index));
         return element;
     }
-    check_index(*node.index, object.element_count(), excerpt(*node.object));
+    check_index(*node.index, *node.object);
     return element;
 }
 
 // Certain mistakes only: what cannot be proven in range is clamped in code.
-void BodyChecker::check_index(const Expression& index, uint32_t size, const std::string& of_what)
+void BodyChecker::check_index(const Expression& index, const Expression& object)
 {
+    const uint32_t size = object.type.element_count();
+    const std::string of_what = excerpt(object);
     const ir::IntRange possible = range(index);
     if (possible.maximum >= 0 && possible.minimum < size) return;
     std::string found = std::to_string(possible.minimum);
     if (!possible.is_constant()) found += " .. " + std::to_string(possible.maximum);
-    diagnostics.error(index.span, "index-out-of-range",
-                      "index " + found + " is outside " + quoted(of_what) + ", expected 0 .. " +
-                          std::to_string(size - 1));
+    const std::string last = std::to_string(size - 1);
+    Diagnostic& reported =
+        diagnostics.error(index.span, "index-out-of-range",
+                          "index " + found + " is outside " + quoted(of_what) + ", expected 0 .. " + last);
+    reported.hint = "counted from 0, the last of " + std::to_string(size) + " is " + of_what + "[" + last + "]";
+    auto name = std::get_if<NameExpression>(&object.node);
+    if (name && name->symbol && name->symbol->span.end > 0)
+        reported.related.push_back({name->symbol->span, quoted(name->name) + " is declared here"});
 }
 
 } // namespace haptel::lang
