@@ -1,16 +1,18 @@
 // haptel eval: height and gradient of a texture at points, by any engine.
 #include "jit/oracle.h"
-#include "jit/program_cache.h"
+#include "lang/evaluate.h"
 #include "tools/command.h"
 #include "tools/eval_table.h"
 #include "tools/json.h"
 #include "tools/terminal.h"
 #include "tools/texture_argument.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace haptel::tools {
@@ -35,9 +37,11 @@ struct Evaluated {
     uint32_t faults = 0;
 };
 
+using Evaluate = std::function<std::vector<Evaluated>(std::span<const haptel_point>)>;
+
 struct Engine {
-    std::function<Evaluated(const haptel_point&)> evaluate; // empty: what is wrong has been said
-    uint32_t writes = 0;                                    // HAPTEL_WRITES_* of the texture
+    Evaluate evaluate;   // empty: what is wrong has been said
+    uint32_t writes = 0; // HAPTEL_WRITES_* of the texture
 };
 
 std::string shortest(double value)
@@ -54,26 +58,34 @@ Evaluated shown(const haptel_sample& sample)
             sample.faults};
 }
 
-std::function<Evaluated(const haptel_point&)> make_engine(const std::string& name,
-                                                          const std::shared_ptr<const jit::CompiledProgram>& program,
-                                                          const TextureBinding& binding)
+Evaluated shown(const jit::OracleSample& sample)
 {
-    if (name == "interpreter")
-        return [=](const haptel_point& point) { return shown(jit::interpret_sample(*program, binding, point)); };
-    if (name == "oracle")
-        return [oracle = std::make_shared<jit::Oracle>(program, binding)](const haptel_point& point) -> Evaluated {
-            const jit::OracleSample sample = oracle->sample(point);
-            const auto& g = sample.gradient_digits;
-            return {sample.height_digits,
-                    {g[0], g[1], g[2]},
-                    sample.stiffness_digits,
-                    sample.friction_digits,
-                    sample.faults};
+    const auto& g = sample.gradient_digits;
+    return {sample.height_digits, {g[0], g[1], g[2]}, sample.stiffness_digits, sample.friction_digits, sample.faults};
+}
+
+Evaluate make_engine(const std::string& name, const std::shared_ptr<const jit::CompiledProgram>& program,
+                     const TextureBinding& binding)
+{
+    const auto one_by_one = [](auto sample) {
+        return [sample](std::span<const haptel_point> points) {
+            std::vector<Evaluated> found;
+            for (const haptel_point& point : points) found.push_back(shown(sample(point)));
+            return found;
         };
-    return [=](const haptel_point& point) {
-        haptel_sample sample{};
-        binding.texture->height_gradient(&point, binding.block, &sample);
-        return shown(sample);
+    };
+    if (name == "interpreter")
+        return one_by_one([=](const haptel_point& point) { return jit::interpret_sample(*program, binding, point); });
+    if (name == "oracle")
+        return one_by_one([oracle = std::make_shared<jit::Oracle>(program, binding)](const haptel_point& point) {
+            return oracle->sample(point);
+        });
+    return [=](std::span<const haptel_point> points) {
+        std::vector<haptel_sample> samples(points.size());
+        evaluate(binding, points, samples);
+        std::vector<Evaluated> found;
+        for (const haptel_sample& sample : samples) found.push_back(shown(sample));
+        return found;
     };
 }
 
@@ -88,12 +100,20 @@ haptel_point point_at(const EvalOptions& options, const glm::dvec3& p_m)
     return point;
 }
 
+jit::Precision precision_of(const std::string& name)
+{
+    return name == "f32" ? jit::Precision::f32 : name == "mixed" ? jit::Precision::mixed : jit::Precision::f64;
+}
+
 // The texture, compiled and bound to a cube round the origin. Says what is wrong.
 Engine open_engine(const EvalOptions& options)
 {
-    const auto compiled = jit::ProgramCache::shared()->load(options.texture.file);
-    fmt::print(stderr, "{}", compiled->rendered(stderr_has_color()));
-    if (!compiled->program) return {};
+    jit::TextureOptions compile;
+    compile.entries = options.points.empty() ? jit::Entries::height_gradient : jit::Entries::both_and_batches;
+    compile.precision = precision_of(options.precision);
+    const jit::CompiledTextures compiled = jit::compile_texture_file(options.texture.file, compile);
+    fmt::print(stderr, "{}", compiled.rendered(stderr_has_color()));
+    if (!compiled.program) return {};
     TextureRequest request;
     request.parameters = options.parameters;
     request.footprint_m = options.footprint_m;
@@ -101,10 +121,10 @@ Engine open_engine(const EvalOptions& options)
         request.box_minimum_m[axis] = -options.box_m / 2;
         request.box_maximum_m[axis] = options.box_m / 2;
     }
-    TextureResult bound = jit::make_binding(compiled->program, options.texture.name, request, jit::Unbounded::allowed);
+    TextureResult bound = jit::make_binding(compiled.program, options.texture.name, request, jit::Unbounded::allowed);
     fmt::print(stderr, "{}", bound.diagnostics);
     if (!bound.binding) return {};
-    return {make_engine(options.engine, compiled->program, *bound.binding), bound.binding->texture->writes};
+    return {make_engine(options.engine, compiled.program, *bound.binding), bound.binding->texture->writes};
 }
 
 // Written by hand because the oracle's numbers have more digits than a JSON library's.
@@ -130,8 +150,9 @@ void print_point(const EvalOptions& options, uint32_t writes, const Evaluated& p
 
 ExitCode run(const EvalOptions& options)
 {
-    if (options.precision != "f64") {
-        say_error(fmt::format("precision {} is not built yet: only f64 is", options.precision));
+    if (options.precision != "f64" && options.engine != "jit") {
+        say_error(fmt::format("precision {} is of machine code: the {} has its own (leave out --engine or --precision)",
+                              options.precision, options.engine));
         return ExitCode::misuse;
     }
     PointTable table;
@@ -145,14 +166,21 @@ ExitCode run(const EvalOptions& options)
     const Engine engine = open_engine(options);
     if (!engine.evaluate) return ExitCode::findings;
     if (options.at_m) {
-        print_point(options, engine.writes, engine.evaluate(point_at(options, *options.at_m)));
+        const haptel_point point = point_at(options, *options.at_m);
+        print_point(options, engine.writes, engine.evaluate({&point, 1})[0]);
         return ExitCode::fine;
     }
     fmt::print("{},height_m,gx,gy,gz\n", table.header);
-    for (const PointTable::Row& row : table.rows) {
-        const Evaluated found = engine.evaluate(point_at(options, row.p_m));
-        fmt::print("{},{},{},{},{}\n", row.text, found.height_m, found.gradient[0], found.gradient[1],
-                   found.gradient[2]);
+    constexpr std::size_t rows_at_once = 4096;
+    std::vector<haptel_point> points;
+    for (std::size_t first = 0; first < table.rows.size(); first += points.size()) {
+        points.clear();
+        for (std::size_t i = first; i < std::min(first + rows_at_once, table.rows.size()); ++i)
+            points.push_back(point_at(options, table.rows[i].p_m));
+        const std::vector<Evaluated> found = engine.evaluate(points);
+        for (std::size_t i = 0; i < found.size(); ++i)
+            fmt::print("{},{},{},{},{}\n", table.rows[first + i].text, found[i].height_m, found[i].gradient[0],
+                       found[i].gradient[1], found[i].gradient[2]);
     }
     return ExitCode::fine;
 }
@@ -203,7 +231,9 @@ Command eval_command(CLI::App& app)
                      "jit: machine code; interpreter: the same bits, slowly; oracle: 113 bits, 36 digits")
         ->check(CLI::IsMember({"jit", "interpreter", "oracle"}))
         ->capture_default_str();
-    command->add_option("--precision", options->precision, "Of the code")
+    command
+        ->add_option("--precision", options->precision,
+                     "Of the code: f64; mixed: f64 where a place within a cell rests on it, else f32; f32")
         ->check(CLI::IsMember({"f64", "mixed", "f32"}))
         ->capture_default_str();
     command->add_flag("--json", options->json, "One JSON object on standard output")->needs(at);
