@@ -72,6 +72,7 @@ private:
     Value* read_image(const char* name, llvm::Type* result);
     Value* call(const char* name, llvm::Type* result, std::span<Value* const> arguments, llvm::MemoryEffects effects);
     Value* in_each_lane(llvm::Function* function, const std::vector<Value*>& arguments);
+    Value* lesser(Value* x, Value* y, bool greater = false);
     Value* sign();
     Value* length();
     Value* remainder_of_turn() { return builder.CreateFSub(a(), intrinsic(llvm::Intrinsic::roundeven, a())); }
@@ -130,6 +131,26 @@ Value* Emitter::in_each_lane(llvm::Function* function, const std::vector<Value*>
     return results;
 }
 
+// Not llvm.minimum: the pass InstSimplify, before LLVM 22, crashes on min(min(x, y), fma(x, y, z)) of intrinsics. With
+// a constant this is one instruction. A NaN goes through as it is; of zeros min takes the bits of either, max of both.
+Value* Emitter::lesser(Value* x, Value* y, bool greater)
+{
+    if (llvm::isa<llvm::Constant>(y)) std::swap(x, y);
+    Value* chosen =
+        choose(greater ? builder.CreateFCmpOGT(x, y) : builder.CreateFCmpOLT(x, y), x, y); // y if one is NaN
+    const auto* constant = llvm::dyn_cast<llvm::Constant>(x);
+    const auto* number = llvm::dyn_cast_or_null<llvm::ConstantFP>(
+        constant && vector ? constant->getSplatValue() : static_cast<const llvm::Value*>(constant));
+    if (!number || number->isZero()) {
+        llvm::Type* const bits = as(builder.getIntNTy(scalar->getScalarSizeInBits()));
+        Value *first = builder.CreateBitCast(x, bits), *second = builder.CreateBitCast(y, bits);
+        Value* both = greater ? builder.CreateAnd(first, second) : builder.CreateOr(first, second);
+        chosen = choose(builder.CreateFCmpOEQ(x, y), builder.CreateBitCast(both, x->getType()), chosen);
+    }
+    if (number && !number->isNaN()) return chosen;
+    return choose(builder.CreateFCmpUNO(x, x), x, chosen);
+}
+
 Value* Emitter::sign()
 {
     Value* negative = choose(builder.CreateFCmpOLT(a(), real(0)), real(-1), a());
@@ -139,7 +160,7 @@ Value* Emitter::sign()
 Value* Emitter::length()
 {
     Value* largest = absolute(operands[0]);
-    for (Value* x : operands.subspan(1)) largest = intrinsic(llvm::Intrinsic::maximum, largest, absolute(x));
+    for (Value* x : operands.subspan(1)) largest = lesser(largest, absolute(x), true);
     const double limit = is_single() ? 0x1p60 : 0x1p500, factor = is_single() ? 0x1p80 : 0x1p600;
     Value* huge = builder.CreateFCmpOGT(largest, real(limit));
     Value* tiny = builder.CreateFCmpOLT(largest, real(1 / limit));
@@ -211,8 +232,8 @@ Value* Emitter::emit(ir::Op op)
     case Op::div: return builder.CreateFDiv(a(), b());
     case Op::neg: return builder.CreateFNeg(a());
     case Op::fma: return builder.CreateIntrinsic(in::fma, {reals()}, {a(), b(), operands[2]});
-    case Op::min: return intrinsic(in::minimum, a(), b());
-    case Op::max: return intrinsic(in::maximum, a(), b());
+    case Op::min: return lesser(a(), b());
+    case Op::max: return lesser(a(), b(), true);
     case Op::abs: return absolute(a());
     case Op::sign: return sign();
     case Op::floor: return floor(a());

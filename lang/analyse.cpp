@@ -88,23 +88,70 @@ std::string shown(const ir::Interval& range)
     return end(range.minimum) + " .. " + end(range.maximum);
 }
 
+std::string name_of(Op op)
+{
+    return op == Op::add   ? "this sum"
+           : op == Op::sub ? "this difference"
+           : op == Op::mul ? "this product"
+           : op == Op::div ? "this quotient"
+                           : std::string(ir::op_info(op).name) + "()";
+}
+
 void report(const ir::Undefined& found, Diagnostics& diagnostics)
 {
-    if (found.op == Op::div) {
-        diagnostics
-            .warning(found.span, "division", "this may divide by zero: the divisor lies in " + shown(found.operand))
-            .hint = "add a small constant, or keep it away from 0 with max(); where it is 0 the height counts as 0";
-        return;
-    }
+    using Why = ir::Undefined::Why;
     if (!found.op) {
         diagnostics.warning(found.span, "domain", "a constant here is not a finite number").hint =
             "a division by 0, or a function outside of where it is defined, was computed once and for all";
         return;
     }
-    Diagnostic& said = diagnostics.warning(found.span, "domain",
-                                           std::string(ir::op_info(*found.op).name) +
-                                               "() may be not a number: its argument lies in " + shown(found.operand));
-    said.hint = "keep it where the function is defined, with clamp(), max() or abs(); else the height counts as 0";
+    const std::string name = name_of(*found.op), where = shown(found.operand);
+    if (found.why == Why::pole && *found.op == Op::div) {
+        diagnostics.warning(found.span, "division", "this may divide by zero: the divisor lies in " + where).hint =
+            "add a small constant, or keep it away from 0 with max(); where it is 0 the height counts as 0";
+        return;
+    }
+    const auto say = [&](const std::string& what, const char* hint) {
+        diagnostics.warning(found.span, "domain", what + ": its argument lies in " + where).hint = hint;
+    };
+    switch (found.why) {
+    case Why::pole:
+        return say(name + " may be infinite",
+                   "keep it away from there, with max() or clamp(); else the height counts as 0");
+    case Why::domain:
+        return say(name + " may be not a number",
+                   "keep it where the function is defined, with clamp(), max() or abs(); else the height counts as 0");
+    case Why::overflow:
+        return say(name + " may be larger than any number",
+                   "keep it small, with clamp() or min(); else the height counts as 0");
+    case Why::derivative:
+        return say("the derivative of " + name + " may be not finite",
+                   "keep it away from there, with clamp() or max(); else the gradient counts as 0");
+    }
+}
+
+// A scale that is no number, or would pull instead of push, counts as 1: no author means that.
+void report_scales(const ir::Texture& texture, std::span<const ir::Interval> scales, Diagnostics& diagnostics)
+{
+    constexpr const char* names[] = {"stiffness_scale", "friction_scale"}; // by bit
+    size_t next = 0;
+    for (uint32_t bit = 0; bit < std::size(names); ++bit) {
+        if (!(texture.writes >> bit & 1)) continue;
+        const ir::Interval& scale = scales[next];
+        const Span span = next < texture.output_spans.size() ? texture.output_spans[next] : texture.span;
+        ++next;
+        const bool is_negative = scale.is_finite(); // else that is worse
+        if (is_negative && scale.minimum >= 0) continue;
+        const std::string what = scale.is_empty() ? "is not a number" : "lies in " + shown(scale);
+        diagnostics
+            .warning(span, "scale",
+                     std::string(names[bit]) + " of '" + texture.name + "' may be " +
+                         (is_negative ? "negative" : "not finite") + ": it " + what)
+            .hint = is_negative
+                        ? "keep it at 0 or above, with max(x, 0.0) or clamp(); where it is negative it counts as 1"
+                        : "keep it bounded, with clamp(), or its divisors away from 0; where it is not finite it "
+                          "counts as 1";
+    }
 }
 
 } // namespace
@@ -120,14 +167,17 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
         over_ranges.parameters.push_back(range_of(texture.parameters[i], values[i]));
     }
     const Analysis found{ir::texture_bounds(program.module, texture, at_values),
-                         ir::texture_bounds(program.module, texture, over_ranges)};
+                         ir::texture_bounds(program.module, texture, over_ranges),
+                         ir::output_bounds(program.module, texture, at_values),
+                         ir::output_bounds(program.module, texture, over_ranges)};
+    report_scales(texture, found.outputs_over_ranges, diagnostics);
 
-    for (const ir::Undefined& undefined : found.over_ranges.undefined) report(undefined, diagnostics);
+    const std::vector<ir::Undefined> said = ir::undefined_in(program.module, texture, over_ranges);
+    for (const ir::Undefined& undefined : said) report(undefined, diagnostics);
     const ir::Cause& cause = found.at_values.cause;
     const auto is_same_place = [&](const ir::Undefined& undefined) {
         return undefined.span.file == cause.span.file && undefined.span.begin == cause.span.begin;
     };
-    const std::vector<ir::Undefined>& said = found.over_ranges.undefined;
     if (std::any_of(said.begin(), said.end(), is_same_place)) return found;
     if (found.at_values.smoothness == ir::Smoothness::jump)
         diagnostics

@@ -6,12 +6,14 @@
 
 #include <limits>
 #include <span>
+#include <vector>
 
 namespace haptel::lang {
 
 struct Analysis {
     ir::TextureBounds at_values;   // of the parameters
     ir::TextureBounds over_ranges; // wherever their ranges allow; those without a range at their values
+    std::vector<ir::Interval> outputs, outputs_over_ranges; // the same of material outputs, by bit of Texture::writes
 };
 
 // A cube round the origin, wherever else the contact may be: any uv, any time, any normal.
@@ -22,8 +24,8 @@ struct AnalysedCube {
 };
 
 // `values` of the parameters by ir::Texture::parameters, SI, and images likewise; null or missing: any image. Says what
-// it finds as diagnostics, not sorted: the warnings `jump`, `division` and `domain` and the note `kink`; jumps and
-// kinks where the values allow them, the others where the ranges do.
+// it finds as diagnostics, not sorted: the warnings `jump`, `division`, `domain` and `scale` and the note `kink`; jumps
+// and kinks where the values allow them, the others where the ranges do.
 Analysis analyse(const Program& program, const ir::Texture& texture, std::span<const double> values,
                  std::span<const ir::SplineImage* const> images, const AnalysedCube& where, Diagnostics& diagnostics);
 

@@ -88,6 +88,7 @@ void ModuleLowering::texture(const CheckedTexture& texture)
     for (const CheckedOutput& output : texture.outputs) {
         body.variable(*output.symbol) = {body.builder.real(1)};
         made.writes |= output.writes;
+        made.output_spans.push_back(output.symbol->span);
     }
     Values results = body.whole_body(*texture.tree->body, float_type);
     for (const CheckedOutput& output : texture.outputs) results.push_back(body.variable(*output.symbol)[0]);

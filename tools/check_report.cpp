@@ -92,6 +92,18 @@ uint64_t operations_of(const CheckedTexture& checked)
     return ir::operations_max(checked.program->module, checked.texture->height_gradient);
 }
 
+// "stiffness_scale": {"minimum", "maximum", "over_ranges": {"minimum", "maximum"}}
+Json ranges_of(const CheckedTexture& checked)
+{
+    Json ranges = Json::object();
+    const std::vector<std::string> names = outputs_of(*checked.texture);
+    for (size_t i = 0; i < names.size(); ++i) {
+        ranges[names[i]] = to_json(checked.analysis.outputs[i]);
+        ranges[names[i]]["over_ranges"] = to_json(checked.analysis.outputs_over_ranges[i]);
+    }
+    return ranges;
+}
+
 Json to_json(const CheckedTexture& checked)
 {
     Json json = texture_json(checked.file, *checked.texture);
@@ -103,6 +115,7 @@ Json to_json(const CheckedTexture& checked)
                    {"slope_max", finite_or_null(checked.analysis.over_ranges.slope_max)},
                    {"curvature_max_per_m", curvature_of(checked.analysis.over_ranges)}}},
                  {"continuity", continuity_of(checked.analysis.at_values)},
+                 {"output_bounds", ranges_of(checked)},
                  {"declared", checked.analysis.at_values.declared},
                  {"operations_max", operations_of(checked)},
                  {"stability", nullptr}});
@@ -124,6 +137,15 @@ std::string shown_length(double metres)
 std::string shown_range(const ir::Interval& height_m)
 {
     return fmt::format("{} .. {}", shown_length(height_m.minimum), shown_length(height_m.maximum));
+}
+
+std::string shown_scale(const ir::Interval& scale)
+{
+    const auto end = [](double value) {
+        return std::isfinite(value) ? fmt::format("{:.3g}", value)
+                                    : std::string(value < 0 ? "-unbounded" : "unbounded");
+    };
+    return scale.is_empty() ? "not a number" : end(scale.minimum) + " .. " + end(scale.maximum);
 }
 
 std::string shown_bound(double bound, std::string_view unit)
@@ -230,6 +252,9 @@ std::string CheckReport::to_text() const
         if (has_curvature(here))
             text += fmt::format("  curvature  at most {} ({})\n", shown_bound(here.curvature_max_per_m, " /m"),
                                 has_curvature(ranges) ? shown_bound(ranges.curvature_max_per_m, " /m") : "none");
+        for (size_t i = 0; i < outputs.size(); ++i)
+            text += fmt::format("  {} {} ({})\n", outputs[i], shown_scale(checked.analysis.outputs[i]),
+                                shown_scale(checked.analysis.outputs_over_ranges[i]));
         text += fmt::format("  class      {}\n", shown_class(checked));
         if (checked.texture->reads & HAPTEL_READS_NORMAL)
             text += fmt::format("  normals    turn at most {:.3g} per metre, or it is steeper (--normal-turn)\n",

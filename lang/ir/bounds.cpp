@@ -36,14 +36,17 @@ std::string source_name(const std::string& name)
 }
 
 // An upper bound to push down, of one piece of the box: -infinity where the piece holds no value at all.
-enum class Goal : uint8_t { highest, lowest, slope, curvature };
+enum class Goal : uint8_t { highest, lowest, slope, curvature, faults }; // faults: 1 where one may be, else 0
 
 // The box, cut into pieces: the one that holds the greatest bound is cut next, for each goal in turn.
 class Bisection {
 public:
-    Bisection(const Module& module, const Texture& texture, BoundsBox around, std::vector<Goal> which)
+    // `result` of the body: 0 is the height, then the outputs.
+    Bisection(const Module& module, const Texture& texture, BoundsBox around, std::vector<Goal> which,
+              size_t result = 0)
         : evaluator(module, operations_per_evaluation)
         , entry(texture.body)
+        , of_result(result)
         , box(std::move(around))
         , goals(std::move(which))
         , queues(goals.size())
@@ -79,6 +82,14 @@ public:
         }
     }
 
+    // Cuts what may fault until nothing is left that may; false if something is.
+    bool excludes_faults(uint32_t evaluations)
+    {
+        while (bound(0) > 0 && !sides.empty() && !is_settled && pieces.size() < evaluations && used < operations_in_all)
+            cut();
+        return bound(0) == 0;
+    }
+
     double bound(size_t goal) { return pieces[next_of(queues[goal])].bounds[goal]; }
     bool may_be_nan() const
     {
@@ -100,6 +111,7 @@ private:
 
     IntervalEvaluator evaluator;
     uint32_t entry;
+    size_t of_result;
     BoundsBox box;
     std::vector<Goal> goals;
     std::vector<Interval*> sides; // of `box` that can be cut
@@ -123,12 +135,15 @@ private:
         const bool of_height = goals[0] == Goal::highest;
         Interval height;
         Variation variation;
+        bool may_fault = false;
         if (of_height) {
-            height = evaluator.run(entry, {}, &box)[0];
+            height = evaluator.run(entry, {}, &box)[of_result];
         } else {
             IntervalEvaluator::Results results = evaluator.run_varying(entry, box);
             height = results.values[0];
             variation = results.variations[0];
+            const auto is_finite = [](const Interval& value) { return value.is_finite(); };
+            may_fault = !std::all_of(results.values.begin(), results.values.end(), is_finite) || variation.may_fault;
             if (pieces.empty()) whole = variation, undefined = evaluator.undefined(), believed = evaluator.believed();
         }
         used += evaluator.operations_used() + 1;
@@ -137,6 +152,7 @@ private:
             const double found = goals[g] == Goal::highest  ? height.maximum
                                  : goals[g] == Goal::lowest ? -height.minimum
                                  : goals[g] == Goal::slope  ? variation.slope
+                                 : goals[g] == Goal::faults ? may_fault
                                                             : variation.curvature;
             piece.bounds.push_back(height.is_empty() ? -infinity : found);
             queues[g].emplace(piece.bounds[g], pieces.size());
@@ -191,9 +207,22 @@ Interval height_bounds(const Module& module, const Texture& texture, const Bound
     return height;
 }
 
+std::vector<Interval> output_bounds(const Module& module, const Texture& texture, const BoundsBox& box,
+                                    uint32_t evaluations)
+{
+    std::vector<Interval> outputs;
+    const size_t results = module.functions[texture.body].body.yields.size();
+    for (size_t result = 1; result < results; ++result) {
+        Bisection bisection(module, texture, box, {Goal::highest, Goal::lowest}, result);
+        bisection.run(evaluations);
+        outputs.push_back({-bisection.bound(1), bisection.bound(0), bisection.may_be_nan()});
+    }
+    return outputs;
+}
+
 TextureBounds texture_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations)
 {
-    TextureBounds bounds{height_bounds(module, texture, box, evaluations), 0, 0, Smoothness::unknown, {}, {}, {}};
+    TextureBounds bounds{height_bounds(module, texture, box, evaluations), 0, 0, Smoothness::unknown, {}, {}};
     Bisection bisection(module, texture, box, {Goal::slope, Goal::curvature});
     bisection.run(evaluations);
     bounds.slope_max = std::max(0.0, bisection.bound(0));
@@ -205,9 +234,19 @@ TextureBounds texture_bounds(const Module& module, const Texture& texture, const
         if (std::find(bounds.declared.begin(), bounds.declared.end(), name) == bounds.declared.end())
             bounds.declared.push_back(name);
     }
-    const bool is_finite = bounds.height.is_finite() && std::isfinite(bounds.slope_max) && !bisection.may_be_nan();
-    if (!is_finite) bounds.undefined = bisection.undefined_over_all();
     return bounds;
+}
+
+std::vector<Undefined> undefined_in(const Module& module, const Texture& texture, const BoundsBox& box,
+                                    uint32_t evaluations)
+{
+    // Large, and still no overflow of what an author would compute from it.
+    constexpr double some_number = 1e15;
+    BoundsBox bounded = box;
+    for (Interval& input : bounded.input)
+        input = {std::max(input.minimum, -some_number), std::min(input.maximum, some_number)};
+    Bisection bisection(module, texture, std::move(bounded), {Goal::faults});
+    return bisection.excludes_faults(evaluations) ? std::vector<Undefined>{} : bisection.undefined_over_all();
 }
 
 std::vector<Interval> function_bounds(const Module& module, uint32_t function, std::span<const Interval> arguments)

@@ -26,11 +26,14 @@ struct BoundsBox {
     double normal_turn_max_per_m = std::numeric_limits<double>::infinity();
 };
 
-// An operation whose operands can leave what it is defined for, or a constant that is not finite.
+// Where a number may end: an operation whose operands are finite, and whose result, or its derivative as an entry
+// computes it, may be not; or a constant that is not finite.
 struct Undefined {
+    enum class Why : uint8_t { domain, pole, overflow, derivative };
     std::optional<Op> op; // nothing: a constant
-    Interval operand;     // the divisor, the radicand, ...
-    Span span;            // innermost user code
+    Why why;
+    Interval operand; // the divisor, the radicand, ...
+    Span span;        // innermost user code
 };
 
 // What is known of a texture over a box; infinite where nothing was found.
@@ -41,15 +44,23 @@ struct TextureBounds {
     Smoothness smoothness;      // as a function of p
     Cause cause;                // of what makes it no smoother
     std::vector<std::string> declared; // functions whose facts these bounds believe, by name: declared, not proven
-    std::vector<Undefined> undefined;  // what may make it not finite somewhere; empty where it is finite for certain
 };
 
 // Refined by bisecting point inputs and real parameters, best first, until `evaluations` are spent or 5 % improvement
 // per doubling is missed.
 TextureBounds texture_bounds(const Module& module, const Texture& texture, const BoundsBox& box,
                              uint32_t evaluations = 4096);
+// What may set a fault bit somewhere in the box; empty where height, gradient and outputs are finite for certain. An
+// input without bounds counts as some number. Not seen is what overflows within 1e-307 of a place where a derivative
+// rule says 0 in place of what has no bound, as beside the origin of atan2(y, x).
+std::vector<Undefined> undefined_in(const Module& module, const Texture& texture, const BoundsBox& box,
+                                    uint32_t evaluations = 512);
 // Its height alone, which is cheaper.
 Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations = 4096);
+
+// Its material outputs, by bit of Texture::writes. One that may be NaN says so; the rest holds where it is a number.
+std::vector<Interval> output_bounds(const Module& module, const Texture& texture, const BoundsBox& box,
+                                    uint32_t evaluations = 4096);
 
 // Every result of a function that is no entry, for arguments that lie in these intervals.
 std::vector<Interval> function_bounds(const Module& module, uint32_t function, std::span<const Interval> arguments);

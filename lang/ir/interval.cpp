@@ -386,6 +386,16 @@ Interval value_of(Op op, std::span<const Interval> x)
 
 } // namespace
 
+bool holds_pole(Op op, std::span<const Interval> operands)
+{
+    const Interval& a = operands[0];
+    if (op == Op::div) return operands[1].contains(0);
+    if (op == Op::log || op == Op::log2) return a.contains(0);
+    if (op == Op::atanh) return a.contains(-1) || a.contains(1);
+    if (op == Op::pow) return a.contains(0) && operands[1].minimum < 0;
+    return op == Op::tan && may_be_infinite(tangent(a)); // in double never met, only 1e16
+}
+
 bool Interval::is_finite() const
 {
     return !may_be_nan && minimum > -infinity && maximum < infinity && !is_empty();

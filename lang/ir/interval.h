@@ -34,4 +34,7 @@ Interval multiply(const Interval& a, const Interval& b);
 
 Interval evaluate(Op op, std::span<const Interval> operands);
 
+// Whether the operands hold a place where the operation is infinite: a divisor of 0, the logarithm of 0.
+bool holds_pole(Op op, std::span<const Interval> operands);
+
 } // namespace haptel::ir

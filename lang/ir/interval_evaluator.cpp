@@ -41,6 +41,7 @@ Variation carried_along(const BoundsBox& box, Input first_partial, Span span)
 {
     Variation variation = unknown_variation(span);
     variation.smoothness = Smoothness::smooth;
+    variation.may_fault = false;
     double squares = 0;
     for (size_t j = 0; j < Variation::directions; ++j) {
         const Interval& partial = box.input[static_cast<size_t>(first_partial) + j];
@@ -160,18 +161,27 @@ void IntervalEvaluator::roughen_all(Results& results, const Variation& by, Span 
     }
 }
 
-// What an operation is not defined for: where its operands are numbers and its result may not be one.
+// Where finite operands make what is not, and not where that is passed on.
 void IntervalEvaluator::note_undefined(const Instruction& made, Op op, std::span<const Interval> operands,
                                        const Interval& result)
 {
     const OpInfo& info = op_info(op);
-    const auto is_number = [](const Interval& operand) { return !operand.may_be_nan && !operand.is_empty(); };
-    if (info.result != 'r' || info.operands[0] != 'r' || is_trying) return;
-    if (!std::all_of(operands.begin(), operands.end(), is_number)) return;
-    const bool divides_by_zero = op == Op::div && operands[1].contains(0);
-    const bool overflows = op == Op::add || op == Op::sub || op == Op::mul || op == Op::fma; // of what has no bound
-    if (!divides_by_zero && (overflows || !result.may_be_nan)) return;
-    note({op, operands[op == Op::div ? 1 : 0], made.span});
+    const auto is_finite = [](const Interval& operand) { return operand.is_finite(); };
+    if (info.result != 'r' || info.operands[0] != 'r' || is_trying || result.is_finite()) return;
+    if (!std::all_of(operands.begin(), operands.end(), is_finite)) return;
+    const Undefined::Why why = result.may_be_nan && op != Op::div ? Undefined::Why::domain
+                               : holds_pole(op, operands)         ? Undefined::Why::pole
+                                                                  : Undefined::Why::overflow;
+    note({op, why, operands[op == Op::div ? 1 : 0], made.span});
+}
+
+// Likewise of the derivative.
+void IntervalEvaluator::note_derivative(const Instruction& made, Op op, std::span<const Interval> operands,
+                                        const Interval& result)
+{
+    const auto is_finite = [](const Interval& operand) { return operand.is_finite(); };
+    if (is_trying || !result.is_finite() || !std::all_of(operands.begin(), operands.end(), is_finite)) return;
+    note({op, Undefined::Why::derivative, operands[op == Op::div ? 1 : 0], made.span});
 }
 
 // Each place once; the library's is the call.
@@ -180,7 +190,22 @@ void IntervalEvaluator::note(const Undefined& found)
     const Span span = user.value_or(found.span);
     for (const Undefined& known : undefined_operations)
         if (known.op == found.op && known.span.file == span.file && known.span.begin == span.begin) return;
-    undefined_operations.push_back({found.op, found.operand, span});
+    undefined_operations.push_back({found.op, found.why, found.operand, span});
+}
+
+// Whether it is `x == 0 ? a : y / x` of numbers.
+bool IntervalEvaluator::is_guarded_division(const Frame& frame, const Instruction& made, Op op) const
+{
+    if (op != Op::select) return false;
+    const Instruction *test = frame.makers[made.operands[0].index], *division = frame.makers[made.operands[2].index];
+    const auto is = [](const Instruction* by, Op which) {
+        auto* operation = by ? std::get_if<Operation>(&by->kind) : nullptr;
+        return operation && operation->op == which;
+    };
+    if (!is(test, Op::eq) || !is(division, Op::div) || test->operands[0] != division->operands[1]) return false;
+    const Interval& zero = frame.values[test->operands[1].index];
+    const auto is_finite = [&](Value value) { return frame.values[value.index].is_finite(); };
+    return zero.is_point() && zero.minimum == 0 && is_finite(division->operands[0]) && is_finite(division->operands[1]);
 }
 
 // What the operands say together: a square, a component of a unit vector, a division whose divisor was looked at.
@@ -203,14 +228,7 @@ Interval IntervalEvaluator::sharpened(const Frame& frame, const Instruction& mad
                                                       made.operands[0]) != divisor->operands.end())
                 sharp = intersect({sharp.minimum, sharp.maximum, true}, {-1, 1, sharp.may_be_nan});
     }
-    if (op == Op::select && made_by(maker(0), Op::eq) && made_by(maker(2), Op::div)) {
-        const Value tested = maker(0)->operands[0], divisor = maker(2)->operands[1];
-        const Interval &zero = frame.values[maker(0)->operands[1].index],
-                       &dividend = frame.values[maker(2)->operands[0].index];
-        const bool is_guarded = tested == divisor && zero.is_point() && zero.minimum == 0 && dividend.is_finite() &&
-                                frame.values[divisor.index].is_finite();
-        if (is_guarded) sharp.may_be_nan = frame.values[made.operands[1].index].may_be_nan;
-    }
+    if (is_guarded_division(frame, made, op)) sharp.may_be_nan = frame.values[made.operands[1].index].may_be_nan;
     return sharp;
 }
 
@@ -262,7 +280,15 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
     if (active == 0) return {};
     left -= std::min<uint64_t>(left, 3); // what it costs more than a value alone
     const Interval& a = operands[0];
-    if (op == Op::select) return chosen(frame, made, a.contains(1), a.contains(0), &variations[0]);
+    if (op == Op::select) {
+        Variation either = chosen(frame, made, a.contains(1), a.contains(0), &variations[0]);
+        if (is_guarded_division(frame, made, op)) {
+            either.may_fault = variations[1].may_fault;
+            for (Value part : frame.makers[made.operands[2].index]->operands)
+                either.may_fault |= frame.variations[part.index].may_fault;
+        }
+        return either;
+    }
 
     Variation variation;
     Partials partials{};
@@ -279,6 +305,9 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
         else if (of_reals)
             partials = rules.of(op, operands, active, true);
         variation = chain(op, operands, {variations, operands.size()}, partials, of_reals || op == Op::spline);
+        const auto may_fault = [](const Variation& operand) { return operand.may_fault; };
+        const bool is_new = std::none_of(variations, variations + operands.size(), may_fault);
+        if (variation.may_fault && is_new) note_derivative(made, op, operands, result);
     }
     if (op == Op::detach) { // the gradient that is returned is another function's, which may bend anyhow
         variation.curvature = infinity;
@@ -299,7 +328,7 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const RealConstant& constant)
 {
-    if (varying && !is_trying && !std::isfinite(constant.value)) note({{}, {}, made.span});
+    if (varying && !is_trying && !std::isfinite(constant.value)) note({{}, {}, {}, made.span});
     frame.values[made.results[0].index] =
         std::isnan(constant.value) ? Interval{infinity, -infinity, true} : Interval{constant.value, constant.value};
 }

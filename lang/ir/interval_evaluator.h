@@ -67,7 +67,9 @@ private:
     Results unknown(const Function& function, std::span<const Value> values, Span cause) const;
     void roughen_all(Results& results, const Variation& by, Span where) const;
     void note_undefined(const Instruction& made, Op op, std::span<const Interval> operands, const Interval& result);
+    void note_derivative(const Instruction& made, Op op, std::span<const Interval> operands, const Interval& result);
     void note(const Undefined& found);
+    bool is_guarded_division(const Frame& frame, const Instruction& made, Op op) const;
     Interval sharpened(const Frame& frame, const Instruction& made, Op op, const Interval& result) const;
 
     Results call(uint32_t function, const Results& arguments, Span span);

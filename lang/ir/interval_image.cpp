@@ -38,6 +38,7 @@ Partials IntervalEvaluator::spline_partials(std::span<const Interval> operands) 
     partials.second[1][1] = derivative(2, 0);
     partials.second[1][2] = partials.second[2][1] = derivative(1, 1);
     partials.second[2][2] = derivative(0, 2);
+    for (size_t i : {1, 2}) partials.may_fault[i] = std::isinf(partials.first[i].maximum);
     return partials;
 }
 

@@ -186,6 +186,7 @@ struct Texture {
     uint32_t height = UINT32_MAX;
     uint32_t height_gradient = UINT32_MAX;
     Span span;
+    std::vector<Span> output_spans; // where each of `writes` is declared, by bit; empty in IR without a source
 };
 
 struct Module {

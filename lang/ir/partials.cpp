@@ -8,6 +8,20 @@
 
 namespace haptel::ir {
 
+namespace {
+
+// Whether the only place in these operands where a partial is infinite is one for which its rule says 0, and the
+// partial is a number for every normal double beside it.
+bool is_guarded(Op op, std::span<const Interval> operands)
+{
+    const bool has_guard = op == Op::sqrt || op == Op::asin || op == Op::acos || op == Op::acosh || op == Op::atan2 ||
+                           op == Op::length2 || op == Op::length3 || op == Op::length4 || op == Op::pow;
+    const auto is_finite = [](const Interval& operand) { return operand.is_finite(); };
+    return has_guard && std::all_of(operands.begin(), operands.end(), is_finite) && evaluate(op, operands).is_finite();
+}
+
+} // namespace
+
 PartialRules::Line PartialRules::differentiated(Op op, uint32_t active)
 {
     const uint32_t arity = op_info(op).arity;
@@ -80,7 +94,10 @@ Partials PartialRules::of(Op op, std::span<const Interval> operands, uint32_t ac
         return found.is_empty() ? Interval{0, 0} : Interval{found.minimum, found.maximum};
     };
     Partials partials{};
-    for (const auto& [operand, where] : line.first) partials.first[operand] = bounded(where);
+    for (const auto& [operand, where] : line.first) {
+        partials.first[operand] = bounded(where);
+        partials.may_fault[operand] = !values[where].is_finite() && !is_guarded(op, operands);
+    }
     if (with_second)
         for (const auto& [i, k, where] : line.second) partials.second[i][k] = bounded(where);
     return partials;

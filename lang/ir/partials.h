@@ -13,6 +13,7 @@ constexpr size_t operands_max = 4;
 struct Partials {
     Interval first[operands_max];
     Interval second[operands_max][operands_max]; // symmetric
+    bool may_fault[operands_max] = {};           // the first, as code computes it, may be infinite or NaN
 };
 
 class PartialRules {

@@ -167,6 +167,22 @@ void keep_wrap(Op op, std::span<const Interval> operands, std::span<const Variat
     }
 }
 
+bool is_bounded(const std::array<Interval, axes>& gradient)
+{
+    return std::all_of(gradient.begin(), gradient.end(),
+                       [](const Interval& part) { return std::isfinite(size_of(part)); });
+}
+
+// A gradient without bound, of partials and gradients that have some.
+bool overflows(const Partials& partials, std::span<const Variation> variations, const Variation& made)
+{
+    for (size_t i = 0; i < variations.size(); ++i)
+        if (variations[i].is_active &&
+            !(std::isfinite(size_of(partials.first[i])) && is_bounded(variations[i].gradient)))
+            return false;
+    return !is_bounded(made.gradient);
+}
+
 } // namespace
 
 Variation axis(size_t direction)
@@ -187,6 +203,7 @@ Variation unknown_variation(Span where)
     variation.gradient.fill(around_zero(infinity));
     variation.hessian.fill(around_zero(infinity));
     variation.slope = variation.curvature = infinity;
+    variation.may_fault = true;
     return variation;
 }
 
@@ -201,6 +218,7 @@ Variation join(const Variation& a, const Variation& b)
 {
     Variation all;
     all.is_active = a.is_active || b.is_active;
+    all.may_fault = a.may_fault || b.may_fault;
     roughen(all, a.smoothness, a.cause);
     roughen(all, b.smoothness, b.cause);
     for (size_t j = 0; j < all.gradient.size(); ++j) all.gradient[j] = join(a.gradient[j], b.gradient[j]);
@@ -214,6 +232,7 @@ Variation intersect(const Variation& a, const Variation& b)
 {
     Variation both = a.smoothness >= b.smoothness ? a : b;
     both.is_active = a.is_active && b.is_active;
+    both.may_fault = a.may_fault && b.may_fault;
     for (size_t j = 0; j < both.gradient.size(); ++j) both.gradient[j] = intersect(a.gradient[j], b.gradient[j]);
     for (size_t j = 0; j < both.hessian.size(); ++j) both.hessian[j] = intersect(a.hessian[j], b.hessian[j]);
     both.slope = std::min(a.slope, b.slope);
@@ -269,6 +288,9 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
         const double bend = times(turns * turns, steepest / shortest);
         curvature = std::min(curvature, bend + times(steepest, second_norm(variations)));
     }
+    for (size_t i = 0; i < variations.size(); ++i)
+        made.may_fault |= variations[i].is_active && (variations[i].may_fault || by.may_fault[i]);
+    made.may_fault |= overflows(by, variations, made);
     made.slope = slope * rounding_up;
     made.curvature = curvature * rounding_up;
     tighten(made, second);
@@ -284,6 +306,8 @@ Variation chain(const Facts& facts, std::span<const Variation> arguments)
     if (!made.is_active) return made;
     if (facts.smoothness) roughen(made, *facts.smoothness, arguments.empty() ? Cause{} : arguments[0].cause);
     const double jacobian = jacobian_norm(arguments), second = second_norm(arguments);
+    made.may_fault = !facts.slope; // of finite arguments; a bound of the slope says that there is one
+    for (const Variation& argument : arguments) made.may_fault |= argument.may_fault;
     const double slope = facts.slope.value_or(infinity), curvature = facts.curvature.value_or(infinity);
 
     double column[axes];

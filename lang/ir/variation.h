@@ -24,6 +24,7 @@ struct Variation {
     static constexpr size_t directions = 3; // the axes of p
 
     bool is_active = false; // depends on the point at all; else the rest stays as it is here
+    bool may_fault = false; // the gradient, as an entry computes it, may be infinite or NaN
     Smoothness smoothness = Smoothness::smooth;
     Cause cause; // of the roughest part
     // Not 0: the value is smooth but where it is 0, as |u|, a length and max(u, 0) are; its powers of 2, 3.. are C1,

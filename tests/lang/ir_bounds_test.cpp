@@ -267,3 +267,92 @@ TEST_CASE("intervals: integers without ends have 32 bits")
     CHECK(evaluate(Op::isub, negated).maximum == INT32_MAX);
     CHECK(evaluate(Op::ushr, shifted).maximum >= INT32_MAX);
 }
+
+TEST_CASE("intervals: exact ends stay, others move outward")
+{
+    std::mt19937_64 random(3);
+    const auto some = [&] { return std::uniform_real_distribution(-3.0, 3.0)(random); };
+    const auto truth = [](Op op, double a, double b) {
+        const Quad x = a, y = b;
+        return op == Op::add ? Quad(x + y) : op == Op::sub ? Quad(x - y) : op == Op::mul ? Quad(x * y) : Quad(x / y);
+    };
+    for (int round = 0; round < 2000; ++round)
+        for (Op op : {Op::add, Op::sub, Op::mul, Op::div}) {
+            double a = some(), b = some();
+            if (round % 2) a = std::round(64 * a) / 64, b = std::ldexp(1, static_cast<int>(random() % 5)); // exact
+            const Interval operands[] = {{a, a}, {b, b}};
+            const Interval found = evaluate(op, operands);
+            const Quad exact = truth(op, a, b);
+            CAPTURE(op, a, b, found.minimum, found.maximum);
+            CHECK((Quad(found.minimum) <= exact && exact <= Quad(found.maximum)));
+            CHECK(found.is_point() == (round % 2 == 1 || Quad(static_cast<double>(exact)) == exact));
+        }
+}
+
+TEST_CASE("intervals: a wave stays between -1 and 1 beside its crests, too")
+{
+    const double quarter = std::acos(0.0);
+    for (double reach : {1e-3, 1e-9, 1e-15, 0.0}) {
+        const Interval before[] = {{quarter - 2 * reach, quarter - reach}};
+        CHECK(evaluate(Op::sin, before).maximum <= 1);
+        const Interval trough[] = {{-quarter + reach, -quarter + 2 * reach}};
+        CHECK(evaluate(Op::sin, trough).minimum >= -1);
+    }
+}
+
+// sin(x / 10) written so that its body says nothing: only the declared slope does, from the middle of the box.
+TEST_CASE("bounds: the slope that is declared bounds the value about the middle of a box")
+{
+    const Module module = parsed(R"(
+        function "wave" (%x: real) first 1 facts minimum -1 maximum 1 slope 0.1 proven {
+          %tenth = real 0.1 %a = mul %x, %tenth %big = real 100 %c = mul %x, %big %d = add %a, %c %e = sub %d, %c
+          %h = sin %e
+          return %h
+        }
+        function "body" () { %x = input p_x %h = call "wave" (%x) return %h }
+        texture "t" { block 56 reads 0 writes 0 body "body" })");
+    REQUIRE(verify(module) == "");
+    BoundsBox box;
+    box.input[0] = {2, 6};
+    const Interval found = height_bounds(module, module.textures[0], box, 1);
+    CAPTURE(found.minimum, found.maximum);
+    CHECK((found.minimum <= std::sin(0.2) && found.maximum >= std::sin(0.6)));
+    CHECK((found.minimum > std::sin(0.4) - 0.2001 && found.maximum < std::sin(0.4) + 0.2001));
+}
+
+TEST_CASE("bounds: what may fault is told with the reason, and nothing of what cannot")
+{
+    using Why = Undefined::Why;
+    struct {
+        const char* body; // of x in -2 .. 2, u without bounds
+        std::optional<Why> why;
+    } const cases[] = {
+        {"%h = log %x", Why::domain},
+        {"%a = abs %x %h = log %a", Why::pole},
+        {"%one = real 1 %d = div %one, %x %h = atan %d", Why::pole},
+        {"%one = real 1 %a = abs %x %b = add %a, %one %h = div %one, %b", std::nullopt},
+        {"%big = real 1000 %a = mul %x, %big %h = exp %a", Why::overflow},
+        {"%big = real 1000 %a = mul %x, %big %e = exp %a %h = tanh %e", Why::overflow}, // the gradient's
+        {"%big = real 1000 %a = mul %x, %big %e = exp %a %two = real 2 %h = min %e, %two", std::nullopt},
+        {"%big = real 1e200 %a = mul %x, %big %s = sin %a %h = mul %s, %big", Why::derivative},
+        {"%s = sin %u %v = mul %u, %u %h = mul %s, %v", std::nullopt},
+        // 0 by convention where they have no bound, and a number beside it
+        {"%a = abs %x %h = sqrt %a", std::nullopt},
+        {"%a = abs %x %b = real 0.3 %h = pow %a, %b", std::nullopt},
+        {"%half = real 0.5 %a = mul %x, %half %h = asin %a", std::nullopt},
+        {"%h = length2 %x, %x", std::nullopt},
+        {"%h = atan2 %x, %x", std::nullopt},
+    };
+    for (const auto& one : cases) {
+        CAPTURE(one.body);
+        Module module = parsed(std::string("function \"body\" () { %x = input p_x %u = input uv_x ") + one.body +
+                               " return %h } texture \"t\" { block 56 reads 0 writes 0 body \"body\" }");
+        REQUIRE(verify(module) == "");
+        BoundsBox box;
+        std::fill(std::begin(box.input), std::end(box.input), Interval{-infinity, infinity});
+        box.input[0] = {-2, 2};
+        const std::vector<Undefined> found = undefined_in(module, module.textures[0], box);
+        CHECK(found.empty() == !one.why.has_value());
+        if (one.why && !found.empty()) CHECK(found[0].why == *one.why);
+    }
+}

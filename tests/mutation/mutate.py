@@ -23,6 +23,7 @@ copy, build = work / "source", work / "build"
 files = {
     "lang/ir/derivative_rules.cpp": ("Term zero_where_zero", ["derivative*"]),
     "lang/ir/interval.cpp": ("", ["intervals*,bounds*,slope*,class*"]),
+    "lang/ir/interval_call.cpp": ("", ["intervals*,bounds*,slope*,class*"]),
     "lang/ir/variation.cpp": ("", ["intervals*,bounds*,slope*,class*"]),
 }
 

@@ -362,3 +362,36 @@ TEST_CASE("check: octaves that fade along a surface leave no jump, and a choice 
     CHECK(textures[2]["continuity"] == "jump");
     CHECK(run_command("test --footprint 3mm '" + file + "'").code == 0); // nothing rougher than that is measured
 }
+
+TEST_CASE("check: material outputs are bounded like the height, and those that cannot be meant are told")
+{
+    const Folder folder;
+    const std::string file = folder.write(
+        "scales.haptel",
+        "texture sound(float rise = 0.5 in 0.0 .. 1.0, out float stiffness_scale, out float friction_scale)\n"
+        "{\n"
+        "    stiffness_scale = 1.0 + 0.5 * sinturn(p.x / 1mm);\n"
+        "    friction_scale = 1.0 + rise * smoothstep(0.0, 1.0, p.y / 1mm);\n"
+        "    return 0.0;\n"
+        "}\n"
+        "texture pulls(out float stiffness_scale) { stiffness_scale = p.x / 1m; return 0.0; }\n"
+        "texture bursts(out float friction_scale) { friction_scale = abs(1mm / p.x); return 0.0; }\n");
+    const Ran ran = run_command("check --json --box 0.2m '" + file + "'");
+    CHECK(ran.code == 0);
+    const Json json = Json::parse(ran.out);
+    const Json& sound = json["textures"][0]["output_bounds"];
+    CHECK(near(sound["stiffness_scale"]["minimum"], 0.5));
+    CHECK(near(sound["stiffness_scale"]["maximum"], 1.5));
+    CHECK(near(sound["friction_scale"]["maximum"], 1.5));
+    CHECK(near(sound["friction_scale"]["over_ranges"]["maximum"], 2));
+    CHECK(near(json["textures"][1]["output_bounds"]["stiffness_scale"]["minimum"], -0.1));
+    CHECK(json["textures"][2]["output_bounds"]["friction_scale"]["maximum"].is_null());
+    std::vector<std::pair<int, std::string>> scales;
+    for (const Json& finding : json["diagnostics"])
+        if (finding["code"] == "scale") scales.emplace_back(finding["line"], finding["message"]);
+    REQUIRE(scales.size() == 2);
+    CHECK(scales[0] == std::pair(7, std::string("stiffness_scale of 'pulls' may be negative: it lies in -0.1 .. 0.1")));
+    CHECK(scales[1].first == 8);
+    CHECK(contains(scales[1].second, "friction_scale of 'bursts' may be not finite"));
+    CHECK(contains(run_command("check '" + file + "'").out, "friction_scale 1 .. 1.5 (1 .. 2)\n"));
+}
