@@ -83,7 +83,8 @@ void FunctionEmitter::emit(const ir::Instruction& made, const ir::Operation& ope
     const size_t count = made.operands.size();
     for (size_t i = 0; i < count; ++i) operands[i] = value(made.operands[i], {form.in_lanes, in_singles});
     llvm::Type* real = in_singles ? builder.getFloatTy() : builder.getDoubleTy();
-    Value* result = emit_operation(builder, operation.op, {operands, count}, real);
+    Value* result = emit_operation(builder, operation.op, {operands, count}, real,
+                                   form.is_single ? builder.getFloatTy() : builder.getDoubleTy());
     define(made.results[0], source.type(made.results[0]) == ir::Type::real ? rounded(result, form.is_single) : result);
 }
 

@@ -1,11 +1,11 @@
 #include "jit/codegen_operation.h"
 
 #include "jit/codegen.h"
+#include "jit/codegen_turn.h"
 #include "lang/ir/spline.h"
 
 #include <cmath>
 #include <cstring>
-#include <numbers>
 #include <string>
 
 namespace haptel::jit {
@@ -41,7 +41,7 @@ public:
     {
     }
 
-    Value* emit(ir::Op op);
+    Value* emit(ir::Op op, llvm::Type* result);
 
 private:
     llvm::IRBuilder<>& builder;
@@ -75,9 +75,7 @@ private:
     Value* lesser(Value* x, Value* y, bool greater = false);
     Value* sign();
     Value* length();
-    Value* remainder_of_turn() { return builder.CreateFSub(a(), intrinsic(llvm::Intrinsic::roundeven, a())); }
-    Value* sine_of_turns();
-    Value* cosine_of_turns();
+    Value* way_to_whole_turn() { return builder.CreateFSub(a(), intrinsic(llvm::Intrinsic::roundeven, a())); }
     Value* angle();
     Value* divide(bool want_remainder);
     Value* divide_unsigned(bool want_remainder);
@@ -175,22 +173,6 @@ Value* Emitter::length()
     return builder.CreateFMul(intrinsic(llvm::Intrinsic::sqrt, sum), unscale);
 }
 
-Value* Emitter::sine_of_turns()
-{
-    Value* rest = remainder_of_turn();
-    Value* size = absolute(rest);
-    Value* folded = choose(builder.CreateFCmpOGT(size, real(0.25)), builder.CreateFSub(real(0.5), size), size);
-    Value* radians = builder.CreateFMul(real(2 * std::numbers::pi), folded);
-    return intrinsic(llvm::Intrinsic::copysign, call("haptel_sin", {&radians, 1}), rest);
-}
-
-Value* Emitter::cosine_of_turns()
-{
-    Value* from_zero = builder.CreateFSub(real(0.25), absolute(remainder_of_turn()));
-    Value* radians = builder.CreateFMul(real(2 * std::numbers::pi), from_zero);
-    return call("haptel_sin", {&radians, 1});
-}
-
 Value* Emitter::angle()
 {
     Value* at_origin = builder.CreateAnd(builder.CreateFCmpOEQ(a(), real(0)), builder.CreateFCmpOEQ(b(), real(0)));
@@ -221,7 +203,7 @@ Value* Emitter::saturate(llvm::Intrinsic::ID id)
     return builder.CreateIntrinsic(id, {words(), reals()}, {a()});
 }
 
-Value* Emitter::emit(ir::Op op)
+Value* Emitter::emit(ir::Op op, llvm::Type* result)
 {
     using ir::Op;
     namespace in = llvm::Intrinsic;
@@ -249,8 +231,8 @@ Value* Emitter::emit(ir::Op op)
     case Op::sin: return call("haptel_sin");
     case Op::cos: return call("haptel_cos");
     case Op::tan: return call("haptel_tan");
-    case Op::sinturn: return sine_of_turns();
-    case Op::costurn: return cosine_of_turns();
+    case Op::sinturn: return sine_of_turns(builder, way_to_whole_turn(), result);
+    case Op::costurn: return cosine_of_turns(builder, way_to_whole_turn(), result);
     case Op::asin: return call("haptel_asin");
     case Op::acos: return call("haptel_acos");
     case Op::atan: return call("haptel_atan");
@@ -316,9 +298,9 @@ Value* Emitter::emit(ir::Op op)
 } // namespace
 
 llvm::Value* emit_operation(llvm::IRBuilder<>& builder, ir::Op op, std::span<llvm::Value* const> operands,
-                            llvm::Type* real)
+                            llvm::Type* real, llvm::Type* result)
 {
-    return Emitter(builder, operands, real).emit(op);
+    return Emitter(builder, operands, real).emit(op, result);
 }
 
 std::span<const LibraryFunction> code_library()

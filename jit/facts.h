@@ -1,4 +1,4 @@
-// What is proven about a texture, as the C interface carries it. Slope, curvature and continuity are unknown for now.
+// What is proven about a texture, as the C interface carries it.
 #pragma once
 
 #include "lang/abi.h"

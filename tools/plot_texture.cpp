@@ -135,6 +135,7 @@ Color lit(double gx, double gy)
 double exaggeration_for(double slope_rms)
 {
     double factor = 1;
+    if (!(slope_rms > 0)) return factor;
     for (int i = 0; i < 15; ++i) {
         const double steeper = factor * (i % 3 == 1 ? 2.5 : 2);
         if (slope_rms * steeper > 0.3) break;
@@ -143,15 +144,11 @@ double exaggeration_for(double slope_rms)
     return factor;
 }
 
-Picture draw_shaded(const TextureView& view)
+constexpr int samples_per_pixel = 2; // each way
+
+Image relief_of(const Grid& samples, int n, double factor)
 {
-    Picture picture = new_picture(view);
-    constexpr double side = 400;
-    const Rect rect{60, 58, side, side};
-    constexpr int fine = 2; // samples per pixel, each way
-    const int n = pixels(picture, side);
-    const Grid samples(view, n * fine, n * fine);
-    const double factor = samples.slope.rms() > 0 ? exaggeration_for(samples.slope.rms()) : 1;
+    constexpr int fine = samples_per_pixel;
     Image image(n, n);
     for (int row = 0; row < n; ++row)
         for (int column = 0; column < n; ++column) {
@@ -164,10 +161,29 @@ Picture draw_shaded(const TextureView& view)
             }
             image.at(column, row) = mean;
         }
-    picture.image(rect, image);
+    return image;
+}
+
+Picture draw_shaded(const TextureView& view)
+{
+    Picture picture = new_picture(view);
+    constexpr double side = 400;
+    const Rect rect{60, 58, side, side};
+    const int n = pixels(picture, side);
+    const Grid samples(view, n * samples_per_pixel, n * samples_per_pixel);
+    const double factor = exaggeration_for(samples.slope.rms());
+    picture.image(rect, relief_of(samples, n, factor));
     draw_axes(picture, window_axes(view, rect));
     const std::string relief = factor == 1 ? "relief to scale" : fmt::format("relief {:g} times as steep", factor);
     draw_title(picture, view.title, relief + "   " + statistics(samples.height, samples.slope));
+    return picture;
+}
+
+Picture draw_relief(const TextureView& view)
+{
+    Picture picture = new_picture(view);
+    const Grid samples(view, view.size_px * samples_per_pixel, view.size_px * samples_per_pixel);
+    picture.image({0, 0, page, page}, relief_of(samples, view.size_px, exaggeration_for(samples.slope.rms())));
     return picture;
 }
 
@@ -313,6 +329,7 @@ Picture draw_gradient_error(const TextureView& view)
 constexpr TextureKind kinds[] = {
     {"height", "colours for height", draw_height},
     {"shaded", "relief, lit from the upper left", draw_shaded},
+    {"relief", "the same from edge to edge, without axes and words", draw_relief},
     {"section", "height and slope along x", draw_section},
     {"spectrum", "amplitude against wavelength", draw_spectrum},
     {"gradient-error", "error of the compiled gradient against the 113-bit oracle", draw_gradient_error},

@@ -29,6 +29,7 @@ struct TextureKind {
 
 // height:         colours for metres
 // shaded:         relief lit from the upper left, from the exact gradient
+// relief:         the same from edge to edge, without axes and words
 // section:        height and slope along the line through the centre parallel to x
 // spectrum:       amplitude against wavelength, along x and along y
 // gradient-error: log10 of |g - g_oracle| / max |g_oracle|

@@ -136,9 +136,10 @@ std::string to_markdown(const std::vector<Entry>& entries)
         "Every texture sees these functions, without an import. `./dev docs` makes this page from the doc comments in\n"
         "`stdlib/`; `haptel info NAME` shows the same in a terminal. *Facts* hold for all arguments: the least and "
         "the\n"
-        "greatest value, the most that the gradient with respect to the first argument is long, the most that it "
-        "turns, and\n"
-        "how smooth the function is.\n\n";
+        "greatest value; the slope, which is the greatest length of the gradient with respect to the first argument; "
+        "the\n"
+        "curvature, the greatest second derivative along any direction; and the class, how smooth the function is.\n"
+        "Pictures are 30 mm wide.\n\n";
     std::string_view group;
     for (const Entry& entry : entries) {
         if (entry.group == built_in_group) break;

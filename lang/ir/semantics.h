@@ -4,8 +4,7 @@
 // Three classes for code generation:
 //   image calls    spline image_width image_height call the functions of spline.h
 //   library calls  sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp exp2 log log2 pow atan2 call the C
-//                  library's function of that name (atan2 after the test for the origin). sinturn and costurn call
-//                  sin after the reduction below.
+//                  library's function of that name (atan2 after the test for the origin).
 //   inline         everything else, in IEEE arithmetic rounded to nearest, in the order written here. fma, sqrt, floor,
 //                  ceil, trunc and round-to-even are exact or correctly rounded, so that an instruction and the library
 //                  agree.
@@ -14,6 +13,7 @@
 
 #include "lang/ir/ir.h"
 #include "lang/ir/spline.h"
+#include "lang/ir/turn_polynomials.h"
 
 #include <bit>
 #include <cmath>
@@ -144,24 +144,75 @@ T length(const T* x, int count)
     return sqrt(sum) * unscale;
 }
 
-// r = a - round(a) is exact; folding |r| about 1/4 keeps the argument of sin within a quarter turn, so that half turns
-// give exactly 0 and quarter turns exactly 1.
+template <typename T>
+T sine_within_eighth(const T& turns)
+{
+    using std::sin;
+    return sin(two_pi<T>() * turns);
+}
+
+template <typename T>
+T cosine_within_eighth(const T& turns)
+{
+    using std::cos;
+    return cos(two_pi<T>() * turns);
+}
+
+template <size_t count>
+double polynomial(const double (&coefficients)[count], double u)
+{
+    double sum = coefficients[count - 1];
+    for (size_t i = count - 1; i-- > 0;) sum = sum * u + coefficients[i];
+    return sum;
+}
+
+inline double sine_within_eighth(double turns)
+{
+    return turns * polynomial(turn::sine_f64, turns * turns);
+}
+
+inline double cosine_within_eighth(double turns)
+{
+    return turns * turns * polynomial(turn::cosine_f64, turns * turns) + 1;
+}
+
+// Of a turn, exactly: the way to the nearest whole turn, and |way| to the nearest quarter.
+template <typename T>
+struct TurnParts {
+    T way;
+    bool is_behind_quarter; // |way| > 1/4
+    bool is_near_quarter;   // nearer to 1/4 than to 0 and 1/2
+    T to_quarter;
+
+    explicit TurnParts(const T& a) : way(difference(a, T(round_to_even(a))))
+    {
+        using std::fabs;
+        T folded = fabs(way);
+        is_behind_quarter = folded > T(0.25);
+        if (is_behind_quarter) folded = difference(T(0.5), folded);
+        is_near_quarter = folded > T(0.125);
+        to_quarter = is_near_quarter ? difference(T(0.25), folded) : folded;
+    }
+};
+
+// Half turns give exactly 0 and quarter turns exactly 1.
 template <typename T>
 T sine_of_turns(const T& a)
 {
-    using std::copysign, std::fabs, std::sin;
-    T r = difference(a, T(round_to_even(a)));
-    T folded = fabs(r);
-    if (folded > T(0.25)) folded = T(0.5) - folded;
-    return copysign(T(sin(two_pi<T>() * folded)), r);
+    using std::signbit;
+    const TurnParts<T> parts(a);
+    const T size =
+        parts.is_near_quarter ? cosine_within_eighth(parts.to_quarter) : sine_within_eighth(parts.to_quarter);
+    return signbit(parts.way) ? T(-size) : size;
 }
 
 template <typename T>
 T cosine_of_turns(const T& a)
 {
-    using std::fabs, std::sin;
-    T r = difference(a, T(round_to_even(a)));
-    return sin(two_pi<T>() * (T(0.25) - fabs(r)));
+    const TurnParts<T> parts(a);
+    const T size =
+        parts.is_near_quarter ? sine_within_eighth(parts.to_quarter) : cosine_within_eighth(parts.to_quarter);
+    return parts.is_behind_quarter ? T(-size) : size;
 }
 
 template <typename T>

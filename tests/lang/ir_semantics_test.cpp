@@ -237,6 +237,29 @@ TEST_CASE("semantics: real functions over double are right to a few units in the
     }
 }
 
+TEST_CASE("semantics: sine and cosine of turns are right to two units in the last place, and never beyond 1")
+{
+    for (const Op op : {Op::sinturn, Op::costurn}) {
+        Module module;
+        Builder builder(module, "f");
+        const Value parameter = builder.parameter(Type::real);
+        const Value result = builder.operation(op, {parameter});
+        builder.finish({&result, 1});
+        Interpreter<Quad> oracle(module);
+        double worst = 0;
+        for (int i = 0; i <= 50'000; ++i) {
+            const double turns = i % 2 ? i / 50'000.0 - 0.5 : std::ldexp(i / 5e4 - 0.5, -i % 60) + i % 5 * 0.125;
+            const double found = real(op, {turns});
+            const Quad exact = oracle.run(0, slots_of<Quad>(std::vector<double>{turns}), nullptr)[0].real;
+            CAPTURE(turns, found);
+            if (!(std::fabs(found) <= 1) || (exact == 0) != (found == 0)) FAIL("beyond 1, or not 0 where it should be");
+            if (exact != 0)
+                worst = std::max(worst, std::fabs(static_cast<double>((Quad(found) - exact) / exact)) * 0x1p53);
+        }
+        CHECK((worst > 0.5 && worst < 4)); // in halves of a unit
+    }
+}
+
 TEST_CASE("interpreter: results may name parameters in any order, and loops may exchange what they carry")
 {
     // Fibonacci by exchanging; the results of the loop come back swapped

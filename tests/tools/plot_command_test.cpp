@@ -16,7 +16,7 @@ TEST_CASE("plot draws every kind of picture in the size asked for")
 {
     const Folder folder;
     const std::string texture = folder.write("bumps.haptel", bumps) + ":bumps";
-    for (const std::string kind : {"height", "shaded", "section", "spectrum", "gradient-error"}) {
+    for (const std::string kind : {"height", "shaded", "relief", "section", "spectrum", "gradient-error"}) {
         const std::string picture = folder.file(kind + ".png");
         const Ran ran =
             run_command("plot " + texture + " --kind " + kind + " --out " + picture + " --size 256 --window 10mm");
