@@ -188,3 +188,24 @@ TEST_CASE("built-ins: at the edges every overload gives the oracle's gradient, a
     }
     CHECK(compared >= 20'000);
 }
+
+TEST_CASE("built-ins: at huge coordinates every overload gives numbers, or shows a fault and gives 0")
+{
+    const double edges[] = {1e9, -1e9, 1e300, -1e300, 0.0, -0.0, 5e-324, 0.75};
+    constexpr size_t count = std::size(edges);
+    size_t faults = 0;
+    for (const Compiled& one : all_overloads()) {
+        INFO(one.source);
+        Engine<double> machine(one.program->module);
+        for (size_t i = 0; i < count * count; ++i) {
+            const Point p = {edges[i % count], edges[i / count], edges[(i + i / count) % count]};
+            const std::array<double, 4> found = machine.run(p);
+            CAPTURE(p, found, machine.faults);
+            for (double number : found) CHECK(std::isfinite(number));
+            if (machine.faults & HAPTEL_FAULT_HEIGHT_NOT_FINITE) CHECK(found[0] == 0);
+            if (machine.faults) CHECK((found[1] == 0 && found[2] == 0 && found[3] == 0));
+            faults += machine.faults != 0;
+        }
+    }
+    CHECK(faults >= 100); // 1e300 squared, for one
+}
