@@ -61,7 +61,7 @@ std::string smooth_form(const ir::Cause& cause)
     case Op::round:
     case Op::sign: return "smoothstep() makes a ramp of the step";
     case Op::fract:
-    case Op::mod: return "sinturn() and wave() repeat without a jump";
+    case Op::mod: return "sinturn() and wave() repeat smoothly";
     case Op::sqrt:
     case Op::pow: return "its slope has no bound at 0: add a small constant to what it is of";
     case Op::div: return "keep the divisor away from 0";

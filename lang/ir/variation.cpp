@@ -145,6 +145,28 @@ void keep_kink(Op op, std::span<const Variation> variations, Variation& made)
     made.smoothness = of_power(power);
 }
 
+// A wrap moves with the value; folded at its middle it is a kink.
+void keep_wrap(Op op, std::span<const Interval> operands, std::span<const Variation> variations, Variation& made)
+{
+    for (size_t i = 0; i < variations.size() && i < 2; ++i) {
+        if (!variations[i].wrap) continue;
+        const auto [low, high, between] = *variations[i].wrap;
+        if (op == Op::abs && low == -high) {
+            made.smoothness = std::min(between, Smoothness::c0);
+        } else if (op == Op::neg) {
+            made.wrap = {-low, -high, between};
+        } else if (operands.size() == 2 && !variations[1 - i].is_active && operands[1 - i].is_point()) {
+            const double by = operands[1 - i].minimum;
+            if (op == Op::add) made.wrap = {low + by, high + by, between};
+            if (op == Op::sub)
+                made.wrap = i == 0 ? Variation::Wrap{low - by, high - by, between}
+                                   : Variation::Wrap{by - low, by - high, between};
+            if (op == Op::mul) made.wrap = {low * by, high * by, between};
+            if (op == Op::div && i == 0) made.wrap = {low / by, high / by, between};
+        }
+    }
+}
+
 bool is_bounded(const std::array<Interval, axes>& gradient)
 {
     return std::all_of(gradient.begin(), gradient.end(),
@@ -273,6 +295,7 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
     made.curvature = curvature * rounding_up;
     tighten(made, second);
     keep_kink(op, variations, made);
+    keep_wrap(op, operands, variations, made);
     if (is_norm && shortest > 0) smooth_in_length(variations, made);
     return made;
 }

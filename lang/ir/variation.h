@@ -29,8 +29,15 @@ struct Variation {
     Cause cause; // of the roughest part
     // Not 0: the value is smooth but where it is 0, as |u|, a length and max(u, 0) are; its powers of 2, 3.. are C1,
     // C2..
-    uint32_t kink = 0;                     // which kink: values that share it are 0 in the same places
-    uint32_t kink_power = 0;               // of max(u, 0) in it
+    uint32_t kink = 0;       // which kink: values that share it are 0 in the same places
+    uint32_t kink_power = 0; // of max(u, 0) in it
+    // Where the value jumps from one of these ends to the other and nowhere else, as fract and mod do, and how smooth
+    // it is between: ends that lie as far from 0 are one and the same to |value|.
+    struct Wrap {
+        double low, high;
+        Smoothness between;
+    };
+    std::optional<Wrap> wrap;
     std::array<Interval, 3> gradient = {}; // by axis
     std::array<Interval, 6> hessian = {};  // xx xy xz yy yz zz
     double slope = 0;                      // sup of the gradient's Euclidean norm
