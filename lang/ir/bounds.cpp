@@ -142,7 +142,8 @@ private:
             IntervalEvaluator::Results results = evaluator.run_varying(entry, box);
             height = results.values[0];
             variation = results.variations[0];
-            may_fault = !height.is_finite() || variation.may_fault;
+            const auto is_finite = [](const Interval& value) { return value.is_finite(); };
+            may_fault = !std::all_of(results.values.begin(), results.values.end(), is_finite) || variation.may_fault;
             if (pieces.empty()) whole = variation, undefined = evaluator.undefined(), believed = evaluator.believed();
         }
         used += evaluator.operations_used() + 1;

@@ -50,8 +50,8 @@ struct TextureBounds {
 // per doubling is missed.
 TextureBounds texture_bounds(const Module& module, const Texture& texture, const BoundsBox& box,
                              uint32_t evaluations = 4096);
-// What may set a fault bit somewhere in the box; empty where height and gradient are finite for certain (of outputs see
-// output_bounds). An input without bounds counts as some number. Not seen is what overflows within 1e-307 of a place
+// What may set a fault bit somewhere in the box; empty where height, gradient and outputs are finite for certain. An
+// input without bounds counts as some number. Not seen is what overflows within 1e-307 of a place
 // where a derivative rule says 0 in place of what has no bound, as beside the origin of atan2(y, x).
 std::vector<Undefined> undefined_in(const Module& module, const Texture& texture, const BoundsBox& box,
                                     uint32_t evaluations = 512);
