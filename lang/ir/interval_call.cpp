@@ -29,6 +29,17 @@ Interval declared_value(const Facts& facts, bool may_be_nan)
     return {*facts.value_minimum, *facts.value_maximum, may_be_nan};
 }
 
+// Whether facts cover every gradient that code computes of these arguments. Of infinite ones they say nothing, nor of
+// how the result varies with others than the first, even where they move by 0.
+bool tells_derivative(const Function& function, const IntervalEvaluator::Results& arguments, bool are_finite)
+{
+    const auto first = arguments.variations.begin(), last = arguments.variations.end();
+    const auto has_tangent = [](const Variation& argument) { return argument.has_tangent; };
+    const auto stays = [](const Variation& argument) { return argument.has_tangent && !argument.is_active; };
+    return (are_finite || std::none_of(first, last, has_tangent)) &&
+           std::none_of(first + function.first_argument_size, last, stays);
+}
+
 } // namespace
 
 const std::vector<const Instruction*>& IntervalEvaluator::makers_of(uint32_t function)
@@ -41,6 +52,23 @@ const std::vector<const Instruction*>& IntervalEvaluator::makers_of(uint32_t fun
     return known;
 }
 
+const std::vector<bool>& IntervalEvaluator::tangents_of(uint32_t index, std::span<const Variation> arguments)
+{
+    static const std::vector<bool> none;
+    if (!varying) return none;
+    const Function& function = module.functions[index];
+    std::vector<bool> given;
+    for (const Variation& argument : arguments) given.push_back(argument.has_tangent);
+    const auto [known, is_new] = tangents.try_emplace({index, given});
+    if (!is_new) return known->second;
+    Activity activity(function.value_types.size(), 1);
+    for (size_t p = 0; p < given.size(); ++p)
+        if (given[p]) activity.set(function.parameters[p], 0);
+    propagate(function, dependences, [](Input input, size_t) { return input <= Input::uv_y; }, activity);
+    for (uint32_t i = 0; i < function.value_types.size(); ++i) known->second.push_back(activity.any(Value{i}));
+    return known->second;
+}
+
 IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const Results& arguments, Span span)
 {
     const Function& function = module.functions[index];
@@ -48,7 +76,7 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     ++depth;
     const size_t count = function.value_types.size();
     Frame frame{function, std::vector<Interval>(count, nothing), std::vector<Variation>(varying ? count : 0),
-                makers_of(index)};
+                makers_of(index), tangents_of(index, arguments.variations)};
     store(frame, function.parameters, arguments);
     const std::optional<Span> outside = user;
     if (function.is_library && !user) user = span;
@@ -120,6 +148,7 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
     Results declared;
     const Results others = varying ? by_other_arguments(index, arguments, span) : Results{};
     bool is_all_told = function.facts.size() >= count; // nothing is left to find out inside
+    const bool is_derivative_told = varying && tells_derivative(function, arguments, are_finite);
     for (size_t r = 0; r < count; ++r) {
         const Facts facts = r < function.facts.size() ? function.facts[r] : Facts{};
         declared.values.push_back(declared_value(facts, !are_finite));
@@ -129,6 +158,8 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
         if (!varying) continue;
         Variation& variation = declared.variations.emplace_back(
             by_facts(function, facts, arguments, others.variations.empty() ? nullptr : &others.variations[r]));
+        variation.may_fault |= !is_derivative_told;
+        is_all_told &= is_derivative_told;
         if (variation.is_active && variation.cause.span.end == 0) variation.cause = {span, {}, function.is_library};
         is_all_told &= !variation.is_active || (facts.smoothness && variation.curvature < infinity);
     }

@@ -72,7 +72,7 @@ Variation variation_of_input(const BoundsBox& box, Input input, Span span)
 } // namespace
 
 IntervalEvaluator::IntervalEvaluator(const Module& whole, uint64_t operations)
-    : module(whole), limit(operations), makers(whole.functions.size())
+    : module(whole), limit(operations), makers(whole.functions.size()), dependences(whole)
 {
 }
 
@@ -106,8 +106,15 @@ IntervalEvaluator::Results IntervalEvaluator::gather(const Frame& frame, std::sp
     Results results;
     for (Value value : values) results.values.push_back(frame.values[value.index]);
     if (varying)
-        for (Value value : values) results.variations.push_back(frame.variations[value.index]);
+        for (Value value : values) results.variations.push_back(variation_at(frame, value));
     return results;
+}
+
+Variation IntervalEvaluator::variation_at(const Frame& frame, Value value) const
+{
+    Variation variation = frame.variations[value.index];
+    variation.has_tangent = frame.has_tangent[value.index];
+    return variation;
 }
 
 void IntervalEvaluator::store(Frame& frame, Value value, const Interval& interval, const Variation& variation)
@@ -226,7 +233,7 @@ Interval IntervalEvaluator::sharpened(const Frame& frame, const Instruction& mad
         for (Op length : {Op::length2, Op::length3, Op::length4})
             if (made_by(divisor, length) && std::find(divisor->operands.begin(), divisor->operands.end(),
                                                       made.operands[0]) != divisor->operands.end())
-                sharp = intersect({sharp.minimum, sharp.maximum, true}, {-1, 1, sharp.may_be_nan});
+                sharp = intersect(Interval{sharp.minimum, sharp.maximum, true}, Interval{-1, 1, sharp.may_be_nan});
     }
     if (is_guarded_division(frame, made, op)) sharp.may_be_nan = frame.values[made.operands[1].index].may_be_nan;
     return sharp;
@@ -272,12 +279,13 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
                                           std::span<const Interval> operands, const Interval& result)
 {
     Variation variations[operands_max];
-    uint32_t active = 0;
+    uint32_t active = 0, differentiated = 0; // the code does not know what these intervals know, and takes part in more
     for (size_t i = 0; i < operands.size(); ++i) {
-        variations[i] = frame.variations[made.operands[i].index];
+        variations[i] = variation_at(frame, made.operands[i]);
         if (variations[i].is_active) active |= 1u << i;
+        if (variations[i].is_active || variations[i].has_tangent) differentiated |= 1u << i;
     }
-    if (active == 0) return {};
+    if (differentiated == 0) return {};
     left -= std::min<uint64_t>(left, 3); // what it costs more than a value alone
     const Interval& a = operands[0];
     if (op == Op::select) {
@@ -297,18 +305,21 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
         const bool a_can = op == Op::min ? a.minimum <= b.maximum : a.maximum >= b.minimum;
         const bool b_can = op == Op::min ? b.minimum <= a.maximum : b.maximum >= a.minimum;
         variation = chosen(frame, made, a_can || !b_can, b_can, nullptr);
+        if (a.may_be_nan || b.may_be_nan) // which counts as a tie: the mean of both
+            variation.may_fault |= variations[0].may_fault || variations[1].may_fault;
     } else {
         const OpInfo& info = op_info(op);
         const bool of_reals = info.result == 'r' && info.operands.find_first_not_of('r') == std::string_view::npos;
         if (op == Op::spline)
             partials = spline_partials(operands);
         else if (of_reals)
-            partials = rules.of(op, operands, active, true);
+            partials = rules.of(op, operands, differentiated, true);
         variation = chain(op, operands, {variations, operands.size()}, partials, of_reals || op == Op::spline);
         const auto may_fault = [](const Variation& operand) { return operand.may_fault; };
         const bool is_new = std::none_of(variations, variations + operands.size(), may_fault);
         if (variation.may_fault && is_new) note_derivative(made, op, operands, result);
     }
+    if (!variation.is_active) return variation;
     if (op == Op::detach) { // the gradient that is returned is another function's, which may bend anyhow
         variation.curvature = infinity;
         variation.hessian.fill({-infinity, infinity});

@@ -3,9 +3,11 @@
 // interval_evaluator.cpp walks blocks, interval_call.cpp knows calls and facts, interval_narrow.cpp conditions.
 #pragma once
 
+#include "lang/ir/activity.h"
 #include "lang/ir/bounds.h"
 #include "lang/ir/variation.h"
 
+#include <map>
 #include <optional>
 #include <set>
 
@@ -37,6 +39,7 @@ private:
         std::vector<Interval> values;      // by Value::index
         std::vector<Variation> variations; // likewise, or empty
         const std::vector<const Instruction*>& makers;
+        const std::vector<bool>& has_tangent; // by Value::index; empty where no variations are asked for
     };
     struct Narrowed {
         Value value;
@@ -57,7 +60,13 @@ private:
     const BoundsBox* box = nullptr;
     std::vector<std::vector<const Instruction*>> makers; // by function, then Value::index; filled when first needed
 
+    Dependences dependences;
+    // By function and which of its parameters have a tangent: which of its values have.
+    std::map<std::pair<uint32_t, std::vector<bool>>, std::vector<bool>> tangents;
+
     const std::vector<const Instruction*>& makers_of(uint32_t function);
+    const std::vector<bool>& tangents_of(uint32_t function, std::span<const Variation> arguments);
+    Variation variation_at(const Frame& frame, Value value) const;
     // Arguments and results of calls, carried values of loops, yields of arms.
     Results gather(const Frame& frame, std::span<const Value> values) const;
     void store(Frame& frame, Value value, const Interval& interval, const Variation& variation);

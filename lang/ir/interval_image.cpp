@@ -38,7 +38,8 @@ Partials IntervalEvaluator::spline_partials(std::span<const Interval> operands) 
     partials.second[1][1] = derivative(2, 0);
     partials.second[1][2] = partials.second[2][1] = derivative(1, 1);
     partials.second[2][2] = derivative(0, 2);
-    for (size_t i : {1, 2}) partials.may_fault[i] = std::isinf(partials.first[i].maximum);
+    const bool are_finite = operands[1].is_finite() && operands[2].is_finite();
+    for (size_t i : {1, 2}) partials.may_fault[i] = !are_finite || std::isinf(partials.first[i].maximum);
     return partials;
 }
 

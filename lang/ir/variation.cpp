@@ -188,7 +188,7 @@ bool overflows(const Partials& partials, std::span<const Variation> variations, 
 Variation axis(size_t direction)
 {
     Variation variation;
-    variation.is_active = true;
+    variation.is_active = variation.has_tangent = true;
     variation.gradient[direction] = {1, 1};
     variation.slope = 1;
     return variation;
@@ -197,7 +197,7 @@ Variation axis(size_t direction)
 Variation unknown_variation(Span where)
 {
     Variation variation;
-    variation.is_active = true;
+    variation.is_active = variation.has_tangent = true;
     variation.smoothness = Smoothness::unknown;
     variation.cause = {where, {}};
     variation.gradient.fill(around_zero(infinity));
@@ -218,6 +218,7 @@ Variation join(const Variation& a, const Variation& b)
 {
     Variation all;
     all.is_active = a.is_active || b.is_active;
+    all.has_tangent = a.has_tangent || b.has_tangent;
     all.may_fault = a.may_fault || b.may_fault;
     roughen(all, a.smoothness, a.cause);
     roughen(all, b.smoothness, b.cause);
@@ -244,6 +245,8 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
                 const Partials& partials, bool second)
 {
     Variation made = roughest_of(variations);
+    for (size_t i = 0; i < variations.size(); ++i)
+        made.may_fault |= variations[i].has_tangent && (variations[i].may_fault || partials.may_fault[i]);
     if (!made.is_active) return made;
     // The direction of a length is a unit vector, and turns the slower the longer it is: as an angle does.
     const bool is_norm = is_length(op), is_angle = op == Op::atan2;
@@ -288,8 +291,6 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
         const double bend = times(turns * turns, steepest / shortest);
         curvature = std::min(curvature, bend + times(steepest, second_norm(variations)));
     }
-    for (size_t i = 0; i < variations.size(); ++i)
-        made.may_fault |= variations[i].is_active && (variations[i].may_fault || by.may_fault[i]);
     made.may_fault |= overflows(by, variations, made);
     made.slope = slope * rounding_up;
     made.curvature = curvature * rounding_up;
@@ -303,11 +304,13 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
 Variation chain(const Facts& facts, std::span<const Variation> arguments)
 {
     Variation made = roughest_of(arguments);
+    for (const Variation& argument : arguments) {
+        made.may_fault |= argument.may_fault;
+        made.may_fault |= argument.has_tangent && !facts.slope; // a bound of the slope says that there is one
+    }
     if (!made.is_active) return made;
     if (facts.smoothness) roughen(made, *facts.smoothness, arguments.empty() ? Cause{} : arguments[0].cause);
     const double jacobian = jacobian_norm(arguments), second = second_norm(arguments);
-    made.may_fault = !facts.slope; // of finite arguments; a bound of the slope says that there is one
-    for (const Variation& argument : arguments) made.may_fault |= argument.may_fault;
     const double slope = facts.slope.value_or(infinity), curvature = facts.curvature.value_or(infinity);
 
     double column[axes];

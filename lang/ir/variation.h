@@ -23,7 +23,9 @@ struct Cause {
 struct Variation {
     static constexpr size_t directions = 3; // the axes of p
 
-    bool is_active = false; // depends on the point at all; else the rest stays as it is here
+    bool is_active = false; // depends on the point at all; else the rest, but the next two, stays as it is here
+    // An entry computes a gradient of it, be it 0 for certain: 0 times what is infinite is not a number.
+    bool has_tangent = false;
     bool may_fault = false; // the gradient, as an entry computes it, may be infinite or NaN
     Smoothness smoothness = Smoothness::smooth;
     Cause cause; // of the roughest part

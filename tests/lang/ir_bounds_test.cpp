@@ -336,6 +336,15 @@ TEST_CASE("bounds: what may fault is told with the reason, and nothing of what c
         {"%big = real 1000 %a = mul %x, %big %e = exp %a %two = real 2 %h = min %e, %two", std::nullopt},
         {"%big = real 1e200 %a = mul %x, %big %s = sin %a %h = mul %s, %big", Why::derivative},
         {"%s = sin %u %v = mul %u, %u %h = mul %s, %v", std::nullopt},
+        // the way on which x comes in is never taken, which the code of the gradient does not know: 0 times infinity
+        {"%one = real 1 %zero = real 0 %c = lt %one, %zero %v = if %c { yield %x } else { yield %one } "
+         "%d = div %v, %zero %h = atan %d",
+         Why::pole},
+        {"%one = real 1 %zero = real 0 %d = div %one, %zero %h = atan %d", std::nullopt}, // no gradient at all
+        {"%s = sqrt %x %b = real 100 %h = max %s, %b", Why::domain}, // beside NaN, the mean of both gradients
+        {"%one = real 1 %zero = real 0 %big = div %one, %zero %a = abs %x %y = add %a, %one %h = call \"turn\" (%y, "
+         "%big)",
+         Why::pole}, // a slope is promised of finite arguments alone: infinity times 0
         // 0 by convention where they have no bound, and a number beside it
         {"%a = abs %x %h = sqrt %a", std::nullopt},
         {"%a = abs %x %b = real 0.3 %h = pow %a, %b", std::nullopt},
@@ -345,8 +354,10 @@ TEST_CASE("bounds: what may fault is told with the reason, and nothing of what c
     };
     for (const auto& one : cases) {
         CAPTURE(one.body);
-        Module module = parsed(std::string("function \"body\" () { %x = input p_x %u = input uv_x ") + one.body +
-                               " return %h } texture \"t\" { block 56 reads 0 writes 0 body \"body\" }");
+        Module module = parsed(std::string("function \"turn\" (%x: real, %by: real) first 1 facts minimum -2 maximum 2 "
+                                           "slope 1 proven { %a = mul %x, %by %h = atan %a return %h } "
+                                           "function \"body\" () { %x = input p_x %u = input uv_x ") +
+                               one.body + " return %h } texture \"t\" { block 56 reads 0 writes 0 body \"body\" }");
         REQUIRE(verify(module) == "");
         BoundsBox box;
         std::fill(std::begin(box.input), std::end(box.input), Interval{-infinity, infinity});
