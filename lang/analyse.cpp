@@ -18,7 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 ir::BoundsBox box_of(const AnalysedCube& where)
 {
-    const auto [side_m, footprint_m, turn_per_m] = where;
+    const double side_m = where.side_m, footprint_m = where.footprint_m, turn_per_m = where.normal_turn_max_per_m;
     ir::BoundsBox box;
     const auto set = [&](Input first, size_t count, ir::Interval interval) {
         std::fill_n(box.input + static_cast<size_t>(first), count, interval);
@@ -191,10 +191,10 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
         at_values.parameters.push_back({values[i], values[i]});
         over_ranges.parameters.push_back(range_of(texture.parameters[i], values[i]));
     }
-    const Analysis found{ir::texture_bounds(program.module, texture, at_values),
-                         ir::texture_bounds(program.module, texture, over_ranges),
-                         ir::output_bounds(program.module, texture, at_values),
-                         ir::output_bounds(program.module, texture, over_ranges)};
+    const Analysis found{ir::texture_bounds(program.module, texture, at_values, where.evaluations),
+                         ir::texture_bounds(program.module, texture, over_ranges, where.evaluations),
+                         ir::output_bounds(program.module, texture, at_values, where.evaluations),
+                         ir::output_bounds(program.module, texture, over_ranges, where.evaluations)};
     report_scales(texture, found.outputs_over_ranges, diagnostics);
 
     const std::vector<ir::Undefined> said = ir::undefined_in(program.module, texture, over_ranges);
