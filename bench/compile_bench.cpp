@@ -58,7 +58,7 @@ std::vector<CompileRow> bench_compile(bool quick)
 double growth(const std::vector<CompileRow>& rows)
 {
     const auto per_line = [&](const CompileRow& row) {
-        return (row.front_end.median_ms - rows[0].front_end.median_ms) / (row.lines - rows[0].lines);
+        return (row.front_end.median - rows[0].front_end.median) / (row.lines - rows[0].lines);
     };
     return per_line(rows.back()) / per_line(rows[1]);
 }

@@ -13,13 +13,13 @@ double milliseconds(const std::function<void()>& work)
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-Times summary(std::vector<double> times_ms)
+Times summary(std::vector<double> times)
 {
-    if (times_ms.empty()) return {};
-    std::sort(times_ms.begin(), times_ms.end());
+    if (times.empty()) return {};
+    std::sort(times.begin(), times.end());
     const auto rank = [&](double share) {
-        const auto index = static_cast<size_t>(std::ceil(share * static_cast<double>(times_ms.size())));
-        return times_ms[std::max<size_t>(index, 1) - 1];
+        const auto index = static_cast<size_t>(std::ceil(share * static_cast<double>(times.size())));
+        return times[std::max<size_t>(index, 1) - 1];
     };
     return {rank(0.5), rank(0.99)};
 }

@@ -6,11 +6,12 @@
 
 namespace haptel::bench {
 
+// Of times in one unit.
 struct Times {
-    double median_ms = 0, p99_ms = 0; // p99: the nearest rank, which is the slowest of fewer than 100
+    double median = 0, p99 = 0; // p99: the nearest rank, which is the slowest of fewer than 100
 };
 
 double milliseconds(const std::function<void()>& work);
-Times summary(std::vector<double> times_ms);
+Times summary(std::vector<double> times);
 
 } // namespace haptel::bench

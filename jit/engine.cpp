@@ -36,6 +36,7 @@ public:
     CodeResult compile(const ir::Module& module, std::span<const EntryPoint> entries, Effort effort);
     void remove(orc::JITDylib& library);
     std::string name() const { return machine_name; }
+    uint32_t lanes() const { return processor.lanes; }
 
 private:
     Engine();
@@ -207,6 +208,11 @@ CodeResult compile_code(const ir::Module& module, std::span<const EntryPoint> en
 size_t programs_alive()
 {
     return alive;
+}
+
+uint32_t batch_lanes()
+{
+    return Engine::get().lanes();
 }
 
 std::string engine_name()

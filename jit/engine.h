@@ -51,6 +51,9 @@ CodeResult compile_code(const ir::Module& module, std::span<const EntryPoint> en
 // Programs whose code is in memory now.
 size_t programs_alive();
 
+// Points that a batch entry evaluates side by side.
+uint32_t batch_lanes();
+
 // "LLVM 19.1.7 x86_64-pc-linux-gnu skylake-avx512": for reports.
 std::string engine_name();
 

@@ -18,7 +18,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 
 ir::BoundsBox box_of(const AnalysedCube& where)
 {
-    const auto [side_m, footprint_m, turn_per_m] = where;
+    const double side_m = where.side_m, footprint_m = where.footprint_m, turn_per_m = where.normal_turn_max_per_m;
     ir::BoundsBox box;
     const auto set = [&](Input first, size_t count, ir::Interval interval) {
         std::fill_n(box.input + static_cast<size_t>(first), count, interval);
@@ -70,13 +70,6 @@ std::string smooth_form(const ir::Cause& cause)
     }
 }
 
-std::string what_of(const ir::Cause& cause)
-{
-    return cause.op           ? std::string(ir::op_info(*cause.op).name) + "()"
-           : cause.is_library ? std::string("this call")
-                              : std::string("this choice");
-}
-
 std::string shown(const ir::Interval& range)
 {
     const auto end = [](double value) {
@@ -88,13 +81,45 @@ std::string shown(const ir::Interval& range)
     return end(range.minimum) + " .. " + end(range.maximum);
 }
 
+// As the author wrote it.
 std::string name_of(Op op)
 {
-    return op == Op::add   ? "this sum"
-           : op == Op::sub ? "this difference"
-           : op == Op::mul ? "this product"
-           : op == Op::div ? "this quotient"
-                           : std::string(ir::op_info(op).name) + "()";
+    switch (op) {
+    case Op::add: return "this sum";
+    case Op::sub: return "this difference";
+    case Op::mul: return "this product";
+    case Op::div: return "this quotient";
+    case Op::length2:
+    case Op::length3:
+    case Op::length4: return "this length";
+    case Op::atan2: return "atan()";
+    case Op::r_to_i: return "int()";
+    case Op::r_to_u: return "uint()";
+    case Op::spline: return "this picture";
+    default: return std::string(ir::op_info(op).name) + "()";
+    }
+}
+
+// The call that all of `text` is, as it was written: "clamp()" of "clamp(x, 0.0, 1.0)", "grad(noise)" of
+// "grad(noise)(q)"; empty where it is none.
+std::string call_in(std::string_view text)
+{
+    const size_t open = text.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
+    if (open == 0 || open == text.npos || text[open] != '(') return {};
+    size_t close = open;
+    for (int nesting = 0; close < text.size(); ++close) {
+        nesting += (text[close] == '(') - (text[close] == ')');
+        if (nesting == 0) break;
+    }
+    if (close + 1 == text.size()) return std::string(text.substr(0, open)) + "()";
+    return close + 1 < text.size() && text[close + 1] == '(' ? std::string(text.substr(0, close + 1)) : std::string();
+}
+
+std::string what_of(const ir::Cause& cause, const SourceSet& sources)
+{
+    const std::string call = call_in(sources.text(cause.span));
+    if (!call.empty()) return printable(call);
+    return cause.op ? name_of(*cause.op) : cause.is_library ? "this call" : "this choice";
 }
 
 void report(const ir::Undefined& found, Diagnostics& diagnostics)
@@ -172,10 +197,10 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
         at_values.parameters.push_back({values[i], values[i]});
         over_ranges.parameters.push_back(range_of(texture.parameters[i], values[i]));
     }
-    const Analysis found{ir::texture_bounds(program.module, texture, at_values),
-                         ir::texture_bounds(program.module, texture, over_ranges),
-                         ir::output_bounds(program.module, texture, at_values),
-                         ir::output_bounds(program.module, texture, over_ranges)};
+    const Analysis found{ir::texture_bounds(program.module, texture, at_values, where.evaluations),
+                         ir::texture_bounds(program.module, texture, over_ranges, where.evaluations),
+                         ir::output_bounds(program.module, texture, at_values, where.evaluations),
+                         ir::output_bounds(program.module, texture, over_ranges, where.evaluations)};
     report_scales(texture, found.outputs_over_ranges, diagnostics);
 
     const std::vector<ir::Undefined> said = ir::undefined_in(program.module, texture, over_ranges);
@@ -188,13 +213,14 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
     if (found.at_values.smoothness == ir::Smoothness::jump)
         diagnostics
             .warning(cause.span, "jump",
-                     "the height of '" + texture.name + "' may jump here, by " + what_of(cause) +
+                     "the height of '" + texture.name + "' may jump here, by " + what_of(cause, program.sources) +
                          ": an impulse in the hand")
             .hint = smooth_form(cause);
     if (found.at_values.smoothness == ir::Smoothness::c0)
         diagnostics
             .note(cause.span, "kink",
-                  "the slope of '" + texture.name + "' may step here, by " + what_of(cause) + ": a tick in the hand")
+                  "the slope of '" + texture.name + "' may step here, by " + what_of(cause, program.sources) +
+                      ": a tick in the hand")
             .hint = smooth_form(cause);
     return found;
 }

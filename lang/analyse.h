@@ -16,11 +16,12 @@ struct Analysis {
     std::vector<ir::Interval> outputs, outputs_over_ranges; // the same of material outputs, by bit of Texture::writes
 };
 
-// A cube round the origin, wherever else the contact may be: any uv, any time, any normal.
+// A cube round the origin, wherever else the contact may be: any uv, any time, any normal. And how hard to look there.
 struct AnalysedCube {
     double side_m = 0.2;
     double footprint_m = 0;                                                 // smallest wavelength worth rendering
     double normal_turn_max_per_m = std::numeric_limits<double>::infinity(); // of the surface: spectral norm of n_dp
+    uint32_t evaluations = 4096;                                            // of the interval machine, for each bound
 };
 
 // `values` of the parameters by ir::Texture::parameters, SI, and images likewise; null or missing: any image. Says what

@@ -205,6 +205,7 @@ LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector
 LoweredFunction ModuleLowering::make(const BuiltinOverload& overload)
 {
     ir::Builder builder(module, unique(to_string(candidate_of(overload))));
+    builder.function().is_library = true;
     std::vector<Values> arguments(overload.parameters.size());
     uint32_t& first_size = builder.function().first_argument_size;
     for (const bool are_images : images_last)
@@ -245,6 +246,7 @@ LoweredFunction ModuleLowering::make_derivative(const LoweredFunction& of)
     for (ir::Value parameter : parameters)
         arguments.push_back(builder.parameter(module.functions[of.index].type(parameter)));
     builder.function().first_argument_size = module.functions[of.index].first_argument_size;
+    builder.function().is_library = module.functions[of.index].is_library;
     const Values results = builder.call(derivative.function, arguments);
     size_t next = derivative.exists.size(); // behind the values: by result, then direction
     const size_t rows = derivative.exists.size(), columns = derivative.exists.front().size();

@@ -1,8 +1,9 @@
 // haptel bench: figures with the machine they were taken on.
-#include "bench/compile_bench.h"
 #include "bench/machine.h"
+#include "tools/bench_accuracy.h"
+#include "tools/bench_compile.h"
 #include "tools/command.h"
-#include "tools/json.h"
+#include "tools/terminal.h"
 
 #include <filesystem>
 #include <fmt/format.h>
@@ -17,60 +18,75 @@ struct BenchOptions {
     bool quick = false, json = false;
 };
 
-Json to_json(const bench::Times& times)
+// What one kind of figures gives: rows for scripts, a table for people, and files beside them, by name.
+struct Figures {
+    Json rows = Json::array();
+    std::vector<std::pair<std::string, Json>> more;
+    std::string table;
+    std::vector<std::pair<std::string, std::string>> texts;
+    std::shared_ptr<plot::Picture> picture;
+};
+
+Figures compile_figures(bool quick)
 {
-    return {{"median", times.median_ms}, {"p99", times.p99_ms}};
+    const std::vector<bench::CompileRow> rows = bench::bench_compile(quick);
+    Figures figures;
+    for (const bench::CompileRow& row : rows) figures.rows.push_back(to_json(row));
+    figures.more.emplace_back("growth", bench::growth(rows));
+    figures.table = to_table(rows);
+    return figures;
 }
 
-Json to_json(const bench::CompileRow& row)
+Figures accuracy_figures(bool quick, const std::string& machine)
 {
-    const bool has_code = row.first_ms > 0;
-    return {{"texture", row.texture},
-            {"lines", row.lines},
-            {"front_end_ms", to_json(row.front_end)},
-            {"first_ms", has_code ? Json(row.first_ms) : Json(nullptr)},
-            {"warm_ms", has_code ? to_json(row.warm) : Json(nullptr)},
-            {"cached_ms", nullptr}}; // null: there is no cache on disk
+    const std::vector<bench::AccuracyRow> rows = bench::bench_accuracy(quick, [](double done) {
+        if (stderr_is_terminal()) fmt::print(stderr, "\r{:3.0f} %{}", 100 * done, done < 1 ? "" : "\r      \r");
+    });
+    Figures figures;
+    for (const bench::AccuracyRow& row : rows) figures.rows.push_back(to_json(row));
+    figures.table = to_table(rows);
+    figures.texts.emplace_back("accuracy.csv", to_csv(rows));
+    figures.picture = std::make_shared<plot::Picture>(draw_accuracy(rows, machine));
+    return figures;
 }
 
-std::string to_table(const std::vector<bench::CompileRow>& rows)
+// Empty, or why not.
+std::string write_files(const std::string& folder, const std::string& what, const Json& json, const Figures& figures)
 {
-    std::string text = fmt::format("{:<10} {:>6}  {:>21}  {:>9}  {:>21}\n", "texture", "lines", "front end ms (p99)",
-                                   "first ms", "to code again ms (p99)");
-    for (const bench::CompileRow& row : rows) {
-        text += fmt::format("{:<10} {:>6}  {:>12.2f} ({:>6.2f})", row.texture, row.lines, row.front_end.median_ms,
-                            row.front_end.p99_ms);
-        if (row.first_ms > 0)
-            text += fmt::format("  {:>9.1f}  {:>12.1f} ({:>6.1f})", row.first_ms, row.warm.median_ms, row.warm.p99_ms);
-        text += "\n";
+    std::error_code ignored; // a folder that cannot be made cannot be written to either
+    std::filesystem::create_directories(folder, ignored);
+    const std::filesystem::path path(folder);
+    std::vector<std::pair<std::string, std::string>> texts = figures.texts;
+    texts.emplace_back(what + ".json", to_text(json) + "\n");
+    for (const auto& [name, text] : texts) {
+        std::ofstream written(path / name);
+        written << text;
+        written.close();
+        if (!written) return fmt::format("cannot write '{}'", (path / name).string());
     }
-    return text + fmt::format("time per line, longest over shortest: {:.2f}\n", bench::growth(rows));
+    return figures.picture ? figures.picture->write_png((path / (what + ".png")).string()) : "";
 }
 
 ExitCode run(const BenchOptions& options)
 {
     const bench::Machine machine = bench::this_machine();
-    const std::vector<bench::CompileRow> rows = bench::bench_compile(options.quick);
-    Json json{{"machine", fmt::format("{}, {} threads", machine.cpu, machine.cores)},
+    const std::string name = fmt::format("{}, {} threads", machine.cpu, machine.cores);
+    const Figures figures = options.what == "compile"
+                                ? compile_figures(options.quick)
+                                : accuracy_figures(options.quick, fmt::format("{}, commit {}", name, machine.commit));
+    Json json{{"machine", name},
               {"commit", machine.commit},
               {"flags", machine.compiler + " " + machine.flags},
-              {"rows", Json::array()},
-              {"growth", bench::growth(rows)}};
-    for (const bench::CompileRow& row : rows) json["rows"].push_back(to_json(row));
+              {"rows", figures.rows}};
+    for (const auto& [key, value] : figures.more) json[key] = value;
     if (options.json)
         print_json(json);
     else
-        fmt::print("{}, commit {}, {} {}\n{}", json["machine"].get<std::string>(), machine.commit, machine.compiler,
-                   machine.flags, to_table(rows));
+        fmt::print("{}, commit {}, {} {}\n{}", name, machine.commit, machine.compiler, machine.flags, figures.table);
     if (options.out.empty()) return ExitCode::fine;
-    std::error_code ignored; // a folder that cannot be made cannot be written to either
-    std::filesystem::create_directories(options.out, ignored);
-    const std::string file = (std::filesystem::path(options.out) / "compile.json").string();
-    std::ofstream written(file);
-    written << to_text(json) << "\n";
-    written.close();
-    if (written) return ExitCode::fine;
-    fmt::print(stderr, "haptel bench: cannot write '{}'\n", file);
+    const std::string error = write_files(options.out, options.what, json, figures);
+    if (error.empty()) return ExitCode::fine;
+    say_error(error);
     return ExitCode::findings;
 }
 
@@ -79,12 +95,18 @@ ExitCode run(const BenchOptions& options)
 Command bench_command(CLI::App& app)
 {
     const auto options = std::make_shared<BenchOptions>();
-    CLI::App* command = app.add_subcommand("bench", "Figures: how long it takes from text to code");
-    command->add_option("what", options->what, "compile")->check(CLI::IsMember({"compile"}))->capture_default_str();
-    command->add_flag("--quick", options->quick, "Fewer rounds: done within seconds");
-    command->add_option("--out", options->out, "Folder for compile.json")->type_name("DIR");
+    CLI::App* command = app.add_subcommand("bench", "Figures: error against time, and how long text takes to code");
+    command
+        ->add_option("what", options->what,
+                     "compile: from text to code; accuracy: error of the gradient against time, ours and plain C++")
+        ->check(CLI::IsMember({"compile", "accuracy"}))
+        ->capture_default_str();
+    command->add_flag("--quick", options->quick, "Fewer rounds and points");
+    command->add_option("--out", options->out, "Folder for WHAT.json, and accuracy.csv and accuracy.png")
+        ->type_name("DIR");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel bench compile\n"
+                           "  haptel bench accuracy --out figures\n"
                            "  haptel bench compile --quick --json --out figures");
     return {command, [options] { return run(*options); }};
 }

@@ -112,7 +112,7 @@ void compile_text(std::string_view bytes)
         if (ir::operations_max(result.program->module, texture.height_gradient) > 200) continue;
         std::vector<double> values;
         for (const ir::Parameter& parameter : texture.parameters) values.push_back(parameter.value);
-        analyse(*result.program, texture, values, {}, {}, result.diagnostics);
+        analyse(*result.program, texture, values, {}, {.evaluations = 64}, result.diagnostics);
         count("analysed");
     }
     check_findings(result.diagnostics, result.sources);

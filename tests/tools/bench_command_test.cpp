@@ -1,7 +1,11 @@
-// haptel bench: what scripts rely on, and that the front end grows with the text and not faster.
+// haptel bench: what scripts rely on, that the front end grows with the text and not faster, and that what we are
+// measured against computes the same textures.
 #include "tests/support/catch.h"
 #include "tests/tools/run_command.h"
 #include "tools/json.h"
+
+#include <filesystem>
+#include <map>
 
 using namespace haptel::test;
 using haptel::tools::Json;
@@ -25,4 +29,38 @@ TEST_CASE("bench compile: rows by length, with machine, commit and flags")
     CHECK(Json::parse(read_file(folder.path / "figures/compile.json")) == json);
     CHECK(run_command("bench nothing").code == 2);
     CHECK(run_command("bench --quick --out /proc/none").code == 1);
+}
+
+TEST_CASE("bench accuracy: every way computes the same texture, each as closely as it can")
+{
+    const Folder folder;
+    const Ran ran = run_command("bench accuracy --quick --json --out '" + folder.file("figures") + "'");
+    REQUIRE(ran.code == 0);
+    const Json json = Json::parse(ran.out);
+    std::map<std::string, double> errors;
+    std::map<std::string, int> frontier;
+    for (const Json& row : json["rows"]) {
+        const std::string texture = row["texture"], method = row["method"], precision = row["precision"];
+        CHECK(row["time_ns"]["median"].get<double>() > 0);
+        CHECK(row["errors"].size() == 3);
+        errors[texture + " " + method + " " + precision] = row["gradient_error_max"].get<double>();
+        if (row["frontier"].get<bool>()) ++frontier[texture + " " + row["mode"].get<std::string>()];
+        // at 1e6 wavelengths the place within a wavelength has 33 bits left in f64, and those of its multiples fewer
+        if (precision != "f32" && method.find("difference") == std::string::npos)
+            CHECK(row["errors"][2]["gradient_error_max"].get<double>() < 1e-5);
+    }
+    for (const std::string texture : {"noise", "perlin", "fbm8", "gardner7"}) {
+        CAPTURE(texture);
+        CHECK((frontier[texture + " point"] > 0 && frontier[texture + " batch"] > 0));
+        for (const std::string method : {"haptel", "cpp_analytic", "cpp_dual"}) {
+            CHECK(errors[texture + " " + method + " f64"] < 1e-12);
+            CHECK(errors[texture + " " + method + " f32"] < 1e-3);
+        }
+        CHECK(errors[texture + " haptel mixed"] < 3e-6);
+        CHECK(errors[texture + " haptel_difference f64"] < 1e-7);
+        CHECK(errors[texture + " cpp_difference_4 f64"] < 0.1);
+    }
+    CHECK(Json::parse(read_file(folder.path / "figures/accuracy.json")) == json);
+    CHECK(read_file(folder.path / "figures/accuracy.csv").starts_with("texture,mode,method,precision"));
+    CHECK(std::filesystem::file_size(folder.path / "figures/accuracy.png") > 10'000);
 }

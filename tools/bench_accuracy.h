@@ -1,0 +1,16 @@
+// The accuracy figures as they are shown: table, JSON, CSV, picture.
+#pragma once
+
+#include "bench/accuracy_bench.h"
+#include "tools/json.h"
+#include "tools/plot_picture.h"
+
+namespace haptel::tools {
+
+std::string to_table(const std::vector<bench::AccuracyRow>& rows);
+std::string to_csv(const std::vector<bench::AccuracyRow>& rows);
+Json to_json(const bench::AccuracyRow& row);
+// Largest error of the gradient over time, a panel for each texture, one point and many.
+plot::Picture draw_accuracy(const std::vector<bench::AccuracyRow>& rows, const std::string& subtitle);
+
+} // namespace haptel::tools

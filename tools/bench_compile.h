@@ -1,0 +1,12 @@
+// The compile figures as they are shown.
+#pragma once
+
+#include "bench/compile_bench.h"
+#include "tools/json.h"
+
+namespace haptel::tools {
+
+std::string to_table(const std::vector<bench::CompileRow>& rows);
+Json to_json(const bench::CompileRow& row);
+
+} // namespace haptel::tools
