@@ -125,6 +125,11 @@ std::string what_of(const ir::Cause& cause, const SourceSet& sources)
 void report(const ir::Undefined& found, Diagnostics& diagnostics)
 {
     using Why = ir::Undefined::Why;
+    if (found.why == ir::Undefined::Why::not_looked_at) {
+        diagnostics.warning(found.span, "domain", "whether this is finite was not found out").hint =
+            "it takes too many operations to look at: fewer trips of its loops would tell";
+        return;
+    }
     if (!found.op) {
         diagnostics.warning(found.span, "domain", "a constant here is not a finite number").hint =
             "a division by 0, or a function outside of where it is defined, was computed once and for all";
@@ -140,6 +145,7 @@ void report(const ir::Undefined& found, Diagnostics& diagnostics)
         diagnostics.warning(found.span, "domain", what + ": its argument lies in " + where).hint = hint;
     };
     switch (found.why) {
+    case Why::not_looked_at: return;
     case Why::pole:
         return say(name + " may be infinite",
                    "keep it away from there, with max() or clamp(); else the height counts as 0");

@@ -39,9 +39,9 @@ Figures compile_figures(bool quick)
 
 Figures accuracy_figures(bool quick, const std::string& machine)
 {
-    const std::vector<bench::AccuracyRow> rows = bench::bench_accuracy(quick, [](double done) {
-        if (stderr_is_terminal()) fmt::print(stderr, "\r{:3.0f} %{}", 100 * done, done < 1 ? "" : "\r      \r");
-    });
+    Progress progress;
+    const std::vector<bench::AccuracyRow> rows =
+        bench::bench_accuracy(quick, [&](double share) { progress.show(share); });
     Figures figures;
     for (const bench::AccuracyRow& row : rows) figures.rows.push_back(to_json(row));
     figures.table = to_table(rows);

@@ -1,6 +1,7 @@
 // haptel plot: pictures of a texture.
 #include "jit/oracle.h"
 #include "jit/texture.h"
+#include "lang/evaluate.h"
 #include "tools/command.h"
 #include "tools/plot_texture.h"
 #include "tools/terminal.h"
@@ -58,7 +59,10 @@ haptel_point point_of(const PlotOptions& options, const glm::dvec3& p)
 
 ExitCode draw(const PlotOptions& options)
 {
-    const jit::CompiledTextures compiled = jit::compile_texture_file(options.texture.file);
+    jit::TextureOptions compile;
+    compile.entries = jit::Entries::both_and_batches;
+    compile.only_texture = options.texture.name;
+    const jit::CompiledTextures compiled = jit::compile_texture_file(options.texture.file, compile);
     fmt::print(stderr, "{}", compiled.rendered(stderr_has_color()));
     if (!compiled.program) return ExitCode::findings;
     const TextureResult texture = jit::make_binding(compiled.program, options.texture.name, request_of(options));
@@ -69,11 +73,10 @@ ExitCode draw(const PlotOptions& options)
     view.title =
         fmt::format("{}:{}", std::filesystem::path(options.texture.file).filename().string(), options.texture.name);
     for (const auto& [name, value] : options.parameters) view.title += fmt::format("  {} = {}", name, value);
-    view.sample = [&](const glm::dvec3& p) {
-        const haptel_point point = point_of(options, p);
-        haptel_sample sample{};
-        texture.binding->texture->height_gradient(&point, texture.binding->block, &sample);
-        return sample;
+    view.samples = [&](std::span<const glm::dvec3> points_m, std::span<haptel_sample> samples) {
+        std::vector<haptel_point> points;
+        for (const glm::dvec3& p : points_m) points.push_back(point_of(options, p));
+        evaluate(*texture.binding, points, samples);
     };
     jit::Oracle oracle(compiled.program, *texture.binding);
     view.true_gradient = [&](const glm::dvec3& p) {

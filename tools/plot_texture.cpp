@@ -2,7 +2,9 @@
 
 #include "tools/plot_axes.h"
 #include "tools/plot_colors.h"
+#include "tools/plot_grid.h"
 #include "tools/plot_spectrum.h"
+#include "tools/terminal.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,59 +24,11 @@ Picture new_picture(const TextureView& view)
     return {page, page, view.size_px / page};
 }
 
-// Smallest, largest, root mean square and mean of finite values.
-struct Range {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    double sum = 0, squares = 0, count = 0;
-    void add(double value)
-    {
-        if (!std::isfinite(value)) return;
-        low = std::min(low, value), high = std::max(high, value);
-        sum += value, squares += value * value, ++count;
-    }
-    double mean() const { return count > 0 ? sum / count : 0; }
-    double rms() const { return count > 0 ? std::sqrt(squares / count) : 0; }
-    double deviation() const { return count > 0 ? std::sqrt(std::max(squares / count - mean() * mean(), 0.0)) : 0; }
-};
-
-double slope_of(const haptel_sample& sample)
-{
-    return std::hypot(sample.gradient[0], sample.gradient[1]);
-}
-
 std::string length_text(double metres)
 {
     const LengthUnit unit = length_unit(metres);
     return fmt::format("{:.3g} {}", metres * unit.per_m, unit.name);
 }
-
-// Samples at the centres of `columns` x `rows` equal cells of the window, the upper left one first.
-class Grid {
-public:
-    Grid(const TextureView& view, int columns, int rows)
-        : columns_(columns), samples_(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows))
-    {
-        for (int row = 0; row < rows; ++row)
-            for (int column = 0; column < columns; ++column) {
-                const glm::dvec2 share((column + 0.5) / columns - 0.5, 0.5 - (row + 0.5) / rows);
-                haptel_sample& sample = samples_[index(column, row)];
-                sample = view.sample(view.center_m + glm::dvec3(share * view.window_m, 0));
-                height.add(sample.height_m);
-                slope.add(slope_of(sample));
-            }
-    }
-    const haptel_sample& at(int column, int row) const { return samples_[index(column, row)]; }
-
-    Range height, slope;
-
-private:
-    std::size_t index(int column, int row) const
-    {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
-    }
-    int columns_;
-    std::vector<haptel_sample> samples_;
-};
 
 int pixels(const Picture& picture, double points)
 {
@@ -192,11 +146,14 @@ Picture draw_section(const TextureView& view)
     Picture picture = new_picture(view);
     constexpr int count = 4000;
     std::vector<double> x_m, height_m, slope;
-    Range heights, slopes;
+    std::vector<glm::dvec3> points_m;
     for (int i = 0; i <= count; ++i) {
         const double offset_m = (static_cast<double>(i) / count - 0.5) * view.window_m;
-        const haptel_sample sample = view.sample(view.center_m + glm::dvec3(offset_m, 0, 0));
+        points_m.push_back(view.center_m + glm::dvec3(offset_m, 0, 0));
         x_m.push_back(view.center_m.x + offset_m);
+    }
+    Range heights, slopes;
+    for (const haptel_sample& sample : samples_at(view, points_m)) {
         height_m.push_back(sample.height_m);
         slope.push_back(sample.gradient[0]);
         heights.add(sample.height_m);
@@ -240,12 +197,12 @@ Picture draw_spectrum(const TextureView& view)
         std::vector<std::vector<double>> heights_m;
         for (int line = 0; line < lines; ++line) {
             std::vector<double>& heights = heights_m.emplace_back();
+            std::vector<glm::dvec3> points(length, view.center_m);
             for (std::size_t i = 0; i < length; ++i) {
-                glm::dvec3 p = view.center_m;
-                p[axis] += (static_cast<double>(i) / length - 0.5) * view.window_m;
-                p[1 - axis] += ((line + 0.5) / lines - 0.5) * view.window_m;
-                heights.push_back(view.sample(p).height_m);
+                points[i][axis] += (static_cast<double>(i) / length - 0.5) * view.window_m;
+                points[i][1 - axis] += ((line + 0.5) / lines - 0.5) * view.window_m;
             }
+            for (const haptel_sample& sample : samples_at(view, points)) heights.push_back(sample.height_m);
         }
         return spectrum_of(heights_m, view.window_m);
     };
@@ -298,15 +255,15 @@ Picture draw_gradient_error(const TextureView& view)
     constexpr int n = 96; // the oracle is slow
     std::vector<double> errors;
     double largest_gradient = 0;
+    const Grid samples(view, n, n);
+    Progress progress;
     for (int row = 0; row < n; ++row)
         for (int column = 0; column < n; ++column) {
-            const glm::dvec2 share((column + 0.5) / n - 0.5, 0.5 - (row + 0.5) / n);
-            const glm::dvec3 point = view.center_m + glm::dvec3(share * view.window_m, 0);
-            const haptel_sample sample = view.sample(point);
-            const glm::dvec3 expected = view.true_gradient(point);
-            errors.push_back(
-                glm::distance(glm::dvec3(sample.gradient[0], sample.gradient[1], sample.gradient[2]), expected));
+            const glm::dvec3 expected = view.true_gradient(samples.point(column, row));
+            const double* gradient = samples.at(column, row).gradient;
+            errors.push_back(glm::distance(glm::dvec3(gradient[0], gradient[1], gradient[2]), expected));
             largest_gradient = std::max(largest_gradient, glm::length(expected));
+            progress.show(static_cast<double>(errors.size()) / (n * n));
         }
     Range range;
     Image image(n, n);

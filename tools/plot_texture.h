@@ -13,8 +13,9 @@
 namespace haptel::tools::plot {
 
 struct TextureView {
-    std::string title;                                          // "rock.haptel:rock"
-    std::function<haptel_sample(const glm::dvec3&)> sample;     // height and gradient at a point, metres
+    std::string title; // "rock.haptel:rock"
+    // Height and gradient at points, metres; any thread.
+    std::function<void(std::span<const glm::dvec3>, std::span<haptel_sample>)> samples;
     std::function<glm::dvec3(const glm::dvec3&)> true_gradient; // by an oracle; for gradient-error alone
     glm::dvec3 center_m{0};
     double window_m = 0.02; // side of the square

@@ -20,6 +20,22 @@ bool stderr_has_color()
     return stderr_is_terminal() && !(no_color && *no_color) && !(term && std::string_view(term) == "dumb");
 }
 
+void Progress::show(double share)
+{
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next || !stderr_is_terminal()) return;
+    next = now + std::chrono::milliseconds(100);
+    is_shown = true;
+    constexpr int width = 30;
+    const int done = static_cast<int>(share * width);
+    fmt::print(stderr, "\r[{:=<{}}{: <{}}] {:3.0f} %", "", done, "", width - done, 100 * share);
+}
+
+Progress::~Progress()
+{
+    if (is_shown) fmt::print(stderr, "\r{:40}\r", "");
+}
+
 namespace {
 
 void say(std::string_view kind, const char* color, std::string_view text)

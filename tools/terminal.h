@@ -1,6 +1,7 @@
 // What is said to a person: on standard error, coloured only if a person is there to see it.
 #pragma once
 
+#include <chrono>
 #include <string_view>
 
 namespace haptel::tools {
@@ -10,6 +11,20 @@ bool stderr_is_terminal();
 
 // ... and colour is welcome on it (NO_COLOR unset, TERM not "dumb").
 bool stderr_has_color();
+
+// A line that says how much is done, where a person is there to see it and the work is long; gone at the end.
+class Progress {
+public:
+    Progress() = default;
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+    ~Progress();
+    void show(double share); // 0 .. 1
+
+private:
+    std::chrono::steady_clock::time_point next = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
+    bool is_shown = false;
+};
 
 // "haptel: error: text" and "haptel: warning: text", each on a line of its own.
 void say_error(std::string_view text);

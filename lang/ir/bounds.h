@@ -27,10 +27,10 @@ struct BoundsBox {
 };
 
 // Where a number may end: an operation whose operands are finite, and whose result, or its derivative as an entry
-// computes it, may be not; or a constant that is not finite.
+// computes it, may be not; or a constant that is not finite; or what takes too many operations to be looked at.
 struct Undefined {
-    enum class Why : uint8_t { domain, pole, overflow, derivative };
-    std::optional<Op> op; // nothing: a constant
+    enum class Why : uint8_t { domain, pole, overflow, derivative, not_looked_at };
+    std::optional<Op> op; // nothing: a constant, or not looked at
     Why why;
     Interval operand; // the divisor, the radicand, ...
     Span span;        // innermost user code
@@ -51,8 +51,9 @@ struct TextureBounds {
 TextureBounds texture_bounds(const Module& module, const Texture& texture, const BoundsBox& box,
                              uint32_t evaluations = 4096);
 // What may set a fault bit somewhere in the box; empty where height, gradient and outputs are finite for certain. An
-// input without bounds counts as some number. Not seen is what overflows within 1e-307 of a place
-// where a derivative rule says 0 in place of what has no bound, as beside the origin of atan2(y, x).
+// input without bounds counts as some number, and so does what is sampled from an image that is not given. Not seen is
+// what overflows within 1e-307 of a place where a derivative rule says 0 in place of what has no bound, as beside the
+// origin of atan2(y, x).
 std::vector<Undefined> undefined_in(const Module& module, const Texture& texture, const BoundsBox& box,
                                     uint32_t evaluations = 512);
 // Its height alone, which is cheaper.

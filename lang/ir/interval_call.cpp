@@ -106,6 +106,16 @@ IntervalEvaluator::Results IntervalEvaluator::by_other_arguments(uint32_t index,
     return look_inside(index, held, span);
 }
 
+// A gradient that is no number stays one behind a function that is flat there: code multiplies it by the function's
+// derivative, which is 0.
+void IntervalEvaluator::pass_faults(uint32_t index, const Results& arguments, Results& results)
+{
+    const Dependence& depends = dependences.of(index);
+    for (size_t r = 0; r < results.variations.size(); ++r)
+        for (size_t p = 0; p < arguments.variations.size(); ++p)
+            results.variations[r].may_fault |= depends[r][p] && arguments.variations[p].may_fault;
+}
+
 // By the chain rule: of the first argument by the facts, of the others, where they move too, as found (`by_others`;
 // null: not looked for). Of how it bends by both, only the class is known.
 Variation IntervalEvaluator::by_facts(const Function& function, const Facts& facts, const Results& arguments,

@@ -149,8 +149,9 @@ void IntervalEvaluator::join_into(Results& all, const Results& other) const
 }
 
 IntervalEvaluator::Results IntervalEvaluator::unknown(const Function& function, std::span<const Value> values,
-                                                      Span cause) const
+                                                      Span cause)
 {
+    if (varying && !is_trying) note({{}, Undefined::Why::not_looked_at, {}, cause});
     Results results;
     for (Value value : values) results.values.push_back(everything(function.type(value)));
     if (varying) results.variations.assign(values.size(), unknown_variation(cause));
@@ -393,7 +394,10 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadT
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Call& callee)
 {
-    store(frame, made.results, call(callee.function, gather(frame, made.operands), made.span));
+    const Results arguments = gather(frame, made.operands);
+    Results results = call(callee.function, arguments, made.span);
+    if (varying) pass_faults(callee.function, arguments, results);
+    store(frame, made.results, results);
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const PointDerivative&)

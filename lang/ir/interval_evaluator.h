@@ -73,7 +73,7 @@ private:
     void store(Frame& frame, std::span<const Value> values, const Results& results);
     Results nothing_yet(size_t count) const;
     void join_into(Results& all, const Results& other) const;
-    Results unknown(const Function& function, std::span<const Value> values, Span cause) const;
+    Results unknown(const Function& function, std::span<const Value> values, Span cause);
     void roughen_all(Results& results, const Variation& by, Span where) const;
     void note_undefined(const Instruction& made, Op op, std::span<const Interval> operands, const Interval& result);
     void note_derivative(const Instruction& made, Op op, std::span<const Interval> operands, const Interval& result);
@@ -82,6 +82,7 @@ private:
     Interval sharpened(const Frame& frame, const Instruction& made, Op op, const Interval& result) const;
 
     Results call(uint32_t function, const Results& arguments, Span span);
+    void pass_faults(uint32_t function, const Results& arguments, Results& results);
     Results look_inside(uint32_t function, const Results& arguments, Span span);
     Variation by_facts(const Function& function, const Facts& facts, const Results& arguments,
                        const Variation* by_others) const;

@@ -15,6 +15,7 @@
 #include <random>
 #include <sstream>
 #include <sys/mman.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 namespace {
@@ -23,13 +24,20 @@ using namespace haptel::fuzz;
 using Clock = std::chrono::steady_clock;
 
 constexpr size_t size_max = 64 * 1024;
-constexpr unsigned too_long_s = 60; // for one input, with sanitizers on a busy machine
+constexpr time_t too_long_s = 60; // of the processor for one input, sanitized
 
 struct Options {
     double seconds = 10;
     uint64_t seed = 1, runs = UINT64_MAX;
     std::string keep = "fuzz-input", kept, file;
 };
+
+// So many seconds of the processor from now on; 0: as many as it takes.
+void allow(time_t seconds)
+{
+    const itimerval limit{{0, 0}, {seconds, 0}};
+    setitimer(ITIMER_PROF, &limit, nullptr);
+}
 
 [[noreturn]] void misuse()
 {
@@ -220,10 +228,10 @@ int main(int argument_count, char** arguments)
         const std::string bytes =
             target->takes_seeds ? std::string(reinterpret_cast<const char*>(&seed), sizeof seed) : mutator.next();
         keeper.keep(bytes);
-        alarm(too_long_s); // its default is the end of the process, with the input kept
+        allow(too_long_s); // its end is the end of the process, with the input kept
         target->run(bytes);
     }
-    alarm(0);
+    allow(0);
     std::printf("%s: seed %llu, %llu inputs in %.1f s (%.0f /s), no finding; %s\n", arguments[1],
                 static_cast<unsigned long long>(options.seed), static_cast<unsigned long long>(runs), elapsed_s(),
                 static_cast<double>(runs) / elapsed_s(), figures().c_str());

@@ -345,6 +345,12 @@ TEST_CASE("bounds: what may fault is told with the reason, and nothing of what c
         {"%one = real 1 %zero = real 0 %big = div %one, %zero %a = abs %x %y = add %a, %one %h = call \"turn\" (%y, "
          "%big)",
          Why::pole}, // a slope is promised of finite arguments alone: infinity times 0
+        {"%one = real 1 %zero = real 0 %a = abs %x %y = add %a, %one %d = div %y, %zero %t = atan %d %h = call "
+         "\"flat\" (%t)",
+         Why::pole}, // beyond 1 a constant, and yet its derivative times a gradient that is no number
+        {"%n = i32 2000 %h = for %n max 2000 (%i, %a) from (%x) { %s = for %n max 2000 (%j, %b) from (%a) "
+         "{ %t = sin %b yield %t } yield %s }",
+         Why::not_looked_at},
         // 0 by convention where they have no bound, and a number beside it
         {"%a = abs %x %h = sqrt %a", std::nullopt},
         {"%a = abs %x %b = real 0.3 %h = pow %a, %b", std::nullopt},
@@ -356,6 +362,7 @@ TEST_CASE("bounds: what may fault is told with the reason, and nothing of what c
         CAPTURE(one.body);
         Module module = parsed(std::string("function \"turn\" (%x: real, %by: real) first 1 facts minimum -2 maximum 2 "
                                            "slope 1 proven { %a = mul %x, %by %h = atan %a return %h } "
+                                           "function \"flat\" (%x: real) { %one = real 1 %h = min %x, %one return %h } "
                                            "function \"body\" () { %x = input p_x %u = input uv_x ") +
                                one.body + " return %h } texture \"t\" { block 56 reads 0 writes 0 body \"body\" }");
         REQUIRE(verify(module) == "");

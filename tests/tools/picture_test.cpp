@@ -51,7 +51,9 @@ TEST_CASE("every kind of picture has the size asked for, whatever the texture")
                 CAPTURE(kind.name, size);
                 TextureView view;
                 view.title = "test";
-                view.sample = sample;
+                view.samples = [&](std::span<const glm::dvec3> points_m, std::span<haptel_sample> samples) {
+                    std::transform(points_m.begin(), points_m.end(), samples.begin(), sample);
+                };
                 view.true_gradient = [](const glm::dvec3&) { return glm::dvec3(0); };
                 view.size_px = size;
                 CHECK(kind.draw(view).write_png(file.path.string()).empty());
