@@ -62,13 +62,16 @@ Value either(Builder& builder, Value a, Value b)
     return builder.operation(Op::i_as_u, {bits});
 }
 
-// Appends what the body yields behind the height, 1 and a fault where that is not finite. The faults end `results`.
+// Appends what the body yields behind the height, 1 and a fault where that is not finite or below 0: a scale that would
+// pull where a surface pushes is no scale. The faults end `results`.
 void material_outputs(Builder& builder, const DerivativeEmitter& emitter, std::span<const Value> yields,
                       std::vector<Value>& results)
 {
     const size_t faults = results.size() - 1;
     for (Value yield : yields.subspan(1)) {
-        const Value output = emitter.primal(yield), is_fine = builder.operation(Op::is_finite, {output});
+        const Value output = emitter.primal(yield);
+        const Value is_fine = builder.operation(Op::land, {builder.operation(Op::is_finite, {output}),
+                                                           builder.operation(Op::le, {builder.real(0), output})});
         results.push_back(builder.operation(Op::select, {is_fine, output, builder.real(1)}));
         const Value fault =
             builder.operation(Op::select, {is_fine, builder.u32(0), builder.u32(HAPTEL_FAULT_OUTPUT_NOT_FINITE)});
