@@ -140,6 +140,15 @@ struct Expression {
     Type type; // set by the checker; Type::error() where something was reported
 };
 
+// Operators outside of parentheses: what is written behind it would go to its last operand.
+inline bool is_open(const Expression& e)
+{
+    const auto chain = std::get_if<Chain>(&e.node);
+    const auto conditional = std::get_if<Conditional>(&e.node);
+    const Expression* first = chain ? chain->first.get() : conditional ? conditional->condition.get() : nullptr;
+    return first && first->span.begin == e.span.begin;
+}
+
 struct Declaration { // one name; "float a = 1, b;" makes two in a row
     bool is_const = false;
     TypeName type;

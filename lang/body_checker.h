@@ -109,6 +109,7 @@ private:
     bool require(ast::Expression& e, Type wanted, const std::string& where);
     Type report_operator(ast::BinaryOp op, Span span, Type left, const ast::Expression& right);
     std::string excerpt(const ast::Expression& e) const;
+    std::string operand(const ast::Expression& e) const; // to write something behind it
 
     // ---- calls
     Type constructor(ast::Expression& e, ast::CallExpression& call, Type type);

@@ -138,8 +138,8 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
             diagnostics
                 .error(argument.span, "type-mismatch",
                        "expected numbers and vectors for " + to_string(type) + ", found " + to_string(found))
-                .hint = found.is_array() ? "pick elements: " + excerpt(argument) + "[i]"
-                                         : "pick columns: " + excerpt(argument) + "[0]";
+                .hint = found.is_array() ? "pick elements: " + operand(argument) + "[i]"
+                                         : "pick columns: " + operand(argument) + "[0]";
             damaged = true;
         }
         components += found.components();

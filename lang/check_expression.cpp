@@ -18,23 +18,24 @@ bool is_integer(Type type)
     return type == int_type || type == uint_type;
 }
 
-// How to get from one type to the other by hand; `text` is the expression as written.
-std::string conversion_hint(Type from, Type to, const std::string& text)
+// How to get from one type to the other by hand; `text` is the expression as written, `operand` the same in parentheses
+// if it needs them.
+std::string conversion_hint(Type from, Type to, const std::string& text, const std::string& operand)
 {
     if (to.is_array() || to.is_error() || to == image_type) return {};
     if (from == image_type) return "read it: sample(" + text + ", uv)";
-    if (from.is_array()) return "pick an element: " + text + "[i]";
+    if (from.is_array()) return "pick an element: " + operand + "[i]";
     if (from.is_matrix() || to.is_matrix()) {
-        if (from.is_matrix() && to == from.element()) return "pick a column: " + text + "[0]";
-        if (from.is_matrix() && to.is_scalar()) return "pick an element: " + text + "[0][0]";
+        if (from.is_matrix() && to == from.element()) return "pick a column: " + operand + "[0]";
+        if (from.is_matrix() && to.is_scalar()) return "pick an element: " + operand + "[0][0]";
         return from.is_vector() || to.is_vector() ? "" : "write " + to_string(to) + "(" + text + ")";
     }
     if (from.is_vector() && to.is_vector())
         return from.size > to.size
-                   ? "pick components: " + text + "." + std::string("xyzw").substr(0, to.size)
+                   ? "pick components: " + operand + "." + std::string("xyzw").substr(0, to.size)
                    : "write " + to_string(to) + "(" + text + ", 0.0" + (to.size - from.size > 1 ? ", 0.0" : "") + ")";
-    if (from.is_vector()) return "pick a component, " + text + ".x, or take length(" + text + ")";
-    if (to == bool_type) return "write " + text + (from == float_type ? " != 0.0" : " != 0");
+    if (from.is_vector()) return "pick a component, " + operand + ".x, or take length(" + text + ")";
+    if (to == bool_type) return "write " + operand + (from == float_type ? " != 0.0" : " != 0");
     if (to == int_type && from == float_type) return "write int(" + text + "), which drops the fraction";
     return "write " + to_string(to) + "(" + text + ")";
 }
@@ -117,6 +118,12 @@ std::string BodyChecker::excerpt(const Expression& e) const
     return text.size() <= 32 ? text : "x";
 }
 
+std::string BodyChecker::operand(const Expression& e) const
+{
+    const std::string text = excerpt(e);
+    return is_open(e) && text != "x" ? "(" + text + ")" : text;
+}
+
 bool BodyChecker::require(Expression& e, Type wanted, const std::string& where)
 {
     if (e.type.is_error() || wanted.is_error()) return false;
@@ -127,7 +134,7 @@ bool BodyChecker::require(Expression& e, Type wanted, const std::string& where)
     }
     Diagnostic& reported = diagnostics.error(e.span, "type-mismatch",
                                              "expected " + to_string(wanted) + where + ", found " + to_string(e.type));
-    reported.hint = conversion_hint(e.type, wanted, excerpt(e));
+    reported.hint = conversion_hint(e.type, wanted, excerpt(e), operand(e));
     if (converts_by_constructor(e.type, wanted))
         reported.fix = FixIt{e.span, to_string(wanted) + "(" + std::string(context.sources.text(e.span)) + ")"};
     return false;
@@ -240,7 +247,7 @@ Type BodyChecker::check(Expression& e, Unary& node)
         if (type == bool_type) return type;
         diagnostics.error(e.span, "type-mismatch", op + " expects bool, found " + to_string(type)).hint =
             !type.is_scalar() ? "there are no bool vectors: compare the components"
-                              : "compare: " + excerpt(*node.operand) + (type == float_type ? " == 0.0" : " == 0");
+                              : "compare: " + operand(*node.operand) + (type == float_type ? " == 0.0" : " == 0");
         return Type::error();
     case UnaryOp::bit_not:
         if (is_integer(type)) return type;
@@ -300,7 +307,7 @@ Type BodyChecker::check(Expression& e, Conditional& node)
     Diagnostic& reported =
         diagnostics.error(e.span, "type-mismatch",
                           "both sides of ':' must have one type, found " + to_string(a) + " and " + to_string(b));
-    reported.hint = conversion_hint(b, a, excerpt(*node.when_false));
+    reported.hint = conversion_hint(b, a, excerpt(*node.when_false), operand(*node.when_false));
     return Type::error();
 }
 
@@ -359,7 +366,7 @@ Type BodyChecker::check(Expression& e, Index& node)
     if (!is_integer(index)) {
         Diagnostic& reported =
             diagnostics.error(node.index->span, "type-mismatch", "expected int as an index, found " + to_string(index));
-        reported.hint = conversion_hint(index, int_type, excerpt(*node.index));
+        reported.hint = conversion_hint(index, int_type, excerpt(*node.index), operand(*node.index));
         return element;
     }
     check_index(*node.index, *node.object);

@@ -150,8 +150,8 @@ void BodyChecker::condition(ExpressionPtr& e, const char* of_what)
     if (!e || expression(*e).is_error() || e->type == bool_type) return;
     Diagnostic& reported = diagnostics.error(e->span, "type-mismatch",
                                              std::string("expected bool ") + of_what + ", found " + to_string(e->type));
-    if (e->type == float_type) reported.hint = "compare: " + excerpt(*e) + " != 0.0";
-    if (e->type == int_type || e->type == uint_type) reported.hint = "compare: " + excerpt(*e) + " != 0";
+    if (e->type == float_type) reported.hint = "compare: " + operand(*e) + " != 0.0";
+    if (e->type == int_type || e->type == uint_type) reported.hint = "compare: " + operand(*e) + " != 0";
 }
 
 // What holds on either of two paths; a path that does not go on has no say.

@@ -144,7 +144,7 @@ private:
     void body(const ast::Statement& tree, uint32_t slot_count, const Variables& parameters);
     void merge(Flow& into, const Flow& other) const;
     void check_outputs();
-    void settle(const ast::For& loop, const Variables& at_head);
+    void settle(const ast::For& loop, Variables& at_head);
 
     // ---- findings; null in library code, which is only marked as at fault
     DimensionFinding* report(Span span, std::string message);

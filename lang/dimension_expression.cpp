@@ -8,13 +8,11 @@ using namespace ast;
 namespace {
 
 // An operand of '*' or '/' as it stands.
-bool binds_tightly(const Expression& e, std::string_view text)
+bool binds_tightly(const Expression& e)
 {
-    if (std::holds_alternative<Conditional>(e.node)) return text.starts_with('(');
+    if (!is_open(e)) return true;
     auto chain = std::get_if<Chain>(&e.node);
-    if (!chain || chain->first->span.begin > e.span.begin) return true; // in parentheses
-    const BinaryOp op = chain->rest.front().op;
-    return op == BinaryOp::multiply || op == BinaryOp::divide;
+    return chain && (chain->rest.front().op == BinaryOp::multiply || chain->rest.front().op == BinaryOp::divide);
 }
 
 // A number to whose end a unit may be written.
@@ -220,7 +218,7 @@ void DimensionBody::propose(DimensionFinding& finding, const Expression& e, Dime
     if (expected.is_plain()) {
         const std::string factor = factor_to_plain(found);
         if (factor.empty()) return;
-        const std::string fixed = (binds_tightly(e, text) ? text : "(" + text + ")") + factor;
+        const std::string fixed = (binds_tightly(e) ? text : "(" + text + ")") + factor;
         finding.fix = FixIt{e.span, fixed};
         finding.hint = "write " + printable(fixed) + ", with the quantity you mean instead of " + factor.substr(3);
         return;

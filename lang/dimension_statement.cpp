@@ -200,7 +200,7 @@ void DimensionBody::walk(const Statement&, const For& node)
     learnt.resize(flow.variables.size());
     for (size_t i = 0; i < learnt.size(); ++i)
         if (flow.variables[i].dimension.is_any() && !flow.variables[i].is_mixed()) flow.variables[i] = learnt[i];
-    const Flow at_head = flow;
+    Flow at_head = flow;
     Flow exit;
     exit.reachable = false;
     loop_exits.push_back(&exit);
@@ -216,12 +216,12 @@ void DimensionBody::walk(const Statement&, const For& node)
 }
 
 // What comes round to the start of the loop again must be what it was there.
-void DimensionBody::settle(const For& loop, const Variables& at_head)
+void DimensionBody::settle(const For& loop, Variables& at_head)
 {
     if (!flow.reachable) return;
     for (size_t i = 0; i < at_head.size(); ++i) {
         Variable& end = flow.variables[i];
-        const Variable& start = at_head[i];
+        Variable& start = at_head[i];
         if (start.is_mixed() || (end.dimension.is_any() && !end.is_mixed())) continue;
         if (start.dimension.is_any()) {
             heads[&loop][i] = {end.dimension, end.set, Dimension::any(), {}};
@@ -238,7 +238,7 @@ void DimensionBody::settle(const For& loop, const Variables& at_head)
             finding->hint = "keep what changes in a variable of its own inside the loop";
             finding->related.push_back({start.set, "here it gets the dimension it begins with"});
         }
-        end = start;
+        end.dimension = start.dimension = Dimension::any(); // what follows is not blamed for it
     }
 }
 

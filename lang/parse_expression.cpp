@@ -344,8 +344,9 @@ ExpressionPtr Grammar::grad_call(Span first)
         advance();
         std::vector<ExpressionPtr> values = arguments(opener);
         if (at(Token::left_paren)) {
-            error(first, "grad", "grad takes the name of a function").hint =
-                "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)";
+            if (call.order == 1) // else the innermost has said it
+                error(first, "grad", "grad takes the name of a function").hint =
+                    "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)";
             const Span second = span();
             advance();
             arguments(second);

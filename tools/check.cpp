@@ -149,11 +149,17 @@ void CheckRun::check(const std::string& path)
             const std::vector<double> values = values_of(path, texture);
             const auto images = images_of(path, texture);
             std::vector<const ir::SplineImage*> views;
-            for (const auto& image : images) views.push_back(image.get());
+            std::vector<std::string> any_picture;
+            for (size_t i = 0; i < images.size(); ++i) {
+                views.push_back(images[i].get());
+                const ir::Parameter& parameter = texture.parameters[i];
+                if (parameter.type == ir::Type::image && !images[i]) any_picture.push_back(parameter.name);
+            }
             report.textures.push_back(
                 {path, result.program, &texture,
                  lang::analyse(*result.program, texture, values, views,
-                               {options.box_m, options.footprint_m, report.normal_turn_per_m}, diagnostics)});
+                               {options.box_m, options.footprint_m, report.normal_turn_per_m}, diagnostics),
+                 std::move(any_picture)});
         }
         diagnostics.sort_by_place();
     }

@@ -125,32 +125,36 @@ Json to_json(const CheckedTexture& checked)
 // "-60 um": three digits in the unit that suits the size.
 std::string shown_length(double metres)
 {
-    if (!std::isfinite(metres)) return metres < 0 ? "-unbounded" : "unbounded";
     const double size = std::fabs(metres);
     if (size == 0) return "0";
+    if (size < 1e-12) return fmt::format("{:.3g} m", metres); // of rounding
     if (size < 1e-6) return fmt::format("{:.3g} nm", metres * 1e9);
     if (size < 1e-3) return fmt::format("{:.3g} um", metres * 1e6);
     if (size < 1) return fmt::format("{:.3g} mm", metres * 1e3);
     return fmt::format("{:.3g} m", metres);
 }
 
-std::string shown_range(const ir::Interval& height_m)
+std::string shown_scale(double scale)
 {
-    return fmt::format("{} .. {}", shown_length(height_m.minimum), shown_length(height_m.maximum));
+    return fmt::format("{:.3g}", scale);
 }
 
-std::string shown_scale(const ir::Interval& scale)
+// "0 .. 1 mm": of heights or scales.
+std::string shown_range(const ir::Interval& range, std::string (*shown)(double))
 {
-    const auto end = [](double value) {
-        return std::isfinite(value) ? fmt::format("{:.3g}", value)
-                                    : std::string(value < 0 ? "-unbounded" : "unbounded");
+    if (range.is_empty()) return "not a number";
+    const auto end = [&](double value) { return std::isfinite(value) ? shown(value) : "unbounded"; };
+    const bool has_end = std::isfinite(range.minimum) || std::isfinite(range.maximum);
+    return has_end ? end(range.minimum) + " .. " + end(range.maximum) : "unbounded";
+}
+
+// "at most 3 /m (5 /m)": here, and over the ranges.
+std::string shown_bounds(double here, double over_ranges, std::string_view unit)
+{
+    const auto bound = [&](double value, std::string_view most) {
+        return std::isfinite(value) ? fmt::format("{}{:.3g}{}", most, value, unit) : "unbounded";
     };
-    return scale.is_empty() ? "not a number" : end(scale.minimum) + " .. " + end(scale.maximum);
-}
-
-std::string shown_bound(double bound, std::string_view unit)
-{
-    return std::isfinite(bound) ? fmt::format("{:.3g}{}", bound, unit) : "unbounded";
+    return fmt::format("{} ({})", bound(here, "at most "), bound(over_ranges, ""));
 }
 
 // The class, and the place that keeps it from being smoother.
@@ -246,15 +250,20 @@ std::string CheckReport::to_text() const
         const std::vector<std::string> inputs = inputs_of(*checked.texture), outputs = outputs_of(*checked.texture);
         text += fmt::format("{}:{} in a cube of {} (and over the ranges of its parameters)\n", checked.file,
                             checked.texture->name, shown_length(box_m));
-        text += fmt::format("  height     {} ({})\n", shown_range(here.height), shown_range(ranges.height));
-        text += fmt::format("  slope      at most {} ({})\n", shown_bound(here.slope_max, ""),
-                            shown_bound(ranges.slope_max, ""));
+        text += fmt::format("  height     {} ({})\n", shown_range(here.height, shown_length),
+                            shown_range(ranges.height, shown_length));
+        text += fmt::format("  slope      {}\n", shown_bounds(here.slope_max, ranges.slope_max, ""));
+        constexpr double infinity = std::numeric_limits<double>::infinity();
         if (has_curvature(here))
-            text += fmt::format("  curvature  at most {} ({})\n", shown_bound(here.curvature_max_per_m, " /m"),
-                                has_curvature(ranges) ? shown_bound(ranges.curvature_max_per_m, " /m") : "none");
+            text += fmt::format("  curvature  {}\n",
+                                shown_bounds(here.curvature_max_per_m,
+                                             has_curvature(ranges) ? ranges.curvature_max_per_m : infinity, " /m"));
         for (size_t i = 0; i < outputs.size(); ++i)
-            text += fmt::format("  {} {} ({})\n", outputs[i], shown_scale(checked.analysis.outputs[i]),
-                                shown_scale(checked.analysis.outputs_over_ranges[i]));
+            text += fmt::format("  {} {} ({})\n", outputs[i], shown_range(checked.analysis.outputs[i], shown_scale),
+                                shown_range(checked.analysis.outputs_over_ranges[i], shown_scale));
+        if (!checked.any_picture.empty())
+            text += fmt::format("  picture    any, no file is set: --set {}=FILE\n",
+                                fmt::join(checked.any_picture, "=FILE --set "));
         text += fmt::format("  class      {}\n", shown_class(checked));
         if (checked.texture->reads & HAPTEL_READS_NORMAL)
             text += fmt::format("  normals    turn at most {:.3g} per metre, or it is steeper (--normal-turn)\n",

@@ -24,6 +24,7 @@ struct CheckedTexture {
     std::shared_ptr<const lang::Program> program;
     const ir::Texture* texture = nullptr;
     lang::Analysis analysis;
+    std::vector<std::string> any_picture; // image parameters that nobody set
 };
 
 struct CheckReport {

@@ -316,6 +316,19 @@ TEST_CASE("check: jumps, kinks and what may be undefined are found with their pl
     CHECK(run_command("check --strict '" + file + "'").code == 1);
 }
 
+TEST_CASE("check: bounds without a picture are those of any, and say so; one end alone may be unbounded")
+{
+    const Folder folder;
+    const std::string file =
+        folder.write("pressed.haptel", "texture pressed(image dents) { return 1mm * sample(dents, uv); }\n"
+                                       "texture up() { return 1mm * abs(uv.x); }\n");
+    const Ran ran = run_command("check '" + file + "'");
+    CHECK(ran.code == 0);
+    CHECK(contains(ran.out, "height     unbounded (unbounded)\n"));
+    CHECK(contains(ran.out, "picture    any, no file is set: --set dents=FILE\n"));
+    CHECK(contains(ran.out, "height     0 .. unbounded (0 .. unbounded)\n"));
+}
+
 TEST_CASE("check: a few lines per texture for people")
 {
     const Folder folder;
@@ -327,8 +340,8 @@ TEST_CASE("check: a few lines per texture for people")
     CHECK(contains(ran.out, "slope      at most 0.06 (0.8)\n"));
     CHECK(contains(ran.out, "curvature  at most 90 /m (6.4e+03 /m)\n"));
     CHECK(contains(ran.out, "reads p\n"));
-    CHECK(contains(ran.out, "height     -unbounded .. unbounded (-unbounded .. unbounded)\n"));
-    CHECK(contains(ran.out, "slope      at most unbounded (unbounded)\n"));
+    CHECK(contains(ran.out, "height     unbounded (unbounded)\n"));
+    CHECK(contains(ran.out, "slope      unbounded (unbounded)\n"));
     CHECK(contains(ran.out, "reads p, time\n"));
 }
 
