@@ -161,6 +161,38 @@ void check_rounding(const Program& program, Engine<double>& interpreter, const s
     if (is_useful) count("of these to 1e-9");
 }
 
+// Points side by side, and what single points gave.
+struct Lanes {
+    static constexpr size_t reals = jit::point_inputs;
+    std::vector<double> inputs[reals];
+    std::vector<std::array<double, 4>> expected;
+
+    void add(const haptel_point& point, const std::array<double, 4>& sample)
+    {
+        double held[reals];
+        std::memcpy(held, &point, sizeof point);
+        for (size_t i = 0; i < reals; ++i) inputs[i].push_back(held[i]);
+        expected.push_back(sample);
+    }
+    void check(const Program& program, haptel_batch_entry* entry, const void* block)
+    {
+        const double* arrays[reals];
+        for (size_t i = 0; i < reals; ++i) arrays[i] = inputs[i].data();
+        haptel_points points;
+        std::memcpy(&points, arrays, sizeof points);
+        std::vector<double> found[4];
+        for (auto& numbers : found) numbers.resize(expected.size());
+        haptel_samples samples{found[0].data(), {found[1].data(), found[2].data(), found[3].data()}, {}, {}, {}};
+        entry(&points, expected.size(), block, &samples);
+        for (size_t i = 0; i < expected.size(); ++i)
+            for (size_t j = 0; j < 4; ++j)
+                if (!same_bits(found[j][i], expected[i][j]))
+                    program.fail("lanes differ:\n" + shown("one point", expected[i]) +
+                                 shown("lanes", {found[0][i], found[1][i], found[2][i], found[3][i]}));
+        count("batches");
+    }
+};
+
 // The gradient itself, which every engine takes from the same derivative: against central differences of the 113-bit
 // height with a Richardson step, where no piece ends between.
 void check_gradient(const Program& program, Engine<ir::Quad>& oracle, const haptel_point& point)
@@ -203,6 +235,7 @@ void run_program(std::string_view bytes)
     // Code takes most of the time: the entry of the height alone, and full effort, are for some.
     std::vector<jit::EntryPoint> entries{{"t'", &texture, jit::EntryPoint::Kind::height_gradient}};
     if (seed % 8 == 0) entries.push_back({"t", &texture, jit::EntryPoint::Kind::height});
+    if (seed % 4 == 0) entries.push_back({"t'*", &texture, jit::EntryPoint::Kind::height_gradient, true});
     const jit::CodeResult made =
         jit::compile_code(program.module(), entries, seed % 32 == 0 ? jit::Effort::full : jit::Effort::quick);
     if (!made.code) program.fail("no code: " + made.error);
@@ -210,6 +243,7 @@ void run_program(std::string_view bytes)
     Engine<double> interpreter(program, block);
     Engine<ir::Quad> oracle(program, block);
     Engine<Ball> truth(program, block);
+    Lanes lanes;
     std::mt19937_64 random(seed);
     for (int i = 0; i < 4; ++i) {
         const haptel_point point = random_point(random);
@@ -221,6 +255,7 @@ void run_program(std::string_view bytes)
         for (size_t j = 0; j < 4; ++j)
             if (!same_bits(fast[j], slow[j]) || sample.faults != interpreter.faults)
                 program.fail("code differs:\n" + shown("interpreter", slow) + shown("code", fast));
+        lanes.add(point, fast);
         if (haptel_entry* const alone = made.code->entry("t")) {
             haptel_sample height{};
             alone(&point, block.data(), &height);
@@ -234,6 +269,7 @@ void run_program(std::string_view bytes)
         // detach() is for gradients that differ on purpose.
         if (i == 0 && program.source.find("detach(") == std::string::npos) check_gradient(program, oracle, point);
     }
+    if (haptel_batch_entry* const many = made.code->batch_entry("t'*")) lanes.check(program, many, block.data());
     count("programs");
 }
 
