@@ -96,7 +96,7 @@ void check_smoothness(GradientCheck& check, const TextureBinding& binding, const
     for (uint64_t i = 0; i < paths; ++i) all.follow(i);
     check.continuity_measured = all.roughest;
     check.bounds_exceeded += all.too_steep + all.too_curved;
-    expect_at_most(check, "points where the slope leaves its bound", static_cast<double>(all.too_steep), 0);
+    expect_at_most(check, "places along paths where the slope leaves its bound", static_cast<double>(all.too_steep), 0);
     expect_at_most(check, "paths along which the gradient changes faster than its bound",
                    static_cast<double>(all.too_curved), 0);
     const auto name = [](uint32_t continuity) {

@@ -15,13 +15,17 @@ const ir::Texture& source_of(const CompiledProgram& program, const TextureBindin
 } // namespace
 
 struct Oracle::Machine {
-    Machine(std::shared_ptr<const CompiledProgram> whole, const TextureBinding& binding)
-        : program(std::move(whole)), texture(source_of(*program, binding)), interpreter(program->module())
+    Machine(std::shared_ptr<const CompiledProgram> whole, const TextureBinding& bound)
+        : program(std::move(whole))
+        , binding(bound)
+        , texture(source_of(*program, binding))
+        , interpreter(program->module())
     {
         set_block(inputs, texture, binding.block);
     }
 
     const std::shared_ptr<const CompiledProgram> program;
+    const TextureBinding binding; // keeps the pictures that its block points to
     const ir::Texture& texture;
     ir::Interpreter<ir::Quad> interpreter;
     ir::EntryInputs<ir::Quad> inputs;

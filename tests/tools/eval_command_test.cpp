@@ -116,6 +116,22 @@ TEST_CASE("eval gives many points the numbers of single ones, in each precision"
     }
 }
 
+TEST_CASE("eval reads a picture with every engine")
+{
+    const Folder folder;
+    std::string picture = "P5\n16 16\n255\n"; // a PGM
+    for (int i = 0; i < 256; ++i) picture += static_cast<char>(i * 37 % 256);
+    const std::string arguments =
+        "eval '" +
+        folder.write("dents.haptel", "texture dents(image t) { return 1mm * sample_tiled(t, p.xy / 1cm); }") +
+        ":dents' --set 't=" + folder.write("dents.pgm", picture) + "' --at 3mm,7mm,0 --json --engine ";
+    const Json exact = Json::parse(run_command(arguments + "interpreter").out);
+    CHECK(Json::parse(run_command(arguments + "jit").out)["height_m"] == exact["height_m"]);
+    const double truth = Json::parse(run_command(arguments + "oracle").out)["height_m"].get<double>();
+    CHECK(truth > 1e-6);
+    CHECK(std::abs(truth - exact["height_m"].get<double>()) < 1e-12 * truth);
+}
+
 TEST_CASE("what eval cannot do is said, with the right exit code")
 {
     const Folder folder;
