@@ -3,6 +3,8 @@
 
 #include "bench/timing.h"
 
+#include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 

@@ -5,6 +5,8 @@
 #include "jit/llvm.h"
 
 #include <map>
+#include <memory>
+#include <tuple>
 #include <vector>
 
 namespace haptel::jit {

@@ -8,6 +8,7 @@
 
 #include "lang/ir/ir.h"
 
+#include <cstdint>
 #include <vector>
 
 namespace haptel::jit {

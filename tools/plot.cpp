@@ -73,9 +73,8 @@ ExitCode draw(const PlotOptions& options)
     view.title =
         fmt::format("{}:{}", std::filesystem::path(options.texture.file).filename().string(), options.texture.name);
     for (const auto& [name, value] : options.parameters) view.title += fmt::format("  {} = {}", name, value);
-    view.samples = [&](std::span<const glm::dvec3> points_m, std::span<haptel_sample> samples) {
-        std::vector<haptel_point> points;
-        for (const glm::dvec3& p : points_m) points.push_back(point_of(options, p));
+    view.on_plane = [&](const glm::dvec3& p_m) { return point_of(options, p_m); };
+    view.samples = [&](std::span<const haptel_point> points, std::span<haptel_sample> samples) {
         evaluate(*texture.binding, points, samples);
     };
     jit::Oracle oracle(compiled.program, *texture.binding);

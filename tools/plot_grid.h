@@ -1,9 +1,10 @@
-// A texture's samples over the window that is drawn, taken by all of the machine's processors.
+// A texture's samples over the window that is drawn, taken by all of the machine's processors, and how they look lit.
 #pragma once
 
 #include "tools/plot_texture.h"
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -27,6 +28,18 @@ struct Range {
 double slope_of(const haptel_sample& sample);
 
 std::vector<haptel_sample> samples_at(const TextureView& view, std::span<const glm::dvec3> points_m);
+
+// The colour of stone whose outward normal this is (any length), seen from +z and lit from the upper left.
+Color lit(const glm::dvec3& normal);
+
+// Slopes of fine textures are too small to see: they are drawn 1, 2, 5, 10 ... times as steep, as long as they stay
+// within reason.
+double exaggeration_for(double slope_rms);
+
+constexpr int samples_per_pixel = 2; // each way
+
+// Shared out among the processors; long ones show how far they are.
+void for_each_row(int rows, const std::function<void(int)>& draw);
 
 // Samples at the centres of `columns` x `rows` equal cells of the window, the upper left one first.
 class Grid {

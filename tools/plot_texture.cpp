@@ -1,6 +1,7 @@
 #include "tools/plot_texture.h"
 
 #include "tools/plot_axes.h"
+#include "tools/plot_ball.h"
 #include "tools/plot_colors.h"
 #include "tools/plot_grid.h"
 #include "tools/plot_spectrum.h"
@@ -74,32 +75,6 @@ Picture draw_height(const TextureView& view)
     return picture;
 }
 
-Color lit(double gx, double gy)
-{
-    static const glm::dvec3 light = glm::normalize(glm::dvec3(-0.55, 0.6, 0.75)), eye(0, 0, 1);
-    const glm::dvec3 normal = glm::normalize(glm::dvec3(-gx, -gy, 1));
-    const double diffuse = std::max(glm::dot(normal, light), 0.0);
-    const double gloss = std::pow(std::max(glm::dot(normal, glm::normalize(light + eye)), 0.0), 30);
-    const double shade = 0.16 + 0.92 * diffuse;
-    return {0.90 * shade + 0.10 * gloss, 0.83 * shade + 0.10 * gloss, 0.73 * shade + 0.10 * gloss};
-}
-
-// Slopes of fine textures are too small to see: they are drawn 1, 2, 5, 10 ... times as steep, as long as they stay
-// within reason, and the picture says so.
-double exaggeration_for(double slope_rms)
-{
-    double factor = 1;
-    if (!(slope_rms > 0)) return factor;
-    for (int i = 0; i < 15; ++i) {
-        const double steeper = factor * (i % 3 == 1 ? 2.5 : 2);
-        if (slope_rms * steeper > 0.3) break;
-        factor = steeper;
-    }
-    return factor;
-}
-
-constexpr int samples_per_pixel = 2; // each way
-
 Image relief_of(const Grid& samples, int n, double factor)
 {
     constexpr int fine = samples_per_pixel;
@@ -109,7 +84,7 @@ Image relief_of(const Grid& samples, int n, double factor)
             Color mean{0, 0, 0};
             for (int part = 0; part < fine * fine; ++part) {
                 const haptel_sample& sample = samples.at(column * fine + part % fine, row * fine + part / fine);
-                const Color c = lit(factor * sample.gradient[0], factor * sample.gradient[1]);
+                const Color c = lit({-factor * sample.gradient[0], -factor * sample.gradient[1], 1});
                 mean.red += c.red / (fine * fine), mean.green += c.green / (fine * fine);
                 mean.blue += c.blue / (fine * fine);
             }
@@ -287,6 +262,7 @@ constexpr TextureKind kinds[] = {
     {"height", "colours for height", draw_height},
     {"shaded", "relief, lit from the upper left", draw_shaded},
     {"relief", "the same from edge to edge, without axes and words", draw_relief},
+    {"ball", "relief of a ball as wide as the window, for textures that read center, extent, n or uv", draw_ball},
     {"section", "height and slope along x", draw_section},
     {"spectrum", "amplitude against wavelength", draw_spectrum},
     {"gradient-error", "error of the compiled gradient against the 113-bit oracle", draw_gradient_error},

@@ -55,7 +55,7 @@ std::vector<TestTexture> test_textures()
             for (const lang::ast::Function& function : tree.functions)
                 if (reads(function.name.text)) helpers += std::string(sources.text(function.span)) + "\n\n";
             made.example = {stem(file.name), texture.name.text, helpers + std::string(sources.text(texture.span)),
-                            !reads("extent") && !reads("footprint_in")};
+                            !reads("footprint_in")};
         }
     }
     return all;

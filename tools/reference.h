@@ -26,7 +26,7 @@ struct Overload {
 struct Example {
     std::string file, texture; // file without folder and ".haptel"
     std::string text;
-    bool has_picture = true; // shows something in a plot, which knows no object
+    bool has_picture = true; // shows something in a plot
 };
 
 struct Entry {

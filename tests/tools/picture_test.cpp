@@ -51,8 +51,13 @@ TEST_CASE("every kind of picture has the size asked for, whatever the texture")
                 CAPTURE(kind.name, size);
                 TextureView view;
                 view.title = "test";
-                view.samples = [&](std::span<const glm::dvec3> points_m, std::span<haptel_sample> samples) {
-                    std::transform(points_m.begin(), points_m.end(), samples.begin(), sample);
+                view.on_plane = [](const glm::dvec3& p_m) {
+                    return haptel_point{{p_m.x, p_m.y, p_m.z}, {}, {}, 0, {}, {}};
+                };
+                view.samples = [&](std::span<const haptel_point> points, std::span<haptel_sample> samples) {
+                    std::transform(points.begin(), points.end(), samples.begin(), [&](const haptel_point& point) {
+                        return sample({point.p[0], point.p[1], point.p[2]});
+                    });
                 };
                 view.true_gradient = [](const glm::dvec3&) { return glm::dvec3(0); };
                 view.size_px = size;
