@@ -285,8 +285,8 @@ private:
     // In rounds, so that whatever the machine does besides meets all alike.
     void measure()
     {
-        Points single(quick ? 256 : 2048, distances[0], 8), many(quick ? 1 << 14 : 1'000'000, distances[0], 9);
-        for (int round = 0; round < (quick ? 5 : 21); ++round)
+        Points single(quick ? 256 : 2048, distances[0], 8), many(quick ? 1 << 14 : 1 << 17, distances[0], 9);
+        for (int round = 0; round < (quick ? 5 : 9); ++round)
             for (Contender& contender : contenders) run(contender, contender.row.is_batch ? many : single);
         for (Contender& contender : contenders) {
             const Times times = summary(contender.times_ns);

@@ -161,7 +161,9 @@ std::string shown_bounds(double here, double over_ranges, std::string_view unit)
 std::string shown_class(const CheckedTexture& checked)
 {
     const ir::TextureBounds& bounds = checked.analysis.at_values;
-    if (bounds.smoothness >= ir::Smoothness::c1) return "C1, smooth enough for a bounded change of force";
+    if (bounds.smoothness >= ir::Smoothness::c1)
+        return std::isfinite(bounds.curvature_max_per_m) ? "C1, smooth enough for a bounded change of force"
+                                                         : "C1, no kinks, but no bound of how fast the slope changes";
     const std::string_view meaning = bounds.smoothness == ir::Smoothness::unknown ? "not found"
                                      : bounds.smoothness == ir::Smoothness::jump  ? "jump, the height steps"
                                                                                   : "C0, the slope steps";
