@@ -91,8 +91,7 @@ void check_code(GradientCheck& check, const TextureBinding& binding, const Check
         check.loop_integral_m = std::max(check.loop_integral_m, std::fabs(loop_integral_m(binding, points, circle)));
     expect_at_most(check, "points where height or gradient is not finite (edges and huge coordinates included)",
                    static_cast<double>(check.not_finite), 0);
-    expect_at_most(check, "points where the height leaves its bounds",
-                   static_cast<double>(check.bounds_exceeded), 0);
+    expect_at_most(check, "points where the height leaves its bounds", static_cast<double>(check.bounds_exceeded), 0);
     check_smoothness(check, binding, points);
 }
 
