@@ -102,7 +102,10 @@ private:
         return entry.kind == EntryPoint::Kind::height ? entry.texture->height : entry.texture->height_gradient;
     }
     const ir::Function& source() const { return module.source.functions[index()]; }
-    ValueForms entry_forms() const { return module.forms(index(), {}, std::vector<bool>(source().body.yields.size())); }
+    ValueForms entry_forms() const
+    {
+        return module.forms(index(), {{}, {}, std::vector<bool>(source().body.yields.size())});
+    }
     std::vector<Form> results(Form form) const { return std::vector(source().body.yields.size(), form); }
 
     // The last argument is what is written.
@@ -148,12 +151,13 @@ std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const
                                        const Processor& processor, llvm::LLVMContext& context)
 {
     auto generated = std::make_unique<llvm::Module>("textures", context);
-    std::map<std::pair<bool, Precision>, ModuleEmitter> emitters;
+    std::map<std::pair<LaneForm, Precision>, ModuleEmitter> emitters;
     for (const EntryPoint& entry : entries) {
-        const std::pair form{entry.is_batch, entry.precision};
+        const std::pair form{entry.lanes, entry.precision};
         ModuleEmitter& emitter =
-            emitters.try_emplace(form, module, *generated, processor, entry.is_batch, entry.precision).first->second;
-        entry.is_batch ? EntryEmitter(emitter, entry).batch() : EntryEmitter(emitter, entry).one_point();
+            emitters.try_emplace(form, module, *generated, processor, entry.lanes, entry.precision).first->second;
+        entry.lanes == LaneForm::points ? EntryEmitter(emitter, entry).batch()
+                                        : EntryEmitter(emitter, entry).one_point();
     }
     for (auto& [form, emitter] : emitters) emitter.finish();
     return generated;

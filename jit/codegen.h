@@ -1,6 +1,7 @@
 // IR to LLVM IR, one point at a time or many, in one of three precisions.
 //
-// In f64 every operation means what lang/ir/semantics.h says, bit for bit: no fast-math flags, no contraction,
+// In f64 every operation means what lang/ir/semantics.h says, bit for bit (but for sums of iterations in lanes, whose
+// order is another): no fast-math flags, no contraction,
 // elementary functions by calls to the C library under names that LLVM does not know, so that it cannot rewrite them.
 // Functions that an entry reaches become internal LLVM functions; tables become constant globals. The module must be
 // verified (lang/ir/verify.h): table indices and trip counts are trusted here.
@@ -34,13 +35,20 @@ struct Processor {
     bool permutes_bytes = false; // AVX-512VBMI: of bytes
 };
 
-// One entry point to be emitted: a haptel_entry of this name, or a haptel_batch_entry.
+// What the lanes of a register hold.
+enum class LaneForm : uint8_t {
+    one,        // nothing: one point, one iteration after the other
+    iterations, // iterations of one loop for one point, where a loop allows it (jit/iteration_lanes.h)
+    points,     // points: a batch
+};
+
+// One entry point to be emitted: a haptel_entry of this name, or for points in lanes a haptel_batch_entry.
 struct EntryPoint {
     enum class Kind : uint8_t { height, height_gradient };
     std::string name;
     const ir::Texture* texture;
     Kind kind;
-    bool is_batch = false;
+    LaneForm lanes = LaneForm::one;
     Precision precision = Precision::f64;
 };
 

@@ -66,11 +66,15 @@ Value* FunctionEmitter::at_offset(Value* base, size_t offset)
 
 std::vector<Value*> FunctionEmitter::block(const ir::Block& from, const std::vector<Form>& yield_forms)
 {
-    for (const ir::Instruction& instruction : from.instructions)
-        std::visit([&](const auto& kind) { emit(instruction, kind); }, instruction.kind);
+    for (const ir::Instruction& instruction : from.instructions) emit(instruction);
     std::vector<Value*> yields;
     for (size_t i = 0; i < from.yields.size(); ++i) yields.push_back(value(from.yields[i], yield_forms[i]));
     return yields;
+}
+
+void FunctionEmitter::emit(const ir::Instruction& made)
+{
+    std::visit([&](const auto& kind) { emit(made, kind); }, made.kind);
 }
 
 void FunctionEmitter::emit(const ir::Instruction& made, const ir::Operation& operation)
@@ -145,10 +149,11 @@ void FunctionEmitter::emit(const ir::Instruction& made, const ir::ReadTable& rea
 
 void FunctionEmitter::emit(const ir::Instruction& made, const ir::Call& call)
 {
-    std::vector<bool> varying, wide;
-    for (ir::Value operand : made.operands) varying.push_back(forms.is_varying(operand));
-    for (ir::Value result : made.results) wide.push_back(forms.is_wide(result));
-    const ModuleEmitter::Function& callee = module.function(call.function, varying, wide);
+    Signature signature;
+    for (ir::Value operand : made.operands) signature.arguments.push_back(forms.is_varying(operand));
+    for (ir::Value operand : made.operands) signature.in_lanes.push_back(forms[operand].in_lanes);
+    for (ir::Value result : made.results) signature.wide_results.push_back(forms.is_wide(result));
+    const ModuleEmitter::Function& callee = module.function(call.function, signature);
     std::vector<Value*> operands;
     for (size_t i = 0; i < made.operands.size(); ++i)
         operands.push_back(
@@ -193,50 +198,6 @@ void FunctionEmitter::emit(const ir::Instruction& made, const ir::If& choice)
         phi->addIncoming(yields[1][i], arms[1]);
         define(made.results[i], phi);
     }
-}
-
-void FunctionEmitter::emit(const ir::Instruction& made, const ir::For& loop)
-{
-    const ir::Block& body = loop.body[0];
-    Value* const count = value(made.operands[0]);
-    const bool count_varies = forms[made.operands[0]].in_lanes;
-    Value* const largest = count_varies ? builder.CreateIntMaxReduce(count, true) : count;
-    std::vector<Value*> initial;
-    std::vector<Form> held;
-    for (size_t i = 1; i < body.parameters.size(); ++i) {
-        held.push_back(forms[body.parameters[i]]);
-        initial.push_back(value(made.operands[i], held.back()));
-    }
-    llvm::BasicBlock* before = builder.GetInsertBlock();
-    llvm::BasicBlock* head = new_block("loop");
-    llvm::BasicBlock* inside = new_block("body");
-    llvm::BasicBlock* after = new_block("done");
-    builder.CreateBr(head);
-
-    builder.SetInsertPoint(head);
-    llvm::PHINode* iteration = builder.CreatePHI(builder.getInt32Ty(), 2);
-    iteration->addIncoming(builder.getInt32(0), before);
-    define(body.parameters[0], iteration);
-    std::vector<llvm::PHINode*> carried;
-    for (size_t i = 0; i < initial.size(); ++i) {
-        carried.push_back(builder.CreatePHI(initial[i]->getType(), 2));
-        carried[i]->addIncoming(initial[i], before);
-        define(body.parameters[i + 1], carried[i]);
-    }
-    builder.CreateCondBr(builder.CreateICmpSLT(iteration, largest), inside, after);
-
-    builder.SetInsertPoint(inside);
-    std::vector<Value*> next = block(body, held);
-    if (count_varies) {
-        Value* goes_on = builder.CreateICmpSLT(builder.CreateVectorSplat(module.lanes, iteration), count);
-        for (size_t i = 0; i < next.size(); ++i) next[i] = builder.CreateSelect(goes_on, next[i], carried[i]);
-    }
-    iteration->addIncoming(builder.CreateNSWAdd(iteration, builder.getInt32(1)), builder.GetInsertBlock());
-    for (size_t i = 0; i < next.size(); ++i) carried[i]->addIncoming(next[i], builder.GetInsertBlock());
-    builder.CreateBr(head);
-
-    builder.SetInsertPoint(after);
-    for (size_t i = 0; i < made.results.size(); ++i) define(made.results[i], carried[i]);
 }
 
 } // namespace haptel::jit

@@ -50,6 +50,7 @@ private:
     llvm::Value* at_offset(llvm::Value* base, size_t offset);
 
     std::vector<llvm::Value*> block(const ir::Block& from, const std::vector<Form>& yields);
+    void emit(const ir::Instruction& made);
     void emit(const ir::Instruction& made, const ir::Operation& operation);
     void emit(const ir::Instruction& made, const ir::RealConstant& constant);
     void emit(const ir::Instruction& made, const ir::IntConstant& constant);
@@ -61,6 +62,7 @@ private:
     void emit(const ir::Instruction& made, const ir::PointDerivative& derivative);
     void emit(const ir::Instruction& made, const ir::If& choice);
     void emit(const ir::Instruction& made, const ir::For& loop);
+    void emit_in_lanes(const ir::Instruction& made, const ir::Block& body, const LaneLoop& loop);
 };
 
 } // namespace haptel::jit

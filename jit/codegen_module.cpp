@@ -16,15 +16,15 @@ bool any(const std::vector<bool>& flags)
 
 } // namespace
 
-llvm::Type* ModuleEmitter::type(ir::Type type, Form form)
+llvm::Type* ModuleEmitter::type(ir::Type type, Form held)
 {
     llvm::LLVMContext& context = target.getContext();
     const auto lanes_of = [&](llvm::Type* scalar) -> llvm::Type* {
-        return form.in_lanes ? llvm::FixedVectorType::get(scalar, lanes) : scalar;
+        return held.in_lanes ? llvm::FixedVectorType::get(scalar, lanes) : scalar;
     };
     switch (type) {
     case ir::Type::real:
-        return lanes_of(form.is_single ? llvm::Type::getFloatTy(context) : llvm::Type::getDoubleTy(context));
+        return lanes_of(held.is_single ? llvm::Type::getFloatTy(context) : llvm::Type::getDoubleTy(context));
     case ir::Type::i32:
     case ir::Type::u32: return lanes_of(llvm::Type::getInt32Ty(context));
     case ir::Type::boolean: return lanes_of(llvm::Type::getInt1Ty(context));
@@ -48,35 +48,42 @@ llvm::GlobalVariable* ModuleEmitter::table(uint32_t index, bool is_single)
     return made;
 }
 
-ValueForms ModuleEmitter::forms(uint32_t index, const std::vector<bool>& arguments,
-                                const std::vector<bool>& wide_results) const
+ValueForms ModuleEmitter::forms(uint32_t index, const Signature& signature) const
 {
     const ir::Function& from = source.functions[index];
-    return {from, varying_values(from, arguments), plan.wide_values(index, wide_results), lanes};
+    ValueForms made{
+        from, varying_values(from, signature.arguments), {}, plan.wide_values(index, signature.wide_results), {}};
+    if (form == LaneForm::points) {
+        made.in_lanes = made.varies;
+        return made;
+    }
+    if (form == LaneForm::iterations && !any(signature.in_lanes)) made.loops = lane_loops(from, made.varies);
+    made.in_lanes = varying_iterations(from, signature.in_lanes, made.loops);
+    return made;
 }
 
 // The results of a function vary together.
-Form ModuleEmitter::Key::result(const ir::Function& of, size_t i, uint32_t lane_count) const
+Form ModuleEmitter::result(const Key& key, size_t i) const
 {
-    const bool varies = any(arguments), is_real = of.type(of.body.yields[i]) == ir::Type::real;
-    return {lane_count > 1 && varies, is_real && varies && !wide_results[i]};
+    const ir::Function& of = source.functions[key.first];
+    const bool is_real = of.type(of.body.yields[i]) == ir::Type::real;
+    return {any(key.second.in_lanes), is_real && any(key.second.arguments) && !key.second.wide_results[i]};
 }
 
-const ModuleEmitter::Function& ModuleEmitter::function(uint32_t index, const std::vector<bool>& arguments,
-                                                       const std::vector<bool>& wide_results)
+const ModuleEmitter::Function& ModuleEmitter::function(uint32_t index, const Signature& signature)
 {
-    const auto [place, is_new] = functions.try_emplace({index, arguments, wide_results});
+    const auto [place, is_new] = functions.try_emplace({index, signature});
     Function& made = place->second;
     if (!is_new) return made;
     const ir::Function& from = source.functions[index];
-    made.forms = std::make_shared<const ValueForms>(forms(index, arguments, wide_results));
+    made.forms = std::make_shared<const ValueForms>(forms(index, signature));
     std::vector<llvm::Type*> parameters, results;
     for (ir::Value parameter : from.parameters)
         parameters.push_back(type(from.type(parameter), (*made.forms)[parameter]));
     for (size_t i = 0; i < from.body.yields.size(); ++i)
-        results.push_back(type(from.type(from.body.yields[i]), place->first.result(from, i, lanes)));
-    llvm::Type* result = results.size() == 1 ? results[0] : llvm::StructType::get(target.getContext(), results);
-    made.code = llvm::Function::Create(llvm::FunctionType::get(result, parameters, false),
+        results.push_back(type(from.type(from.body.yields[i]), result(place->first, i)));
+    llvm::Type* returned = results.size() == 1 ? results[0] : llvm::StructType::get(target.getContext(), results);
+    made.code = llvm::Function::Create(llvm::FunctionType::get(returned, parameters, false),
                                        llvm::GlobalValue::InternalLinkage, from.name, target);
     made.code->setCallingConv(llvm::CallingConv::Fast);
     made.code->setDoesNotThrow();
@@ -100,13 +107,13 @@ void ModuleEmitter::finish()
 
 void ModuleEmitter::write_body(const Key& key, const Function& function)
 {
-    const ir::Function& from = source.functions[key.index];
+    const ir::Function& from = source.functions[key.first];
     llvm::BasicBlock::Create(target.getContext(), "", function.code);
     FunctionEmitter emitter(*this, from, *function.code, *function.forms);
     for (size_t i = 0; i < from.parameters.size(); ++i)
         emitter.define(from.parameters[i], function.code->getArg(static_cast<unsigned>(i)));
     std::vector<Form> results;
-    for (size_t i = 0; i < from.body.yields.size(); ++i) results.push_back(key.result(from, i, lanes));
+    for (size_t i = 0; i < from.body.yields.size(); ++i) results.push_back(result(key, i));
     const std::vector<llvm::Value*> yields = emitter.body(results);
     if (yields.size() == 1)
         emitter.at_end().CreateRet(yields[0]);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "jit/codegen.h"
+#include "jit/iteration_lanes.h"
 #include "jit/llvm.h"
 
 #include <map>
@@ -11,36 +12,43 @@
 
 namespace haptel::jit {
 
-// How a value is held: one for all points or in lanes, a real in f64 or in f32.
+// How a value is held: one for all, or in lanes, which are points or iterations of a loop; a real in f64 or in f32.
 struct Form {
     bool in_lanes = false, is_single = false;
 };
 
+// What a function is made for.
+struct Signature {
+    std::vector<bool> arguments;    // that vary between points
+    std::vector<bool> in_lanes;     // arguments that differ between lanes
+    std::vector<bool> wide_results; // that are f64
+    auto operator<=>(const Signature&) const = default;
+};
+
 // Of one function, by ir::Value::index.
-class ValueForms {
-public:
-    ValueForms(const ir::Function& of, std::vector<bool> varying, std::vector<bool> wide_values, uint32_t lane_count)
-        : function(of), varies(std::move(varying)), wide(std::move(wide_values)), lanes(lane_count)
-    {
-    }
+struct ValueForms {
+    const ir::Function& function;
+    std::vector<bool> varies, in_lanes, wide;
+    LaneLoops loops; // whose iterations are lanes
+
     bool is_varying(ir::Value value) const { return varies[value.index]; }
     bool is_wide(ir::Value value) const { return wide[value.index]; }
     Form operator[](ir::Value value) const
     {
         const bool is_real = function.type(value) == ir::Type::real;
-        return {lanes > 1 && is_varying(value), is_real && is_varying(value) && !is_wide(value)};
+        return {in_lanes[value.index], is_real && is_varying(value) && !is_wide(value)};
     }
-
-private:
-    const ir::Function& function;
-    std::vector<bool> varies, wide;
-    uint32_t lanes;
 };
 
 class ModuleEmitter {
 public:
-    ModuleEmitter(const ir::Module& from, llvm::Module& to, const Processor& of, bool is_batch, Precision precision)
-        : source(from), target(to), processor(of), lanes(is_batch ? of.lanes : 1), plan(from, precision)
+    ModuleEmitter(const ir::Module& from, llvm::Module& to, const Processor& of, LaneForm of_lanes, Precision precision)
+        : source(from)
+        , target(to)
+        , processor(of)
+        , form(of_lanes)
+        , lanes(of_lanes == LaneForm::points ? of.lanes : iteration_lanes)
+        , plan(from, precision)
     {
     }
 
@@ -48,37 +56,31 @@ public:
         llvm::Function* code = nullptr;
         std::shared_ptr<const ValueForms> forms;
     };
-    // The function for arguments of which those vary, with results of which those are f64; its body follows with the
-    // next finish().
-    const Function& function(uint32_t index, const std::vector<bool>& arguments, const std::vector<bool>& wide_results);
+    // Its body follows with the next finish().
+    const Function& function(uint32_t index, const Signature& signature);
     void finish();
 
-    ValueForms forms(uint32_t index, const std::vector<bool>& arguments, const std::vector<bool>& wide_results) const;
+    ValueForms forms(uint32_t index, const Signature& signature) const;
     llvm::GlobalVariable* table(uint32_t index, bool is_single);
-    llvm::Type* type(ir::Type type, Form form);
+    llvm::Type* type(ir::Type type, Form held);
 
     const ir::Module& source;
     llvm::Module& target;
     const Processor& processor;
-    const uint32_t lanes; // of what varies
+    const LaneForm form;
+    const uint32_t lanes; // in a vector
 
 private:
-    struct Key {
-        uint32_t index;
-        std::vector<bool> arguments, wide_results;
-        bool operator<(const Key& other) const
-        {
-            return std::tie(index, arguments, wide_results) <
-                   std::tie(other.index, other.arguments, other.wide_results);
-        }
-        Form result(const ir::Function& of, size_t i, uint32_t lane_count) const;
-    };
+    static constexpr uint32_t iteration_lanes = 8; // more loops have fewer iterations than have more
+
+    using Key = std::pair<uint32_t, Signature>;
     using Functions = std::map<Key, Function>;
     const PrecisionPlan plan;
     Functions functions;
     std::vector<Functions::const_iterator> unfinished;
     std::map<std::pair<uint32_t, bool>, llvm::GlobalVariable*> tables;
 
+    Form result(const Key& key, size_t i) const;
     void write_body(const Key& key, const Function& function);
 };
 

@@ -26,13 +26,14 @@ public:
         const bool is_real = table.element == ir::Type::real;
         const bool fits_bytes = !is_real && table.size() <= 256 &&
                                 std::all_of(table.words.begin(), table.words.end(), [](uint32_t w) { return w < 256; });
-        if (module.lanes != 16) return nullptr;
-        if (fits_bytes && module.processor.permutes_bytes) return from_bytes();
+        if (module.lanes > 16) return nullptr;
+        if (fits_bytes && module.processor.permutes_bytes) return of_lanes(from_bytes());
         if (!module.processor.permutes_words) return nullptr;
         if (is_real && !is_single) return from_doubles();
         if (table.size() > chunks_max * 32) return nullptr;
-        return is_real ? from_pairs<float>(llvm::Intrinsic::x86_avx512_vpermi2var_ps_512, table.reals, index)
-                       : from_pairs<uint32_t>(llvm::Intrinsic::x86_avx512_vpermi2var_d_512, table.words, index);
+        return of_lanes(
+            is_real ? from_pairs<float>(llvm::Intrinsic::x86_avx512_vpermi2var_ps_512, table.reals, padded())
+                    : from_pairs<uint32_t>(llvm::Intrinsic::x86_avx512_vpermi2var_d_512, table.words, padded()));
     }
     Value* gathered(llvm::GlobalVariable* cells, llvm::Type* element)
     {
@@ -48,6 +49,20 @@ private:
     const ir::Table& table;
     Value* const index;
 
+    // Fewer lanes than words of a register are its first; what the others hold does not matter.
+    Value* padded()
+    {
+        std::vector<int> order(16, llvm::PoisonMaskElem);
+        std::iota(order.begin(), order.begin() + module.lanes, 0);
+        return module.lanes == 16 ? index : builder.CreateShuffleVector(index, order);
+    }
+    Value* of_lanes(Value* padded_cells)
+    {
+        if (module.lanes == 16) return padded_cells;
+        std::vector<int> order(module.lanes);
+        std::iota(order.begin(), order.end(), 0);
+        return builder.CreateShuffleVector(padded_cells, order);
+    }
     // Is this bit of each lane's index set?
     Value* has_bit(Value* of, uint64_t bit)
     {
@@ -88,7 +103,8 @@ private:
         std::vector<uint8_t> cells(256);
         std::copy(table.words.begin(), table.words.end(), cells.begin());
         if (table.size() <= 128) cells.resize(128);
-        Value* bytes = builder.CreateBitCast(index, llvm::FixedVectorType::get(builder.getInt8Ty(), register_bytes));
+        Value* const at = padded();
+        Value* bytes = builder.CreateBitCast(at, llvm::FixedVectorType::get(builder.getInt8Ty(), register_bytes));
         std::vector<Value*> choices;
         for (size_t first = 0; first < cells.size(); first += 128) {
             const llvm::ArrayRef<uint8_t> pair(cells.data() + first, 128);
@@ -96,24 +112,23 @@ private:
             Value* high = llvm::ConstantDataVector::get(builder.getContext(), pair.take_back(64));
             Value* read =
                 builder.CreateIntrinsic(llvm::Intrinsic::x86_avx512_vpermi2var_qi_512, {}, {low, bytes, high});
-            choices.push_back(builder.CreateBitCast(read, index->getType()));
+            choices.push_back(builder.CreateBitCast(read, at->getType()));
         }
-        return builder.CreateAnd(chosen(std::move(choices), index, 128), llvm::ConstantInt::get(index->getType(), 255));
+        return builder.CreateAnd(chosen(std::move(choices), at, 128), llvm::ConstantInt::get(at->getType(), 255));
     }
     // Sixteen lanes are two registers.
     Value* from_doubles()
     {
-        if (table.size() > chunks_max * 8) return nullptr;
+        if (table.size() > chunks_max * 8 || module.lanes % 8 != 0) return nullptr;
         std::vector<int> order(module.lanes);
         std::iota(order.begin(), order.end(), 0);
-        Value* halves[2];
-        for (size_t half = 0; half < 2; ++half) {
-            const llvm::ArrayRef<int> of = llvm::ArrayRef(order).slice(half * 8, 8);
-            Value* wide = builder.CreateZExt(builder.CreateShuffleVector(index, of),
+        std::vector<Value*> parts;
+        for (size_t first = 0; first < order.size(); first += 8) {
+            Value* wide = builder.CreateZExt(builder.CreateShuffleVector(index, llvm::ArrayRef(order).slice(first, 8)),
                                              llvm::FixedVectorType::get(builder.getInt64Ty(), 8));
-            halves[half] = from_pairs<double>(llvm::Intrinsic::x86_avx512_vpermi2var_pd_512, table.reals, wide);
+            parts.push_back(from_pairs<double>(llvm::Intrinsic::x86_avx512_vpermi2var_pd_512, table.reals, wide));
         }
-        return builder.CreateShuffleVector(halves[0], halves[1], order);
+        return parts.size() == 1 ? parts[0] : builder.CreateShuffleVector(parts[0], parts[1], order);
     }
 };
 

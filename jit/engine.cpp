@@ -69,7 +69,7 @@ public:
     }
     void add(const EntryPoint& entry, orc::ExecutorAddr address)
     {
-        if (entry.is_batch)
+        if (entry.lanes == LaneForm::points)
             batch_entries[entry.name] = address.toPtr<haptel_batch_entry*>();
         else
             entries[entry.name] = address.toPtr<haptel_entry*>();

@@ -28,19 +28,24 @@ haptel_parameter described(const ir::Parameter& parameter)
             parameter.offset,       parameter.value,        parameter.minimum,     parameter.maximum};
 }
 
-std::vector<EntryPoint> entry_points(const ir::Module& module, Entries wanted, Precision precision)
+std::vector<EntryPoint> entry_points(const ir::Module& module, const TextureOptions& options)
 {
+    const Entries wanted = options.entries;
+    const Precision precision = options.precision;
+    const LaneForm one =
+        precision != Precision::f64 && options.iterations_in_lanes ? LaneForm::iterations : LaneForm::one;
     std::vector<EntryPoint> entries;
     for (const ir::Texture& texture : module.textures) {
         if (texture.height != UINT32_MAX && wanted != Entries::height_gradient)
-            entries.push_back({texture.name, &texture, EntryPoint::Kind::height, false, precision});
+            entries.push_back({texture.name, &texture, EntryPoint::Kind::height, one, precision});
         if (texture.height_gradient != UINT32_MAX)
             entries.push_back(
-                {texture.name + with_gradient, &texture, EntryPoint::Kind::height_gradient, false, precision});
+                {texture.name + with_gradient, &texture, EntryPoint::Kind::height_gradient, one, precision});
     }
     const size_t of_one = wanted == Entries::both_and_batches ? entries.size() : 0;
     for (size_t i = 0; i < of_one; ++i)
-        entries.push_back({entries[i].name + of_many, entries[i].texture, entries[i].kind, true, precision});
+        entries.push_back(
+            {entries[i].name + of_many, entries[i].texture, entries[i].kind, LaneForm::points, precision});
     return entries;
 }
 
@@ -94,8 +99,7 @@ CompiledTextures compile_texture(std::string_view text, const TextureOptions& op
     std::string fault = ir::verify(checked.program->module);
     CodeResult code;
     if (fault.empty()) {
-        code = compile_code(checked.program->module,
-                            entry_points(checked.program->module, options.entries, options.precision), options.effort);
+        code = compile_code(checked.program->module, entry_points(checked.program->module, options), options.effort);
         fault = code.error;
     }
     if (!fault.empty()) {

@@ -55,6 +55,9 @@ struct TextureOptions {
     std::string only_texture = {};       // compile this one alone; empty: all
     Effort effort = Effort::quick;
     Precision precision = Precision::f64; // of every entry
+    // For one point, where the precision is not f64: iterations of loops in lanes. Else in the batches' order, bit for
+    // bit.
+    bool iterations_in_lanes = true;
 };
 
 struct CompiledTextures {

@@ -8,7 +8,9 @@ namespace {
 
 class Analysis {
 public:
-    Analysis(const ir::Function& function, const std::vector<bool>& parameters) : varies(function.value_types.size())
+    // `loops` null: between points.
+    Analysis(const ir::Function& function, const std::vector<bool>& parameters, const LaneLoops* loops)
+        : varies(function.value_types.size()), lane_loops(loops)
     {
         for (size_t i = 0; i < parameters.size(); ++i) varies[function.parameters[i].index] = parameters[i];
         block(function.body);
@@ -16,6 +18,8 @@ public:
     std::vector<bool> varies;
 
 private:
+    const LaneLoops* const lane_loops;
+
     bool is_varying(ir::Value value) const { return varies[value.index]; }
     bool is_any_varying(const std::vector<ir::Value>& values) const
     {
@@ -36,7 +40,7 @@ private:
     }
     void visit(const ir::Instruction& made, const ir::ReadInput& read)
     {
-        set(made.results[0], read.input < ir::Input::center_x);
+        set(made.results[0], !lane_loops && read.input < ir::Input::center_x);
     }
     void visit(const ir::Instruction& made, const ir::If& choice)
     {
@@ -50,6 +54,7 @@ private:
     void visit(const ir::Instruction& made, const ir::For& loop)
     {
         const ir::Block& body = loop.body[0];
+        if (lane_loops && lane_loops->contains(&loop)) return side_by_side(body, lane_loops->at(&loop));
         for (size_t i = 1; i < body.parameters.size(); ++i)
             if (is_varying(made.operands[0]) || is_varying(made.operands[i])) set(body.parameters[i], true);
         for (bool changed = true; changed;) {
@@ -63,13 +68,27 @@ private:
         }
         for (size_t i = 0; i < made.results.size(); ++i) set(made.results[i], is_varying(body.parameters[i + 1]));
     }
+    // Its results are one for all iterations.
+    void side_by_side(const ir::Block& body, const LaneLoop& loop)
+    {
+        set(body.parameters[0], true);
+        for (size_t i = 0; i < loop.carried.size(); ++i)
+            set(body.parameters[i + 1], loop.carried[i].kind != Carried::Kind::kept);
+        block(body);
+    }
 };
 
 } // namespace
 
 std::vector<bool> varying_values(const ir::Function& function, const std::vector<bool>& parameters)
 {
-    return Analysis(function, parameters).varies;
+    return Analysis(function, parameters, nullptr).varies;
+}
+
+std::vector<bool> varying_iterations(const ir::Function& function, const std::vector<bool>& parameters,
+                                     const LaneLoops& loops)
+{
+    return Analysis(function, parameters, &loops).varies;
 }
 
 } // namespace haptel::jit

@@ -1,7 +1,7 @@
 // Which values of a function differ between the points that one piece of code evaluates at once.
 #pragma once
 
-#include "lang/ir/ir.h"
+#include "jit/iteration_lanes.h"
 
 #include <vector>
 
@@ -11,5 +11,10 @@ namespace haptel::jit {
 // `parameters` says; whatever rests on what varies varies itself. By ir::Value::index. The results of a call vary
 // together: all of them if one argument does.
 std::vector<bool> varying_values(const ir::Function& function, const std::vector<bool>& parameters);
+
+// The same between the iterations of one loop, for one point: of the body of each of `loops`, or of everything where
+// those of the function's parameters vary.
+std::vector<bool> varying_iterations(const ir::Function& function, const std::vector<bool>& parameters,
+                                     const LaneLoops& loops);
 
 } // namespace haptel::jit

@@ -224,6 +224,31 @@ void check_gradient(const Program& program, Engine<ir::Quad>& oracle, const hapt
     }
 }
 
+// In every precision, with the iterations of loops in lanes: the height alone is that with the gradient.
+void check_iterations(const Program& program, uint64_t seed, const std::vector<double>& block)
+{
+    const ir::Texture& texture = program.texture();
+    const auto precision = static_cast<jit::Precision>(seed / 8 % 3);
+    const auto entry = [&](const char* name, jit::EntryPoint::Kind kind) {
+        return jit::EntryPoint{name, &texture, kind, jit::LaneForm::iterations, precision};
+    };
+    const std::vector<jit::EntryPoint> entries = {entry("t", jit::EntryPoint::Kind::height),
+                                                  entry("t'", jit::EntryPoint::Kind::height_gradient)};
+    const jit::CodeResult made = jit::compile_code(program.module(), entries, jit::Effort::quick);
+    if (!made.code) program.fail("no code with iterations in lanes: " + made.error);
+    std::mt19937_64 random(seed);
+    for (int i = 0; i < 4; ++i) {
+        const haptel_point point = random_point(random);
+        haptel_sample both{}, alone{};
+        made.code->entry("t'")(&point, block.data(), &both);
+        made.code->entry("t")(&point, block.data(), &alone);
+        if (!same_bits(both.height_m, alone.height_m)) program.fail("iterations in lanes: the height alone is another");
+        for (double number : {both.height_m, both.gradient[0], both.gradient[1], both.gradient[2]})
+            if (!std::isfinite(number)) program.fail("iterations in lanes: an entry returned what is not finite");
+    }
+    count("iterations in lanes");
+}
+
 } // namespace
 
 void run_program(std::string_view bytes)
@@ -235,7 +260,8 @@ void run_program(std::string_view bytes)
     // Code takes most of the time: the entry of the height alone, and full effort, are for some.
     std::vector<jit::EntryPoint> entries{{"t'", &texture, jit::EntryPoint::Kind::height_gradient}};
     if (seed % 8 == 0) entries.push_back({"t", &texture, jit::EntryPoint::Kind::height});
-    if (seed % 4 == 0) entries.push_back({"t'*", &texture, jit::EntryPoint::Kind::height_gradient, true});
+    if (seed % 4 == 0)
+        entries.push_back({"t'*", &texture, jit::EntryPoint::Kind::height_gradient, jit::LaneForm::points});
     const jit::CodeResult made =
         jit::compile_code(program.module(), entries, seed % 32 == 0 ? jit::Effort::full : jit::Effort::quick);
     if (!made.code) program.fail("no code: " + made.error);
@@ -269,6 +295,7 @@ void run_program(std::string_view bytes)
         // detach() is for gradients that differ on purpose.
         if (i == 0 && program.source.find("detach(") == std::string::npos) check_gradient(program, oracle, point);
     }
+    if (seed % 8 == 2) check_iterations(program, seed, block);
     if (haptel_batch_entry* const many = made.code->batch_entry("t'*")) lanes.check(program, many, block.data());
     count("programs");
 }

@@ -44,7 +44,7 @@ public:
             entries.push_back({texture.name, &texture, jit::EntryPoint::Kind::height});
             if (texture.height_gradient != UINT32_MAX)
                 entries.push_back({texture.name + "'", &texture, jit::EntryPoint::Kind::height_gradient});
-            entries.push_back({texture.name + "*", &texture, jit::EntryPoint::Kind::height, true});
+            entries.push_back({texture.name + "*", &texture, jit::EntryPoint::Kind::height, jit::LaneForm::points});
         }
         for (jit::Effort effort : {jit::Effort::quick, jit::Effort::full}) {
             jit::CodeResult result = jit::compile_code(module, entries, effort);

@@ -83,6 +83,7 @@ TEST_CASE("batches of every texture of the library and of the examples have the 
         jit::TextureOptions options;
         options.entries = jit::Entries::both_and_batches;
         options.precision = precision;
+        options.iterations_in_lanes = false;
         const jit::CompiledTextures compiled = jit::compile_texture_file(file, options);
         INFO(compiled.rendered());
         REQUIRE(compiled.program);

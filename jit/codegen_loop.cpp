@@ -1,0 +1,232 @@
+// Loops: one iteration after the other, or for one point several of them in the lanes of a register.
+#include "jit/codegen_function.h"
+
+#include <bit>
+#include <numeric>
+
+namespace haptel::jit {
+
+namespace {
+
+using llvm::Value;
+using Kind = Carried::Kind;
+
+// Arithmetic on reals or on words, scalars or vectors.
+class Arithmetic {
+public:
+    Arithmetic(llvm::IRBuilder<>& to, llvm::Type* of) : builder(to), is_real(of->isFPOrFPVectorTy()) {}
+    Value* add(Value* a, Value* b) { return is_real ? builder.CreateFAdd(a, b) : builder.CreateAdd(a, b); }
+    Value* sub(Value* a, Value* b) { return is_real ? builder.CreateFSub(a, b) : builder.CreateSub(a, b); }
+    Value* mul(Value* a, Value* b) { return is_real ? builder.CreateFMul(a, b) : builder.CreateMul(a, b); }
+
+private:
+    llvm::IRBuilder<>& builder;
+    const bool is_real;
+};
+
+} // namespace
+
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::For& loop)
+{
+    const ir::Block& body = loop.body[0];
+    if (const auto in_lanes = forms.loops.find(&loop); in_lanes != forms.loops.end())
+        return emit_in_lanes(made, body, in_lanes->second);
+    Value* const count = value(made.operands[0]);
+    const bool count_varies = forms[made.operands[0]].in_lanes;
+    Value* const largest = count_varies ? builder.CreateIntMaxReduce(count, true) : count;
+    std::vector<Value*> initial;
+    std::vector<Form> held;
+    for (size_t i = 1; i < body.parameters.size(); ++i) {
+        held.push_back(forms[body.parameters[i]]);
+        initial.push_back(value(made.operands[i], held.back()));
+    }
+    llvm::BasicBlock* before = builder.GetInsertBlock();
+    llvm::BasicBlock* head = new_block("loop");
+    llvm::BasicBlock* inside = new_block("body");
+    llvm::BasicBlock* after = new_block("done");
+    builder.CreateBr(head);
+
+    builder.SetInsertPoint(head);
+    llvm::PHINode* iteration = builder.CreatePHI(builder.getInt32Ty(), 2);
+    iteration->addIncoming(builder.getInt32(0), before);
+    define(body.parameters[0], iteration);
+    std::vector<llvm::PHINode*> carried;
+    for (size_t i = 0; i < initial.size(); ++i) {
+        carried.push_back(builder.CreatePHI(initial[i]->getType(), 2));
+        carried[i]->addIncoming(initial[i], before);
+        define(body.parameters[i + 1], carried[i]);
+    }
+    builder.CreateCondBr(builder.CreateICmpSLT(iteration, largest), inside, after);
+
+    builder.SetInsertPoint(inside);
+    std::vector<Value*> next = block(body, held);
+    if (count_varies) {
+        Value* goes_on = builder.CreateICmpSLT(builder.CreateVectorSplat(module.lanes, iteration), count);
+        for (size_t i = 0; i < next.size(); ++i) next[i] = builder.CreateSelect(goes_on, next[i], carried[i]);
+    }
+    iteration->addIncoming(builder.CreateNSWAdd(iteration, builder.getInt32(1)), builder.GetInsertBlock());
+    for (size_t i = 0; i < next.size(); ++i) carried[i]->addIncoming(next[i], builder.GetInsertBlock());
+    builder.CreateBr(head);
+
+    builder.SetInsertPoint(after);
+    for (size_t i = 0; i < made.results.size(); ++i) define(made.results[i], carried[i]);
+}
+
+namespace {
+
+// A carried value that follows from the iteration's number: from what it is in the first of a group of lanes to what it
+// is in each, and in the first of the next group. Products go by doubling: three multiplications for eight lanes.
+class Progress {
+public:
+    // `by`: one value for all lanes, null where there is none. `lane`: the lane's number, not above the last iteration.
+    Progress(llvm::IRBuilder<>& to, Kind of, llvm::Type* element, Value* amount, uint32_t lane_count)
+        : builder(to), arithmetic(to, element), kind(of), by(amount), lanes(lane_count)
+    {
+        if (kind != Kind::factor) return;
+        for (uint32_t power = 1; power <= lanes; power *= 2) {
+            powers.push_back(amount);
+            amount = arithmetic.mul(amount, amount);
+        }
+    }
+    Value* in_lanes(Value* first, Value* lane, Value* is_first_group)
+    {
+        Value* all = builder.CreateVectorSplat(lanes, first);
+        switch (kind) {
+        case Kind::factor:
+            for (uint32_t bit = 0; 1u << bit < lanes; ++bit) {
+                Value* mask = builder.CreateAnd(lane, llvm::ConstantInt::get(lane->getType(), 1u << bit));
+                Value* has_bit = builder.CreateICmpNE(mask, llvm::Constant::getNullValue(lane->getType()));
+                Value* more = arithmetic.mul(all, builder.CreateVectorSplat(lanes, powers[bit]));
+                all = builder.CreateSelect(has_bit, more, all);
+            }
+            return all;
+        case Kind::step: return arithmetic.add(all, steps(lane));
+        case Kind::back: return arithmetic.sub(all, steps(lane));
+        case Kind::replaced: {
+            Value* is_first = builder.CreateICmpEQ(lane, llvm::Constant::getNullValue(lane->getType()));
+            is_first = builder.CreateAnd(is_first, builder.CreateVectorSplat(lanes, is_first_group));
+            return builder.CreateSelect(is_first, all, builder.CreateVectorSplat(lanes, by));
+        }
+        default: return first;
+        }
+    }
+    Value* in_next_group(Value* first)
+    {
+        switch (kind) {
+        case Kind::factor: return arithmetic.mul(first, powers.back());
+        case Kind::step: return arithmetic.add(first, arithmetic.mul(by, number(by->getType(), lanes)));
+        case Kind::back: return arithmetic.sub(first, arithmetic.mul(by, number(by->getType(), lanes)));
+        default: return first;
+        }
+    }
+
+private:
+    llvm::IRBuilder<>& builder;
+    Arithmetic arithmetic;
+    const Kind kind;
+    Value* const by;
+    const uint32_t lanes;
+    std::vector<Value*> powers; // by^1, by^2, by^4 ... by^lanes
+
+    static llvm::Constant* number(llvm::Type* type, uint32_t value)
+    {
+        return type->isFPOrFPVectorTy() ? llvm::ConstantFP::get(type, value) : llvm::ConstantInt::get(type, value);
+    }
+    Value* steps(Value* lane)
+    {
+        Value* all = builder.CreateVectorSplat(lanes, by);
+        if (all->getType()->isFPOrFPVectorTy()) lane = builder.CreateUIToFP(lane, all->getType());
+        return arithmetic.mul(all, lane);
+    }
+};
+
+// Halves onto halves: an order that does not depend on the code around.
+Value* sum_of_lanes(llvm::IRBuilder<>& builder, Value* lanes, uint32_t count)
+{
+    for (uint32_t half = count / 2; half > 0; half /= 2) {
+        std::vector<int> low(half), high(half);
+        std::iota(low.begin(), low.end(), 0);
+        std::iota(high.begin(), high.end(), static_cast<int>(half));
+        lanes = builder.CreateFAdd(builder.CreateShuffleVector(lanes, low), builder.CreateShuffleVector(lanes, high));
+    }
+    return builder.CreateExtractElement(lanes, uint64_t{0});
+}
+
+} // namespace
+
+// Groups of as many iterations as there are lanes; in the last group lanes may be idle. An idle lane stands at the last
+// iteration, so that nothing in it is out of its range, and adds nothing. A sum's lanes start at -0, which adds
+// nothing.
+void FunctionEmitter::emit_in_lanes(const ir::Instruction& made, const ir::Block& body, const LaneLoop& loop)
+{
+    const uint32_t lanes = module.lanes;
+    Value* const count = value(made.operands[0]);
+    for (const ir::Instruction* fixed : loop.fixed) emit(*fixed);
+    const size_t carried_count = loop.carried.size();
+    std::vector<Form> held;
+    std::vector<Value*> initial; // scalars, but a sum's
+    std::vector<Progress> progress;
+    for (size_t i = 0; i < carried_count; ++i) {
+        const Carried& one = loop.carried[i];
+        const ir::Value parameter = body.parameters[i + 1];
+        held.push_back(forms[parameter]);
+        const Form alone{false, held[i].is_single};
+        llvm::Type* element = module.type(source.type(parameter), alone);
+        const bool has_amount = one.kind != Kind::sum && one.kind != Kind::kept;
+        progress.emplace_back(builder, one.kind, element, has_amount ? value(one.by, alone) : nullptr, lanes);
+        initial.push_back(one.kind == Kind::sum ? llvm::ConstantFP::getNegativeZero(type(parameter))
+                                                : value(made.operands[i + 1], alone));
+    }
+
+    llvm::BasicBlock* before = builder.GetInsertBlock();
+    llvm::BasicBlock* head = new_block("iterations");
+    llvm::BasicBlock* inside = new_block("group");
+    llvm::BasicBlock* after = new_block("summed");
+    builder.CreateBr(head);
+    builder.SetInsertPoint(head);
+    llvm::PHINode* first = builder.CreatePHI(builder.getInt32Ty(), 2);
+    first->addIncoming(builder.getInt32(0), before);
+    std::vector<llvm::PHINode*> carried;
+    for (Value* start : initial) {
+        carried.push_back(builder.CreatePHI(start->getType(), 2));
+        carried.back()->addIncoming(start, before);
+    }
+    builder.CreateCondBr(builder.CreateICmpSLT(first, count), inside, after);
+
+    builder.SetInsertPoint(inside);
+    Value* const step = builder.CreateStepVector(llvm::FixedVectorType::get(builder.getInt32Ty(), lanes));
+    Value* const left = builder.CreateVectorSplat(lanes, builder.CreateSub(count, first));
+    Value* const is_busy = builder.CreateICmpSLT(step, left);
+    Value* const lane = builder.CreateBinaryIntrinsic(
+        llvm::Intrinsic::smin, step, builder.CreateSub(left, llvm::ConstantInt::get(left->getType(), 1)));
+    Value* const is_first_group = builder.CreateICmpEQ(first, builder.getInt32(0));
+    define(body.parameters[0], builder.CreateAdd(builder.CreateVectorSplat(lanes, first), lane));
+    for (size_t i = 0; i < carried_count; ++i)
+        define(body.parameters[i + 1],
+               loop.carried[i].kind == Kind::sum ? carried[i] : progress[i].in_lanes(carried[i], lane, is_first_group));
+    auto fixed = loop.fixed.begin();
+    for (const ir::Instruction& instruction : body.instructions) {
+        if (fixed != loop.fixed.end() && *fixed == &instruction)
+            ++fixed;
+        else
+            emit(instruction);
+    }
+    for (size_t i = 0; i < carried_count; ++i) {
+        const bool is_sum = loop.carried[i].kind == Kind::sum;
+        Value* next = is_sum ? builder.CreateSelect(is_busy, value(body.yields[i], held[i]), carried[i])
+                             : progress[i].in_next_group(carried[i]);
+        carried[i]->addIncoming(next, builder.GetInsertBlock());
+    }
+    first->addIncoming(builder.CreateAdd(first, builder.getInt32(lanes)), builder.GetInsertBlock());
+    builder.CreateBr(head);
+
+    builder.SetInsertPoint(after);
+    for (size_t i = 0; i < carried_count; ++i) {
+        if (loop.carried[i].kind != Kind::sum) continue;
+        const Form alone{false, held[i].is_single};
+        define(made.results[i],
+               builder.CreateFAdd(value(made.operands[i + 1], alone), sum_of_lanes(builder, carried[i], lanes)));
+    }
+}
+
+} // namespace haptel::jit
