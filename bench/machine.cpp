@@ -1,5 +1,7 @@
 #include "bench/machine.h"
 
+#include "jit/engine.h"
+
 #include <fstream>
 #include <thread>
 
@@ -23,7 +25,7 @@ Machine this_machine()
 #else
     const char* const compiler = "g++ " __VERSION__;
 #endif
-    return {cpu_name(), std::thread::hardware_concurrency(), compiler, HAPTEL_FLAGS, HAPTEL_COMMIT};
+    return {cpu_name(), std::thread::hardware_concurrency(), jit::isa_name(), compiler, HAPTEL_FLAGS, HAPTEL_COMMIT};
 }
 
 } // namespace haptel::bench

@@ -14,9 +14,14 @@ namespace {
 
 using llvm::Value;
 using Unary = double (*)(double);
+using UnarySingle = float (*)(float);
 using Binary = double (*)(double, double);
 
 void* address(Unary function)
+{
+    return reinterpret_cast<void*>(function);
+}
+void* address(UnarySingle function)
 {
     return reinterpret_cast<void*>(function);
 }
@@ -334,6 +339,11 @@ std::span<const LibraryFunction> code_library()
         {"trunc", address(Unary(std::trunc))},
         {"roundeven", address(Unary(std::nearbyint))},
         {"fma", reinterpret_cast<void*>(static_cast<double (*)(double, double, double)>(std::fma))},
+        {"floorf", address(UnarySingle(std::floor))},
+        {"ceilf", address(UnarySingle(std::ceil))},
+        {"truncf", address(UnarySingle(std::trunc))},
+        {"roundevenf", address(UnarySingle(std::nearbyint))},
+        {"fmaf", reinterpret_cast<void*>(static_cast<float (*)(float, float, float)>(std::fma))},
         {"memcpy", reinterpret_cast<void*>(&std::memcpy)},
         {"memset", reinterpret_cast<void*>(&std::memset)},
     };

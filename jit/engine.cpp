@@ -1,10 +1,12 @@
 #include "jit/engine.h"
 
+#include "jit/isa.h"
 #include "jit/llvm.h"
 #include "jit/optimise.h"
 
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <mutex>
 
 namespace haptel::jit {
@@ -37,6 +39,7 @@ public:
     void remove(orc::JITDylib& library);
     std::string name() const { return machine_name; }
     uint32_t lanes() const { return processor.lanes; }
+    std::string isa() const { return quick_machine ? isa_of(*quick_machine) : ""; }
 
 private:
     Engine();
@@ -90,6 +93,8 @@ std::string Engine::start()
         return "LLVM has no code generator for this processor";
     auto host = orc::JITTargetMachineBuilder::detectHost();
     if (!host) return "the processor was not recognised: " + text(host.takeError());
+    const char* const wanted = std::getenv("HAPTEL_ISA");
+    if (std::string error = restrict_to_isa(*host, wanted ? wanted : ""); !error.empty()) return error;
     host->getOptions().AllowFPOpFusion = llvm::FPOpFusion::Strict;
     machine_name = "LLVM " LLVM_VERSION_STRING " " + host->getTargetTriple().str() + " " + host->getCPU();
 
@@ -101,10 +106,7 @@ std::string Engine::start()
         (quick ? quick_machine : full_machine) = std::move(*made);
     }
 
-    // Singles of two registers' width, where registers are narrow, hide the latency of one another's operations.
-    const llvm::MCSubtargetInfo& features = *quick_machine->getMCSubtargetInfo();
-    const bool has_avx512 = features.checkFeatures("+avx512f"), has_avx2 = features.checkFeatures("+avx2");
-    processor = {has_avx512 || has_avx2 ? 16u : 8u, has_avx512, features.checkFeatures("+avx512vbmi")};
+    processor = processor_of(*quick_machine);
 
     auto layout = quick_machine->createDataLayout();
     auto built = orc::LLJITBuilder()
@@ -213,6 +215,11 @@ size_t programs_alive()
 uint32_t batch_lanes()
 {
     return Engine::get().lanes();
+}
+
+std::string isa_name()
+{
+    return Engine::get().isa();
 }
 
 std::string engine_name()

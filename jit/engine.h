@@ -1,8 +1,9 @@
 // Machine code in this process: one LLJIT, one JITDylib per program, freed when its last owner lets go.
 //
 // Code may call the functions of code_library() and nothing else of the process. It is compiled for the host's
-// processor, every feature of it, but no multiplication and addition are ever fused: the same program gives the same
-// bits whatever the effort. Compiling is serialised; running needs no lock.
+// processor, every feature of it that the environment's HAPTEL_ISA leaves (jit/isa.h), but no multiplication and
+// addition are ever fused: the same program gives the same bits whatever the effort. Compiling is serialised; running
+// needs no lock.
 #pragma once
 
 #include "jit/codegen.h"
@@ -53,6 +54,9 @@ size_t programs_alive();
 
 // Points that a batch entry evaluates side by side.
 uint32_t batch_lanes();
+
+// "avx512 vbmi": the instruction set of code, as jit/isa.h names it. Empty where there is no engine.
+std::string isa_name();
 
 // "LLVM 19.1.7 x86_64-pc-linux-gnu skylake-avx512": for reports.
 std::string engine_name();

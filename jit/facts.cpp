@@ -52,21 +52,30 @@ uint32_t continuity_of(ir::Smoothness smoothness)
     return HAPTEL_CONTINUITY_UNKNOWN;
 }
 
+uint32_t operations_max(const ir::Module& module, const ir::Texture& texture)
+{
+    const uint32_t entry = texture.height_gradient != UINT32_MAX ? texture.height_gradient : texture.height;
+    return static_cast<uint32_t>(std::min<uint64_t>(ir::operations_max(module, entry), UINT32_MAX));
+}
+
 haptel_facts facts(const ir::Module& module, const ir::Texture& texture, const ir::BoundsBox& box, uint32_t evaluations)
 {
     const ir::TextureBounds bounds = ir::texture_bounds(module, texture, box, evaluations);
-    const uint32_t entry = texture.height_gradient != UINT32_MAX ? texture.height_gradient : texture.height;
-    const uint64_t operations = ir::operations_max(module, entry);
     const uint32_t continuity = continuity_of(bounds.smoothness);
     return {bounds.height.minimum,
             bounds.height.maximum,
             bounds.slope_max,
             continuity == HAPTEL_CONTINUITY_C1 ? bounds.curvature_max_per_m : infinity,
             continuity,
-            static_cast<uint32_t>(std::min<uint64_t>(operations, UINT32_MAX))};
+            operations_max(module, texture)};
 }
 
 } // namespace
+
+haptel_facts no_facts(const ir::Module& module, const ir::Texture& texture)
+{
+    return {-infinity, infinity, infinity, infinity, HAPTEL_CONTINUITY_UNKNOWN, operations_max(module, texture)};
+}
 
 haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& texture)
 {

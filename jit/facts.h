@@ -12,6 +12,9 @@ namespace haptel::jit {
 // For every point and all values within the parameters' ranges.
 haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& texture);
 
+// Nothing is known, but for the operations: their count costs nothing.
+haptel_facts no_facts(const ir::Module& module, const ir::Texture& texture);
+
 // For points of the box, these values and images (by Texture::parameters, SI), this footprint and normals that turn no
 // faster than that.
 haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,

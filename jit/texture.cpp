@@ -62,7 +62,8 @@ lang::CompileOptions language_options(const TextureOptions& options)
 
 } // namespace
 
-CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, std::shared_ptr<const Code> machine_code)
+CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, std::shared_ptr<const Code> machine_code,
+                                 bool has_facts)
     : program(std::move(checked)), code(std::move(machine_code))
 {
     parameters.reserve(module().textures.size());
@@ -71,8 +72,9 @@ CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, s
         for (const ir::Parameter& parameter : texture.parameters) list.push_back(described(parameter));
         table.push_back({HAPTEL_ABI_VERSION, sizeof(haptel_texture), texture.reads, texture.writes, texture.block_size,
                          static_cast<uint32_t>(list.size()), texture.name.c_str(), list.data(),
-                         facts_over_ranges(module(), texture), code->entry(texture.name),
-                         code->entry(texture.name + with_gradient), code->batch_entry(texture.name + of_many),
+                         has_facts ? facts_over_ranges(module(), texture) : no_facts(module(), texture),
+                         code->entry(texture.name), code->entry(texture.name + with_gradient),
+                         code->batch_entry(texture.name + of_many),
                          code->batch_entry(texture.name + with_gradient + of_many)});
     }
 }
@@ -106,7 +108,8 @@ CompiledTextures compile_texture(std::string_view text, const TextureOptions& op
         result.diagnostics.error({}, "no-code", "no machine code could be made: " + fault);
         return result;
     }
-    result.program = std::make_shared<CompiledProgram>(std::move(checked.program), std::move(code.code));
+    result.program =
+        std::make_shared<CompiledProgram>(std::move(checked.program), std::move(code.code), options.facts_over_ranges);
     return result;
 }
 

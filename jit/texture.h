@@ -21,11 +21,13 @@ namespace haptel::jit {
 // The textures of one file with their code. Immutable; the code lives as long as the program.
 class CompiledProgram {
 public:
-    CompiledProgram(std::shared_ptr<const lang::Program> checked, std::shared_ptr<const Code> machine_code);
+    CompiledProgram(std::shared_ptr<const lang::Program> checked, std::shared_ptr<const Code> machine_code,
+                    bool has_facts);
     CompiledProgram(const CompiledProgram&) = delete;
     CompiledProgram& operator=(const CompiledProgram&) = delete;
 
-    // In the order of the source. Their facts hold over the parameters' ranges and any point.
+    // In the order of the source. Their facts hold over the parameters' ranges and any point; where they were not asked
+    // for, all but operations_max say that nothing is known.
     std::span<const haptel_texture> textures() const { return table; }
     // Null if there is none of that name.
     const haptel_texture* find(std::string_view name) const;
@@ -54,6 +56,8 @@ struct TextureOptions {
     lang::ImportLoader load_import = {}; // empty: imports are errors
     std::string only_texture = {};       // compile this one alone; empty: all
     Effort effort = Effort::quick;
+    // Whether haptel_texture::facts are looked for, which takes longer than all else: a binding has its own.
+    bool facts_over_ranges = false;
     Precision precision = Precision::f64; // of every entry
     // For one point, where the precision is not f64: iterations of loops in lanes. Else in the batches' order, bit for
     // bit.

@@ -128,7 +128,8 @@ typedef struct {
     uint32_t block_size, parameter_count;
     const char* name;
     const haptel_parameter* parameters;
-    haptel_facts facts;            /* over the parameters' ranges and any point; a binding carries sharper ones */
+    haptel_facts
+        facts; /* over the parameters' ranges and any point, infinite where nobody looked; a binding's are sharper */
     haptel_entry* height;          /* height_m and faults only; 0: not compiled */
     haptel_entry* height_gradient; /* the same height, bit for bit, and the gradient; 0: not compiled */
     haptel_batch_entry *height_batch, *height_gradient_batch; /* of many points; 0: not compiled */

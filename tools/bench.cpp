@@ -70,11 +70,12 @@ std::string write_files(const std::string& folder, const std::string& what, cons
 ExitCode run(const BenchOptions& options)
 {
     const bench::Machine machine = bench::this_machine();
-    const std::string name = fmt::format("{}, {} threads", machine.cpu, machine.cores);
+    const std::string name = fmt::format("{}, {} threads, {}", machine.cpu, machine.cores, machine.isa);
     const Figures figures = options.what == "compile"
                                 ? compile_figures(options.quick)
                                 : accuracy_figures(options.quick, fmt::format("{}, commit {}", name, machine.commit));
     Json json{{"machine", name},
+              {"isa", machine.isa},
               {"commit", machine.commit},
               {"flags", machine.compiler + " " + machine.flags},
               {"rows", figures.rows}};

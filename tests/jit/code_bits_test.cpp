@@ -99,7 +99,7 @@ const std::vector<double>& special_values()
 
 } // namespace
 
-TEST_CASE("every operation gives the interpreter's bits, special values included")
+TEST_CASE("every operation gives the interpreter's bits, special values included", "[code]")
 {
     std::string text, textures;
     size_t of_images = 0;
@@ -142,7 +142,7 @@ TEST_CASE("every operation gives the interpreter's bits, special values included
     }
 }
 
-TEST_CASE("random programs with branches, loops, calls and tables give the interpreter's bits")
+TEST_CASE("random programs with branches, loops, calls and tables give the interpreter's bits", "[code]")
 {
     std::mt19937_64 random(2);
     const std::vector<double>& values = special_values();

@@ -93,7 +93,7 @@ TEST_CASE("image: heights are those of the file at its texels, v upwards, clampe
     CHECK(at(pictures.bound("wide", {{"picture", "a.pgm"}}), 0, 0) == 1e-3 * width + 1e-6 * height);
 }
 
-TEST_CASE("image: code, interpreter and oracle agree, and the gradient is that of the height")
+TEST_CASE("image: code, interpreter and oracle agree, and the gradient is that of the height", "[code]")
 {
     const Pictures pictures;
     for (const char* name : {"pressed", "tiled", "passed"}) {

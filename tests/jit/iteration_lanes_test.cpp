@@ -121,7 +121,7 @@ size_t loops_in_lanes(const ir::Module& module, const std::string& name_part)
 
 } // namespace
 
-TEST_CASE("loops whose iterations need not wait for one another run in lanes and give the same numbers")
+TEST_CASE("loops whose iterations need not wait for one another run in lanes and give the same numbers", "[code]")
 {
     const jit::Precision precision = GENERATE(jit::Precision::mixed, jit::Precision::f32);
     for (const Case& one : cases()) {
@@ -152,7 +152,8 @@ TEST_CASE("loops whose iterations need not wait for one another run in lanes and
 }
 
 TEST_CASE("iterations in lanes: every texture's height is the same with and without its gradient, and close to the "
-          "order of one by one")
+          "order of one by one",
+          "[code]")
 {
     const jit::Precision precision = GENERATE(jit::Precision::mixed, jit::Precision::f32);
     std::mt19937_64 random(8);

@@ -74,7 +74,7 @@ std::vector<std::string> texture_files()
 
 } // namespace
 
-TEST_CASE("batches of every texture of the library and of the examples have the bits of single points")
+TEST_CASE("batches of every texture of the library and of the examples have the bits of single points", "[code]")
 {
     const jit::Precision precision = GENERATE(jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32);
     std::mt19937_64 random(5);
@@ -110,7 +110,7 @@ TEST_CASE("batches of every texture of the library and of the examples have the 
     CHECK(compared > 100);
 }
 
-TEST_CASE("mixed precision keeps its place within a cell, however far away; f32 does not")
+TEST_CASE("mixed precision keeps its place within a cell, however far away; f32 does not", "[code]")
 {
     const std::string source = R"(
         texture fractal() { return 1mm * fbm(p / 1mm, 8); }

@@ -93,7 +93,7 @@ Worst worst_of(const std::string& name, const std::vector<std::pair<std::string,
 
 } // namespace
 
-TEST_CASE("textures made of second derivatives, matrices and arrays agree with the oracle")
+TEST_CASE("textures made of second derivatives, matrices and arrays agree with the oracle", "[code]")
 {
     for (const std::string name :
          {"sines_laplacian", "perlin_laplacian", "perlin_mixed", "dperlin_slope", "jacobian", "solved", "window"}) {

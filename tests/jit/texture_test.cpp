@@ -159,6 +159,22 @@ TEST_CASE("values that do not fit are refused with the mending")
     CHECK(contains(jit::make_binding(program, "", request).diagnostics, "not a box"));
 }
 
+TEST_CASE("facts over the parameters' ranges are looked for where they are asked for")
+{
+    const std::string text = "texture waves(float depth = 20um in 0um .. 50um) { return depth * sinturn(p.x / 2mm); }";
+    for (bool asked : {false, true}) {
+        jit::TextureOptions options;
+        options.facts_over_ranges = asked;
+        const jit::CompiledTextures made = jit::compile_texture(text, options);
+        REQUIRE(made.program);
+        const haptel_facts& facts = made.program->textures()[0].facts;
+        CHECK(std::isinf(facts.height_max_m) == !asked);
+        if (asked) CHECK(std::fabs(facts.height_max_m - 50e-6) <= 1e-12);
+        CHECK((facts.continuity == uint32_t{HAPTEL_CONTINUITY_C1}) == asked);
+        CHECK(facts.operations_max > 0);
+    }
+}
+
 TEST_CASE("facts hold over the object; an unbounded height is refused, unless nobody will feel it")
 {
     const auto program = compiled("texture tilt() { return 0.1 * p.x; }"
@@ -172,7 +188,8 @@ TEST_CASE("facts hold over the object; an unbounded height is refused, unless no
     CHECK(tilt.binding->facts.curvature_max_per_m == 0);
     CHECK(tilt.binding->facts.continuity == uint32_t{HAPTEL_CONTINUITY_C1});
     CHECK(tilt.binding->facts.operations_max > 0);
-    CHECK(std::isinf(program->find("tilt")->facts.height_max_m)); // anywhere
+    CHECK(std::isinf(program->find("tilt")->facts.height_max_m)); // nobody asked
+    CHECK(program->find("tilt")->facts.operations_max == tilt.binding->facts.operations_max);
 
     const TextureResult pole = jit::make_binding(program, "pole", request_over(0.05));
     CHECK_FALSE(pole.binding);

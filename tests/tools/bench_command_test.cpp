@@ -16,7 +16,7 @@ TEST_CASE("bench compile: rows by length, with machine, commit and flags")
     const Ran ran = run_command("bench compile --quick --json --out '" + folder.file("figures") + "'");
     REQUIRE(ran.code == 0);
     const Json json = Json::parse(ran.out);
-    for (const char* field : {"machine", "commit", "flags"}) CHECK(!json[field].get<std::string>().empty());
+    for (const char* field : {"machine", "isa", "commit", "flags"}) CHECK(!json[field].get<std::string>().empty());
     REQUIRE(json["rows"].size() == 6);
     for (const Json& row : json["rows"]) {
         CHECK(row["front_end_ms"]["median"].get<double>() > 0);

@@ -1,0 +1,48 @@
+#include "jit/object.h"
+
+#include "jit/isa.h"
+#include "jit/llvm.h"
+#include "jit/optimise.h"
+
+#include <mutex>
+
+namespace haptel::jit {
+
+ObjectResult compile_object(const ir::Module& module, std::span<const EntryPoint> entries, const std::string& triple,
+                            const std::string& processor)
+{
+    static std::once_flag once;
+    std::call_once(once, [] {
+        llvm::InitializeAllTargetInfos();
+        llvm::InitializeAllTargets();
+        llvm::InitializeAllTargetMCs();
+        llvm::InitializeAllAsmPrinters();
+    });
+    std::string error;
+    const llvm::Target* target = llvm::TargetRegistry::lookupTarget(triple, error);
+    if (!target) return {{}, "LLVM has no code generator for " + triple + ": " + error};
+    llvm::TargetOptions options;
+    options.AllowFPOpFusion = llvm::FPOpFusion::Strict;
+    const std::unique_ptr<llvm::TargetMachine> machine(
+        target->createTargetMachine(triple, processor, "", options, llvm::Reloc::PIC_));
+    if (!machine) return {{}, "LLVM has no code generator for a processor '" + processor + "' of " + triple};
+
+    llvm::LLVMContext context;
+    const Processor of_target = processor_of(*machine);
+    const std::unique_ptr<llvm::Module> generated = generate(module, entries, of_target, context);
+    generated->setDataLayout(machine->createDataLayout());
+    generated->setTargetTriple(triple);
+    llvm::raw_string_ostream problems(error);
+    if (llvm::verifyModule(*generated, &problems)) return {{}, "generated code is malformed: " + error};
+    optimise(*generated, *machine, Effort::full);
+
+    llvm::SmallVector<char, 0> object;
+    llvm::raw_svector_ostream stream(object);
+    llvm::legacy::PassManager passes;
+    if (machine->addPassesToEmitFile(passes, stream, nullptr, llvm::CodeGenFileType::ObjectFile))
+        return {{}, "the code generator cannot write object files for " + triple};
+    passes.run(*generated);
+    return {std::string(object.begin(), object.end()), {}};
+}
+
+} // namespace haptel::jit
