@@ -1,14 +1,19 @@
 // haptel bench: figures with the machine they were taken on.
 #include "bench/machine.h"
 #include "tools/bench_accuracy.h"
+#include "tools/bench_batch.h"
 #include "tools/bench_compile.h"
 #include "tools/command.h"
+#include "tools/precisions.h"
+#include "tools/quantity.h"
 #include "tools/terminal.h"
 
 #include <filesystem>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <fstream>
 #include <memory>
+#include <thread>
 
 namespace haptel::tools {
 namespace {
@@ -16,20 +21,26 @@ namespace {
 struct BenchOptions {
     std::string what = "compile", out;
     bool quick = false, json = false;
+    // of batch alone
+    std::vector<std::string> paths;
+    ParameterTexts parameters;
+    std::string precision = "mixed";
+    size_t points = 1'000'000;
+    double box_m = 0.05;
 };
 
-// What one kind of figures gives: rows for scripts, a table for people, and files beside them, by name.
+// What one kind of figures gives: rows for scripts, a table for people, and files beside them.
 struct Figures {
     Json rows = Json::array();
-    std::vector<std::pair<std::string, Json>> more;
-    std::string table;
-    std::vector<std::pair<std::string, std::string>> texts;
+    std::vector<std::pair<std::string, Json>> more; // by name
+    std::string table, csv;
     std::shared_ptr<plot::Picture> picture;
+    std::string error; // why there are none
 };
 
-Figures compile_figures(bool quick)
+Figures compile_figures(const BenchOptions& options)
 {
-    const std::vector<bench::CompileRow> rows = bench::bench_compile(quick);
+    const std::vector<bench::CompileRow> rows = bench::bench_compile(options.quick);
     Figures figures;
     for (const bench::CompileRow& row : rows) figures.rows.push_back(to_json(row));
     figures.more.emplace_back("growth", bench::growth(rows));
@@ -37,27 +48,66 @@ Figures compile_figures(bool quick)
     return figures;
 }
 
-Figures accuracy_figures(bool quick, const std::string& machine)
+Figures accuracy_figures(const BenchOptions& options, const std::string& machine)
 {
     Progress progress;
     const std::vector<bench::AccuracyRow> rows =
-        bench::bench_accuracy(quick, [&](double share) { progress.show(share); });
+        bench::bench_accuracy(options.quick, [&](double share) { progress.show(share); });
     Figures figures;
     for (const bench::AccuracyRow& row : rows) figures.rows.push_back(to_json(row));
     figures.table = to_table(rows);
-    figures.texts.emplace_back("accuracy.csv", to_csv(rows));
+    figures.csv = to_csv(rows);
     figures.picture = std::make_shared<plot::Picture>(draw_accuracy(rows, machine));
     return figures;
 }
 
+Figures batch_figures(const BenchOptions& options)
+{
+    Figures figures;
+    const BatchTextures found =
+        batch_textures(options.paths, options.parameters, options.box_m, precision_of(options.precision));
+    figures.error = found.error;
+    if (figures.error.empty() && found.textures.empty())
+        figures.error = fmt::format("there is no texture in {}: name files or folders of them, haptel bench batch PATH",
+                                    fmt::join(options.paths, ", "));
+    if (!figures.error.empty()) return figures;
+    bench::BatchOptions batch{options.points, 9, {1}, options.box_m};
+    if (const unsigned all = std::thread::hardware_concurrency(); all > 1) batch.threads.push_back(all);
+    if (options.quick) batch.points = std::min<size_t>(batch.points, 50'000), batch.rounds = 3;
+    Progress progress;
+    const std::vector<bench::BatchRow> rows =
+        bench::bench_batch(found.textures, batch, [&](double share) { progress.show(share); });
+    for (const bench::BatchRow& row : rows) figures.rows.push_back(to_json(row, options.precision));
+    Json means = Json::array();
+    for (const bench::BatchSummary& summary : bench::summary(rows)) means.push_back(to_json(summary));
+    figures.more.emplace_back("points", batch.points);
+    figures.more.emplace_back("means", means);
+    figures.table = fmt::format("{} points, {}, {} lanes\n", batch.points, options.precision, rows[0].lanes);
+    figures.table += to_table(rows);
+    figures.csv = to_csv(rows, options.precision);
+    return figures;
+}
+
+// Every line of a table tells where it was taken.
+std::string stamped(const std::string& csv, const bench::Machine& machine)
+{
+    std::string text;
+    for (size_t start = 0, end; (end = csv.find('\n', start)) != std::string::npos; start = end + 1)
+        text += csv.substr(start, end - start) +
+                (start == 0 ? ",commit,isa,cpu\n"
+                            : fmt::format(",{},{},\"{}\"\n", machine.commit, machine.isa, machine.cpu));
+    return text;
+}
+
 // Empty, or why not.
-std::string write_files(const std::string& folder, const std::string& what, const Json& json, const Figures& figures)
+std::string write_files(const std::string& folder, const std::string& what, const Json& json, const Figures& figures,
+                        const bench::Machine& machine)
 {
     std::error_code ignored; // a folder that cannot be made cannot be written to either
     std::filesystem::create_directories(folder, ignored);
     const std::filesystem::path path(folder);
-    std::vector<std::pair<std::string, std::string>> texts = figures.texts;
-    texts.emplace_back(what + ".json", to_text(json) + "\n");
+    std::vector<std::pair<std::string, std::string>> texts{{what + ".json", to_text(json) + "\n"}};
+    if (!figures.csv.empty()) texts.emplace_back(what + ".csv", stamped(figures.csv, machine));
     for (const auto& [name, text] : texts) {
         std::ofstream written(path / name);
         written << text;
@@ -67,13 +117,23 @@ std::string write_files(const std::string& folder, const std::string& what, cons
     return figures.picture ? figures.picture->write_png((path / (what + ".png")).string()) : "";
 }
 
-ExitCode run(const BenchOptions& options)
+ExitCode run(const BenchOptions& given)
 {
+    BenchOptions options = given;
+    if (options.what != "batch" && !(options.paths.empty() && options.parameters.empty())) {
+        say_error("texture files and --set are for haptel bench batch: the others bring their own textures");
+        return ExitCode::misuse;
+    }
+    if (options.paths.empty()) options.paths = {"stdlib", "examples"};
     const bench::Machine machine = bench::this_machine();
     const std::string name = fmt::format("{}, {} threads, {}", machine.cpu, machine.cores, machine.isa);
-    const Figures figures = options.what == "compile"
-                                ? compile_figures(options.quick)
-                                : accuracy_figures(options.quick, fmt::format("{}, commit {}", name, machine.commit));
+    const Figures figures = options.what == "compile" ? compile_figures(options)
+                            : options.what == "batch" ? batch_figures(options)
+                                                      : accuracy_figures(options, name + ", commit " + machine.commit);
+    if (!figures.error.empty()) {
+        say_error(figures.error);
+        return ExitCode::findings;
+    }
     Json json{{"machine", name},
               {"isa", machine.isa},
               {"commit", machine.commit},
@@ -85,7 +145,7 @@ ExitCode run(const BenchOptions& options)
     else
         fmt::print("{}, commit {}, {} {}\n{}", name, machine.commit, machine.compiler, machine.flags, figures.table);
     if (options.out.empty()) return ExitCode::fine;
-    const std::string error = write_files(options.out, options.what, json, figures);
+    const std::string error = write_files(options.out, options.what, json, figures, machine);
     if (error.empty()) return ExitCode::fine;
     say_error(error);
     return ExitCode::findings;
@@ -99,15 +159,26 @@ Command bench_command(CLI::App& app)
     CLI::App* command = app.add_subcommand("bench", "Figures: error against time, and how long text takes to code");
     command
         ->add_option("what", options->what,
-                     "compile: from text to code; accuracy: error of the gradient against time, ours and plain C++")
-        ->check(CLI::IsMember({"compile", "accuracy"}))
+                     "compile: from text to code; accuracy: error of the gradient against time, ours and plain C++; "
+                     "batch: many points of every texture")
+        ->check(CLI::IsMember({"compile", "accuracy", "batch"}))
         ->capture_default_str();
+    command->add_option("paths", options->paths, "batch: texture files, FILE:NAME, or folders [stdlib examples]")
+        ->type_name("PATH");
+    command->add_option("--points", options->points, "batch: so many at once")
+        ->check(CLI::Range(1, 100'000'000))
+        ->capture_default_str();
+    command->add_option("--precision", options->precision, "batch: f64, mixed or f32")
+        ->check(CLI::IsMember({"f64", "mixed", "f32"}))
+        ->capture_default_str();
+    add_length(*command, "--box", options->box_m, "batch: side of the cube of points round the origin [50mm]");
+    add_parameters(*command, options->parameters);
     command->add_flag("--quick", options->quick, "Fewer rounds and points");
-    command->add_option("--out", options->out, "Folder for WHAT.json, and accuracy.csv and accuracy.png")
-        ->type_name("DIR");
+    command->add_option("--out", options->out, "Folder for WHAT.json, WHAT.csv and WHAT.png")->type_name("DIR");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel bench compile\n"
                            "  haptel bench accuracy --out figures\n"
+                           "  haptel bench batch stdlib examples --set picture=examples/scenes/waves.png\n"
                            "  haptel bench compile --quick --json --out figures");
     return {command, [options] { return run(*options); }};
 }

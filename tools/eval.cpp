@@ -4,6 +4,7 @@
 #include "tools/command.h"
 #include "tools/eval_table.h"
 #include "tools/json.h"
+#include "tools/precisions.h"
 #include "tools/terminal.h"
 #include "tools/texture_argument.h"
 
@@ -98,11 +99,6 @@ haptel_point point_at(const EvalOptions& options, const glm::dvec3& p_m)
     }
     for (int axis = 0; axis < 2; ++axis) point.uv[axis] = options.uv[axis];
     return point;
-}
-
-jit::Precision precision_of(const std::string& name)
-{
-    return name == "f32" ? jit::Precision::f32 : name == "mixed" ? jit::Precision::mixed : jit::Precision::f64;
 }
 
 // The texture, compiled and bound to a cube round the origin. Says what is wrong.

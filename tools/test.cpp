@@ -1,26 +1,20 @@
 // haptel test: is every texture's gradient the gradient of its height, to rounding?
 #include "jit/check_gradient.h"
-#include "jit/source_file.h"
-#include "lang/parser.h"
 #include "tools/command.h"
 #include "tools/quantity.h"
 #include "tools/terminal.h"
 #include "tools/test_report.h"
 #include "tools/texture_argument.h"
+#include "tools/texture_files.h"
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
 #include <memory>
-#include <set>
-#include <tuple>
 
 namespace haptel::tools {
-
-namespace fs = std::filesystem;
 
 namespace {
 
@@ -34,46 +28,6 @@ struct TestOptions {
     std::string junit;
 };
 
-// A texture file, and one texture of it if only that is meant.
-struct Target {
-    std::string file, texture;
-    bool operator<(const Target& other) const { return std::tie(file, texture) < std::tie(other.file, other.texture); }
-};
-
-// Folders stand for the texture files in them, at any depth, by name.
-std::vector<Target> targets_of(const std::vector<std::string>& paths)
-{
-    std::vector<Target> targets;
-    for (const std::string& path : paths) {
-        std::error_code error;
-        if (!fs::is_directory(path, error)) {
-            const bool is_file = fs::exists(path, error);
-            const jit::TextureReference reference = jit::split_reference(path);
-            targets.push_back(is_file ? Target{path, {}} : Target{reference.file, reference.texture});
-            continue;
-        }
-        std::set<Target> found;
-        constexpr auto careful = fs::directory_options::skip_permission_denied;
-        for (fs::recursive_directory_iterator entry(path, careful, error), end; !error && entry != end;
-             entry.increment(error))
-            if (entry->path().extension() == ".haptel" && entry->is_regular_file(error))
-                found.insert({entry->path(), {}});
-        targets.insert(targets.end(), found.begin(), found.end());
-    }
-    return targets;
-}
-
-// A file of functions alone is for others to import: there is nothing to test in it.
-bool has_textures(const std::string& file)
-{
-    jit::SourceText source = jit::read_source(file);
-    if (!source.error.empty()) return true; // the compiler says why it cannot be read
-    lang::SourceSet sources;
-    lang::Diagnostics diagnostics;
-    const lang::ast::File tree = lang::parse(sources, sources.add({file, std::move(source.text)}), diagnostics);
-    return diagnostics.has_errors() || !tree.textures.empty();
-}
-
 class TestRun {
 public:
     explicit TestRun(const TestOptions& chosen) : options(chosen)
@@ -85,7 +39,7 @@ public:
         request.footprint_m = options.footprint_m;
     }
 
-    void test(const Target& target);
+    void test(const TextureTarget& target);
     TestReport report;
 
 private:
@@ -93,10 +47,12 @@ private:
     jit::CheckBox box;
     TextureRequest request; // parameters at their defaults, or as set
 
-    void test(const Target& target, const std::shared_ptr<const jit::CompiledProgram>& program, const char* name);
+    void test(const TextureTarget& target, const std::shared_ptr<const jit::CompiledProgram>& program,
+              const char* name);
 };
 
-void TestRun::test(const Target& target, const std::shared_ptr<const jit::CompiledProgram>& program, const char* name)
+void TestRun::test(const TextureTarget& target, const std::shared_ptr<const jit::CompiledProgram>& program,
+                   const char* name)
 {
     TestedTexture tested{target.file, name, {}, {}, 0};
     request.parameters.clear(); // each texture takes the values whose names it has
@@ -113,9 +69,8 @@ void TestRun::test(const Target& target, const std::shared_ptr<const jit::Compil
     report.textures.push_back(std::move(tested));
 }
 
-void TestRun::test(const Target& target)
+void TestRun::test(const TextureTarget& target)
 {
-    if (!has_textures(target.file)) return;
     jit::TextureOptions compile;
     compile.only_texture = target.texture;
     compile.entries = jit::Entries::height_gradient;
@@ -132,7 +87,7 @@ void TestRun::test(const Target& target)
 ExitCode run(const TestOptions& options)
 {
     TestRun tests(options);
-    const std::vector<Target> targets = targets_of(options.paths);
+    const std::vector<TextureTarget> targets = texture_targets(options.paths);
     for (size_t i = 0; i < targets.size(); ++i) {
         if (stderr_is_terminal()) fmt::print(stderr, "\r\x1b[K[{}/{}] {}", i + 1, targets.size(), targets[i].file);
         tests.test(targets[i]);

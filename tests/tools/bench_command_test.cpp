@@ -4,8 +4,11 @@
 #include "tests/tools/run_command.h"
 #include "tools/json.h"
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <map>
+#include <thread>
 
 using namespace haptel::test;
 using haptel::tools::Json;
@@ -63,4 +66,57 @@ TEST_CASE("bench accuracy: every way computes the same texture, each as closely 
     CHECK(Json::parse(read_file(folder.path / "figures/accuracy.json")) == json);
     CHECK(read_file(folder.path / "figures/accuracy.csv").starts_with("texture,mode,method,precision"));
     CHECK(std::filesystem::file_size(folder.path / "figures/accuracy.png") > 10'000);
+}
+
+TEST_CASE("bench batch: every texture that paths name, on one thread and on all, with the means of its rows")
+{
+    const Folder folder;
+    std::filesystem::create_directories(folder.path / "more");
+    const std::string file = folder.write(
+        "hills.haptel", "texture hills(float depth = 1mm in 0mm .. 2mm) { return depth * perlin(p / 3mm); }\n"
+                        "texture seen(float depth = 1mm in 0mm .. 2mm) { return depth * (n.x * n.z + uv.x); }\n");
+    folder.write("more/waves.haptel", "texture waves() { return 1mm * sinturn(p.x / 3mm); }\n");
+    folder.write("more/shapes.haptel", "float twice(float x) { return 2.0 * x; }\n"); // nothing to measure
+    const Ran ran = run_command("bench batch --quick --points 3000 --precision f32 --set depth=0.5mm --json '" +
+                                folder.path.string() + "' --out '" + folder.file("figures") + "'");
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+    const Json json = Json::parse(ran.out);
+    const size_t thread_counts = std::thread::hardware_concurrency() > 1 ? 2 : 1;
+    std::map<std::string, size_t> seen;
+    std::map<unsigned, double> log_ratios;
+    for (const Json& row : json["rows"]) {
+        ++seen[row["texture"]];
+        CHECK(row["precision"] == "f32");
+        CHECK(row["lanes"].get<int>() > 1);
+        for (const std::string name : {"ns_per_point", "height_only_ns_per_point"}) {
+            CHECK(row[name].get<double>() > 0);
+            CHECK(row[name + "_p99"].get<double>() >= row[name].get<double>());
+        }
+        log_ratios[row["threads"].get<unsigned>()] +=
+            std::log(row["ns_per_point"].get<double>() / row["height_only_ns_per_point"].get<double>());
+    }
+    const std::map<std::string, size_t> expected{{"hills.haptel:hills", thread_counts},
+                                                 {"hills.haptel:seen", thread_counts},
+                                                 {"waves.haptel:waves", thread_counts}};
+    CHECK(seen == expected);
+    CHECK(json["points"] == 3000);
+    REQUIRE(json["means"].size() == thread_counts);
+    for (const Json& mean : json["means"]) {
+        const double geometric = std::exp(log_ratios[mean["threads"].get<unsigned>()] / 3);
+        CHECK(std::fabs(mean["gradient_over_height"].get<double>() / geometric - 1) < 1e-9);
+    }
+    const std::string csv = read_file(folder.path / "figures/batch.csv");
+    CHECK(contains(csv.substr(0, csv.find('\n')), ",commit,isa,cpu"));
+    CHECK(static_cast<size_t>(std::count(csv.begin(), csv.end(), '\n')) == 1 + 3 * thread_counts);
+    CHECK(contains(csv, "," + json["commit"].get<std::string>() + "," + json["isa"].get<std::string>() + ",\""));
+
+    const Ran none = run_command("bench batch '" + folder.file("more/shapes.haptel") + "'");
+    CHECK(none.code == 1);
+    CHECK(contains(none.err, "there is no texture in"));
+    const Ran broken =
+        run_command("bench batch '" + folder.write("broken.haptel", "texture t() { return x; }\n") + "'");
+    CHECK(broken.code == 1);
+    CHECK(contains(broken.err, "broken.haptel:1:"));
+    CHECK(run_command("bench compile --quick '" + file + "'").code == 2);
 }
