@@ -1,8 +1,11 @@
 // IR to LLVM IR, one point at a time or many, in one of three precisions.
 //
-// In f64 every operation means what lang/ir/semantics.h says, bit for bit (but for sums of iterations in lanes, whose
-// order is another): no fast-math flags, no contraction,
+// In f64 every operation means what lang/ir/semantics.h says, bit for bit: no fast-math flags, no contraction,
 // elementary functions by calls to the C library under names that LLVM does not know, so that it cannot rewrite them.
+// In mixed and f32, what varies is fused where the processor can: a product that a sum or difference takes is not
+// rounded by itself (the choice rests on the two operations alone, so that a height with and without its gradient has
+// the same bits).
+//
 // Functions that an entry reaches become internal LLVM functions; tables become constant globals. The module must be
 // verified (lang/ir/verify.h): table indices and trip counts are trusted here.
 #pragma once
@@ -33,6 +36,7 @@ struct Processor {
     uint32_t lanes = 4;          // points that a batch evaluates at once
     bool permutes_words = false; // AVX-512F: dynamic permutation of two registers of 32- and 64-bit words
     bool permutes_bytes = false; // AVX-512VBMI: of bytes
+    bool fuses = false;          // FMA: a * b + c as one instruction, rounded once
 };
 
 // What the lanes of a register hold.

@@ -4,6 +4,7 @@
 #include "jit/codegen_table.h"
 #include "lang/abi.h"
 
+#include <algorithm>
 #include <cstddef>
 
 namespace haptel::jit {
@@ -35,6 +36,7 @@ FunctionEmitter::FunctionEmitter(ModuleEmitter& owner, const ir::Function& from,
     , arguments(entry)
     , builder(&to.back())
     , values(from.value_types.size())
+    , products(from.value_types.size())
 {
 }
 
@@ -77,18 +79,55 @@ void FunctionEmitter::emit(const ir::Instruction& made)
     std::visit([&](const auto& kind) { emit(made, kind); }, made.kind);
 }
 
+bool FunctionEmitter::computes_in_singles(const ir::Instruction& made) const
+{
+    if (!forms.is_varying(made.results[0]) || forms.is_wide(made.results[0])) return false;
+    return std::none_of(made.operands.begin(), made.operands.end(), [&](ir::Value used) {
+        return source.type(used) == ir::Type::real && forms.is_varying(used) && forms.is_wide(used);
+    });
+}
+
+// The multiplication that made the operand, if it has the precision of what it goes into.
+const ir::Instruction* FunctionEmitter::product_to_fuse(ir::Value operand, bool in_singles) const
+{
+    const ir::Instruction* product = products[operand.index];
+    const bool fits = product && forms.is_varying(operand) && computes_in_singles(*product) == in_singles &&
+                      forms[operand].is_single == in_singles;
+    return fits ? product : nullptr;
+}
+
+// Sums and differences of a product; of two products the first is fused.
+bool FunctionEmitter::fuse(const ir::Instruction& made, ir::Op op, bool in_singles)
+{
+    const bool is_difference = op == ir::Op::sub;
+    if (!module.fuses() || !forms.is_varying(made.results[0]) || (op != ir::Op::add && !is_difference)) return false;
+    for (size_t which = 0; which < 2; ++which) {
+        const ir::Instruction* product = product_to_fuse(made.operands[which], in_singles);
+        if (!product) continue;
+        const Form form{forms[made.results[0]].in_lanes, in_singles};
+        Value* factor = value(product->operands[0], form);
+        Value* other = value(made.operands[1 - which], form);
+        if (is_difference) (which == 0 ? other : factor) = builder.CreateFNeg(which == 0 ? other : factor);
+        Value* fused = builder.CreateIntrinsic(llvm::Intrinsic::fma, {factor->getType()},
+                                               {factor, value(product->operands[1], form), other});
+        define(made.results[0], rounded(fused, forms[made.results[0]].is_single));
+        return true;
+    }
+    return false;
+}
+
 void FunctionEmitter::emit(const ir::Instruction& made, const ir::Operation& operation)
 {
     const Form form = forms[made.results[0]];
-    bool in_singles = forms.is_varying(made.results[0]) && !forms.is_wide(made.results[0]);
-    for (ir::Value used : made.operands)
-        if (source.type(used) == ir::Type::real && forms.is_varying(used) && forms.is_wide(used)) in_singles = false;
+    const bool in_singles = computes_in_singles(made);
+    if (fuse(made, operation.op, in_singles)) return;
+    if (operation.op == ir::Op::mul) products[made.results[0].index] = &made;
     Value* operands[4];
     const size_t count = made.operands.size();
     for (size_t i = 0; i < count; ++i) operands[i] = value(made.operands[i], {form.in_lanes, in_singles});
     llvm::Type* real = in_singles ? builder.getFloatTy() : builder.getDoubleTy();
     Value* result = emit_operation(builder, operation.op, {operands, count}, real,
-                                   form.is_single ? builder.getFloatTy() : builder.getDoubleTy());
+                                   form.is_single ? builder.getFloatTy() : builder.getDoubleTy(), module.fuses());
     define(made.results[0], source.type(made.results[0]) == ir::Type::real ? rounded(result, form.is_single) : result);
 }
 

@@ -40,11 +40,15 @@ private:
     const ValueForms& forms;
     const EntryArguments arguments;
     llvm::IRBuilder<> builder;
-    std::vector<llvm::Value*> values; // by ir::Value::index
+    std::vector<llvm::Value*> values;             // by ir::Value::index
+    std::vector<const ir::Instruction*> products; // likewise: what multiplied them
 
     llvm::Value* value(ir::Value used) const { return values[used.index]; }
     llvm::Value* value(ir::Value used, Form wanted);
     llvm::Value* rounded(llvm::Value* real, bool to_single);
+    bool computes_in_singles(const ir::Instruction& made) const;
+    const ir::Instruction* product_to_fuse(ir::Value operand, bool in_singles) const;
+    bool fuse(const ir::Instruction& made, ir::Op op, bool in_singles);
     llvm::Type* type(ir::Value of) { return module.type(source.type(of), forms[of]); }
     llvm::BasicBlock* new_block(const char* name);
     llvm::Value* at_offset(llvm::Value* base, size_t offset);

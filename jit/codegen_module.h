@@ -64,6 +64,8 @@ public:
     llvm::GlobalVariable* table(uint32_t index, bool is_single);
     llvm::Type* type(ir::Type type, Form held);
 
+    bool fuses() const { return plan.precision != Precision::f64 && processor.fuses; }
+
     const ir::Module& source;
     llvm::Module& target;
     const Processor& processor;

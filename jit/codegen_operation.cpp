@@ -46,7 +46,7 @@ public:
     {
     }
 
-    Value* emit(ir::Op op, llvm::Type* result);
+    Value* emit(ir::Op op, llvm::Type* result, bool fuses);
 
 private:
     llvm::IRBuilder<>& builder;
@@ -85,7 +85,7 @@ private:
     Value* divide(bool want_remainder);
     Value* divide_unsigned(bool want_remainder);
     Value* shift_count() { return builder.CreateAnd(b(), word(31)); }
-    Value* saturate(llvm::Intrinsic::ID id);
+    Value* saturate(bool is_signed);
 };
 
 // Pure and total: may be moved, shared or dropped.
@@ -203,12 +203,24 @@ Value* Emitter::divide_unsigned(bool want_remainder)
     return choose(by_zero, word(0), builder.CreateUDiv(a(), divisor));
 }
 
-Value* Emitter::saturate(llvm::Intrinsic::ID id)
+// To a whole number, toward zero; NaN to 0, what does not fit to the nearest that does. LLVM's own takes a vector
+// apart.
+Value* Emitter::saturate(bool is_signed)
 {
-    return builder.CreateIntrinsic(id, {words(), reals()}, {a()});
+    namespace in = llvm::Intrinsic;
+    if (!vector) return builder.CreateIntrinsic(is_signed ? in::fptosi_sat : in::fptoui_sat, {words(), reals()}, {a()});
+    const uint32_t most = is_signed ? INT32_MAX : UINT32_MAX;
+    // The greatest real whose whole part fits, and the first that does not.
+    const double beyond = is_signed ? 0x1p31 : 0x1p32, fits = beyond - (is_single() ? (is_signed ? 128 : 256) : 1);
+    const double least = is_signed ? -0x1p31 : 0;
+    Value* x = choose(builder.CreateFCmpOGT(a(), real(least)), a(), real(least));
+    x = choose(builder.CreateFCmpOLT(x, real(fits)), x, real(fits));
+    Value* whole = is_signed ? builder.CreateFPToSI(x, words()) : builder.CreateFPToUI(x, words());
+    if (is_single()) whole = choose(builder.CreateFCmpOGE(a(), real(beyond)), word(most), whole);
+    return choose(builder.CreateFCmpUNO(a(), a()), word(0), whole);
 }
 
-Value* Emitter::emit(ir::Op op, llvm::Type* result)
+Value* Emitter::emit(ir::Op op, llvm::Type* result, bool fuses)
 {
     using ir::Op;
     namespace in = llvm::Intrinsic;
@@ -236,8 +248,8 @@ Value* Emitter::emit(ir::Op op, llvm::Type* result)
     case Op::sin: return call("haptel_sin");
     case Op::cos: return call("haptel_cos");
     case Op::tan: return call("haptel_tan");
-    case Op::sinturn: return sine_of_turns(builder, way_to_whole_turn(), result);
-    case Op::costurn: return cosine_of_turns(builder, way_to_whole_turn(), result);
+    case Op::sinturn: return sine_of_turns(builder, way_to_whole_turn(), result, fuses);
+    case Op::costurn: return cosine_of_turns(builder, way_to_whole_turn(), result, fuses);
     case Op::asin: return call("haptel_asin");
     case Op::acos: return call("haptel_acos");
     case Op::atan: return call("haptel_atan");
@@ -287,8 +299,8 @@ Value* Emitter::emit(ir::Op op, llvm::Type* result)
     case Op::umax: return intrinsic(in::umax, a(), b());
     case Op::i_to_r: return builder.CreateSIToFP(a(), reals());
     case Op::u_to_r: return builder.CreateUIToFP(a(), reals());
-    case Op::r_to_i: return saturate(in::fptosi_sat);
-    case Op::r_to_u: return saturate(in::fptoui_sat);
+    case Op::r_to_i: return saturate(true);
+    case Op::r_to_u: return saturate(false);
     case Op::spline: return read_image("haptel_spline", builder.getDoubleTy());
     case Op::image_width: return read_image("haptel_image_width", builder.getInt32Ty());
     case Op::image_height: return read_image("haptel_image_height", builder.getInt32Ty());
@@ -303,9 +315,9 @@ Value* Emitter::emit(ir::Op op, llvm::Type* result)
 } // namespace
 
 llvm::Value* emit_operation(llvm::IRBuilder<>& builder, ir::Op op, std::span<llvm::Value* const> operands,
-                            llvm::Type* real, llvm::Type* result)
+                            llvm::Type* real, llvm::Type* result, bool fuses)
 {
-    return Emitter(builder, operands, real).emit(op, result);
+    return Emitter(builder, operands, real).emit(op, result, fuses);
 }
 
 std::span<const LibraryFunction> code_library()

@@ -1,6 +1,7 @@
 #include "jit/codegen_table.h"
 
 #include <algorithm>
+#include <bit>
 #include <llvm/IR/IntrinsicsX86.h>
 #include <numeric>
 
@@ -32,7 +33,9 @@ public:
         if (is_real && !is_single) return from_doubles();
         if (table.size() > chunks_max * 32) return nullptr;
         return of_lanes(
-            is_real ? from_pairs<float>(llvm::Intrinsic::x86_avx512_vpermi2var_ps_512, table.reals, padded())
+            is_real ? builder.CreateBitCast(from_pairs<uint32_t>(llvm::Intrinsic::x86_avx512_vpermi2var_d_512,
+                                                                 bits_of_singles(), padded()),
+                                            llvm::FixedVectorType::get(builder.getFloatTy(), 16))
                     : from_pairs<uint32_t>(llvm::Intrinsic::x86_avx512_vpermi2var_d_512, table.words, padded()));
     }
     Value* gathered(llvm::GlobalVariable* cells, llvm::Type* element)
@@ -49,6 +52,12 @@ private:
     const ir::Table& table;
     Value* const index;
 
+    std::vector<uint32_t> bits_of_singles() const
+    {
+        std::vector<uint32_t> bits;
+        for (double real : table.reals) bits.push_back(std::bit_cast<uint32_t>(static_cast<float>(real)));
+        return bits;
+    }
     // Fewer lanes than words of a register are its first; what the others hold does not matter.
     Value* padded()
     {
@@ -79,23 +88,29 @@ private:
         }
         return choices[0];
     }
-    // Each pair of registers is permuted by the index's lowest bits; its higher ones choose the pair.
+    // Each pair of registers is permuted by the index's lowest bits; its higher ones say which pair has the cell. What
+    // has no cell yet keeps its index, as the instruction does that permutes under a mask: no blending.
     template <typename Cell, typename Source>
     Value* from_pairs(llvm::Intrinsic::ID permute, const std::vector<Source>& cells, Value* of)
     {
         constexpr size_t width = register_bytes / sizeof(Cell);
         std::vector<Cell> held(cells.begin(), cells.end());
-        size_t pairs = 1;
-        while (pairs * 2 * width < held.size()) pairs *= 2;
+        const size_t pairs = (held.size() + 2 * width - 1) / (2 * width);
         held.resize(pairs * 2 * width);
-        std::vector<Value*> choices;
+        Value* const pair_of = builder.CreateLShr(of, std::countr_zero(2 * width));
+        Value* found = of;
+        llvm::Type* found_type = nullptr;
         for (size_t i = 0; i < pairs; ++i) {
             const llvm::ArrayRef<Cell> pair(held.data() + i * 2 * width, 2 * width);
             Value* low = llvm::ConstantDataVector::get(builder.getContext(), pair.take_front(width));
             Value* high = llvm::ConstantDataVector::get(builder.getContext(), pair.take_back(width));
-            choices.push_back(builder.CreateIntrinsic(permute, {}, {low, of, high}));
+            Value* read = builder.CreateIntrinsic(permute, {}, {low, found, high});
+            found_type = read->getType();
+            if (pairs == 1) return read;
+            Value* is_here = builder.CreateICmpEQ(pair_of, llvm::ConstantInt::get(of->getType(), i));
+            found = builder.CreateSelect(is_here, builder.CreateBitCast(read, of->getType()), found);
         }
-        return chosen(std::move(choices), of, 2 * width);
+        return builder.CreateBitCast(found, found_type);
     }
     // A byte each: the lowest of a lane's four is its cell, the others are noise.
     Value* from_bytes()

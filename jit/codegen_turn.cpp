@@ -12,7 +12,8 @@ using llvm::Value;
 
 class Turn {
 public:
-    Turn(llvm::IRBuilder<>& to, Value* whole_way, llvm::Type* element) : builder(to), is_single(element->isFloatTy())
+    Turn(llvm::IRBuilder<>& to, Value* whole_way, llvm::Type* element, bool may_fuse)
+        : builder(to), is_single(element->isFloatTy()), fuses(may_fuse && is_single)
     {
         type = whole_way->getType()->getWithNewType(element);
         way = builder.CreateFPCast(whole_way, type);
@@ -36,7 +37,7 @@ public:
 
 private:
     llvm::IRBuilder<>& builder;
-    const bool is_single;
+    const bool is_single, fuses;
     llvm::Type* type;
     Value *way, *is_behind_quarter, *is_near_quarter, *to_quarter, *square;
 
@@ -44,9 +45,13 @@ private:
     Value* polynomial(std::span<const double> coefficients)
     {
         Value* sum = real(coefficients.back());
-        for (size_t i = coefficients.size() - 1; i-- > 0;)
-            sum = builder.CreateFAdd(builder.CreateFMul(sum, square), real(coefficients[i]));
+        for (size_t i = coefficients.size() - 1; i-- > 0;) sum = times_and(sum, square, real(coefficients[i]));
         return sum;
+    }
+    Value* times_and(Value* a, Value* b, Value* c)
+    {
+        return fuses ? builder.CreateIntrinsic(llvm::Intrinsic::fma, {type}, {a, b, c})
+                     : builder.CreateFAdd(builder.CreateFMul(a, b), c);
     }
     Value* sine_within_eighth()
     {
@@ -56,21 +61,20 @@ private:
     Value* cosine_within_eighth()
     {
         using namespace ir::turn;
-        Value* rest = builder.CreateFMul(square, is_single ? polynomial(cosine_f32) : polynomial(cosine_f64));
-        return builder.CreateFAdd(rest, real(1));
+        return times_and(square, is_single ? polynomial(cosine_f32) : polynomial(cosine_f64), real(1));
     }
 };
 
 } // namespace
 
-llvm::Value* sine_of_turns(llvm::IRBuilder<>& builder, llvm::Value* way, llvm::Type* result)
+llvm::Value* sine_of_turns(llvm::IRBuilder<>& builder, llvm::Value* way, llvm::Type* result, bool fuses)
 {
-    return Turn(builder, way, result).sine();
+    return Turn(builder, way, result, fuses).sine();
 }
 
-llvm::Value* cosine_of_turns(llvm::IRBuilder<>& builder, llvm::Value* way, llvm::Type* result)
+llvm::Value* cosine_of_turns(llvm::IRBuilder<>& builder, llvm::Value* way, llvm::Type* result, bool fuses)
 {
-    return Turn(builder, way, result).cosine();
+    return Turn(builder, way, result, fuses).cosine();
 }
 
 } // namespace haptel::jit

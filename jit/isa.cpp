@@ -68,9 +68,9 @@ Processor processor_of(const llvm::TargetMachine& machine)
 {
     // Singles of two registers' width, where registers are narrow, hide the latency of one another's operations.
     const llvm::MCSubtargetInfo& has = *machine.getMCSubtargetInfo();
-    if (!machine.getTargetTriple().isX86()) return {8, false, false};
+    if (!machine.getTargetTriple().isX86()) return {8, false, false, machine.getTargetTriple().isAArch64()};
     const bool has_avx512 = has.checkFeatures("+avx512f"), has_avx2 = has.checkFeatures("+avx2");
-    return {has_avx512 || has_avx2 ? 16u : 8u, has_avx512, has.checkFeatures("+avx512vbmi")};
+    return {has_avx512 || has_avx2 ? 16u : 8u, has_avx512, has.checkFeatures("+avx512vbmi"), has.checkFeatures("+fma")};
 }
 
 std::string isa_of(const llvm::TargetMachine& machine)

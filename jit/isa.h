@@ -5,7 +5,7 @@
 //   avx2      x86-64-v3: AVX2 and FMA, gathers
 //   avx512    x86-64-v4: AVX-512 F, BW, CD, DQ, VL, without the byte permutes that came later
 //
-// A program gives the same bits under each of them; how fast differs.
+// A program gives the same bits under each of them in f64; how fast differs.
 #pragma once
 
 #include "jit/codegen.h"

@@ -110,6 +110,41 @@ TEST_CASE("batches of every texture of the library and of the examples have the 
     CHECK(compared > 100);
 }
 
+TEST_CASE("reals to whole numbers: lanes saturate as one point does, in every precision", "[code]")
+{
+    std::vector<haptel_point> points;
+    for (double x : {0.0, 0.9, -0.9, 1.0, -1.5, 2147483520.0, 2147483646.0, 2147483647.0, 2147483648.0, -2147483648.0,
+                     -2147483649.0, 4294967040.0, 4294967295.0, 4294967296.0, 1e30, -1e30, double(INFINITY),
+                     -double(INFINITY), double(NAN)})
+        points.push_back({{x, 0, 0}, {}, {}, 0, {}, {}});
+    for (const auto precision : {jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32})
+        for (const char* expression : {"float(int(p.x / 1m))", "float(uint(p.x / 1m))"}) {
+            jit::TextureOptions options;
+            options.entries = jit::Entries::both_and_batches;
+            options.precision = precision;
+            const jit::CompiledTextures made =
+                jit::compile_texture("texture t() { return 1m * " + std::string(expression) + "; }", options);
+            REQUIRE(made.program);
+            const haptel_texture& texture = made.program->textures()[0];
+            const haptel_block_head block{};
+            Batch batch(points);
+            texture.height_gradient_batch(&batch.points, batch.count, &block, &batch.samples);
+            for (size_t i = 0; i < points.size(); ++i) {
+                INFO(expression << " of " << points[i].p[0] << " in precision " << int(precision));
+                haptel_sample one{};
+                texture.height_gradient(&points[i], &block, &one);
+                CHECK(same(one, batch.sample(i)));
+                const bool is_signed = expression[6] == 'i';
+                const double least = is_signed ? -2147483648.0 : 0, most = is_signed ? 2147483647.0 : 4294967295.0;
+                const double x = points[i].p[0];
+                const double truth = std::isnan(x) ? 0 : std::trunc(std::min(std::max(x, least), most));
+                const double rounded = precision == jit::Precision::f64 ? truth : double(float(truth));
+                CHECK(std::fabs(one.height_m - truth) <=
+                      std::fabs(rounded - truth) + (precision == jit::Precision::f32 ? 256 : 0));
+            }
+        }
+}
+
 TEST_CASE("mixed precision keeps its place within a cell, however far away; f32 does not", "[code]")
 {
     const std::string source = R"(
