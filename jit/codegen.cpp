@@ -148,14 +148,15 @@ private:
 } // namespace
 
 std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const EntryPoint> entries,
-                                       const Processor& processor, llvm::LLVMContext& context)
+                                       const Processor& processor, llvm::LLVMContext& context, KernelCalls* kernels)
 {
     auto generated = std::make_unique<llvm::Module>("textures", context);
     std::map<std::pair<LaneForm, Precision>, ModuleEmitter> emitters;
     for (const EntryPoint& entry : entries) {
         const std::pair form{entry.lanes, entry.precision};
         ModuleEmitter& emitter =
-            emitters.try_emplace(form, module, *generated, processor, entry.lanes, entry.precision).first->second;
+            emitters.try_emplace(form, module, *generated, processor, entry.lanes, entry.precision, kernels)
+                .first->second;
         entry.lanes == LaneForm::points ? EntryEmitter(emitter, entry).batch()
                                         : EntryEmitter(emitter, entry).one_point();
     }

@@ -56,8 +56,12 @@ struct EntryPoint {
     Precision precision = Precision::f64;
 };
 
-// Data layout and triple are the caller's to set before optimisation.
+class KernelCalls;
+
+// Data layout and triple are the caller's to set before optimisation. With `kernels`, what is worth a kernel is
+// declared and called (jit/kernels.h); without, the module is complete but for code_library().
 std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const EntryPoint> entries,
-                                       const Processor& processor, llvm::LLVMContext& context);
+                                       const Processor& processor, llvm::LLVMContext& context,
+                                       KernelCalls* kernels = nullptr);
 
 } // namespace haptel::jit

@@ -1,6 +1,7 @@
 #include "jit/codegen_module.h"
 
 #include "jit/codegen_function.h"
+#include "jit/kernels.h"
 #include "jit/uniformity.h"
 
 #include <algorithm>
@@ -70,6 +71,16 @@ Form ModuleEmitter::result(const Key& key, size_t i) const
     return {any(key.second.in_lanes), is_real && any(key.second.arguments) && !key.second.wide_results[i]};
 }
 
+std::string Signature::text() const
+{
+    std::string bits;
+    for (const std::vector<bool>* flags : {&arguments, &in_lanes, &wide_results}) {
+        for (bool flag : *flags) bits += flag ? '1' : '0';
+        bits += ';';
+    }
+    return bits;
+}
+
 const ModuleEmitter::Function& ModuleEmitter::function(uint32_t index, const Signature& signature)
 {
     const auto [place, is_new] = functions.try_emplace({index, signature});
@@ -91,7 +102,13 @@ const ModuleEmitter::Function& ModuleEmitter::function(uint32_t index, const Sig
                                           [&](ir::Value value) { return from.type(value) == ir::Type::image; });
     reads_images ? made.code->setOnlyReadsMemory() : made.code->setDoesNotAccessMemory();
     made.code->setWillReturn();
-    unfinished.push_back(place);
+    const std::string kernel = kernels ? kernels->call({index, signature, form, plan.precision}) : "";
+    if (kernel.empty()) {
+        unfinished.push_back(place);
+    } else {
+        made.code->setLinkage(llvm::GlobalValue::ExternalLinkage);
+        made.code->setName(kernel);
+    }
     return made;
 }
 

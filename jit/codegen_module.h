@@ -12,6 +12,8 @@
 
 namespace haptel::jit {
 
+class KernelCalls;
+
 // How a value is held: one for all, or in lanes, which are points or iterations of a loop; a real in f64 or in f32.
 struct Form {
     bool in_lanes = false, is_single = false;
@@ -23,6 +25,7 @@ struct Signature {
     std::vector<bool> in_lanes;     // arguments that differ between lanes
     std::vector<bool> wide_results; // that are f64
     auto operator<=>(const Signature&) const = default;
+    std::string text() const; // all of it: equal texts, equal signatures
 };
 
 // Of one function, by ir::Value::index.
@@ -42,13 +45,16 @@ struct ValueForms {
 
 class ModuleEmitter {
 public:
-    ModuleEmitter(const ir::Module& from, llvm::Module& to, const Processor& of, LaneForm of_lanes, Precision precision)
+    // With `kernel_calls`, what is worth a kernel is called and not written.
+    ModuleEmitter(const ir::Module& from, llvm::Module& to, const Processor& of, LaneForm of_lanes, Precision precision,
+                  KernelCalls* kernel_calls = nullptr)
         : source(from)
         , target(to)
         , processor(of)
         , form(of_lanes)
         , lanes(of_lanes == LaneForm::points ? of.lanes : iteration_lanes)
         , plan(from, precision)
+        , kernels(kernel_calls)
     {
     }
 
@@ -78,6 +84,7 @@ private:
     using Key = std::pair<uint32_t, Signature>;
     using Functions = std::map<Key, Function>;
     const PrecisionPlan plan;
+    KernelCalls* const kernels; // null: everything is written
     Functions functions;
     std::vector<Functions::const_iterator> unfinished;
     std::map<std::pair<uint32_t, bool>, llvm::GlobalVariable*> tables;

@@ -1,30 +1,34 @@
 #include "jit/engine.h"
 
+#include "jit/code_version.h"
 #include "jit/isa.h"
+#include "jit/kernels.h"
+#include "jit/linker.h"
 #include "jit/llvm.h"
-#include "jit/optimise.h"
+#include "jit/machine_code.h"
+#include "jit/object_cache.h"
+#include "jit/stopwatch.h"
 
 #include <atomic>
-#include <chrono>
 #include <cstdlib>
+#include <functional>
 #include <mutex>
 
 namespace haptel::jit {
 
 namespace {
 
-namespace orc = llvm::orc;
+// What is made in less time than that is not worth a file.
+constexpr double worth_keeping_s = 2e-3;
+// More makes no kernel faster that was measured, and takes twice as long.
+constexpr Effort kernel_effort = Effort::quick;
 
-std::string text(llvm::Error error)
-{
-    return llvm::toString(std::move(error));
-}
-
-double seconds_since(std::chrono::steady_clock::time_point& start)
-{
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(start, now)).count();
-}
+// An object file and how to come by it.
+struct Object {
+    std::string bytes, error;
+    Effort effort = Effort::quick; // what went into it, at least what was asked for
+    bool is_from_disk = false;
+};
 
 // What is made once per process and never taken down: code may outlive every static object.
 class Engine {
@@ -35,42 +39,54 @@ public:
         return *engine;
     }
 
-    CodeResult compile(const ir::Module& module, std::span<const EntryPoint> entries, Effort effort);
-    void remove(orc::JITDylib& library);
+    CodeResult compile(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options);
+    void remove(llvm::orc::JITDylib& place) { linker.remove(place); }
     std::string name() const { return machine_name; }
+    size_t kernel_count()
+    {
+        const std::lock_guard lock(kernels_mutex);
+        return kernels.size();
+    }
     uint32_t lanes() const { return processor.lanes; }
-    std::string isa() const { return quick_machine ? isa_of(*quick_machine) : ""; }
+    std::string isa() const { return quick.machine ? isa_of(*quick.machine) : ""; }
 
 private:
+    struct Compiler {
+        std::mutex in_use;
+        std::unique_ptr<llvm::TargetMachine> machine;
+    };
+    using Generate = std::function<std::unique_ptr<llvm::Module>(llvm::LLVMContext&)>;
+
     Engine();
     std::string start();
-    llvm::TargetMachine* machine(Effort effort)
-    {
-        return (effort == Effort::quick ? quick_machine : full_machine).get();
-    }
-    std::string select(llvm::Module& module, Effort effort, llvm::SmallVectorImpl<char>& object);
+    Object make(Effort effort, CompileTimes& times, const Generate& generate);
+    CodeResult link(const Object& object, const ir::Module& module, std::span<const EntryPoint> entries,
+                    const KernelCalls& calls, CompileTimes& times);
+    std::string link_kernel(const ir::Module& module, const std::string& name, const Kernel& kernel,
+                            llvm::orc::ExecutorAddr& address);
+    std::string identity_of(const KernelCalls& calls, std::span<const EntryPoint> entries) const;
 
-    std::mutex compiling;
     std::string fault; // why there is no engine; empty: there is
     std::string machine_name;
+    std::string target; // all that decides what code is made of an IR
     Processor processor;
-    std::unique_ptr<llvm::TargetMachine> quick_machine, full_machine;
-    std::unique_ptr<orc::LLJIT> jit;
-    orc::JITDylib* library = nullptr; // holds code_library()
-    uint64_t programs = 0;            // made so far, for names
+    Compiler quick, full;
+    Linker linker;
+    std::mutex kernels_mutex;
+    Addresses kernels; // linked, by name
 };
 
 std::atomic<size_t> alive{0};
 
 class LinkedCode final : public Code {
 public:
-    explicit LinkedCode(orc::JITDylib& own) : library(own) { ++alive; }
+    explicit LinkedCode(llvm::orc::JITDylib& own) : place(own) { ++alive; }
     ~LinkedCode() override
     {
-        Engine::get().remove(library);
+        Engine::get().remove(place);
         --alive;
     }
-    void add(const EntryPoint& entry, orc::ExecutorAddr address)
+    void add(const EntryPoint& entry, llvm::orc::ExecutorAddr address)
     {
         if (entry.lanes == LaneForm::points)
             batch_entries[entry.name] = address.toPtr<haptel_batch_entry*>();
@@ -79,7 +95,7 @@ public:
     }
 
 private:
-    orc::JITDylib& library;
+    llvm::orc::JITDylib& place;
 };
 
 Engine::Engine()
@@ -91,101 +107,160 @@ std::string Engine::start()
 {
     if (llvm::InitializeNativeTarget() || llvm::InitializeNativeTargetAsmPrinter())
         return "LLVM has no code generator for this processor";
-    auto host = orc::JITTargetMachineBuilder::detectHost();
-    if (!host) return "the processor was not recognised: " + text(host.takeError());
+    auto host = llvm::orc::JITTargetMachineBuilder::detectHost();
+    if (!host) return "the processor was not recognised: " + llvm::toString(host.takeError());
     const char* const wanted = std::getenv("HAPTEL_ISA");
     if (std::string error = restrict_to_isa(*host, wanted ? wanted : ""); !error.empty()) return error;
     host->getOptions().AllowFPOpFusion = llvm::FPOpFusion::Strict;
     machine_name = "LLVM " LLVM_VERSION_STRING " " + host->getTargetTriple().str() + " " + host->getCPU();
 
     for (Effort effort : {Effort::quick, Effort::full}) {
-        const bool quick = effort == Effort::quick;
-        host->setCodeGenOptLevel(quick ? llvm::CodeGenOptLevel::Less : llvm::CodeGenOptLevel::Default);
+        const bool is_quick = effort == Effort::quick;
+        host->setCodeGenOptLevel(is_quick ? llvm::CodeGenOptLevel::Less : llvm::CodeGenOptLevel::Default);
         auto made = host->createTargetMachine();
-        if (!made) return "no code generator for " + machine_name + ": " + text(made.takeError());
-        (quick ? quick_machine : full_machine) = std::move(*made);
+        if (!made) return "no code generator for " + machine_name + ": " + llvm::toString(made.takeError());
+        (is_quick ? quick : full).machine = std::move(*made);
     }
+    processor = processor_of(*quick.machine);
+    target = std::string(code_version) + ";" + machine_name + ";" + quick.machine->getTargetFeatureString().str() +
+             ";" + std::to_string(processor.lanes);
+    return linker.start(*host, quick.machine->createDataLayout());
+}
 
-    processor = processor_of(*quick_machine);
+ContentHash key_of(const std::string& identity, Effort effort)
+{
+    return content_hash(identity + (effort == Effort::quick ? ";quick" : ";full"));
+}
 
-    auto layout = quick_machine->createDataLayout();
-    auto built = orc::LLJITBuilder()
-                     .setJITTargetMachineBuilder(*host)
-                     .setDataLayout(layout)
-                     .setLinkProcessSymbolsByDefault(false)
-                     .setPlatformSetUp(orc::setUpInactivePlatform) // no constructors, no thread-local data
-                     .create();
-    if (!built) return "the JIT did not start: " + text(built.takeError());
-    jit = std::move(*built);
-    // Failures come back from the lookup; nothing is printed.
-    jit->getExecutionSession().setErrorReporter([](llvm::Error error) { llvm::consumeError(std::move(error)); });
-
-    auto made = jit->createJITDylib("library");
-    if (!made) return "the JIT did not start: " + text(made.takeError());
-    library = &*made;
-    orc::SymbolMap symbols;
-    for (const LibraryFunction& function : code_library())
-        symbols[jit->mangleAndIntern(function.name)] = {orc::ExecutorAddr::fromPtr(function.address),
-                                                        llvm::JITSymbolFlags::Exported};
-    if (auto error = library->define(orc::absoluteSymbols(std::move(symbols))))
-        return "the JIT did not start: " + text(std::move(error));
+// On disk, of that effort or a greater one.
+Object found_object(const std::string& identity, Effort effort)
+{
+    for (Effort kept : {Effort::full, Effort::quick})
+        if (kept >= effort)
+            if (std::optional<std::string> found = ObjectCache::shared().load(key_of(identity, kept)))
+                return {std::move(*found), {}, kept, true};
     return {};
 }
 
-std::string Engine::select(llvm::Module& module, Effort effort, llvm::SmallVectorImpl<char>& object)
+Object Engine::make(Effort effort, CompileTimes& times, const Generate& generate)
 {
-    llvm::raw_svector_ostream stream(object);
-    llvm::legacy::PassManager passes;
-    if (machine(effort)->addPassesToEmitFile(passes, stream, nullptr, llvm::CodeGenFileType::ObjectFile))
-        return "the code generator cannot write object files for " + machine_name;
-    passes.run(module);
-    return {};
-}
-
-CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint> entries, Effort effort)
-{
-    std::lock_guard lock(compiling);
-    if (!fault.empty()) return {nullptr, fault};
-    CompileTimes times;
-    auto start = std::chrono::steady_clock::now();
-
+    Compiler& compiler = effort == Effort::quick ? quick : full;
+    const std::lock_guard lock(compiler.in_use);
+    Stopwatch stopwatch;
     llvm::LLVMContext context;
-    std::unique_ptr<llvm::Module> generated = generate(module, entries, processor, context);
-    generated->setDataLayout(machine(effort)->createDataLayout());
-    generated->setTargetTriple(machine(effort)->getTargetTriple().str());
-    std::string problem;
-    llvm::raw_string_ostream problems(problem);
-    if (llvm::verifyModule(*generated, &problems)) return {nullptr, "generated code is malformed: " + problem};
-    times.generate_s = seconds_since(start);
+    const std::unique_ptr<llvm::Module> generated = generate(context);
+    times.generate_s += stopwatch.lap_s();
+    llvm::SmallVector<char, 0> made;
+    std::string error = make_object(*generated, *compiler.machine, effort, made, times);
+    return {std::string(made.data(), made.size()), std::move(error), effort};
+}
 
-    optimise(*generated, *machine(effort), effort);
-    times.optimise_s = seconds_since(start);
+void keep(const Object& object, const std::string& identity, double seconds)
+{
+    if (object.error.empty() && !object.is_from_disk && seconds > worth_keeping_s)
+        ObjectCache::shared().store(key_of(identity, object.effort), object.bytes);
+}
 
-    llvm::SmallVector<char, 0> object;
-    if (std::string error = select(*generated, effort, object); !error.empty()) return {nullptr, error};
-    times.select_s = seconds_since(start);
-
-    auto own = jit->createJITDylib("program " + std::to_string(++programs));
-    if (!own) return {nullptr, "no room for the program: " + text(own.takeError())};
-    own->addToLinkOrder(*library);
-    auto code = std::make_shared<LinkedCode>(*own);
-    auto buffer = std::make_unique<llvm::SmallVectorMemoryBuffer>(std::move(object), "textures", false);
-    if (auto error = jit->addObjectFile(*own, std::move(buffer)))
-        return {nullptr, "the program's object was refused: " + text(std::move(error))};
-    for (const EntryPoint& entry : entries) {
-        auto found = jit->lookup(*own, entry.name);
-        if (!found) return {nullptr, "linking " + entry.name + " failed: " + text(found.takeError())};
-        code->add(entry, *found);
+std::string Engine::link_kernel(const ir::Module& module, const std::string& name, const Kernel& kernel,
+                                llvm::orc::ExecutorAddr& address)
+{
+    {
+        const std::lock_guard lock(kernels_mutex);
+        const auto known = kernels.find(name);
+        if (known != kernels.end()) {
+            address = known->second;
+            return {};
+        }
     }
-    times.link_s = seconds_since(start);
+    Addresses wanted{{name, {}}};
+    Object object = found_object(name, kernel_effort);
+    if (object.bytes.empty() || !linker.link(object.bytes, {}, wanted).place) {
+        CompileTimes unused;
+        Stopwatch stopwatch;
+        object = make(kernel_effort, unused, [&](llvm::LLVMContext& context) {
+            return generate_kernel(module, name, kernel, processor, context);
+        });
+        if (!object.error.empty()) return object.error;
+        keep(object, name, stopwatch.lap_s());
+        if (Linker::Linked linked = linker.link(object.bytes, {}, wanted); !linked.place) return linked.error;
+    }
+    address = wanted.begin()->second;
+    const std::lock_guard lock(kernels_mutex);
+    kernels.emplace(name, address);
+    return {};
+}
+
+// Equal for programs of equal code: what their entries do, under which names, and where they find the parameters.
+std::string Engine::identity_of(const KernelCalls& calls, std::span<const EntryPoint> entries) const
+{
+    std::string text = target;
+    const auto add = [&](std::string_view word) { text.append(std::to_string(word.size())).append(" ").append(word); };
+    for (const EntryPoint& entry : entries) {
+        const bool is_height = entry.kind == EntryPoint::Kind::height;
+        add(entry.name);
+        add(to_text(calls.hash_of(is_height ? entry.texture->height : entry.texture->height_gradient)));
+        for (uint32_t number :
+             {uint32_t{is_height}, static_cast<uint32_t>(entry.lanes), static_cast<uint32_t>(entry.precision),
+              entry.texture->writes, static_cast<uint32_t>(entry.texture->parameters.size())})
+            add(std::to_string(number));
+        for (const ir::Parameter& parameter : entry.texture->parameters) {
+            add(std::to_string(static_cast<uint32_t>(parameter.type)));
+            add(std::to_string(parameter.offset));
+        }
+    }
+    return text;
+}
+
+// With the kernels that the object calls. An object from disk that cannot be linked leaves no code and no error.
+CodeResult Engine::link(const Object& object, const ir::Module& module, std::span<const EntryPoint> entries,
+                        const KernelCalls& calls, CompileTimes& times)
+{
+    Stopwatch stopwatch;
+    Addresses kernel_addresses, entry_addresses;
+    for (const auto& [name, kernel] : calls.used())
+        if (std::string error = link_kernel(module, name, kernel, kernel_addresses[name]); !error.empty())
+            return {nullptr, error};
+    times.kernels_s = stopwatch.lap_s();
+
+    for (const EntryPoint& entry : entries) entry_addresses[entry.name];
+    const Linker::Linked linked = linker.link(object.bytes, kernel_addresses, entry_addresses);
+    if (!linked.place) return {nullptr, object.is_from_disk ? "" : linked.error};
+    auto code = std::make_shared<LinkedCode>(*linked.place);
+    for (const EntryPoint& entry : entries) code->add(entry, entry_addresses[entry.name]);
+    times.link_s = stopwatch.lap_s();
     code->times = times;
     return {std::move(code), {}};
 }
 
-void Engine::remove(orc::JITDylib& own)
+CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options)
 {
-    // The only ways to fail are the operating system's, at unmapping; there is nobody to tell and nothing to mend.
-    llvm::consumeError(jit->getExecutionSession().removeJITDylib(own));
+    if (!fault.empty()) return {nullptr, fault};
+    CompileTimes times;
+    Stopwatch stopwatch;
+    KernelCalls calls(module, target);
+    const std::string identity = identity_of(calls, entries);
+    const auto generate_for = [&](Effort effort) {
+        const bool has_kernels = options.kernels && effort == Effort::quick;
+        return [&, has_kernels](llvm::LLVMContext& context) {
+            return generate(module, entries, processor, context, has_kernels ? &calls : nullptr);
+        };
+    };
+    Object object;
+    if (options.kernels) object = found_object(identity, options.effort);
+    if (!object.bytes.empty()) {
+        if (object.effort == Effort::quick) { // which kernels it calls
+            llvm::LLVMContext context;
+            generate_for(Effort::quick)(context);
+        }
+        times.generate_s = stopwatch.lap_s();
+        CodeResult linked = link(object, module, entries, calls, times);
+        if (linked.code || !linked.error.empty()) return linked;
+    }
+    times.generate_s = stopwatch.lap_s();
+    object = make(options.effort, times, generate_for(options.effort));
+    if (!object.error.empty()) return {nullptr, object.error};
+    if (options.kernels) keep(object, identity, stopwatch.lap_s());
+    return link(object, module, entries, calls, times);
 }
 
 } // namespace
@@ -202,14 +277,19 @@ haptel_batch_entry* Code::batch_entry(const std::string& name) const
     return found == batch_entries.end() ? nullptr : found->second;
 }
 
-CodeResult compile_code(const ir::Module& module, std::span<const EntryPoint> entries, Effort effort)
+CodeResult compile_code(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options)
 {
-    return Engine::get().compile(module, entries, effort);
+    return Engine::get().compile(module, entries, options);
 }
 
 size_t programs_alive()
 {
     return alive;
+}
+
+size_t kernels_alive()
+{
+    return Engine::get().kernel_count();
 }
 
 uint32_t batch_lanes()

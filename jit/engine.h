@@ -1,9 +1,10 @@
-// Machine code in this process: one LLJIT, one JITDylib per program, freed when its last owner lets go.
+// Machine code in this process, freed with the program that it is of; kernels (jit/kernels.h) stay. What took long to
+// make is kept on disk (jit/object_cache.h).
 //
-// Code may call the functions of code_library() and nothing else of the process. It is compiled for the host's
-// processor, every feature of it that the environment's HAPTEL_ISA leaves (jit/isa.h), but no multiplication and
-// addition are ever fused: the same program gives the same bits whatever the effort. Compiling is serialised; running
-// needs no lock.
+// Code may call the functions of code_library() and kernels, and nothing else of the process. It is compiled for the
+// host's processor, every feature of it that the environment's HAPTEL_ISA leaves (jit/isa.h), but no multiplication and
+// addition are ever fused: the same program gives the same bits whatever the effort, with kernels or without. Any
+// thread may compile: the two efforts do not wait for each other. Running needs no lock.
 #pragma once
 
 #include "jit/codegen.h"
@@ -18,13 +19,13 @@ namespace haptel::jit {
 
 // Time spent against speed of the code; never a difference in any bit of a result.
 enum class Effort : uint8_t {
-    quick, // callable soon: what a hand waits for
-    full   // all of LLVM's -O2: what a long exploration deserves
+    quick, // callable soon: what a hand waits for; calls kernels, which costs 5 ns a call
+    full   // all of LLVM's -O2 over the program with all that it calls: what a long exploration deserves
 };
 
-// Time from IR to callable, by stage, seconds.
+// Time from IR to callable, by stage, seconds; of kernels that had to be fetched or made, all in one.
 struct CompileTimes {
-    double generate_s = 0, optimise_s = 0, select_s = 0, link_s = 0;
+    double generate_s = 0, optimise_s = 0, select_s = 0, kernels_s = 0, link_s = 0;
 };
 
 // Owns the machine code of one program.
@@ -46,11 +47,19 @@ struct CodeResult {
     std::string error; // names the stage that failed; empty if there is code
 };
 
+struct CodeOptions {
+    Effort effort = Effort::quick;
+    bool kernels = true; // false: quick code too holds everything that it calls
+};
+
 // `module` must be verified.
-CodeResult compile_code(const ir::Module& module, std::span<const EntryPoint> entries, Effort effort = Effort::quick);
+CodeResult compile_code(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options = {});
 
 // Programs whose code is in memory now.
 size_t programs_alive();
+
+// Library functions that were compiled apart and are in memory (jit/kernels.h); they stay.
+size_t kernels_alive();
 
 // Points that a batch entry evaluates side by side.
 uint32_t batch_lanes();

@@ -2,7 +2,7 @@
 
 #include "jit/isa.h"
 #include "jit/llvm.h"
-#include "jit/optimise.h"
+#include "jit/machine_code.h"
 
 #include <mutex>
 
@@ -30,19 +30,10 @@ ObjectResult compile_object(const ir::Module& module, std::span<const EntryPoint
     llvm::LLVMContext context;
     const Processor of_target = processor_of(*machine);
     const std::unique_ptr<llvm::Module> generated = generate(module, entries, of_target, context);
-    generated->setDataLayout(machine->createDataLayout());
-    generated->setTargetTriple(triple);
-    llvm::raw_string_ostream problems(error);
-    if (llvm::verifyModule(*generated, &problems)) return {{}, "generated code is malformed: " + error};
-    optimise(*generated, *machine, Effort::full);
-
     llvm::SmallVector<char, 0> object;
-    llvm::raw_svector_ostream stream(object);
-    llvm::legacy::PassManager passes;
-    if (machine->addPassesToEmitFile(passes, stream, nullptr, llvm::CodeGenFileType::ObjectFile))
-        return {{}, "the code generator cannot write object files for " + triple};
-    passes.run(*generated);
-    return {std::string(object.begin(), object.end()), {}};
+    CompileTimes unused;
+    error = make_object(*generated, *machine, Effort::full, object, unused);
+    return {error.empty() ? std::string(object.begin(), object.end()) : "", error};
 }
 
 } // namespace haptel::jit

@@ -101,7 +101,8 @@ CompiledTextures compile_texture(std::string_view text, const TextureOptions& op
     std::string fault = ir::verify(checked.program->module);
     CodeResult code;
     if (fault.empty()) {
-        code = compile_code(checked.program->module, entry_points(checked.program->module, options), options.effort);
+        code = compile_code(checked.program->module, entry_points(checked.program->module, options),
+                            {options.effort, options.kernels});
         fault = code.error;
     }
     if (!fault.empty()) {

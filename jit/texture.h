@@ -56,6 +56,7 @@ struct TextureOptions {
     lang::ImportLoader load_import = {}; // empty: imports are errors
     std::string only_texture = {};       // compile this one alone; empty: all
     Effort effort = Effort::quick;
+    bool kernels = true; // of quick code; no difference but in speed, of compilation and of the code
     // Whether haptel_texture::facts are looked for, which takes longer than all else: a binding has its own.
     bool facts_over_ranges = false;
     Precision precision = Precision::f64; // of every entry

@@ -263,7 +263,7 @@ void run_program(std::string_view bytes)
     if (seed % 4 == 0)
         entries.push_back({"t'*", &texture, jit::EntryPoint::Kind::height_gradient, jit::LaneForm::points});
     const jit::CodeResult made =
-        jit::compile_code(program.module(), entries, seed % 32 == 0 ? jit::Effort::full : jit::Effort::quick);
+        jit::compile_code(program.module(), entries, {seed % 32 == 0 ? jit::Effort::full : jit::Effort::quick});
     if (!made.code) program.fail("no code: " + made.error);
     const std::vector<double> block = block_of(texture);
     Engine<double> interpreter(program, block);

@@ -47,7 +47,7 @@ public:
             entries.push_back({texture.name + "*", &texture, jit::EntryPoint::Kind::height, jit::LaneForm::points});
         }
         for (jit::Effort effort : {jit::Effort::quick, jit::Effort::full}) {
-            jit::CodeResult result = jit::compile_code(module, entries, effort);
+            jit::CodeResult result = jit::compile_code(module, entries, {effort});
             INFO(result.error);
             REQUIRE(result.code);
             code.push_back(std::move(result.code));
