@@ -224,6 +224,43 @@ void check_gradient(const Program& program, Engine<ir::Quad>& oracle, const hapt
     }
 }
 
+// What code in mixed and in f32 gives, against the truth: no further away than rounding each operation to f32 can lead.
+void check_singles(const Program& program, uint64_t seed, const std::vector<double>& block)
+{
+    const ir::Texture& texture = program.texture();
+    std::vector<jit::EntryPoint> entries;
+    for (const auto precision : {jit::Precision::mixed, jit::Precision::f32})
+        entries.push_back({"t" + std::to_string(entries.size()), &texture, jit::EntryPoint::Kind::height_gradient,
+                           jit::LaneForm::one, precision});
+    const jit::CodeResult made = jit::compile_code(program.module(), entries);
+    if (!made.code) program.fail("no code in mixed and f32: " + made.error);
+    Ball::in_singles = true;
+    Engine<Ball> truth(program, block);
+    std::mt19937_64 random(seed);
+    for (int i = 0; i < 4; ++i) {
+        const haptel_point point = random_point(random);
+        Ball::undecided = false;
+        const std::array<Ball, 4> balls = truth.run(point);
+        count(Ball::undecided ? "where rounding to f32 decides" : "compared in f32");
+        for (const jit::EntryPoint& entry : entries) {
+            haptel_sample sample{};
+            made.code->entry(entry.name)(&point, block.data(), &sample);
+            const double found[] = {sample.height_m, sample.gradient[0], sample.gradient[1], sample.gradient[2]};
+            for (size_t j = 0; j < 4; ++j) {
+                if (!std::isfinite(found[j])) program.fail("an entry in singles returned what is not finite");
+                if (Ball::undecided || sample.faults != truth.faults || balls[j].may_be(found[j])) continue;
+                char row[200];
+                std::snprintf(row, sizeof row, "%s: result %zu is %.9g, exact %.17g, by rounding +-%.3g",
+                              entry.name == "t0" ? "mixed" : "f32", j, found[j], static_cast<double>(balls[j].middle),
+                              static_cast<double>(balls[j].radius));
+                program.fail(row);
+            }
+            if (!Ball::undecided && sample.faults != truth.faults) program.fail("other faults in singles");
+        }
+    }
+    Ball::in_singles = false;
+}
+
 // In every precision, with the iterations of loops in lanes: the height alone is that with the gradient.
 void check_iterations(const Program& program, uint64_t seed, const std::vector<double>& block)
 {
@@ -234,7 +271,7 @@ void check_iterations(const Program& program, uint64_t seed, const std::vector<d
     };
     const std::vector<jit::EntryPoint> entries = {entry("t", jit::EntryPoint::Kind::height),
                                                   entry("t'", jit::EntryPoint::Kind::height_gradient)};
-    const jit::CodeResult made = jit::compile_code(program.module(), entries, jit::Effort::quick);
+    const jit::CodeResult made = jit::compile_code(program.module(), entries);
     if (!made.code) program.fail("no code with iterations in lanes: " + made.error);
     std::mt19937_64 random(seed);
     for (int i = 0; i < 4; ++i) {
@@ -296,6 +333,7 @@ void run_program(std::string_view bytes)
         if (i == 0 && program.source.find("detach(") == std::string::npos) check_gradient(program, oracle, point);
     }
     if (seed % 8 == 2) check_iterations(program, seed, block);
+    if (seed % 8 == 6) check_singles(program, seed, block);
     if (haptel_batch_entry* const many = made.code->batch_entry("t'*")) lanes.check(program, many, block.data());
     count("programs");
 }

@@ -8,11 +8,31 @@
 namespace haptel::test {
 namespace {
 
-using Limits = std::numeric_limits<double>;
-
 // Rounding in units of half an ulp (2^-53 of the number): an IEEE operation makes one at most. The C library promises
 // elementary functions to 2 ulp ("Errors in Math Functions" of the glibc manual; most are better).
 constexpr int one_rounding = 1, library = 4;
+
+// What operations round to.
+struct Format {
+    double half_ulp, least, largest, whole_beyond;
+};
+template <typename Real>
+constexpr Format format_of()
+{
+    using Limits = std::numeric_limits<Real>;
+    return {Limits::epsilon() / 2, Limits::denorm_min(), Limits::max(), 1 / double(Limits::epsilon())};
+}
+const Format& format()
+{
+    // A float may be rounded from a double that was rounded itself.
+    static constexpr Format of_double = format_of<double>();
+    static constexpr Format of_float = [] {
+        Format format = format_of<float>();
+        format.half_ulp *= 1 + 0x1p-20;
+        return format;
+    }();
+    return Ball::in_singles ? of_float : of_double;
+}
 
 Quad infinite()
 {
@@ -22,10 +42,11 @@ Quad infinite()
 // What an operation gives, rounded, whose exact result lies no further than `reach` from `middle`.
 Ball rounded(const Quad& middle, const Quad& reach, int units = one_rounding)
 {
+    const Format& in = format();
     const Quad size = fabs(middle) + reach;
-    if (!(size <= Quad(Limits::max()))) return {middle, infinite()};
+    if (!(size <= Quad(in.largest))) return {middle, infinite()};
     if (size == 0) return {middle, 0};
-    return {middle, Quad(reach + units * (size * Quad(Limits::epsilon() / 2) + Quad(Limits::denorm_min())))};
+    return {middle, Quad(reach + units * (size * Quad(in.half_ulp) + Quad(in.least)))};
 }
 
 Quad low(const Ball& a)
@@ -70,13 +91,13 @@ Ball of_wave(const Ball& a, const Quad& middle, const Quad& slope)
     return rounded(middle, near <= 2 ? near : Quad(2), library);
 }
 
-// Of a step function: the cell is the same wherever decisions are. Beyond 2^53 every double is whole.
+// Of a step function: the cell is the same wherever decisions are. Beyond 2^52 every double is whole.
 template <typename Function>
 Ball of_steps(const Ball& a, const Function& f)
 {
     const Quad first = f(low(a)), last = f(high(a)); // of zeros the sign counts, as in Interpreter::decisions
     decide(a.radius == 0 || (first == last && signbit(first) == signbit(last)));
-    const bool is_whole = !(fabs(a.middle) + a.radius < Quad(0x1p53));
+    const bool is_whole = !(fabs(a.middle) + a.radius < Quad(format().whole_beyond));
     return {f(a.middle), is_whole ? Quad(a.radius + 1) : Quad(0)};
 }
 
@@ -88,6 +109,7 @@ bool are_apart(const Ball& a, const Ball& b)
 } // namespace
 
 thread_local bool Ball::undecided = false;
+thread_local bool Ball::in_singles = false;
 
 bool Ball::may_be(double found) const
 {

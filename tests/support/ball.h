@@ -1,4 +1,4 @@
-// A number as double may have it: the exact one, and how far rounding may lead away from it.
+// A number as double, or float, may have it: the exact one, and how far rounding may lead away from it.
 //
 // The interpreter over balls gives, beside the 113-bit truth, a bound of |double - truth| that holds for every engine
 // that rounds each operation once: no constant is chosen by what was measured. It holds where both take the same
@@ -9,6 +9,8 @@
 #include "lang/ir/interpret.h"
 #include "lang/ir/quad.h"
 
+#include <cmath>
+#include <limits>
 #include <type_traits>
 
 namespace haptel::test {
@@ -22,6 +24,9 @@ struct Ball {
     template <typename Number, typename = std::enable_if_t<std::is_arithmetic_v<Number>>>
     Ball(Number exact) : middle(exact)
     {
+        if (!in_singles || !std::isfinite(static_cast<double>(exact))) return;
+        const double off = std::fabs(static_cast<double>(static_cast<float>(exact)) - static_cast<double>(exact));
+        radius = std::isfinite(off) ? Quad(off) : std::numeric_limits<Quad>::infinity();
     }
     Ball(const Quad& around, const Quad& reach) : middle(around), radius(reach) {}
 
@@ -32,7 +37,8 @@ struct Ball {
     // Whether double may have this for the exact `middle`.
     bool may_be(double found) const;
 
-    static thread_local bool undecided; // since somebody set it to false
+    static thread_local bool undecided;  // since somebody set it to false
+    static thread_local bool in_singles; // what is made from now on may be rounded to f32
 };
 
 } // namespace haptel::test
