@@ -2,6 +2,7 @@
 #include "jit/oracle.h"
 #include "tests/conformance/case.h"
 #include "tests/conformance/folder.h"
+#include "tests/conformance/request.h"
 #include "tests/jit/engines.h"
 
 #include <cstring>
@@ -11,23 +12,6 @@ using namespace haptel::lang::test;
 using haptel::test::same;
 
 namespace {
-
-TextureRequest request_for(const jit::CompiledProgram& program, const Evaluation& at)
-{
-    TextureRequest request;
-    for (size_t i = 0; i < 3; ++i) {
-        request.box_minimum_m[i] = at.head.center[i] - at.head.extent[i] / 2;
-        request.box_maximum_m[i] = at.head.center[i] + at.head.extent[i] / 2;
-    }
-    request.footprint_m = at.head.footprint_m;
-    const haptel_texture& texture = program.textures().back();
-    for (const auto& [name, value] : at.parameters)
-        for (uint32_t i = 0; i < texture.parameter_count; ++i)
-            if (name == texture.parameters[i].name)
-                request.parameters.emplace_back(
-                    name, texture.parameters[i].type == HAPTEL_BOOL ? (value == "0" ? "false" : "true") : value);
-    return request;
-}
 
 Outcome outcome_of(const haptel_sample& sample)
 {

@@ -1,60 +1,23 @@
 // Many points at once: each sample of a batch is that of the entry for one point, bit for bit.
 #include "jit/uniformity.h"
 #include "lang/ir/text.h"
+#include "tests/jit/batch.h"
 #include "tests/jit/samples.h"
 
 #include <filesystem>
 #include <random>
 
 using namespace haptel;
+using test::Batch, test::same;
 
 namespace {
-
-constexpr size_t reals = sizeof(haptel_point) / sizeof(double);
-
-// Numbers of a batch, an array each, as haptel_points and haptel_samples want them.
-struct Batch {
-    explicit Batch(const std::vector<haptel_point>& of) : count(of.size()), inputs(reals, std::vector<double>(count))
-    {
-        for (size_t i = 0; i < count; ++i)
-            for (size_t j = 0; j < inputs.size(); ++j)
-                std::memcpy(&inputs[j][i], reinterpret_cast<const char*>(&of[i]) + j * sizeof(double), sizeof(double));
-        const double* arrays[reals];
-        for (size_t j = 0; j < inputs.size(); ++j) arrays[j] = inputs[j].data();
-        static_assert(sizeof points == sizeof arrays);
-        std::memcpy(&points, arrays, sizeof points);
-        samples = {outputs[0].data(),
-                   {outputs[1].data(), outputs[2].data(), outputs[3].data()},
-                   outputs[4].data(),
-                   outputs[5].data(),
-                   faults.data()};
-    }
-    haptel_sample sample(size_t i) const
-    {
-        return {outputs[0][i], {outputs[1][i], outputs[2][i], outputs[3][i]}, outputs[4][i], outputs[5][i], faults[i]};
-    }
-
-    size_t count;
-    std::vector<std::vector<double>> inputs, outputs = std::vector(6, std::vector<double>(count));
-    std::vector<uint32_t> faults = std::vector<uint32_t>(count);
-    haptel_points points{};
-    haptel_samples samples{};
-};
-
-bool same(const haptel_sample& a, const haptel_sample& b)
-{
-    bool equal = a.faults == b.faults && test::same(a.height_m, b.height_m) &&
-                 test::same(a.stiffness_scale, b.stiffness_scale) && test::same(a.friction_scale, b.friction_scale);
-    for (size_t i = 0; i < 3; ++i) equal = equal && test::same(a.gradient[i], b.gradient[i]);
-    return equal;
-}
 
 std::vector<haptel_point> random_points(size_t count, std::mt19937_64& random)
 {
     std::uniform_real_distribution<double> unit(-1, 1), exponent(-6, 3);
     std::vector<haptel_point> points(count);
     for (haptel_point& point : points) {
-        double held[reals];
+        double held[Batch::reals];
         for (double& real : held) real = unit(random) * (random() % 8 == 0 ? std::pow(10, exponent(random)) : 0.05);
         std::memcpy(&point, held, sizeof point);
     }
