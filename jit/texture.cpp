@@ -31,7 +31,8 @@ haptel_parameter described(const ir::Parameter& parameter)
 std::vector<EntryPoint> entry_points(const ir::Module& module, const TextureOptions& options)
 {
     const Entries wanted = options.entries;
-    const Precision precision = options.precision;
+    const Precision precision = options.precision.value_or(Precision::f64),
+                    of_many_precision = options.precision.value_or(Precision::mixed);
     const LaneForm one =
         precision != Precision::f64 && options.iterations_in_lanes ? LaneForm::iterations : LaneForm::one;
     std::vector<EntryPoint> entries;
@@ -45,7 +46,7 @@ std::vector<EntryPoint> entry_points(const ir::Module& module, const TextureOpti
     const size_t of_one = wanted == Entries::both_and_batches ? entries.size() : 0;
     for (size_t i = 0; i < of_one; ++i)
         entries.push_back(
-            {entries[i].name + of_many, entries[i].texture, entries[i].kind, LaneForm::points, precision});
+            {entries[i].name + of_many, entries[i].texture, entries[i].kind, LaneForm::points, of_many_precision});
     return entries;
 }
 

@@ -59,7 +59,7 @@ struct TextureOptions {
     bool kernels = true; // of quick code; no difference but in speed, of compilation and of the code
     // Whether haptel_texture::facts are looked for, which takes longer than all else: a binding has its own.
     bool facts_over_ranges = false;
-    Precision precision = Precision::f64; // of every entry
+    std::optional<Precision> precision = {}; // of every entry; none: f64 for one point, mixed for many
     // For one point, where the precision is not f64: iterations of loops in lanes. Else in the batches' order, bit for
     // bit.
     bool iterations_in_lanes = true;

@@ -62,6 +62,7 @@ ExitCode draw(const PlotOptions& options)
     jit::TextureOptions compile;
     compile.entries = jit::Entries::both_and_batches;
     compile.only_texture = options.texture.name;
+    if (options.kind == "gradient-error") compile.precision = jit::Precision::f64; // whose error it is
     const jit::CompiledTextures compiled = jit::compile_texture_file(options.texture.file, compile);
     fmt::print(stderr, "{}", compiled.rendered(stderr_has_color()));
     if (!compiled.program) return ExitCode::findings;
