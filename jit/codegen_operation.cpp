@@ -1,7 +1,9 @@
 #include "jit/codegen_operation.h"
 
 #include "jit/codegen.h"
+#include "jit/codegen_math.h"
 #include "jit/codegen_turn.h"
+#include "lang/ir/elementary_number.h"
 #include "lang/ir/spline.h"
 
 #include <cmath>
@@ -15,17 +17,12 @@ namespace {
 using llvm::Value;
 using Unary = double (*)(double);
 using UnarySingle = float (*)(float);
-using Binary = double (*)(double, double);
 
 void* address(Unary function)
 {
     return reinterpret_cast<void*>(function);
 }
 void* address(UnarySingle function)
-{
-    return reinterpret_cast<void*>(function);
-}
-void* address(Binary function)
 {
     return reinterpret_cast<void*>(function);
 }
@@ -72,41 +69,24 @@ private:
     Value* floor(Value* x) { return intrinsic(llvm::Intrinsic::floor, x); }
     Value* choose(Value* condition, Value* x, Value* y) { return builder.CreateSelect(condition, x, y); }
 
-    Value* call(const char* name) { return call(name, operands); }
-    Value* call(const char* name, std::span<Value* const> arguments);
     Value* read_image(const char* name, llvm::Type* result);
-    Value* call(const char* name, llvm::Type* result, std::span<Value* const> arguments, llvm::MemoryEffects effects);
     Value* in_each_lane(llvm::Function* function, const std::vector<Value*>& arguments);
     Value* lesser(Value* x, Value* y, bool greater = false);
     Value* sign();
     Value* length();
     Value* way_to_whole_turn() { return builder.CreateFSub(a(), intrinsic(llvm::Intrinsic::roundeven, a())); }
-    Value* angle();
     Value* divide(bool want_remainder);
     Value* divide_unsigned(bool want_remainder);
     Value* shift_count() { return builder.CreateAnd(b(), word(31)); }
     Value* saturate(bool is_signed);
 };
 
-// Pure and total: may be moved, shared or dropped.
-Value* Emitter::call(const char* name, std::span<Value* const> arguments)
-{
-    return call(name, builder.getDoubleTy(), arguments, llvm::MemoryEffects::none());
-}
-
-// Total, and reads what no one writes while code runs.
+// Lane by lane, in f64. Total, and reads what no one writes while code runs.
 Value* Emitter::read_image(const char* name, llvm::Type* result)
-{
-    return call(name, result, operands, llvm::MemoryEffects::readOnly());
-}
-
-// Lane by lane, in f64.
-Value* Emitter::call(const char* name, llvm::Type* result, std::span<Value* const> arguments,
-                     llvm::MemoryEffects effects)
 {
     std::vector<Value*> wide;
     std::vector<llvm::Type*> types;
-    for (Value* argument : arguments) {
+    for (Value* argument : operands) {
         const bool is_float = argument->getType()->getScalarType()->isFloatTy();
         wide.push_back(is_float ? builder.CreateFPExt(argument, as(builder.getDoubleTy())) : argument);
         types.push_back(wide.back()->getType()->getScalarType());
@@ -115,7 +95,7 @@ Value* Emitter::call(const char* name, llvm::Type* result, std::span<Value* cons
     auto* type = llvm::FunctionType::get(result, types, false);
     auto* function = llvm::cast<llvm::Function>(module->getOrInsertFunction(name, type).getCallee());
     function->setDoesNotThrow();
-    function->setMemoryEffects(effects);
+    function->setMemoryEffects(llvm::MemoryEffects::readOnly());
     function->setWillReturn();
     Value* results = vector ? in_each_lane(function, wide) : builder.CreateCall(function, wide);
     return result->isDoubleTy() && is_single() ? builder.CreateFPTrunc(results, reals()) : results;
@@ -176,12 +156,6 @@ Value* Emitter::length()
         sum = sum ? builder.CreateFAdd(sum, square) : square;
     }
     return builder.CreateFMul(intrinsic(llvm::Intrinsic::sqrt, sum), unscale);
-}
-
-Value* Emitter::angle()
-{
-    Value* at_origin = builder.CreateAnd(builder.CreateFCmpOEQ(a(), real(0)), builder.CreateFCmpOEQ(b(), real(0)));
-    return choose(at_origin, real(0), call("haptel_atan2"));
 }
 
 // The processor's division traps at 0 and at INT_MIN / -1: it gets a divisor of 1 there.
@@ -245,26 +219,26 @@ Value* Emitter::emit(ir::Op op, llvm::Type* result, bool fuses)
     case Op::length2:
     case Op::length3:
     case Op::length4: return length();
-    case Op::sin: return call("haptel_sin");
-    case Op::cos: return call("haptel_cos");
-    case Op::tan: return call("haptel_tan");
     case Op::sinturn: return sine_of_turns(builder, way_to_whole_turn(), result, fuses);
     case Op::costurn: return cosine_of_turns(builder, way_to_whole_turn(), result, fuses);
-    case Op::asin: return call("haptel_asin");
-    case Op::acos: return call("haptel_acos");
-    case Op::atan: return call("haptel_atan");
-    case Op::atan2: return angle();
-    case Op::sinh: return call("haptel_sinh");
-    case Op::cosh: return call("haptel_cosh");
-    case Op::tanh: return call("haptel_tanh");
-    case Op::asinh: return call("haptel_asinh");
-    case Op::acosh: return call("haptel_acosh");
-    case Op::atanh: return call("haptel_atanh");
-    case Op::exp: return call("haptel_exp");
-    case Op::exp2: return call("haptel_exp2");
-    case Op::log: return call("haptel_log");
-    case Op::log2: return call("haptel_log2");
-    case Op::pow: return call("haptel_pow");
+    case Op::sin:
+    case Op::cos:
+    case Op::tan:
+    case Op::asin:
+    case Op::acos:
+    case Op::atan:
+    case Op::atan2:
+    case Op::sinh:
+    case Op::cosh:
+    case Op::tanh:
+    case Op::asinh:
+    case Op::acosh:
+    case Op::atanh:
+    case Op::exp:
+    case Op::exp2:
+    case Op::log:
+    case Op::log2:
+    case Op::pow: return call_elementary(builder, op, operands, result);
     case Op::lt: return builder.CreateFCmpOLT(a(), b());
     case Op::le: return builder.CreateFCmpOLE(a(), b());
     case Op::eq: return builder.CreateFCmpOEQ(a(), b());
@@ -323,27 +297,10 @@ llvm::Value* emit_operation(llvm::IRBuilder<>& builder, ir::Op op, std::span<llv
 std::span<const LibraryFunction> code_library()
 {
     static const LibraryFunction functions[] = {
-        {"haptel_sin", address(Unary(std::sin))},
-        {"haptel_cos", address(Unary(std::cos))},
-        {"haptel_tan", address(Unary(std::tan))},
-        {"haptel_asin", address(Unary(std::asin))},
-        {"haptel_acos", address(Unary(std::acos))},
-        {"haptel_atan", address(Unary(std::atan))},
-        {"haptel_atan2", address(Binary(std::atan2))},
-        {"haptel_sinh", address(Unary(std::sinh))},
-        {"haptel_cosh", address(Unary(std::cosh))},
-        {"haptel_tanh", address(Unary(std::tanh))},
-        {"haptel_asinh", address(Unary(std::asinh))},
-        {"haptel_acosh", address(Unary(std::acosh))},
-        {"haptel_atanh", address(Unary(std::atanh))},
-        {"haptel_exp", address(Unary(std::exp))},
-        {"haptel_exp2", address(Unary(std::exp2))},
-        {"haptel_log", address(Unary(std::log))},
-        {"haptel_log2", address(Unary(std::log2))},
+        {"haptel_reduce_angles", reinterpret_cast<void*>(&ir::elementary::reduce_huge_angles)},
         {"haptel_spline", reinterpret_cast<void*>(&spline_of_doubles)},
         {"haptel_image_width", reinterpret_cast<void*>(&ir::image_width)},
         {"haptel_image_height", reinterpret_cast<void*>(&ir::image_height)},
-        {"haptel_pow", address(Binary(std::pow))},
         // What the instruction selector calls by itself where the processor has no such instruction. All are exact or
         // correctly rounded.
         {"floor", address(Unary(std::floor))},

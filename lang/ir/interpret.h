@@ -1,7 +1,7 @@
 // The slow, plain evaluator: the oracle that every other engine is compared with.
 //
-// Over double it gives the same bits as f64 code (elementary functions are the C library's in both, for now); over Quad
-// it is the truth to about 34 digits, with branches and cells decided at that precision.
+// Over double it gives the same bits as f64 code (elementary functions too, see elementary_number.h); over Quad it
+// is the truth to about 34 digits, with branches and cells decided at that precision.
 #pragma once
 
 #include "lang/ir/ir.h"

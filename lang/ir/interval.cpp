@@ -161,7 +161,7 @@ Interval tangent(const Interval& a)
     if (cell != other || !(std::fabs(cell) < 1e9) ||
         to_pole < 1e-15 * (1 + std::fabs(a.minimum) + std::fabs(a.maximum)))
         return {-infinity, infinity, may_be_infinite(a)};
-    return rising(a, [](double x) { return std::tan(x); });
+    return rising(a, [](double x) { return elementary_f64(Op::tan, x); });
 }
 
 Interval angle(const Interval& y, const Interval& x)
@@ -216,7 +216,7 @@ Interval power(const Interval& a, const Interval& b)
         Interval all = empty;
         for (double x : {base.minimum, base.maximum})
             for (double y : {b.minimum, b.maximum}) {
-                double value = std::pow(x, y);
+                double value = elementary_f64(Op::pow, x, y);
                 all = {std::min(all.minimum, value), std::max(all.maximum, value), false};
             }
         return Interval{std::max(0.0, down(all.minimum, 4)), up(all.maximum, 4)};
@@ -227,7 +227,7 @@ Interval power(const Interval& a, const Interval& b)
     const bool is_whole = b.is_point() && std::isfinite(b.minimum) && b.minimum == std::floor(b.minimum);
     if (!is_whole) return {-size.maximum, size.maximum, true};
     if (std::fmod(b.minimum, 2) == 0) return size;
-    double low = std::pow(a.minimum, b.minimum), high = std::pow(a.maximum, b.minimum);
+    double low = elementary_f64(Op::pow, a.minimum, b.minimum), high = elementary_f64(Op::pow, a.maximum, b.minimum);
     return {down(std::min(low, high), 4), up(std::max(low, high), 4)};
 }
 
@@ -287,7 +287,7 @@ Interval value_of(Op op, std::span<const Interval> x)
     const Interval& a = x[0];
     const Interval& b = x.size() > 1 ? x[1] : x[0];
     const auto rounding = [&](double (*f)(double)) { return rising(a, f, true); };
-    const auto smooth = [&](double (*f)(double)) { return rising(a, f); };
+    const auto elementary = [op](double v) { return elementary_f64(op, v); };
     switch (op) {
     case Op::add: return add(a, b);
     case Op::sub: return add(a, negated(b));
@@ -317,25 +317,25 @@ Interval value_of(Op op, std::span<const Interval> x)
     case Op::length2:
     case Op::length3:
     case Op::length4: return length(x);
-    case Op::sin: return wave(a, 2 * pi, pi / 2, [](double v) { return std::sin(v); });
-    case Op::cos: return wave(a, 2 * pi, 0, [](double v) { return std::cos(v); });
+    case Op::sin: return wave(a, 2 * pi, pi / 2, elementary);
+    case Op::cos: return wave(a, 2 * pi, 0, elementary);
     case Op::tan: return tangent(a);
     case Op::sinturn: return wave(a, 1, 0.25, [](double v) { return semantics::sine_of_turns(v); });
     case Op::costurn: return wave(a, 1, 0, [](double v) { return semantics::cosine_of_turns(v); });
-    case Op::asin: return rising_within(a, -1, 1, [](double v) { return std::asin(v); });
-    case Op::acos: return negated(rising_within(a, -1, 1, [](double v) { return -std::acos(v); }));
-    case Op::atan: return smooth(std::atan);
+    case Op::asin: return rising_within(a, -1, 1, elementary);
+    case Op::acos: return negated(rising_within(a, -1, 1, [](double v) { return -elementary_f64(Op::acos, v); }));
+    case Op::atan: return rising(a, elementary);
     case Op::atan2: return angle(a, b);
-    case Op::sinh: return smooth(std::sinh);
-    case Op::cosh: return rising(absolute(a), [](double v) { return std::cosh(v); });
-    case Op::tanh: return smooth(std::tanh);
-    case Op::asinh: return smooth(std::asinh);
-    case Op::acosh: return rising_within(a, 1, infinity, [](double v) { return std::acosh(v); });
-    case Op::atanh: return rising_within(a, -1, 1, [](double v) { return std::atanh(v); });
-    case Op::exp: return smooth(std::exp);
-    case Op::exp2: return smooth(std::exp2);
-    case Op::log: return rising_within(a, 0, infinity, [](double v) { return std::log(v); });
-    case Op::log2: return rising_within(a, 0, infinity, [](double v) { return std::log2(v); });
+    case Op::sinh: return rising(a, elementary);
+    case Op::cosh: return rising(absolute(a), elementary);
+    case Op::tanh: return rising(a, elementary);
+    case Op::asinh: return rising(a, elementary);
+    case Op::acosh: return rising_within(a, 1, infinity, elementary);
+    case Op::atanh: return rising_within(a, -1, 1, elementary);
+    case Op::exp: return rising(a, elementary);
+    case Op::exp2: return rising(a, elementary);
+    case Op::log: return rising_within(a, 0, infinity, elementary);
+    case Op::log2: return rising_within(a, 0, infinity, elementary);
     case Op::pow: return power(a, b);
     case Op::spline: return {-infinity, infinity, true}; // images are the evaluator's to know
     case Op::image_width:

@@ -3,14 +3,16 @@
 //
 // Three classes for code generation:
 //   image calls    spline image_width image_height call the functions of spline.h
-//   library calls  sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp exp2 log log2 pow atan2 call the C
-//                  library's function of that name (atan2 after the test for the origin).
+//   elementary     sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp exp2 log log2 pow atan2 are
+//   templates
+//                  over what code is made of (elementary_number.h), so that every engine takes the same steps.
 //   inline         everything else, in IEEE arithmetic rounded to nearest, in the order written here. fma, sqrt, floor,
 //                  ceil, trunc and round-to-even are exact or correctly rounded, so that an instruction and the library
 //                  agree.
 // Bits of a NaN are not part of the meaning: no operation can see them.
 #pragma once
 
+#include "lang/ir/elementary.h"
 #include "lang/ir/ir.h"
 #include "lang/ir/spline.h"
 #include "lang/ir/turn_polynomials.h"
@@ -222,6 +224,45 @@ T angle(const T& y, const T& x)
     return y == T(0) && x == T(0) ? T(0) : T(atan2(y, x));
 }
 
+inline double angle(double y, double x)
+{
+    return elementary_f64(Op::atan2, y, x);
+}
+
+// For is_elementary(op): exact functions of an oracle's number, and those of this project for double.
+template <typename T>
+T elementary_value(Op op, const T& a, const T& b)
+{
+    using std::acos, std::acosh, std::asin, std::asinh, std::atan, std::atanh, std::cos, std::cosh, std::exp, std::exp2,
+        std::log, std::log2, std::pow, std::sin, std::sinh, std::tan, std::tanh;
+    switch (op) {
+    case Op::sin: return sin(a);
+    case Op::cos: return cos(a);
+    case Op::tan: return tan(a);
+    case Op::asin: return asin(a);
+    case Op::acos: return acos(a);
+    case Op::atan: return atan(a);
+    case Op::atan2: return angle(a, b);
+    case Op::sinh: return sinh(a);
+    case Op::cosh: return cosh(a);
+    case Op::tanh: return tanh(a);
+    case Op::asinh: return asinh(a);
+    case Op::acosh: return acosh(a);
+    case Op::atanh: return atanh(a);
+    case Op::exp: return exp(a);
+    case Op::exp2: return exp2(a);
+    case Op::log: return log(a);
+    case Op::log2: return log2(a);
+    case Op::pow: return pow(a, b);
+    default: return a;
+    }
+}
+
+inline double elementary_value(Op op, double a, double b)
+{
+    return elementary_f64(op, a, b);
+}
+
 template <typename T>
 uint32_t to_i32(const T& a)
 {
@@ -258,9 +299,7 @@ template <typename T>
 inline void execute(Op op, Slot<T>& result, const Slot<T>& a, const Slot<T>& b, const Slot<T>& c, const Slot<T>& d)
 {
     namespace s = semantics;
-    using std::acos, std::acosh, std::asin, std::asinh, std::atan, std::atanh, std::ceil, std::cos, std::cosh, std::exp,
-        std::exp2, std::fabs, std::floor, std::log, std::log2, std::pow, std::sin, std::sinh, std::sqrt, std::tan,
-        std::tanh, std::trunc;
+    using std::ceil, std::fabs, std::floor, std::sqrt, std::trunc;
     auto i32 = [](const Slot<T>& slot) { return static_cast<int32_t>(slot.bits); };
     switch (op) {
     case Op::add: result.real = a.real + b.real; return;
@@ -295,26 +334,26 @@ inline void execute(Op op, Slot<T>& result, const Slot<T>& a, const Slot<T>& b, 
         result.real = s::length(x, 4);
         return;
     }
-    case Op::sin: result.real = sin(a.real); return;
-    case Op::cos: result.real = cos(a.real); return;
-    case Op::tan: result.real = tan(a.real); return;
     case Op::sinturn: result.real = s::sine_of_turns(a.real); return;
     case Op::costurn: result.real = s::cosine_of_turns(a.real); return;
-    case Op::asin: result.real = asin(a.real); return;
-    case Op::acos: result.real = acos(a.real); return;
-    case Op::atan: result.real = atan(a.real); return;
-    case Op::atan2: result.real = s::angle(a.real, b.real); return;
-    case Op::sinh: result.real = sinh(a.real); return;
-    case Op::cosh: result.real = cosh(a.real); return;
-    case Op::tanh: result.real = tanh(a.real); return;
-    case Op::asinh: result.real = asinh(a.real); return;
-    case Op::acosh: result.real = acosh(a.real); return;
-    case Op::atanh: result.real = atanh(a.real); return;
-    case Op::exp: result.real = exp(a.real); return;
-    case Op::exp2: result.real = exp2(a.real); return;
-    case Op::log: result.real = log(a.real); return;
-    case Op::log2: result.real = log2(a.real); return;
-    case Op::pow: result.real = pow(a.real, b.real); return;
+    case Op::sin:
+    case Op::cos:
+    case Op::tan:
+    case Op::asin:
+    case Op::acos:
+    case Op::atan:
+    case Op::atan2:
+    case Op::sinh:
+    case Op::cosh:
+    case Op::tanh:
+    case Op::asinh:
+    case Op::acosh:
+    case Op::atanh:
+    case Op::exp:
+    case Op::exp2:
+    case Op::log:
+    case Op::log2:
+    case Op::pow: result.real = s::elementary_value(op, a.real, b.real); return;
     case Op::lt: result.bits = a.real < b.real; return;
     case Op::le: result.bits = a.real <= b.real; return;
     case Op::eq: result.bits = a.real == b.real; return;

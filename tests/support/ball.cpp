@@ -8,8 +8,8 @@
 namespace haptel::test {
 namespace {
 
-// Rounding in units of half an ulp (2^-53 of the number): an IEEE operation makes one at most. The C library promises
-// elementary functions to 2 ulp ("Errors in Math Functions" of the glibc manual; most are better).
+// Rounding in units of half an ulp (2^-53 of the number): an IEEE operation makes one at most. Elementary functions are
+// right to 2 ulp, many to 1 (ir::elementary_error); turn forms to 2 beside the rounding of 2 pi.
 constexpr int one_rounding = 1, library = 4;
 
 // What operations round to.
