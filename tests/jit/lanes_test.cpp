@@ -150,6 +150,41 @@ TEST_CASE("mixed precision keeps its place within a cell, however far away; f32 
     }
 }
 
+TEST_CASE("mixed precision keeps its place in every texture of the library and of the examples", "[code]")
+{
+    for (const std::string& file : texture_files()) {
+        jit::TextureOptions options;
+        const jit::CompiledTextures exact = jit::compile_texture_file(file, options);
+        options.precision = jit::Precision::mixed;
+        const jit::CompiledTextures mixed = jit::compile_texture_file(file, options);
+        REQUIRE((exact.program && mixed.program));
+        for (size_t i = 0; i < exact.program->textures().size(); ++i) {
+            const haptel_texture& texture = exact.program->textures()[i];
+            INFO(file << " " << texture.name);
+            const TextureResult bound =
+                jit::make_binding(exact.program, texture.name, test::request_over(0.05), jit::Unbounded::allowed);
+            REQUIRE(bound.binding);
+            std::mt19937_64 random(7);
+            std::uniform_real_distribution<double> place(-1e3, 1e3); // wavelengths are some millimetres
+            double largest = 0, off = 0, highest = 0, height_off = 0;
+            for (int k = 0; k < 500; ++k) {
+                const haptel_point point{{place(random), place(random), place(random)}, {0, 0, 1}, {}, 0, {}, {}};
+                haptel_sample truth{}, found{};
+                texture.height_gradient(&point, bound.binding->block, &truth);
+                mixed.program->textures()[i].height_gradient(&point, bound.binding->block, &found);
+                highest = std::max(highest, std::fabs(truth.height_m));
+                height_off = std::max(height_off, std::fabs(found.height_m - truth.height_m));
+                for (size_t axis = 0; axis < 3; ++axis) {
+                    largest = std::max(largest, std::fabs(truth.gradient[axis]));
+                    off = std::max(off, std::fabs(found.gradient[axis] - truth.gradient[axis]));
+                }
+            }
+            CHECK(height_off <= 2e-5 * highest);
+            CHECK(off <= 2e-5 * largest);
+        }
+    }
+}
+
 TEST_CASE("what the block holds is one for all lanes, what the point holds is not")
 {
     const ir::ParsedModule parsed = ir::parse(R"(function "f" () {

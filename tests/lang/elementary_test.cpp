@@ -121,7 +121,8 @@ TEST_CASE("elementary functions keep the symmetry of what they stand for")
     }
 }
 
-TEST_CASE("elementary functions fall by no more than a unit in the last place from one double to the next where they should rise")
+TEST_CASE("elementary functions fall by no more than a unit in the last place from one double to the next where they "
+          "should rise")
 {
     for (const Op op : {Op::exp, Op::exp2, Op::log, Op::log2, Op::sinh, Op::asinh, Op::atan, Op::tanh})
         for (const auto& [a, b] : elementary_arguments(op, 2000)) {
