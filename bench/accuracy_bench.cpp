@@ -1,15 +1,13 @@
 #include "bench/accuracy_bench.h"
 
+#include "bench/accuracy_points.h"
+#include "bench/accuracy_verdict.h"
 #include "bench/plain_entries.h"
-#include "jit/oracle.h"
-#include "jit/texture.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <map>
 #include <memory>
-#include <random>
 
 namespace haptel::bench {
 namespace {
@@ -24,79 +22,33 @@ struct Case {
 };
 constexpr Case cases[] = {{"noise", "noise(p / 1m)", Field::noise},
                           {"perlin", "perlin(p / 1m)", Field::perlin},
+                          {"fbm1", "fbm(p / 1m, 1)", Field::fbm1},
+                          {"fbm2", "fbm(p / 1m, 2)", Field::fbm2},
+                          {"fbm4", "fbm(p / 1m, 4)", Field::fbm4},
                           {"fbm8", "fbm(p / 1m, 8)", Field::fbm8},
                           {"gardner7", "fourier(p.xy / 1m, 7)", Field::gardner7}};
 
-jit::CompiledTextures compiled(const Case& one, jit::Precision precision)
+// Our precisions and lane forms of one point; a batch comes with each of the first three.
+struct Variant {
+    jit::Precision precision;
+    const char* name;
+    bool iterations_in_lanes;
+};
+constexpr Variant variants[] = {{jit::Precision::f64, "f64", false},
+                                {jit::Precision::mixed, "mixed", false},
+                                {jit::Precision::f32, "f32", false},
+                                {jit::Precision::mixed, "mixed", true},
+                                {jit::Precision::f32, "f32", true}};
+
+jit::CompiledTextures compiled(const Case& one, const Variant& variant)
 {
     jit::TextureOptions options;
-    options.entries = jit::Entries::both_and_batches;
+    options.entries = variant.iterations_in_lanes ? jit::Entries::both : jit::Entries::both_and_batches;
     options.effort = jit::Effort::full;
-    options.precision = precision;
+    options.precision = variant.precision;
+    options.iterations_in_lanes = variant.iterations_in_lanes;
     return jit::compile_texture("texture t() { return 1m * " + std::string(one.call) + "; }", options);
 }
-
-// Points as arrays, and room for their samples.
-struct Points {
-    Points(size_t count, double wavelengths, uint32_t seed)
-        : coordinates(3, std::vector<double>(count)), numbers(6, std::vector<double>(count)), faults(count)
-    {
-        std::mt19937_64 random(seed);
-        std::uniform_real_distribution<double> place(-wavelengths, wavelengths);
-        for (auto& axis : coordinates)
-            for (double& coordinate : axis) coordinate = place(random);
-        for (size_t axis = 0; axis < 3; ++axis) in.p[axis] = coordinates[axis].data();
-        out = {numbers[0].data(),
-               {numbers[1].data(), numbers[2].data(), numbers[3].data()},
-               numbers[4].data(),
-               numbers[5].data(),
-               faults.data()};
-    }
-    size_t size() const { return faults.size(); }
-    haptel_point at(size_t i) const
-    {
-        haptel_point point{};
-        for (size_t axis = 0; axis < 3; ++axis) point.p[axis] = coordinates[axis][i];
-        return point;
-    }
-    std::vector<std::vector<double>> coordinates, numbers;
-    std::vector<uint32_t> faults;
-    haptel_points in{};
-    haptel_samples out{};
-};
-
-// The truth at points, and how large it gets.
-struct Truth {
-    Truth(const jit::CompiledTextures& exact, const TextureBinding& binding, const Points& points)
-    {
-        jit::Oracle oracle(exact.program, binding);
-        for (size_t i = 0; i < points.size(); ++i) {
-            samples.push_back(oracle.sample(points.at(i)));
-            const jit::OracleSample& sample = samples.back();
-            height = std::max(height, std::fabs(sample.height_m));
-            gradient = std::max(gradient, std::hypot(sample.gradient[0], sample.gradient[1], sample.gradient[2]));
-        }
-    }
-    Accuracy of(const Points& points, haptel_entry* entry, const void* block, double wavelengths) const
-    {
-        Accuracy result{wavelengths, 0, 0, 0};
-        for (size_t i = 0; i < samples.size(); ++i) {
-            const haptel_point point = points.at(i);
-            haptel_sample found{};
-            entry(&point, block, &found);
-            double off[3];
-            for (size_t axis = 0; axis < 3; ++axis) off[axis] = found.gradient[axis] - samples[i].gradient[axis];
-            const double error = std::hypot(off[0], off[1], off[2]) / gradient;
-            result.height_max = std::max(result.height_max, std::fabs(found.height_m - samples[i].height_m) / height);
-            result.gradient_max = std::max(result.gradient_max, error);
-            result.gradient_rms += error * error / static_cast<double>(samples.size());
-        }
-        result.gradient_rms = std::sqrt(result.gradient_rms);
-        return result;
-    }
-    std::vector<jit::OracleSample> samples;
-    double height = 0, gradient = 0;
-};
 
 // Differences of our own height, of order 2.
 struct OwnDifferences {
@@ -127,20 +79,16 @@ struct Contender {
     haptel_entry* height = nullptr;      // the same without the gradient
     haptel_batch_entry* height_batch = nullptr;
     const void* block = nullptr;
+    size_t slice = 0; // of the points, timed in one round
     std::vector<double> times_ns, height_times_ns;
 };
 
-double nanoseconds_per_point(size_t count, const std::function<void()>& work)
-{
-    return milliseconds(work) * 1e6 / static_cast<double>(count);
-}
-
 // Each point waits for the sample before it, as in a servo.
-void one_by_one(haptel_entry* entry, const void* block, const Points& points)
+void one_by_one(haptel_entry* entry, const void* block, const Points& points, size_t first, size_t count)
 {
     double carried = 0;
     haptel_sample sample{};
-    for (size_t i = 0; i < points.size(); ++i) {
+    for (size_t i = first; i < first + count; ++i) {
         haptel_point point = points.at(i);
         point.p[0] += carried;
         entry(&point, block, &sample);
@@ -148,40 +96,12 @@ void one_by_one(haptel_entry* entry, const void* block, const Points& points)
     }
 }
 
-void run(Contender& one, Points& points)
-{
-    if (one.row.is_batch) {
-        const auto time = [&](haptel_batch_entry* entry) {
-            return nanoseconds_per_point(points.size(),
-                                         [&] { entry(&points.in, points.size(), one.block, &points.out); });
-        };
-        one.times_ns.push_back(time(one.batch));
-        if (one.height_batch) one.height_times_ns.push_back(time(one.height_batch));
-        return;
-    }
-    const auto time = [&](haptel_entry* entry) {
-        return nanoseconds_per_point(points.size(), [&] { one_by_one(entry, one.block, points); });
-    };
-    one.times_ns.push_back(time(one.point));
-    if (one.height) one.height_times_ns.push_back(time(one.height));
-}
-
-void mark_frontier(std::vector<AccuracyRow>& rows)
-{
-    for (AccuracyRow& row : rows)
-        row.is_on_frontier = std::none_of(rows.begin(), rows.end(), [&](const AccuracyRow& other) {
-            const double error = row.errors[0].gradient_max, others = other.errors[0].gradient_max;
-            return other.is_batch == row.is_batch && other.median_ns <= row.median_ns && others <= error &&
-                   (other.median_ns < row.median_ns || others < error);
-        });
-}
-
 // Everything that competes in one texture.
 class CaseBench {
 public:
     CaseBench(const Case& of, bool is_quick) : which(of), quick(is_quick)
     {
-        for (const auto& [precision, name] : precisions) programs.push_back(compiled(which, precision));
+        for (const Variant& variant : variants) programs.push_back(compiled(which, variant));
         binding = *jit::make_binding(programs[0].program, "t", {}, jit::Unbounded::allowed).binding;
         for (double distance : distances) {
             near_and_far.emplace_back(quick ? 100 : 1000, distance, 7);
@@ -190,12 +110,12 @@ public:
         plain = std::make_unique<PlainMethods>(which.field, programs[0].program->module());
         for (int exponent = 2; exponent <= 26; exponent += 2) steps.push_back(std::ldexp(1, -exponent));
     }
-    std::vector<AccuracyRow> rows()
+    std::vector<AccuracyRow> rows(const std::function<void(double)>& progress)
     {
         add_ours();
         add_plain();
         add_own_differences();
-        measure();
+        measure(progress);
         std::vector<AccuracyRow> result;
         for (Contender& contender : contenders) result.push_back(std::move(contender.row));
         mark_frontier(result);
@@ -203,12 +123,9 @@ public:
     }
 
 private:
-    static constexpr std::pair<jit::Precision, const char*> precisions[] = {
-        {jit::Precision::f64, "f64"}, {jit::Precision::mixed, "mixed"}, {jit::Precision::f32, "f32"}};
-
     const Case& which;
     const bool quick;
-    std::vector<jit::CompiledTextures> programs; // by `precisions`
+    std::vector<jit::CompiledTextures> programs; // by `variants`
     TextureBinding binding;
     std::vector<Points> near_and_far; // by `distances`
     std::vector<Truth> truth;
@@ -224,22 +141,45 @@ private:
         made.row.texture = which.name;
         made.row.method = method;
         made.row.precision = precision;
+        made.row.lane_form = "one";
         made.point = point;
         made.block = block;
-        for (size_t i = 0; i < truth.size(); ++i)
-            made.row.errors.push_back(truth[i].of(near_and_far[i], point, block, distances[i]));
+        for (size_t i = 0; i < truth.size(); ++i) {
+            std::vector<haptel_sample> found(near_and_far[i].size());
+            for (size_t k = 0; k < found.size(); ++k) {
+                const haptel_point at = near_and_far[i].at(k);
+                point(&at, block, &found[k]);
+            }
+            made.row.errors.push_back(truth[i].of(found, distances[i]));
+        }
+        return made;
+    }
+    // The same for many points; its errors are its own.
+    Contender as_batch(Contender made, haptel_batch_entry* batch)
+    {
+        made.row.is_batch = true;
+        made.batch = batch;
+        for (size_t i = 0; i < truth.size(); ++i) {
+            Points& points = near_and_far[i];
+            points.evaluate(batch, made.block, 0, points.size());
+            std::vector<haptel_sample> found;
+            for (size_t k = 0; k < points.size(); ++k) found.push_back(points.sample(k));
+            made.row.errors[i] = truth[i].of(found, distances[i]);
+        }
         return made;
     }
     void add_ours()
     {
         for (size_t i = 0; i < programs.size(); ++i) {
             const haptel_texture& texture = programs[i].program->textures()[0];
-            Contender made = contender("haptel", precisions[i].second, texture.height_gradient, binding.block);
+            Contender made = contender("haptel", variants[i].name, texture.height_gradient, binding.block);
             made.height = texture.height;
+            if (variants[i].iterations_in_lanes) made.row.lane_form = "iterations";
             contenders.push_back(made);
-            made.row.is_batch = true;
+            if (!texture.height_gradient_batch) continue;
+            made = as_batch(std::move(made), texture.height_gradient_batch);
+            made.row.lane_form = "points";
             made.row.lanes = jit::batch_lanes();
-            made.batch = texture.height_gradient_batch;
             made.height_batch = texture.height_batch;
             contenders.push_back(std::move(made));
         }
@@ -263,8 +203,7 @@ private:
         }
         for (Contender& made : kept) {
             contenders.push_back(made);
-            made.row.is_batch = true;
-            contenders.push_back(std::move(made));
+            contenders.push_back(as_batch(made, made.batch));
         }
     }
     void add_own_differences()
@@ -282,17 +221,44 @@ private:
         best.block = &own;
         contenders.push_back(std::move(best));
     }
-    // In rounds, so that whatever the machine does besides meets all alike.
-    void measure()
+    // Nanoseconds per point of that part of the points, with the gradient or without.
+    static double time_of(const Contender& one, Points& points, bool with_gradient, size_t first, size_t count)
     {
-        Points single(quick ? 256 : 2048, distances[0], 8), many(quick ? 1 << 14 : 1 << 17, distances[0], 9);
-        for (int round = 0; round < (quick ? 5 : 9); ++round)
-            for (Contender& contender : contenders) run(contender, contender.row.is_batch ? many : single);
-        for (Contender& contender : contenders) {
-            const Times times = summary(contender.times_ns);
-            contender.row.median_ns = times.median;
-            contender.row.p99_ns = times.p99;
-            contender.row.height_only_ns = summary(contender.height_times_ns).median;
+        const double whole_ms = milliseconds([&] {
+            if (one.row.is_batch)
+                points.evaluate(with_gradient ? one.batch : one.height_batch, one.block, first, count);
+            else
+                one_by_one(with_gradient ? one.point : one.height, one.block, points, first, count);
+        });
+        return whole_ms * 1e6 / static_cast<double>(count);
+    }
+    // In rounds, so that whatever the machine does besides meets all alike. A batch is of a million points; of those a
+    // slow way gets a part in each round, the next one in the next, so that a round ends in time.
+    void measure(const std::function<void(double)>& progress)
+    {
+        Points points(quick ? 1 << 17 : 1'000'000, distances[0], 8);
+        const double budget_ns = quick ? 1e6 : 10e6;
+        for (Contender& one : contenders) {
+            const size_t some = one.row.is_batch ? 4096 : 512;
+            time_of(one, points, true, 0, some); // pages and caches
+            const double wanted = budget_ns / time_of(one, points, true, 0, some);
+            one.slice = std::clamp(static_cast<size_t>(one.row.is_batch ? wanted : wanted / 5), some, points.size());
+        }
+        const size_t rounds = quick ? 5 : 21;
+        for (size_t round = 0; round < rounds; ++round) {
+            progress(static_cast<double>(round) / static_cast<double>(rounds));
+            for (Contender& one : contenders) {
+                const size_t slices = points.size() / one.slice, first = round % slices * one.slice;
+                one.times_ns.push_back(time_of(one, points, true, first, one.slice));
+                if (one.row.is_batch ? one.height_batch != nullptr : one.height != nullptr)
+                    one.height_times_ns.push_back(time_of(one, points, false, first, one.slice));
+            }
+        }
+        for (Contender& one : contenders) {
+            const Times times = summary(one.times_ns);
+            one.row.median_ns = times.median;
+            one.row.p99_ns = times.p99;
+            one.row.height_only_ns = summary(one.height_times_ns).median;
         }
     }
 };
@@ -303,8 +269,9 @@ std::vector<AccuracyRow> bench_accuracy(bool quick, const std::function<void(dou
 {
     std::vector<AccuracyRow> rows;
     for (size_t i = 0; i < std::size(cases); ++i) {
-        progress(static_cast<double>(i) / std::size(cases));
-        std::vector<AccuracyRow> of_case = CaseBench(cases[i], quick).rows();
+        std::vector<AccuracyRow> of_case = CaseBench(cases[i], quick).rows([&](double share) {
+            progress((static_cast<double>(i) + share) / std::size(cases));
+        });
         std::move(of_case.begin(), of_case.end(), std::back_inserter(rows));
     }
     progress(1);

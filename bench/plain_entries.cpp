@@ -1,9 +1,11 @@
 #include "bench/plain_entries.h"
 
 #include "bench/plain_textures.h"
+#include "bench/plain_turn.h"
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 namespace haptel::bench {
 namespace {
@@ -19,12 +21,36 @@ struct Block {
     Real step;
 };
 
+constexpr int octaves(Field field)
+{
+    return field == Field::fbm1   ? 1
+           : field == Field::fbm2 ? 2
+           : field == Field::fbm4 ? 4
+           : field == Field::fbm8 ? 8
+                                  : 0;
+}
+
+// `to` gets the field as a constant.
+template <typename To>
+void with_constant(Field field, const To& to)
+{
+    switch (field) {
+    case Field::noise: return to(std::integral_constant<Field, Field::noise>());
+    case Field::perlin: return to(std::integral_constant<Field, Field::perlin>());
+    case Field::fbm1: return to(std::integral_constant<Field, Field::fbm1>());
+    case Field::fbm2: return to(std::integral_constant<Field, Field::fbm2>());
+    case Field::fbm4: return to(std::integral_constant<Field, Field::fbm4>());
+    case Field::fbm8: return to(std::integral_constant<Field, Field::fbm8>());
+    case Field::gardner7: return to(std::integral_constant<Field, Field::gardner7>());
+    }
+}
+
 template <Field field, typename Real, typename Number>
 Number height(const Point<Number>& q, const Tables<Real>& tables)
 {
     if constexpr (field == Field::noise) return plain::noise<false>(q, tables);
     if constexpr (field == Field::perlin) return plain::noise<true>(q, tables);
-    if constexpr (field == Field::fbm8) return plain::fbm(q, tables, 8);
+    if constexpr (octaves(field) > 0) return plain::fbm(q, tables, octaves(field));
     if constexpr (field == Field::gardner7) return plain::fourier<Real>(q, 7);
 }
 
@@ -34,8 +60,17 @@ struct Analytic {
     {
         if constexpr (field == Field::noise) return plain::noise_with_gradient<false>(q, *block.tables);
         if constexpr (field == Field::perlin) return plain::noise_with_gradient<true>(q, *block.tables);
-        if constexpr (field == Field::fbm8) return plain::fbm_with_gradient(q, *block.tables, 8);
+        if constexpr (octaves(field) > 0) return plain::fbm_with_gradient(q, *block.tables, octaves(field));
         if constexpr (field == Field::gardner7) return plain::fourier_with_gradient(q, 7);
+    }
+};
+
+// Gardner's texture with sines of a degree.
+template <int degree, typename Real>
+struct BySines {
+    static Sample<Real> sample(const Point<Real>& q, const Block<Real>&)
+    {
+        return plain::fourier_with_gradient_in_turns(q, 7, plain::turn_sine<degree, Real>);
     }
 };
 
@@ -151,17 +186,19 @@ PlainMethods::PlainMethods(Field of, const ir::Module& module)
                         {}})
     , field(of)
 {
-    const auto add = [&]<Field which>(std::integral_constant<Field, which>) {
-        if (which != field) return;
+    with_constant(field, [&]<Field which>(std::integral_constant<Field, which>) {
         methods.push_back(blocks->method<Analytic<which, double>, double>("cpp_analytic", 0));
         methods.push_back(blocks->method<ByDuals<which, double>, double>("cpp_dual", 0));
         methods.push_back(blocks->method<Analytic<which, float>, float>("cpp_analytic", 0));
         methods.push_back(blocks->method<ByDuals<which, float>, float>("cpp_dual", 0));
+    });
+    if (field != Field::gardner7) return;
+    const auto add_sines = [&]<int... degrees, typename Real>(std::integer_sequence<int, degrees...>, Real) {
+        (methods.push_back(blocks->method<BySines<degrees, Real>, Real>("cpp_sine_" + std::to_string(degrees), 0)),
+         ...);
     };
-    add(std::integral_constant<Field, Field::noise>());
-    add(std::integral_constant<Field, Field::perlin>());
-    add(std::integral_constant<Field, Field::fbm8>());
-    add(std::integral_constant<Field, Field::gardner7>());
+    add_sines(std::integer_sequence<int, 3, 5, 7, 9, 11, 13, 15>(), double());
+    add_sines(std::integer_sequence<int, 3, 5, 7, 9>(), float());
 }
 
 PlainMethods::~PlainMethods()
@@ -171,8 +208,7 @@ PlainMethods::~PlainMethods()
 
 const std::vector<PlainMethod>& PlainMethods::add_differences(const std::vector<double>& steps)
 {
-    const auto add = [&]<Field which>(std::integral_constant<Field, which>) {
-        if (which != field) return;
+    with_constant(field, [&]<Field which>(std::integral_constant<Field, which>) {
         for (double step : steps) {
             methods.push_back(blocks->method<ByDifferences<which, double, 2>, double>("cpp_difference_2", step));
             methods.push_back(blocks->method<ByDifferences<which, double, 4>, double>("cpp_difference_4", step));
@@ -181,11 +217,7 @@ const std::vector<PlainMethod>& PlainMethods::add_differences(const std::vector<
             methods.push_back(blocks->method<ByDifferences<which, float, 4>, float>("cpp_difference_4", step));
             methods.push_back(blocks->method<ByDifferences<which, float, 6>, float>("cpp_difference_6", step));
         }
-    };
-    add(std::integral_constant<Field, Field::noise>());
-    add(std::integral_constant<Field, Field::perlin>());
-    add(std::integral_constant<Field, Field::fbm8>());
-    add(std::integral_constant<Field, Field::gardner7>());
+    });
     return methods;
 }
 

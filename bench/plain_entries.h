@@ -9,11 +9,11 @@
 
 namespace haptel::bench {
 
-enum class Field : uint8_t { noise, perlin, fbm8, gardner7 };
+enum class Field : uint8_t { noise, perlin, fbm1, fbm2, fbm4, fbm8, gardner7 };
 
 // Ready to be called as long as the list lives.
 struct PlainMethod {
-    std::string name;      // cpp_analytic, cpp_dual, cpp_difference_2 | 4 | 6
+    std::string name;      // cpp_analytic, cpp_dual, cpp_difference_2 | 4 | 6, cpp_sine_N of degree N
     std::string precision; // f64, f32
     double step = 0;       // of differences, in wavelengths
     haptel_entry* point = nullptr;

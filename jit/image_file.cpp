@@ -1,7 +1,9 @@
 #include "jit/image_file.h"
 
+#include "jit/content_hash.h"
 #include "lang/diagnostic.h"
 
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -42,11 +44,8 @@ std::shared_ptr<const ir::SplineImage> image_of(const stbi_us* gray, int width, 
     return ir::SplineImage::make(texels, width, height, error);
 }
 
-ImageFile decode(const fs::path& file, const std::string& shown)
+ImageFile decode(const std::string& bytes, const std::string& shown)
 {
-    std::ifstream in(file, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-    if (!in.is_open() || in.bad()) return fail("'" + shown + "' cannot be read", "may you read it?");
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     const int size = static_cast<int>(bytes.size());
     constexpr const char* formats = "a picture is a PNG, JPEG, BMP, TGA or PGM file";
@@ -67,10 +66,14 @@ ImageFile decode(const fs::path& file, const std::string& shown)
     return made;
 }
 
+// The clock of a file system may tick slowly: within a tick of its last change a file may change unseen.
+constexpr auto tick_longest = std::chrono::milliseconds(100);
+
 // What the file was when it was read.
 struct Known {
-    fs::file_time_type written;
+    fs::file_time_type written, read; // the latter: when reading began
     uintmax_t size = 0;
+    ContentHash content = {};
     std::weak_ptr<const ir::SplineImage> image;
 };
 
@@ -101,10 +104,16 @@ ImageFile read_image(const std::string& path, const std::string& folder)
     const std::lock_guard lock(mutex);
     std::erase_if(all, [](const auto& known) { return known.second.image.expired(); });
     Known& known = all[file.string()];
-    if (auto image = known.image.lock(); image && known.size == size && known.written == written)
+    const auto image = known.image.lock();
+    if (image && known.size == size && known.written == written && known.read > written + tick_longest)
         return {image, {}, {}};
-    ImageFile made = decode(file, shown);
-    known = {written, size, made.image};
+    const auto now = fs::file_time_type::clock::now();
+    std::ifstream in(file, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    if (!in.is_open() || in.bad()) return fail("'" + shown + "' cannot be read", "may you read it?");
+    const ContentHash content = content_hash(bytes);
+    ImageFile made = image && known.content == content ? ImageFile{image, {}, {}} : decode(bytes, shown);
+    known = {written, now, size, content, made.image};
     return made;
 }
 

@@ -11,8 +11,7 @@ constexpr uint32_t order_max = 4; // each order multiplies the code by the numbe
 
 struct Node {
     enum class Mark : uint8_t { unseen, open, done } mark = Mark::unseen;
-    uint32_t length = 1; // of the longest chain of calls that starts here
-    uint32_t order = 0;  // derivatives of derivatives that it takes, at most
+    CallDepth depth;
 };
 
 struct Visit {
@@ -22,7 +21,7 @@ struct Visit {
 
 class Walk {
 public:
-    Walk(CheckedProgram& program, Diagnostics& sink) : diagnostics(sink)
+    Walk(CheckedProgram& program, const CallDepths& of_others, Diagnostics& sink) : known(of_others), diagnostics(sink)
     {
         for (FunctionInfo& function : program.functions) {
             mutable_functions[&function] = &function;
@@ -44,8 +43,9 @@ public:
                 continue;
             }
             const FunctionInfo::Mention& mention = visit.function->mentions[visit.next_mention++];
-            if (!mention.function) continue;
-            Node& callee = nodes[mention.function];
+            const auto own = nodes.find(mention.function);
+            if (own == nodes.end()) continue;
+            Node& callee = own->second;
             if (callee.mark == Node::Mark::open) report_cycle(path, mention);
             if (callee.mark != Node::Mark::unseen) continue;
             callee.mark = Node::Mark::open;
@@ -54,11 +54,11 @@ public:
     }
 
     // Reports chains and derivatives that are too deep.
-    void measure(const std::vector<FunctionInfo::Mention>& mentions, Node& node)
+    void measure(const std::vector<FunctionInfo::Mention>& mentions, CallDepth& depth)
     {
         for (const FunctionInfo::Mention& mention : mentions) {
-            const uint32_t length = 1 + node_of(mention.function).length;
-            const uint32_t order = mention.order + node_of(mention.function).order + node_of(mention.through).order;
+            const uint32_t length = 1 + depth_of(mention.function).length;
+            const uint32_t order = mention.order + depth_of(mention.function).order + depth_of(mention.through).order;
             if (length > chain_max) {
                 diagnostics.error(mention.span, "too-deep",
                                   "functions call each other more than " + std::to_string(chain_max) + " deep here");
@@ -67,27 +67,35 @@ public:
                                   "derivatives of derivatives of order " + std::to_string(order) +
                                       " are taken here, expected at most " + std::to_string(order_max));
             } else {
-                node.length = std::max(node.length, length);
-                node.order = std::max(node.order, order);
+                depth.length = std::max(depth.length, length);
+                depth.order = std::max(depth.order, order);
             }
         }
     }
 
+    CallDepths depths() const
+    {
+        CallDepths all;
+        for (const auto& [function, node] : nodes)
+            if (node.mark == Node::Mark::done) all.emplace(function, node.depth);
+        return all;
+    }
+
 private:
     // Of what is built in, and of what is part of a cycle, which has been reported: nothing.
-    Node node_of(const FunctionInfo* function)
+    CallDepth depth_of(const FunctionInfo* function)
     {
-        const auto found = nodes.find(function);
-        const bool known = found != nodes.end() && found->second.mark == Node::Mark::done;
-        return known ? found->second : Node{Node::Mark::done, 0, 0};
+        if (const auto own = nodes.find(function); own != nodes.end() && own->second.mark == Node::Mark::done)
+            return own->second.depth;
+        const auto other = known.find(function);
+        return other != known.end() ? other->second : CallDepth{0, 0};
     }
 
     void close(FunctionInfo& function)
     {
-        Node measured;
-        measure(function.mentions, measured);
-        measured.mark = Node::Mark::done;
-        nodes[&function] = measured;
+        CallDepth depth;
+        measure(function.mentions, depth);
+        nodes[&function] = {Node::Mark::done, depth};
         for (const FunctionInfo::Mention& mention : function.mentions)
             if (mention.function) function.reads |= mention.function->reads;
     }
@@ -109,6 +117,7 @@ private:
             .hint = "every texture must end: write a for loop with a bound";
     }
 
+    const CallDepths& known;
     Diagnostics& diagnostics;
     std::unordered_map<const FunctionInfo*, FunctionInfo*> mutable_functions;
     std::unordered_map<const FunctionInfo*, Node> nodes;
@@ -116,14 +125,15 @@ private:
 
 } // namespace
 
-void check_call_graph(CheckedProgram& program, Diagnostics& diagnostics)
+CallDepths check_call_graph(CheckedProgram& program, const CallDepths& known, Diagnostics& diagnostics)
 {
-    Walk walk(program, diagnostics);
+    Walk walk(program, known, diagnostics);
     for (FunctionInfo& function : program.functions) walk.from(function);
     for (const CheckedTexture& texture : program.textures) {
-        Node unused;
+        CallDepth unused;
         walk.measure(texture.mentions, unused);
     }
+    return walk.depths();
 }
 
 } // namespace haptel::lang

@@ -4,6 +4,7 @@
 #include "lang/body_checker.h"
 #include "lang/call_graph.h"
 #include "lang/constant.h"
+#include "lang/library.h"
 
 #include <algorithm>
 #include <set>
@@ -65,8 +66,14 @@ constexpr SharedInput inputs[] = {
 
 class ProgramChecker {
 public:
-    ProgramChecker(const SourceSet& sources, CheckedProgram& checked, Diagnostics& diagnostics)
-        : program(checked), context{sources, diagnostics, checked, {}, {}}, declarations(checked.files.size())
+    // `own_library`, where this is the library itself: what its files declare together.
+    ProgramChecker(const SourceSet& sources, CheckedProgram& checked, Declarations* own_library,
+                   const Declarations& seen_library, Diagnostics& diagnostics)
+        : program(checked)
+        , context{sources, diagnostics, checked, {}, {}}
+        , declarations(checked.files.size())
+        , made_library(own_library)
+        , library(seen_library)
     {
         for (const SharedInput& input : inputs) {
             Symbol& symbol = program.symbols.emplace_back();
@@ -79,43 +86,37 @@ public:
         }
     }
 
-    void run()
+    CallDepths run(const CallDepths& of_library)
     {
-        // The library first: its constants are used by all; then what is imported, the main file last.
-        std::vector<uint32_t> order;
-        for (uint32_t file = 0; file < program.files.size(); ++file) order.push_back(file);
-        std::stable_partition(order.begin(), order.end(),
-                              [&](uint32_t file) { return program.files[file].is_library; });
         std::vector<FileScope> scopes;
-        for (uint32_t file = 0; file < program.files.size(); ++file) scopes.push_back(scope_of(file));
-        for (uint32_t file : order) {
+        const auto count = static_cast<uint32_t>(program.files.size());
+        for (uint32_t file = 0; file < count; ++file) scopes.push_back(scope_of(file));
+        for (uint32_t file = 0; file < count; ++file) {
             declarations_of(file).lacks_functions |= program.files[file].tree.lacks_functions;
             declarations_of(file).unread.merge(program.files[file].tree.unread);
         }
         // Sizes of arrays in heads of functions are constants, and constants may name functions.
-        for (uint32_t file : order) declare_functions(file, scopes[file], false);
-        for (uint32_t file : order) check_constants(file, scopes[file]);
-        for (uint32_t file : order) declare_functions(file, scopes[file], true);
+        for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], false);
+        for (uint32_t file = 0; file < count; ++file) check_constants(file, scopes[file]);
+        for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], true);
         for (FunctionInfo& function : program.functions) {
-            if (context.diagnostics.full()) return;
+            if (context.diagnostics.full()) return {};
             const Function& tree = *function.tree;
             BodyChecker(context, scopes[function.file], function.is_library)
                 .check_function(const_cast<Function&>(tree), function);
         }
-        for (uint32_t file : order) check_textures(file, scopes[file]);
-        check_call_graph(program, context.diagnostics);
+        for (uint32_t file = 0; file < count; ++file) check_textures(file, scopes[file]);
+        return check_call_graph(program, of_library, context.diagnostics);
     }
 
 private:
-    Declarations& declarations_of(uint32_t file)
-    {
-        return program.files[file].is_library ? library : declarations[file];
-    }
+    bool is_library() const { return made_library != nullptr; }
+    Declarations& declarations_of(uint32_t file) { return made_library ? *made_library : declarations[file]; }
 
     FileScope scope_of(uint32_t file)
     {
         FileScope scope;
-        if (!program.files[file].is_library) {
+        if (!is_library()) {
             scope.add_layer(declarations[file]);
             for (uint32_t imported : program.files[file].imported) scope.add_layer(declarations[imported]);
         }
@@ -133,7 +134,7 @@ private:
             info.name = tree.name.text;
             info.tree = &tree;
             info.file = file;
-            info.is_library = program.files[file].is_library;
+            info.is_library = is_library();
             info.result = value_type(tree.result, "a function returns a value", scope, true);
             if (type_named(info.name))
                 context.diagnostics.error(tree.name.span, "reserved-name",
@@ -199,8 +200,7 @@ private:
             declarations_of(file).constant_names.insert(constant.declaration.name.text);
         for (Constant& constant : program.files[file].tree.constants) {
             if (context.diagnostics.full()) return;
-            const Symbol* symbol =
-                BodyChecker(context, scope, program.files[file].is_library).check_global(constant.declaration);
+            const Symbol* symbol = BodyChecker(context, scope, is_library()).check_global(constant.declaration);
             if (!symbol) continue;
             const auto [place, is_new] = declarations_of(file).constants.try_emplace(symbol->name, symbol);
             if (!is_new)
@@ -227,7 +227,7 @@ private:
             for (TextureParameter& parameter : tree.parameters)
                 if (!parameter.is_output)
                     texture.parameters.push_back(check_texture_parameter(context, scope, parameter));
-            BodyChecker(context, scope, program.files[file].is_library).check_texture(tree, texture);
+            BodyChecker(context, scope, is_library()).check_texture(tree, texture);
             if (file == 0) program.textures.push_back(std::move(texture));
         }
     }
@@ -235,17 +235,30 @@ private:
     CheckedProgram& program;
     CheckContext context;
     std::vector<Declarations> declarations; // by file
-    Declarations library;
+    Declarations* const made_library;       // null: this is a program
+    const Declarations& library;            // that all files see
 };
 
 } // namespace
 
-CheckedProgram check(const SourceSet& sources, std::vector<CheckFile> files, Diagnostics& diagnostics)
+CheckedProgram check(const SourceSet& sources, std::vector<CheckFile> files,
+                     std::shared_ptr<const CheckedLibrary> library, Diagnostics& diagnostics)
 {
+    static const CheckedLibrary none;
+    const CheckedLibrary& seen = library ? *library : none;
     CheckedProgram program;
+    program.library = library;
     program.files = std::move(files);
-    ProgramChecker(sources, program, diagnostics).run();
+    ProgramChecker(sources, program, nullptr, seen.declarations, diagnostics).run(seen.depths);
     return program;
+}
+
+void check(const SourceSet& sources, std::vector<CheckFile> files, CheckedLibrary& checked)
+{
+    checked.program.files = std::move(files);
+    checked.depths =
+        ProgramChecker(sources, checked.program, &checked.declarations, checked.declarations, checked.diagnostics)
+            .run({});
 }
 
 } // namespace haptel::lang

@@ -10,14 +10,16 @@
 
 #include <deque>
 #include <limits>
+#include <memory>
 #include <vector>
 
 namespace haptel::lang {
 
+struct CheckedLibrary;
+
 // One file of the compilation as the parser left it, with the files whose names it sees.
 struct CheckFile {
     ast::File tree;
-    bool is_library = false;        // sees the other library files, and is seen by all
     std::vector<uint32_t> imported; // indices of files; not transitive
 };
 
@@ -46,7 +48,8 @@ struct CheckedTexture {
 
 // Keeps the trees and everything they point to. Move it, do not copy it.
 struct CheckedProgram {
-    std::vector<CheckFile> files; // by Span::file
+    std::shared_ptr<const CheckedLibrary> library; // that all files see; null: none, or it is the library itself
+    std::vector<CheckFile> files;                  // by Span::file; without those of the library
     std::deque<Symbol> symbols;
     std::deque<FunctionInfo> functions;
     std::vector<CheckedTexture> textures; // of file 0, in source order
@@ -57,6 +60,10 @@ struct CheckedProgram {
     CheckedProgram(const CheckedProgram&) = delete;
 };
 
-CheckedProgram check(const SourceSet& sources, std::vector<CheckFile> files, Diagnostics& diagnostics);
+CheckedProgram check(const SourceSet& sources, std::vector<CheckFile> files,
+                     std::shared_ptr<const CheckedLibrary> library, Diagnostics& diagnostics);
+
+// The same of the files of a library, which see each other; makes `checked` but for its sources.
+void check(const SourceSet& sources, std::vector<CheckFile> files, CheckedLibrary& checked);
 
 } // namespace haptel::lang

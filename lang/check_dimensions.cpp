@@ -1,6 +1,7 @@
 #include "lang/check_dimensions.h"
 
 #include "lang/dimension_checker.h"
+#include "lang/library.h"
 
 #include <algorithm>
 #include <set>
@@ -69,19 +70,22 @@ bool DimensionChecker::spend(size_t steps)
     return !is_exhausted;
 }
 
+void DimensionChecker::add_constants(const std::vector<CheckFile>& files, bool is_library)
+{
+    for (size_t file = files.size(); file-- > 0;)
+        for (const ast::Constant& constant : files[file].tree.constants) {
+            DimensionInstance& root = roots.emplace_back();
+            constant_roots.push_back(&root);
+            const Dimension dimension = DimensionBody(*this, root, is_library).constant(constant.declaration);
+            if (constant.declaration.symbol) symbols.insert_or_assign(constant.declaration.symbol, dimension);
+        }
+}
+
 // The library's first, those of the main file last, as check() has read them.
 const std::vector<const DimensionInstance*>& DimensionChecker::constants()
 {
-    for (const bool library : {true, false})
-        for (size_t file = program.files.size(); file-- > 0;) {
-            if (program.files[file].is_library != library) continue;
-            for (const ast::Constant& constant : program.files[file].tree.constants) {
-                DimensionInstance& root = roots.emplace_back();
-                constant_roots.push_back(&root);
-                const Dimension dimension = DimensionBody(*this, root, library).constant(constant.declaration);
-                if (constant.declaration.symbol) symbols.insert_or_assign(constant.declaration.symbol, dimension);
-            }
-        }
+    if (program.library) add_constants(program.library->program.files, true);
+    add_constants(program.files, false);
     return constant_roots;
 }
 

@@ -3,6 +3,7 @@
 #include "lang/check.h"
 #include "lang/check_dimensions.h"
 #include "lang/ir/verify.h"
+#include "lang/library.h"
 #include "lang/lower.h"
 #include "lang/parser.h"
 
@@ -19,7 +20,7 @@ std::string quoted_path(const std::string& path)
     return "\"" + printable(path) + "\"";
 }
 
-// Main file, its imports, theirs, and the library; parsed, with who imports whom.
+// Main file, its imports and theirs; parsed, with who imports whom.
 class Files {
 public:
     Files(const CompileOptions& compile_options, SourceSet& all_sources, Diagnostics& sink)
@@ -35,11 +36,10 @@ public:
             for (size_t i = 0; i < files[file].tree.imports.size() && !diagnostics.full(); ++i) import(file, i);
         for (uint32_t file = 0; file < files.size(); ++file) names.push_back(sources.file(file).name);
         report_cycles();
-        for (const SourceFile& text : options.library) files[add(text)].is_library = true;
     }
 
-    std::vector<CheckFile> files;   // by Span::file
-    std::vector<std::string> names; // without the library
+    std::vector<CheckFile> files; // by Span::file
+    std::vector<std::string> names;
 
 private:
     struct Edge {
@@ -50,7 +50,7 @@ private:
     uint32_t add(SourceFile file)
     {
         const uint32_t index = sources.add(std::move(file));
-        files.push_back({parse(sources, index, diagnostics), false, {}});
+        files.push_back({parse(sources, index, diagnostics), {}});
         by_name.emplace(sources.file(index).name, index);
         return index;
     }
@@ -127,6 +127,9 @@ bool holds_nothing(const CheckFile& file)
 CompileResult compile(SourceFile main, const CompileOptions& options)
 {
     CompileResult result;
+    std::shared_ptr<const CheckedLibrary> library = checked_library(options.library);
+    if (library) result.sources.share(library->sources);
+    if (library) result.diagnostics = library->diagnostics;
     Files files(options, result.sources, result.diagnostics);
     files.load(std::move(main));
     result.files = std::move(files.names);
@@ -135,7 +138,7 @@ CompileResult compile(SourceFile main, const CompileOptions& options)
     if (holds_nothing(files.files.front()) && !diagnostics.has_errors())
         diagnostics.warning({}, "empty-file", "expected a texture, found an empty file").hint =
             "the smallest one is: texture flat() { return 0.0; }";
-    const CheckedProgram checked = check(result.sources, std::move(files.files), diagnostics);
+    const CheckedProgram checked = check(result.sources, std::move(files.files), library, diagnostics);
     if (!options.only_texture.empty()) {
         std::vector<std::string_view> names;
         for (const CheckedTexture& texture : checked.textures) names.push_back(texture.tree->name.text);

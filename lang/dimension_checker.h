@@ -64,6 +64,8 @@ public:
     bool is_exhausted = false;
 
 private:
+    void add_constants(const std::vector<CheckFile>& files, bool is_library);
+
     struct Key {
         const FunctionInfo* function;
         std::vector<const void*> passed;

@@ -93,7 +93,7 @@ Picture draw(std::string_view line, uint32_t begin, uint32_t end)
 void append_place(std::string& out, Span span, std::string_view label, std::string_view color, std::string_view message,
                   std::string_view code, const SourceSet& sources, const Palette& palette)
 {
-    if (span.file >= sources.size()) { // about no file at all
+    if (!sources.has(span.file)) { // about no file at all
         out += std::string(color) + std::string(label) + ": " + std::string(palette.off) + printable(message) + "\n";
         return;
     }

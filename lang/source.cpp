@@ -66,21 +66,29 @@ uint32_t SourceSet::add(SourceFile file)
 {
     std::vector<uint32_t> starts = find_line_starts(file.text);
     entries.push_back({std::move(file), std::move(starts)});
-    return size() - 1;
+    return first + static_cast<uint32_t>(entries.size()) - 1;
+}
+
+const SourceSet::Entry* SourceSet::find(uint32_t index) const
+{
+    if (library && index >= library->first) return library->find(index);
+    return index >= first && index - first < entries.size() ? &entries[index - first] : nullptr;
 }
 
 std::string_view SourceSet::text(Span span) const
 {
-    if (span.file >= entries.size()) return {};
-    const std::string& text = entries[span.file].file.text;
+    const Entry* entry = find(span.file);
+    if (!entry) return {};
+    const std::string& text = entry->file.text;
     if (span.begin >= text.size() || span.end <= span.begin) return {};
     return std::string_view(text).substr(span.begin, span.end - span.begin);
 }
 
 Position SourceSet::position(uint32_t file, uint32_t byte) const
 {
-    if (file >= entries.size()) return {};
-    const Entry& entry = entries[file];
+    const Entry* found = find(file);
+    if (!found) return {};
+    const Entry& entry = *found;
     const std::string_view text = entry.file.text;
     byte = std::min(byte, static_cast<uint32_t>(text.size()));
     const auto after = std::upper_bound(entry.line_starts.begin(), entry.line_starts.end(), byte);
@@ -96,8 +104,9 @@ Position SourceSet::position(uint32_t file, uint32_t byte) const
 
 std::string_view SourceSet::line(uint32_t file, uint32_t line_number) const
 {
-    if (file >= entries.size()) return {};
-    const Entry& entry = entries[file];
+    const Entry* found = find(file);
+    if (!found) return {};
+    const Entry& entry = *found;
     if (line_number == 0 || line_number > entry.line_starts.size()) return {};
     const uint32_t begin = entry.line_starts[line_number - 1];
     const uint32_t end = line_number < entry.line_starts.size() ? entry.line_starts[line_number]

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,12 +45,17 @@ CodePoint decode_utf8(std::string_view text, size_t at);
 // change the writing direction become U+FFFD.
 std::string printable(std::string_view text);
 
-// The files of one compilation. Indices are stable.
+// The files of one compilation. Indices are stable. Those of the library are a set of their own, which compilations
+// share: its files have the indices from `library_files` on.
 class SourceSet {
 public:
+    static constexpr uint32_t library_files = 1 << 16;
+
+    explicit SourceSet(uint32_t index_of_first = 0) : first(index_of_first) {}
     uint32_t add(SourceFile file);
-    const SourceFile& file(uint32_t index) const { return entries[index].file; }
-    uint32_t size() const { return static_cast<uint32_t>(entries.size()); }
+    void share(std::shared_ptr<const SourceSet> library_set) { library = std::move(library_set); }
+    bool has(uint32_t index) const { return find(index) != nullptr; }
+    const SourceFile& file(uint32_t index) const { return find(index)->file; } // which it has
     std::string_view text(Span span) const;
     Position position(uint32_t file, uint32_t byte) const;
     std::string_view line(uint32_t file, uint32_t line_number) const; // without its line end
@@ -59,7 +65,11 @@ private:
         SourceFile file;
         std::vector<uint32_t> line_starts;
     };
+    uint32_t first;
     std::vector<Entry> entries;
+    std::shared_ptr<const SourceSet> library; // null: none
+
+    const Entry* find(uint32_t index) const;
 };
 
 } // namespace haptel::lang

@@ -3,6 +3,7 @@
 #include "tools/bench_accuracy.h"
 #include "tools/bench_batch.h"
 #include "tools/bench_compile.h"
+#include "tools/bench_verdict.h"
 #include "tools/command.h"
 #include "tools/precisions.h"
 #include "tools/quantity.h"
@@ -55,6 +56,8 @@ Figures accuracy_figures(const BenchOptions& options, const std::string& machine
         bench::bench_accuracy(options.quick, [&](double share) { progress.show(share); });
     Figures figures;
     for (const bench::AccuracyRow& row : rows) figures.rows.push_back(to_json(row));
+    figures.more.emplace_back("alternatives", alternatives_json(rows));
+    figures.more.emplace_back("differences", differences_json(rows));
     figures.table = to_table(rows);
     figures.csv = to_csv(rows);
     figures.picture = std::make_shared<plot::Picture>(draw_accuracy(rows, machine));

@@ -34,8 +34,7 @@ void check_findings(const Diagnostics& diagnostics, const SourceSet& sources)
     if (diagnostics.all().size() > 2000) fail("more findings than anybody reads");
     for (const Diagnostic& finding : diagnostics.all()) {
         const auto is_within = [&](Span span) {
-            return span.file < sources.size() && span.begin <= span.end &&
-                   span.end <= sources.file(span.file).text.size();
+            return sources.has(span.file) && span.begin <= span.end && span.end <= sources.file(span.file).text.size();
         };
         if (!is_within(finding.span)) fail("a finding outside of the text: " + finding.message);
         if (finding.fix && !is_within(finding.fix->span)) fail("a fix outside of the text: " + finding.message);

@@ -5,7 +5,9 @@
 #include "tests/support/catch.h"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
+#include <thread>
 
 using namespace haptel;
 using namespace haptel::lang;
@@ -352,4 +354,52 @@ texture t(float a = 2mm in 1mm .. 3mm, int n = 3 in 1 .. 8) { const float K = 2.
         const CompileResult result = compile_text(cut);
         REQUIRE((result.program == nullptr) == result.diagnostics.has_errors());
     }
+}
+
+TEST_CASE("compile: programs share the library and do not change it for one another")
+{
+    CompileOptions options;
+    options.library = {{"library/base.haptel", "const float K = 2.0;\nfloat base(vec3 q) { return K * q.x; }\n"}};
+    const std::vector<std::string> texts = {
+        "texture t() { return 1mm * base(p / 1mm); }",
+        "float base(vec3 q) { return 7.0; }\ntexture t() { return 1mm * base(p / 1mm); }",
+        "const float K = 5.0;\ntexture t() { return 1mm * K * base(p / 1mm); }",
+        "texture t() { return 1mm * bse(p / 1mm); }",
+        "float again(vec3 q) { return base(again(q) * q); }\ntexture t() { return 1mm * again(p / 1mm); }"};
+    const auto answer = [&](const std::string& text) {
+        const CompileResult result = compile({"main.haptel", text}, options);
+        return render(result.diagnostics.all(), result.sources) +
+               (result.program ? ir::print(result.program->module) : "");
+    };
+    std::vector<std::string> alone;
+    for (const std::string& text : texts) {
+        answer("texture other() { return 1mm; }");
+        alone.push_back(answer(text));
+    }
+    CHECK(alone[3].find("did you mean 'base'?") != std::string::npos);
+    CHECK(alone[4].find("ends up calling itself") != std::string::npos);
+    // All of them at once, many times.
+    std::atomic<size_t> differences = 0;
+    std::vector<std::thread> threads;
+    for (size_t i = 0; i < 4; ++i)
+        threads.emplace_back([&, i] {
+            for (size_t round = 0; round < 20; ++round) {
+                const size_t which = (round + i) % texts.size();
+                differences += answer(texts[which]) != alone[which];
+            }
+        });
+    for (std::thread& thread : threads) thread.join();
+    CHECK(differences == 0);
+
+    // Another text of the library is another library; what is wrong with it is said with every program.
+    options.library[0].text = "const float K = 3.0;\nfloat base(vec3 q) { return K * q.x; }\n";
+    CHECK(answer(texts[0]) != alone[0]);
+    options.library[0].text = "float base(vec3 q) { return q; }\n";
+    for (size_t i = 0; i < 2; ++i) {
+        const std::string said = answer(texts[0]);
+        INFO(said);
+        CHECK(said.find("library/base.haptel:1:29: error:") != std::string::npos);
+    }
+    options.library[0].text = "const float K = 2.0;\nfloat base(vec3 q) { return K * q.x; }\n";
+    CHECK(answer(texts[0]) == alone[0]);
 }
