@@ -3,6 +3,7 @@
 #include "tools/bench_accuracy.h"
 #include "tools/bench_batch.h"
 #include "tools/bench_compile.h"
+#include "tools/bench_math.h"
 #include "tools/bench_verdict.h"
 #include "tools/command.h"
 #include "tools/precisions.h"
@@ -91,6 +92,18 @@ Figures batch_figures(const BenchOptions& options)
     return figures;
 }
 
+Figures math_figures(const BenchOptions& options)
+{
+    Progress progress;
+    const std::vector<bench::MathRow> rows =
+        bench::bench_math(options.quick, [&](double share) { progress.show(share); });
+    Figures figures;
+    for (const bench::MathRow& row : rows) figures.rows.push_back(to_json(row));
+    figures.table = to_table(rows);
+    figures.csv = to_csv(rows);
+    return figures;
+}
+
 // Every line of a table tells where it was taken.
 std::string stamped(const std::string& csv, const bench::Machine& machine)
 {
@@ -132,6 +145,7 @@ ExitCode run(const BenchOptions& given)
     const std::string name = fmt::format("{}, {} threads, {}", machine.cpu, machine.cores, machine.isa);
     const Figures figures = options.what == "compile" ? compile_figures(options)
                             : options.what == "batch" ? batch_figures(options)
+                            : options.what == "math"  ? math_figures(options)
                                                       : accuracy_figures(options, name + ", commit " + machine.commit);
     if (!figures.error.empty()) {
         say_error(figures.error);
@@ -163,8 +177,8 @@ Command bench_command(CLI::App& app)
     command
         ->add_option("what", options->what,
                      "compile: from text to code; accuracy: error of the gradient against time, ours and plain C++; "
-                     "batch: many points of every texture")
-        ->check(CLI::IsMember({"compile", "accuracy", "batch"}))
+                     "batch: many points of every texture; math: elementary functions")
+        ->check(CLI::IsMember({"compile", "accuracy", "batch", "math"}))
         ->capture_default_str();
     command->add_option("paths", options->paths, "batch: texture files, FILE:NAME, or folders [stdlib examples]")
         ->type_name("PATH");
@@ -182,6 +196,7 @@ Command bench_command(CLI::App& app)
     set_examples(*command, "  haptel bench compile\n"
                            "  haptel bench accuracy --out figures\n"
                            "  haptel bench batch stdlib examples --set picture=examples/scenes/waves.png\n"
+                           "  haptel bench math --out figures\n"
                            "  haptel bench compile --quick --json --out figures");
     return {command, [options] { return run(*options); }};
 }

@@ -1,0 +1,200 @@
+#include "bench/math_bench.h"
+
+#include "bench/library_functions.h"
+#include "jit/engine.h"
+#include "lang/ir/elementary.h"
+#include "lang/ir/elementary_truth.h"
+#include "lang/ir/op_info.h"
+#include "lang/ir/text.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <random>
+
+namespace haptel::bench {
+namespace {
+
+using ir::Op;
+
+// Values of a point that a texture may read, and as many calls in one: what is not the function's own counts little.
+constexpr size_t calls = 8;
+constexpr const char* inputs[calls] = {"p_x", "p_y", "p_z", "n_x", "n_y", "n_z", "uv_x", "uv_y"};
+constexpr size_t points_at_once = 512; // they stay in the nearest cache
+
+std::string text_of(Op op)
+{
+    const std::string name(ir::op_info(op).name);
+    const bool has_two = ir::op_info(op).arity == 2;
+    std::string body;
+    for (size_t i = 0; i < calls; ++i) body += "  %x" + std::to_string(i) + " = input " + inputs[i] + "\n";
+    for (size_t i = 0; i < calls; ++i)
+        body += "  %y" + std::to_string(i) + " = " + name + " %x" + std::to_string(i) +
+                (has_two ? ", %x" + std::to_string((i + 1) % calls) : "") + "\n";
+    body += "  %s1 = add %y0, %y1\n";
+    for (size_t i = 2; i < calls; ++i)
+        body += "  %s" + std::to_string(i) + " = add %s" + std::to_string(i - 1) + ", %y" + std::to_string(i) + "\n";
+    return "function \"" + name + "\" () {\n" + body + "  %f = u32 0\n  return %s" + std::to_string(calls - 1) +
+           ", %f\n}\ntexture \"" + name + "\" { block 56 reads 255 writes 0 height \"" + name + "\" }\n";
+}
+
+// Ordinary arguments of a function.
+std::pair<double, double> usual(Op op)
+{
+    switch (op) {
+    case Op::log:
+    case Op::log2: return {1e-3, 1e3};
+    case Op::pow: return {0.1, 5};
+    case Op::asin:
+    case Op::acos:
+    case Op::atanh: return {-1, 1};
+    case Op::acosh: return {1, 100};
+    case Op::exp:
+    case Op::exp2:
+    case Op::sinh:
+    case Op::cosh: return {-20, 20};
+    case Op::tanh:
+    case Op::atan:
+    case Op::atan2:
+    case Op::asinh: return {-5, 5};
+    default: return {-100, 100};
+    }
+}
+
+// The same numbers as points one by one, and as arrays.
+struct Arguments {
+    std::vector<haptel_point> points = std::vector<haptel_point>(points_at_once);
+    std::vector<std::vector<double>> arrays = std::vector(calls, std::vector<double>(points_at_once));
+    std::vector<std::vector<float>> singles = std::vector(calls, std::vector<float>(points_at_once));
+
+    explicit Arguments(Op op)
+    {
+        std::mt19937_64 random(1);
+        const auto [from, to] = usual(op);
+        std::uniform_real_distribution<double> between(from, to);
+        for (size_t i = 0; i < points_at_once; ++i) {
+            double held[calls];
+            for (size_t k = 0; k < calls; ++k) {
+                held[k] = arrays[k][i] = between(random);
+                singles[k][i] = static_cast<float>(held[k]);
+            }
+            std::memcpy(&points[i], held, sizeof held); // p, n, uv come first
+        }
+    }
+};
+
+class Measured {
+public:
+    Measured(Op of, const jit::Code& f64, const jit::Code& f32) : op(of), arguments(of), code{&f64, &f32} {}
+
+    void take()
+    {
+        for (size_t format = 0; format < 2; ++format) {
+            alone[format].push_back(per_value([&] { one_by_one(*code[format]); }));
+            lanes[format].push_back(per_value([&] { all_at_once(*code[format]); }));
+        }
+        library[0].push_back(per_value([&] { library_sums(op, arguments.arrays, results.data()); }));
+        library[1].push_back(per_value([&] { library_sums(op, arguments.singles, single_results.data()); }));
+    }
+    void write(MathRow& row) const
+    {
+        MathFormat* const formats[] = {&row.f64, &row.f32};
+        for (size_t format = 0; format < 2; ++format) {
+            formats[format]->alone_ns = summary(alone[format]);
+            formats[format]->lanes_ns = summary(lanes[format]);
+            formats[format]->library_ns = summary(library[format]);
+        }
+    }
+
+private:
+    Op op;
+    Arguments arguments;
+    const jit::Code* code[2];
+    std::vector<double> alone[2], lanes[2], library[2]; // nanoseconds, by format and round
+    std::vector<double> results = std::vector<double>(points_at_once);
+    std::vector<float> single_results = std::vector<float>(points_at_once);
+
+    static double per_value(const std::function<void()>& work)
+    {
+        constexpr int times = 8;
+        const double whole_ms = milliseconds([&] {
+            for (int i = 0; i < times; ++i) work();
+        });
+        return whole_ms * 1e6 / static_cast<double>(times * points_at_once * calls);
+    }
+    void one_by_one(const jit::Code& of)
+    {
+        haptel_entry* const entry = of.entry(std::string(ir::op_info(op).name));
+        const double block[sizeof(haptel_block_head) / sizeof(double)] = {};
+        for (size_t i = 0; i < points_at_once; ++i) {
+            haptel_sample sample;
+            entry(&arguments.points[i], block, &sample);
+            results[i] = sample.height_m;
+        }
+    }
+    void all_at_once(const jit::Code& of)
+    {
+        const double block[sizeof(haptel_block_head) / sizeof(double)] = {};
+        haptel_points points{};
+        for (size_t axis = 0; axis < 3; ++axis) {
+            points.p[axis] = arguments.arrays[axis].data();
+            points.n[axis] = arguments.arrays[3 + axis].data();
+        }
+        for (size_t axis = 0; axis < 2; ++axis) points.uv[axis] = arguments.arrays[6 + axis].data();
+        haptel_samples samples{};
+        samples.height_m = results.data();
+        of.batch_entry(std::string(ir::op_info(op).name) + "*")(&points, points_at_once, block, &samples);
+    }
+};
+
+void measure_errors(MathRow& row, Op op, int count)
+{
+    for (const auto& [a, b] : ir::elementary_arguments(op, count)) {
+        const ir::Quad exact = ir::elementary_truth(op, a, b);
+        const auto a32 = static_cast<float>(a), b32 = static_cast<float>(b);
+        const ir::Quad exact32 = ir::elementary_truth(op, static_cast<double>(a32), static_cast<double>(b32));
+        const auto take = [](double& worst, double off) { worst = std::max(worst, off); };
+        take(row.f64.error, ir::units_off(ir::elementary_f64(op, a, b), exact));
+        take(row.f64.library_error, ir::units_off(library_function(op, a, b), exact));
+        take(row.f32.error, ir::units_off(ir::elementary_f32(op, a32, b32), exact32));
+        take(row.f32.library_error, ir::units_off(library_function(op, a32, b32), exact32));
+    }
+}
+
+} // namespace
+
+std::vector<MathRow> bench_math(bool quick, const std::function<void(double)>& progress)
+{
+    std::string text;
+    for (const Op op : ir::elementary_ops()) text += text_of(op);
+    const ir::ParsedModule parsed = ir::parse(text);
+    std::shared_ptr<const jit::Code> code[2];
+    for (size_t format = 0; format < 2; ++format) {
+        std::vector<jit::EntryPoint> entries;
+        for (const ir::Texture& texture : parsed.module->textures)
+            for (const jit::LaneForm lanes : {jit::LaneForm::one, jit::LaneForm::points})
+                entries.push_back({texture.name + (lanes == jit::LaneForm::points ? "*" : ""), &texture,
+                                   jit::EntryPoint::Kind::height, lanes,
+                                   format == 0 ? jit::Precision::f64 : jit::Precision::f32});
+        code[format] = jit::compile_code(*parsed.module, entries, {jit::Effort::full}).code;
+    }
+    std::vector<MathRow> rows;
+    std::vector<Measured> measured;
+    const std::vector<Op> ops = ir::elementary_ops();
+    for (const Op op : ops) {
+        progress(0.5 * static_cast<double>(rows.size()) / static_cast<double>(ops.size()));
+        rows.push_back({std::string(ir::op_info(op).name), jit::batch_lanes(), ir::elementary_error(op), {}, {}});
+        measure_errors(rows.back(), op, quick ? 500 : 20'000);
+        measured.emplace_back(op, *code[0], *code[1]);
+    }
+    const int rounds = quick ? 5 : 51;
+    for (int round = 0; round < rounds; ++round) {
+        progress(0.5 + 0.5 * round / rounds);
+        for (Measured& one : measured) one.take();
+    }
+    progress(1);
+    for (size_t i = 0; i < rows.size(); ++i) measured[i].write(rows[i]);
+    return rows;
+}
+
+} // namespace haptel::bench
