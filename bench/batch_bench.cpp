@@ -8,18 +8,26 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <thread>
 
 namespace haptel::bench {
 namespace {
 
 constexpr size_t reals = sizeof(haptel_point) / sizeof(double);
-constexpr size_t chunk = 16384; // points that a thread takes at once: some 100 us, a hundredth of the whole
+constexpr size_t chunk = 4096; // points that a thread takes at once: some 20 us; their samples stay near the processor
 
-// Points as arrays of which a part can be taken, and room for their samples.
+// What a thread writes: the samples of a chunk, over and over, as who draws or sums them does. A million samples
+// written to memory would measure the memory.
+struct Samples {
+    double numbers[4][chunk];
+    uint32_t faults[chunk];
+};
+
+// Points as arrays of which a part can be taken.
 class Points {
 public:
-    Points(size_t count, const jit::CheckBox& box) : inputs(reals, std::vector<double>(count)), faults(count)
+    Points(size_t count, const jit::CheckBox& box) : inputs(reals, std::vector<double>(count))
     {
         const jit::CheckPoints places(box, 1);
         for (size_t i = 0; i < count; ++i) {
@@ -28,10 +36,9 @@ public:
                 std::memcpy(&inputs[real][i], reinterpret_cast<const char*>(&point) + real * sizeof(double),
                             sizeof(double));
         }
-        outputs.assign(4, std::vector<double>(count));
     }
-    size_t size() const { return faults.size(); }
-    void evaluate(haptel_batch_entry* entry, const void* block, bool with_gradient, size_t first, size_t count)
+    size_t size() const { return inputs[0].size(); }
+    void evaluate(haptel_batch_entry* entry, const void* block, bool with_gradient, size_t first, Samples& made) const
     {
         const double* arrays[reals];
         for (size_t real = 0; real < reals; ++real) arrays[real] = inputs[real].data() + first;
@@ -39,26 +46,25 @@ public:
         static_assert(sizeof points == sizeof arrays);
         std::memcpy(&points, arrays, sizeof points);
         haptel_samples samples{};
-        samples.height_m = outputs[0].data() + first;
-        samples.faults = faults.data() + first;
-        for (size_t axis = 0; with_gradient && axis < 3; ++axis)
-            samples.gradient[axis] = outputs[1 + axis].data() + first;
-        entry(&points, count, block, &samples);
+        samples.height_m = made.numbers[0];
+        samples.faults = made.faults;
+        for (size_t axis = 0; with_gradient && axis < 3; ++axis) samples.gradient[axis] = made.numbers[1 + axis];
+        entry(&points, std::min(chunk, size() - first), block, &samples);
     }
 
 private:
-    std::vector<std::vector<double>> inputs, outputs;
-    std::vector<uint32_t> faults;
+    std::vector<std::vector<double>> inputs;
 };
 
-double nanoseconds_per_point(const BatchTexture& texture, bool with_gradient, unsigned threads, Points& points)
+double nanoseconds_per_point(const BatchTexture& texture, bool with_gradient, unsigned threads, const Points& points)
 {
     const haptel_texture& code = *texture.binding.texture;
     haptel_batch_entry* const entry = with_gradient ? code.height_gradient_batch : code.height_batch;
     std::atomic<size_t> next{0};
     const auto work = [&] {
+        const auto samples = std::make_unique<Samples>();
         for (size_t first = next.fetch_add(chunk); first < points.size(); first = next.fetch_add(chunk))
-            points.evaluate(entry, texture.binding.block, with_gradient, first, std::min(chunk, points.size() - first));
+            points.evaluate(entry, texture.binding.block, with_gradient, first, *samples);
     };
     const double whole_ms = milliseconds([&] {
         std::vector<std::jthread> others;
@@ -80,7 +86,7 @@ std::vector<BatchRow> bench_batch(const std::vector<BatchTexture>& textures, con
     jit::CheckBox box;
     std::fill(box.minimum_m, box.minimum_m + 3, -options.box_m / 2);
     std::fill(box.maximum_m, box.maximum_m + 3, options.box_m / 2);
-    Points points(options.points, box);
+    const Points points(options.points, box);
     std::vector<Measured> measured(textures.size() * options.threads.size());
     for (unsigned round = 0; round < options.rounds; ++round) {
         size_t next = 0;
