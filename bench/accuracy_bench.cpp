@@ -34,11 +34,9 @@ struct Variant {
     const char* name;
     bool iterations_in_lanes;
 };
-constexpr Variant variants[] = {{jit::Precision::f64, "f64", false},
-                                {jit::Precision::mixed, "mixed", false},
-                                {jit::Precision::f32, "f32", false},
-                                {jit::Precision::mixed, "mixed", true},
-                                {jit::Precision::f32, "f32", true}};
+constexpr Variant variants[] = {{jit::Precision::f64, "f64", false},    {jit::Precision::mixed, "mixed", false},
+                                {jit::Precision::f32, "f32", false},    {jit::Precision::f64, "f64", true},
+                                {jit::Precision::mixed, "mixed", true}, {jit::Precision::f32, "f32", true}};
 
 jit::CompiledTextures compiled(const Case& one, const Variant& variant)
 {

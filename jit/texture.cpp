@@ -34,7 +34,7 @@ std::vector<EntryPoint> entry_points(const ir::Module& module, const TextureOpti
     const Precision precision = options.precision.value_or(Precision::f64),
                     of_many_precision = options.precision.value_or(Precision::mixed);
     const LaneForm one =
-        precision != Precision::f64 && options.iterations_in_lanes ? LaneForm::iterations : LaneForm::one;
+        options.iterations_in_lanes.value_or(precision != Precision::f64) ? LaneForm::iterations : LaneForm::one;
     std::vector<EntryPoint> entries;
     for (const ir::Texture& texture : module.textures) {
         if (texture.height != UINT32_MAX && wanted != Entries::height_gradient)

@@ -60,9 +60,9 @@ struct TextureOptions {
     // Whether haptel_texture::facts are looked for, which takes longer than all else: a binding has its own.
     bool facts_over_ranges = false;
     std::optional<Precision> precision = {}; // of every entry; none: f64 for one point, mixed for many
-    // For one point, where the precision is not f64: iterations of loops in lanes. Else in the batches' order, bit for
-    // bit.
-    bool iterations_in_lanes = true;
+    // For one point: iterations of loops in lanes, which changes the order of additions. None: in mixed and f32, so
+    // that f64 has the bits of the interpreter and of a batch.
+    std::optional<bool> iterations_in_lanes = {};
 };
 
 struct CompiledTextures {

@@ -123,10 +123,11 @@ size_t loops_in_lanes(const ir::Module& module, const std::string& name_part)
 
 TEST_CASE("loops whose iterations need not wait for one another run in lanes and give the same numbers", "[code]")
 {
-    const jit::Precision precision = GENERATE(jit::Precision::mixed, jit::Precision::f32);
+    const jit::Precision precision = GENERATE(jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32);
     for (const Case& one : cases()) {
         jit::TextureOptions options;
         options.precision = precision;
+        options.iterations_in_lanes = true;
         const jit::CompiledTextures compiled = jit::compile_texture(source(one), options);
         INFO(one.name << "\n" << compiled.rendered());
         REQUIRE(compiled.program);
@@ -155,7 +156,7 @@ TEST_CASE("iterations in lanes: every texture's height is the same with and with
           "order of one by one",
           "[code]")
 {
-    const jit::Precision precision = GENERATE(jit::Precision::mixed, jit::Precision::f32);
+    const jit::Precision precision = GENERATE(jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32);
     std::mt19937_64 random(8);
     std::uniform_real_distribution<double> place(-0.02, 0.02);
     size_t in_another_order = 0;
@@ -164,6 +165,7 @@ TEST_CASE("iterations in lanes: every texture's height is the same with and with
             if (file.path().extension() != ".haptel") continue;
             jit::TextureOptions options;
             options.precision = precision;
+            options.iterations_in_lanes = true;
             const jit::CompiledTextures lanes = jit::compile_texture_file(file.path(), options);
             options.iterations_in_lanes = false;
             const jit::CompiledTextures serial = jit::compile_texture_file(file.path(), options);
@@ -188,7 +190,7 @@ TEST_CASE("iterations in lanes: every texture's height is the same with and with
                     off = std::max(off, std::fabs(both.height_m - in_order.height_m));
                 }
                 CHECK(unequal == 0);
-                CHECK(off <= 2e-6 * largest);
+                CHECK(off <= (precision == jit::Precision::f64 ? 4e-15 : 2e-6) * largest);
                 in_another_order += differs > 0;
             }
         }
