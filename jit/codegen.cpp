@@ -1,6 +1,7 @@
 #include "jit/codegen.h"
 
 #include "jit/codegen_function.h"
+#include "jit/kernels.h"
 #include "lang/abi.h"
 
 #include <cstddef>
@@ -161,6 +162,10 @@ std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const
                                         : EntryEmitter(emitter, entry).one_point();
     }
     for (auto& [form, emitter] : emitters) emitter.finish();
+    if (kernels)
+        kernels->note(*generated);
+    else
+        write_elementary(*generated);
     return generated;
 }
 

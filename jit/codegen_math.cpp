@@ -14,20 +14,40 @@ namespace {
 
 using llvm::Value;
 
-uint32_t lanes_of(Value* value)
+constexpr llvm::StringLiteral prefix = "haptel_e.";
+
+uint32_t lanes_of(llvm::Type* type)
 {
-    const auto* vector = llvm::dyn_cast<llvm::FixedVectorType>(value->getType());
+    const auto* vector = llvm::dyn_cast<llvm::FixedVectorType>(type);
     return vector ? vector->getNumElements() : 1;
 }
 
-std::string name_of(ir::Op op, Value* operand, bool narrows)
+std::string symbol_of(const ElementaryForm& form)
 {
-    const bool is_single = operand->getType()->getScalarType()->isFloatTy();
-    return "elementary." + std::string(ir::op_info(op).name) +
-           (is_single ? ".f32"
-            : narrows ? ".f32.f64"
-                      : ".f64") +
-           "x" + std::to_string(lanes_of(operand));
+    return prefix.str() + std::string(ir::op_info(form.op).name) +
+           (form.is_single ? ".f32"
+            : form.narrows ? ".f32.f64"
+                           : ".f64") +
+           "x" + std::to_string(form.lanes);
+}
+
+llvm::Function& declare(llvm::Module& module, const std::string& symbol, const ElementaryForm& form)
+{
+    if (llvm::Function* known = module.getFunction(symbol)) return *known;
+    llvm::LLVMContext& context = module.getContext();
+    const auto type = [&](bool is_single) -> llvm::Type* {
+        llvm::Type* scalar = is_single ? llvm::Type::getFloatTy(context) : llvm::Type::getDoubleTy(context);
+        return form.lanes > 1 ? llvm::FixedVectorType::get(scalar, form.lanes) : scalar;
+    };
+    const std::vector<llvm::Type*> operands(ir::op_info(form.op).arity, type(form.is_single));
+    auto* function =
+        llvm::Function::Create(llvm::FunctionType::get(type(form.is_single || form.narrows), operands, false),
+                               llvm::GlobalValue::ExternalLinkage, symbol, module);
+    function->setCallingConv(llvm::CallingConv::Fast);
+    function->setDoesNotThrow();
+    function->setDoesNotAccessMemory();
+    function->setWillReturn();
+    return *function;
 }
 
 template <typename F>
@@ -37,41 +57,60 @@ Value* applied(llvm::IRBuilder<>& builder, ir::Op op, llvm::Function& function)
     return ir::elementary::apply(op, Code<F>(builder, first), Code<F>(builder, last)).code();
 }
 
-llvm::Function* made(llvm::Module& module, const std::string& name, ir::Op op, std::span<Value* const> operands,
-                     bool narrows)
+void write_body(llvm::Function& function, const ElementaryForm& form)
 {
-    llvm::LLVMContext& context = module.getContext();
-    std::vector<llvm::Type*> types;
-    for (Value* operand : operands) types.push_back(operand->getType());
-    llvm::Type* result = narrows ? types[0]->getWithNewType(llvm::Type::getFloatTy(context)) : types[0];
-    auto* function = llvm::Function::Create(llvm::FunctionType::get(result, types, false),
-                                            llvm::GlobalValue::InternalLinkage, name, module);
-    function->setCallingConv(llvm::CallingConv::Fast);
-    function->setDoesNotThrow();
-    function->setDoesNotAccessMemory();
-    function->setWillReturn();
-    llvm::IRBuilder<> builder(llvm::BasicBlock::Create(context, "", function));
-    const bool is_single = types[0]->getScalarType()->isFloatTy();
-    Value* value = narrows     ? ir::elementary::apply_to_angle(op, Code<double>(builder, function->getArg(0))).code()
-                   : is_single ? applied<float>(builder, op, *function)
-                               : applied<double>(builder, op, *function);
+    llvm::IRBuilder<> builder(llvm::BasicBlock::Create(function.getContext(), "", &function));
+    Value* value = form.narrows
+                       ? ir::elementary::apply_to_angle(form.op, Code<double>(builder, function.getArg(0))).code()
+                   : form.is_single ? applied<float>(builder, form.op, function)
+                                    : applied<double>(builder, form.op, function);
     builder.CreateRet(value);
-    return function;
 }
 
 } // namespace
 
 Value* call_elementary(llvm::IRBuilder<>& builder, ir::Op op, std::span<Value* const> operands, llvm::Type* result)
 {
-    llvm::Module& module = *builder.GetInsertBlock()->getModule();
-    const bool narrows =
-        ir::takes_angle(op) && result->isFloatTy() && operands[0]->getType()->getScalarType()->isDoubleTy();
-    const std::string name = name_of(op, operands[0], narrows);
-    llvm::Function* function = module.getFunction(name);
-    if (!function) function = made(module, name, op, operands, narrows);
-    llvm::CallInst* call = builder.CreateCall(function, llvm::ArrayRef(operands.data(), operands.size()));
+    const bool is_single = operands[0]->getType()->getScalarType()->isFloatTy();
+    const ElementaryForm form{op, is_single, ir::takes_angle(op) && result->isFloatTy() && !is_single,
+                              lanes_of(operands[0]->getType())};
+    llvm::Function& function = declare(*builder.GetInsertBlock()->getModule(), symbol_of(form), form);
+    llvm::CallInst* call = builder.CreateCall(&function, llvm::ArrayRef(operands.data(), operands.size()));
     call->setCallingConv(llvm::CallingConv::Fast);
     return call;
+}
+
+ElementaryForms elementary_calls(const llvm::Module& module)
+{
+    ElementaryForms found;
+    for (const llvm::Function& function : module) {
+        llvm::StringRef name = function.getName();
+        if (!function.isDeclaration() || !name.consume_front(prefix)) continue;
+        const std::optional<ir::Op> op = ir::op_named(std::string_view(name.split('.').first));
+        llvm::Type* operand = function.getArg(0)->getType();
+        const bool is_single = operand->getScalarType()->isFloatTy();
+        const bool narrows = !is_single && function.getReturnType()->getScalarType()->isFloatTy();
+        found[function.getName().str()] = {*op, is_single, narrows, lanes_of(operand)};
+    }
+    return found;
+}
+
+void write_elementary(llvm::Module& module)
+{
+    for (const auto& [symbol, form] : elementary_calls(module)) {
+        llvm::Function& function = *module.getFunction(symbol);
+        function.setLinkage(llvm::GlobalValue::InternalLinkage);
+        if (form.lanes > 1) function.addFnAttr(llvm::Attribute::NoInline); // it fills the registers by itself
+        write_body(function, form);
+    }
+}
+
+std::unique_ptr<llvm::Module> generate_elementary(const std::string& symbol, const ElementaryForm& form,
+                                                  llvm::LLVMContext& context)
+{
+    auto module = std::make_unique<llvm::Module>(symbol, context);
+    write_body(declare(*module, symbol, form), form);
+    return module;
 }
 
 // As a call through memory: it is a hundred times as long as the rest, whatever the lanes.
@@ -82,7 +121,7 @@ void reduce_where(CodeTruth condition, Code<double> a, ir::elementary::Angle<Cod
     llvm::BasicBlock* before = builder.GetInsertBlock();
     llvm::Function* function = before->getParent();
     llvm::Module* module = function->getParent();
-    const uint32_t lanes = lanes_of(a.code());
+    const uint32_t lanes = lanes_of(a.code()->getType());
     Value* const any = lanes > 1 ? builder.CreateOrReduce(condition.value) : condition.value;
     llvm::BasicBlock* huge = llvm::BasicBlock::Create(context, "huge", function);
     llvm::BasicBlock* after = llvm::BasicBlock::Create(context, "reduced", function);

@@ -62,7 +62,7 @@ private:
     Object make(Effort effort, CompileTimes& times, const Generate& generate);
     CodeResult link(const Object& object, const ir::Module& module, std::span<const EntryPoint> entries,
                     const KernelCalls& calls, CompileTimes& times);
-    std::string link_kernel(const ir::Module& module, const std::string& name, const Kernel& kernel,
+    std::string link_shared(const std::string& name, const std::string& identity, const Generate& generate,
                             llvm::orc::ExecutorAddr& address);
     std::string identity_of(const KernelCalls& calls, std::span<const EntryPoint> entries) const;
 
@@ -161,7 +161,8 @@ void keep(const Object& object, const std::string& identity, double seconds)
         ObjectCache::shared().store(key_of(identity, object.effort), object.bytes);
 }
 
-std::string Engine::link_kernel(const ir::Module& module, const std::string& name, const Kernel& kernel,
+// What programs share, once per process: a function of that name, known on disk by its identity.
+std::string Engine::link_shared(const std::string& name, const std::string& identity, const Generate& generate,
                                 llvm::orc::ExecutorAddr& address)
 {
     {
@@ -173,15 +174,13 @@ std::string Engine::link_kernel(const ir::Module& module, const std::string& nam
         }
     }
     Addresses wanted{{name, {}}};
-    Object object = found_object(name, kernel_effort);
+    Object object = found_object(identity, kernel_effort);
     if (object.bytes.empty() || !linker.link(object.bytes, {}, wanted).place) {
         CompileTimes unused;
         Stopwatch stopwatch;
-        object = make(kernel_effort, unused, [&](llvm::LLVMContext& context) {
-            return generate_kernel(module, name, kernel, processor, context);
-        });
+        object = make(kernel_effort, unused, generate);
         if (!object.error.empty()) return object.error;
-        keep(object, name, stopwatch.lap_s());
+        keep(object, identity, stopwatch.lap_s());
         if (Linker::Linked linked = linker.link(object.bytes, {}, wanted); !linked.place) return linked.error;
     }
     address = wanted.begin()->second;
@@ -217,9 +216,21 @@ CodeResult Engine::link(const Object& object, const ir::Module& module, std::spa
 {
     Stopwatch stopwatch;
     Addresses kernel_addresses, entry_addresses;
-    for (const auto& [name, kernel] : calls.used())
-        if (std::string error = link_kernel(module, name, kernel, kernel_addresses[name]); !error.empty())
+    for (const auto& [name, kernel] : calls.used()) {
+        const auto generate_it = [&, &symbol = name, &wanted = kernel](llvm::LLVMContext& context) {
+            return generate_kernel(module, symbol, wanted, processor, context);
+        };
+        if (std::string error = link_shared(name, name, generate_it, kernel_addresses[name]); !error.empty())
             return {nullptr, error};
+    }
+    for (const auto& [name, form] : calls.used_elementary()) {
+        const auto generate_it = [&symbol = name, &wanted = form](llvm::LLVMContext& context) {
+            return generate_elementary(symbol, wanted, context);
+        };
+        const std::string identity = name + ";" + target;
+        if (std::string error = link_shared(name, identity, generate_it, kernel_addresses[name]); !error.empty())
+            return {nullptr, error};
+    }
     times.kernels_s = stopwatch.lap_s();
 
     for (const EntryPoint& entry : entries) entry_addresses[entry.name];

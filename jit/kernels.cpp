@@ -70,6 +70,7 @@ std::unique_ptr<llvm::Module> generate_kernel(const ir::Module& module, const st
     code->setLinkage(llvm::GlobalValue::ExternalLinkage);
     code->setName(name);
     emitter.finish();
+    write_elementary(*generated);
     return generated;
 }
 

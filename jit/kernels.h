@@ -7,6 +7,7 @@
 #pragma once
 
 #include "jit/codegen.h"
+#include "jit/codegen_math.h"
 #include "jit/codegen_module.h"
 #include "jit/content_hash.h"
 
@@ -33,6 +34,10 @@ public:
     std::string call(Kernel kernel);
     const std::map<std::string, Kernel>& used() const { return kernels; }
 
+    // Elementary functions are compiled apart likewise (jit/codegen_math.h): those that the program calls.
+    void note(const llvm::Module& made) { elementary.merge(elementary_calls(made)); }
+    const ElementaryForms& used_elementary() const { return elementary; }
+
     const ContentHash& hash_of(uint32_t function) const { return hashes[function]; }
 
 private:
@@ -40,6 +45,7 @@ private:
     const std::vector<ContentHash> hashes; // by function
     std::vector<bool> is_worth_it;         // likewise
     std::map<std::string, Kernel> kernels; // by name
+    ElementaryForms elementary;
 };
 
 // A module with that kernel alone, under its name.

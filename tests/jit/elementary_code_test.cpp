@@ -91,3 +91,34 @@ TEST_CASE("elementary functions in code have the interpreter's bits, alone and i
         CHECK(different == 0);
     }
 }
+
+TEST_CASE("an elementary function is compiled once for all programs that call it in one form")
+{
+    const auto compile = [](const char* body) {
+        const ir::ParsedModule parsed =
+            ir::parse("function \"f\" () {\n  %a = input p_x\n  %f = u32 0\n" + std::string(body) +
+                      "  return %r, %f\n}\n"
+                      "texture \"t\" { block 56 reads 1 writes 0 height \"f\" }\n");
+        INFO(parsed.error);
+        REQUIRE(parsed.module);
+        const std::vector<jit::EntryPoint> entries{
+            {"t", &parsed.module->textures[0], jit::EntryPoint::Kind::height, jit::LaneForm::one, jit::Precision::f64}};
+        const jit::CodeResult result = jit::compile_code(*parsed.module, entries);
+        INFO(result.error);
+        REQUIRE(result.code);
+        return result.code;
+    };
+    const auto first = compile("  %s = tanh %a\n  %r = add %s, %a\n");
+    const size_t known = jit::kernels_alive();
+    const auto second = compile("  %s = tanh %a\n  %t = tanh %s\n  %r = mul %t, %a\n");
+    CHECK(jit::kernels_alive() == known);
+    const auto third = compile("  %s = tanh %a\n  %t = atanh %s\n  %r = mul %t, %a\n"); // one more
+    CHECK(jit::kernels_alive() <= known + 1);
+    test::Arguments arguments;
+    arguments.set(ir::Input::p_x, 0.7);
+    haptel_sample sample{};
+    second->entry("t")(&arguments.point, arguments.block.data(), &sample);
+    CHECK(sample.height_m == ir::elementary_f64(ir::Op::tanh, ir::elementary_f64(ir::Op::tanh, 0.7)) * 0.7);
+    third->entry("t")(&arguments.point, arguments.block.data(), &sample);
+    CHECK(sample.height_m == ir::elementary_f64(ir::Op::atanh, ir::elementary_f64(ir::Op::tanh, 0.7)) * 0.7);
+}
