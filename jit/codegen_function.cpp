@@ -68,7 +68,8 @@ Value* FunctionEmitter::at_offset(Value* base, size_t offset)
 
 std::vector<Value*> FunctionEmitter::block(const ir::Block& from, const std::vector<Form>& yield_forms)
 {
-    for (const ir::Instruction& instruction : from.instructions) emit(instruction);
+    for (const ir::Instruction& instruction : from.instructions)
+        if (!done.contains(&instruction)) emit(instruction);
     std::vector<Value*> yields;
     for (size_t i = 0; i < from.yields.size(); ++i) yields.push_back(value(from.yields[i], yield_forms[i]));
     return yields;

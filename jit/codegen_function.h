@@ -9,6 +9,8 @@
 
 #include "jit/codegen_module.h"
 
+#include <map>
+#include <set>
 #include <vector>
 
 namespace haptel::jit {
@@ -37,11 +39,12 @@ private:
     ModuleEmitter& module;
     const ir::Function& source;
     llvm::Function& target;
-    const ValueForms& forms;
+    ValueForms forms; // those in force: a split loop takes values out of lanes
     const EntryArguments arguments;
     llvm::IRBuilder<> builder;
     std::vector<llvm::Value*> values;             // by ir::Value::index
     std::vector<const ir::Instruction*> products; // likewise: what multiplied them
+    std::set<const ir::Instruction*> done;        // ahead of their blocks
 
     llvm::Value* value(ir::Value used) const { return values[used.index]; }
     llvm::Value* value(ir::Value used, Form wanted);
@@ -67,6 +70,11 @@ private:
     void emit(const ir::Instruction& made, const ir::If& choice);
     void emit(const ir::Instruction& made, const ir::For& loop);
     void emit_in_lanes(const ir::Instruction& made, const ir::Block& body, const LaneLoop& loop);
+    void emit_ahead(const std::vector<const ir::Instruction*>& instructions);
+    void emit_one_by_one(const ir::Block& body, const LaneLoop& loop, llvm::Value* count,
+                         std::vector<llvm::Value*>& carried);
+    void take_out_of_lanes(const ir::Block& block, std::map<uint32_t, llvm::AllocaInst*>& rooms);
+    void take_out_of_lanes(ir::Value used, std::map<uint32_t, llvm::AllocaInst*>& rooms);
 };
 
 } // namespace haptel::jit

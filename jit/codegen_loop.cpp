@@ -161,7 +161,7 @@ void FunctionEmitter::emit_in_lanes(const ir::Instruction& made, const ir::Block
 {
     const uint32_t lanes = module.lanes;
     Value* const count = value(made.operands[0]);
-    for (const ir::Instruction* fixed : loop.fixed) emit(*fixed);
+    emit_ahead(loop.fixed);
     const size_t carried_count = loop.carried.size();
     std::vector<Form> held;
     std::vector<Value*> initial; // scalars, but a sum's
@@ -172,7 +172,7 @@ void FunctionEmitter::emit_in_lanes(const ir::Instruction& made, const ir::Block
         held.push_back(forms[parameter]);
         const Form alone{false, held[i].is_single};
         llvm::Type* element = module.type(source.type(parameter), alone);
-        const bool has_amount = one.kind != Kind::sum && one.kind != Kind::kept;
+        const bool has_amount = one.by != ir::Value{};
         progress.emplace_back(builder, one.kind, element, has_amount ? value(one.by, alone) : nullptr, lanes);
         initial.push_back(one.kind == Kind::sum ? llvm::ConstantFP::getNegativeZero(type(parameter))
                                                 : value(made.operands[i + 1], alone));
@@ -195,38 +195,131 @@ void FunctionEmitter::emit_in_lanes(const ir::Instruction& made, const ir::Block
 
     builder.SetInsertPoint(inside);
     Value* const step = builder.CreateStepVector(llvm::FixedVectorType::get(builder.getInt32Ty(), lanes));
-    Value* const left = builder.CreateVectorSplat(lanes, builder.CreateSub(count, first));
-    Value* const is_busy = builder.CreateICmpSLT(step, left);
-    Value* const lane = builder.CreateBinaryIntrinsic(
-        llvm::Intrinsic::smin, step, builder.CreateSub(left, llvm::ConstantInt::get(left->getType(), 1)));
+    Value* const left = builder.CreateSub(count, first);
+    Value* const is_busy = builder.CreateICmpSLT(step, builder.CreateVectorSplat(lanes, left));
+    Value* const last = builder.CreateVectorSplat(lanes, builder.CreateSub(left, builder.getInt32(1)));
+    Value* const lane = builder.CreateBinaryIntrinsic(llvm::Intrinsic::smin, step, last);
     Value* const is_first_group = builder.CreateICmpEQ(first, builder.getInt32(0));
     define(body.parameters[0], builder.CreateAdd(builder.CreateVectorSplat(lanes, first), lane));
     for (size_t i = 0; i < carried_count; ++i)
-        define(body.parameters[i + 1],
-               loop.carried[i].kind == Kind::sum ? carried[i] : progress[i].in_lanes(carried[i], lane, is_first_group));
-    auto fixed = loop.fixed.begin();
-    for (const ir::Instruction& instruction : body.instructions) {
-        if (fixed != loop.fixed.end() && *fixed == &instruction)
-            ++fixed;
-        else
-            emit(instruction);
+        define(body.parameters[i + 1], loop.carried[i].kind == Kind::sum || loop.carried[i].kind == Kind::serial
+                                           ? carried[i]
+                                           : progress[i].in_lanes(carried[i], lane, is_first_group));
+    std::vector<Value*> next(carried.begin(), carried.end());
+    if (loop.waits.empty()) {
+        const std::vector<Value*> yields = block(body, held);
+        for (size_t i = 0; i < carried_count; ++i)
+            if (loop.carried[i].kind == Kind::sum) next[i] = builder.CreateSelect(is_busy, yields[i], next[i]);
+    } else {
+        emit_ahead(loop.side_by_side);
+        Value* const most = builder.getInt32(lanes);
+        emit_one_by_one(body, loop, builder.CreateBinaryIntrinsic(llvm::Intrinsic::smin, left, most), next);
     }
     for (size_t i = 0; i < carried_count; ++i) {
-        const bool is_sum = loop.carried[i].kind == Kind::sum;
-        Value* next = is_sum ? builder.CreateSelect(is_busy, value(body.yields[i], held[i]), carried[i])
-                             : progress[i].in_next_group(carried[i]);
-        carried[i]->addIncoming(next, builder.GetInsertBlock());
+        const bool is_known = loop.carried[i].kind != Kind::sum && loop.carried[i].kind != Kind::serial;
+        if (is_known) next[i] = progress[i].in_next_group(carried[i]);
+        carried[i]->addIncoming(next[i], builder.GetInsertBlock());
     }
     first->addIncoming(builder.CreateAdd(first, builder.getInt32(lanes)), builder.GetInsertBlock());
     builder.CreateBr(head);
 
     builder.SetInsertPoint(after);
     for (size_t i = 0; i < carried_count; ++i) {
+        if (loop.carried[i].kind == Kind::serial) define(made.results[i], carried[i]);
         if (loop.carried[i].kind != Kind::sum) continue;
         const Form alone{false, held[i].is_single};
         define(made.results[i],
                builder.CreateFAdd(value(made.operands[i + 1], alone), sum_of_lanes(builder, carried[i], lanes)));
     }
+}
+
+void FunctionEmitter::emit_ahead(const std::vector<const ir::Instruction*>& instructions)
+{
+    for (const ir::Instruction* one : instructions) {
+        emit(*one);
+        done.insert(one);
+    }
+}
+
+// What waits for serial values, `count` iterations of it: what the lanes hold is laid in memory and fetched lane by
+// lane.
+void FunctionEmitter::emit_one_by_one(const ir::Block& body, const LaneLoop& loop, Value* count,
+                                      std::vector<Value*>& carried)
+{
+    std::map<uint32_t, llvm::AllocaInst*> rooms; // by value
+    take_out_of_lanes(body, rooms);
+    for (size_t i = 0; i < carried.size(); ++i)
+        if (loop.carried[i].kind == Kind::serial) take_out_of_lanes(body.yields[i], rooms);
+
+    llvm::BasicBlock* before = builder.GetInsertBlock();
+    llvm::BasicBlock* one = new_block("one");
+    llvm::BasicBlock* after = new_block("all");
+    builder.CreateBr(one); // a group has an iteration at least
+    builder.SetInsertPoint(one);
+    llvm::PHINode* lane = builder.CreatePHI(builder.getInt32Ty(), 2);
+    lane->addIncoming(builder.getInt32(0), before);
+    std::vector<llvm::PHINode*> held(carried.size());
+    for (size_t i = 0; i < carried.size(); ++i) {
+        if (loop.carried[i].kind != Kind::serial) continue;
+        held[i] = builder.CreatePHI(carried[i]->getType(), 2);
+        held[i]->addIncoming(carried[i], before);
+        define(body.parameters[i + 1], held[i]);
+    }
+    for (const auto& [index, room] : rooms) {
+        llvm::Type* element = llvm::cast<llvm::ArrayType>(room->getAllocatedType())->getElementType();
+        Value* cell = builder.CreateInBoundsGEP(element, room, builder.CreateZExt(lane, builder.getInt64Ty()));
+        Value* fetched = builder.CreateLoad(element, cell);
+        const bool is_boolean = source.value_types[index] == ir::Type::boolean;
+        values[index] = is_boolean ? builder.CreateTrunc(fetched, builder.getInt1Ty()) : fetched;
+    }
+    for (const ir::Instruction& instruction : body.instructions)
+        if (!done.contains(&instruction)) emit(instruction);
+    Value* const next = builder.CreateAdd(lane, builder.getInt32(1));
+    for (size_t i = 0; i < carried.size(); ++i) {
+        if (!held[i]) continue;
+        carried[i] = value(body.yields[i], forms[body.parameters[i + 1]]);
+        held[i]->addIncoming(carried[i], builder.GetInsertBlock());
+    }
+    lane->addIncoming(next, builder.GetInsertBlock());
+    builder.CreateCondBr(builder.CreateICmpSLT(next, count), one, after);
+    builder.SetInsertPoint(after);
+}
+
+// All that the block's remaining instructions use, and the factors of products that they may be fused with.
+void FunctionEmitter::take_out_of_lanes(const ir::Block& from, std::map<uint32_t, llvm::AllocaInst*>& rooms)
+{
+    for (const ir::Instruction& made : from.instructions) {
+        if (done.contains(&made)) continue;
+        for (ir::Value used : made.operands) {
+            take_out_of_lanes(used, rooms);
+            if (const ir::Instruction* product = module.fuses() ? products[used.index] : nullptr)
+                for (ir::Value factor : product->operands) take_out_of_lanes(factor, rooms);
+        }
+        if (const auto* choice = std::get_if<ir::If>(&made.kind))
+            for (const ir::Block& arm : choice->arms) {
+                take_out_of_lanes(arm, rooms);
+                for (ir::Value yield : arm.yields) take_out_of_lanes(yield, rooms);
+            }
+        if (const auto* loop = std::get_if<ir::For>(&made.kind)) {
+            take_out_of_lanes(loop->body[0], rooms);
+            for (ir::Value yield : loop->body[0].yields) take_out_of_lanes(yield, rooms);
+        }
+    }
+}
+
+void FunctionEmitter::take_out_of_lanes(ir::Value used, std::map<uint32_t, llvm::AllocaInst*>& rooms)
+{
+    if (!forms[used].in_lanes) return;
+    Value* lanes = value(used);
+    if (source.type(used) == ir::Type::boolean)
+        lanes = builder.CreateZExt(lanes, llvm::FixedVectorType::get(builder.getInt8Ty(), module.lanes));
+    llvm::IRBuilder<> at_entry(&target.getEntryBlock(), target.getEntryBlock().begin());
+    llvm::AllocaInst* room =
+        at_entry.CreateAlloca(llvm::ArrayType::get(lanes->getType()->getScalarType(), module.lanes));
+    room->setAlignment(llvm::Align(64));
+    builder.CreateStore(lanes, room);
+    rooms.emplace(used.index, room);
+    forms.in_lanes[used.index] = false;
 }
 
 } // namespace haptel::jit

@@ -12,6 +12,7 @@ using ir::Value;
 
 constexpr uint32_t iterations_least = 3; // fewer are not worth a register
 constexpr int depth_most = 1000;         // of a chain of additions
+constexpr uint32_t work_least = 20;      // operations: less is not worth splitting a loop for
 
 // What a function's values are made by and how often they are used.
 class Uses {
@@ -62,17 +63,18 @@ public:
     {
         if (std::get<ir::For>(made.kind).trip_max < iterations_least) return {};
         mark();
+        bool sums_something = false, is_all_known = true;
         for (size_t i = 0; i < made.results.size(); ++i) {
             const Value parameter = body.parameters[i + 1], yield = body.yields[i];
             // What follows from the iteration's number is not known after the last.
             std::optional<Carried> found;
             if (uses.count(made.results[i]) == 0) found = known(parameter, yield);
-            if (!found && is_sum(parameter, yield)) found = Carried{Carried::Kind::sum};
-            if (!found) return {};
-            found_loop.carried.push_back(*found);
+            const bool adds = !found && is_sum(parameter, yield);
+            sums_something = sums_something || adds;
+            is_all_known = is_all_known && (found || adds);
+            found_loop.carried.push_back(found ? *found : Carried{adds ? Carried::Kind::sum : Carried::Kind::serial});
         }
-        const bool sums_something = std::any_of(found_loop.carried.begin(), found_loop.carried.end(),
-                                                [](const Carried& one) { return one.kind == Carried::Kind::sum; });
+        if (!is_all_known) return split();
         return sums_something ? std::optional(std::move(found_loop)) : std::nullopt;
     }
 
@@ -125,6 +127,77 @@ private:
         uint32_t accounted = 0;
         return function.type(parameter) == ir::Type::real && adds_to(parameter, yield, accounted, 0) &&
                accounted == uses.count(parameter);
+    }
+    std::optional<LaneLoop> split()
+    {
+        found_loop.waits.assign(changes.size(), false);
+        for (size_t i = 0; i < found_loop.carried.size(); ++i) {
+            Carried& one = found_loop.carried[i];
+            if (one.kind == Carried::Kind::sum) one.kind = Carried::Kind::serial; // in the order of the others
+            found_loop.waits[body.parameters[i + 1].index] = one.kind == Carried::Kind::serial;
+        }
+        const std::vector<const ir::Instruction*> fixed = found_loop.fixed;
+        for (const ir::Instruction& inside : body.instructions)
+            if (std::find(fixed.begin(), fixed.end(), &inside) == fixed.end()) sort(inside, found_loop.side_by_side);
+        uint32_t work = 0;
+        for (const ir::Instruction* apart : found_loop.side_by_side) work += work_of(*apart);
+        return work >= work_least ? std::optional(std::move(found_loop)) : std::nullopt;
+    }
+    bool does_wait(const std::vector<Value>& values) const
+    {
+        return std::any_of(values.begin(), values.end(), [&](Value value) { return found_loop.waits[value.index]; });
+    }
+    // Marks what waits; what does not joins `free`.
+    void sort(const ir::Instruction& inside, std::vector<const ir::Instruction*>& free)
+    {
+        bool waits = does_wait(inside.operands);
+        std::vector<const ir::Instruction*> free_of_arms;
+        if (const auto* choice = std::get_if<ir::If>(&inside.kind))
+            for (const ir::Block& arm : choice->arms) {
+                const size_t count = free_of_arms.size() + arm.instructions.size();
+                for (const ir::Instruction& of_arm : arm.instructions) sort(of_arm, free_of_arms);
+                waits = waits || free_of_arms.size() != count || does_wait(arm.yields);
+            }
+        if (const auto* loop = std::get_if<ir::For>(&inside.kind)) {
+            waits = waits || uses_waiting(loop->body[0]);
+            if (waits) mark_all(loop->body[0]);
+        }
+        for (Value result : inside.results) found_loop.waits[result.index] = waits;
+        if (waits)
+            free.insert(free.end(), free_of_arms.begin(), free_of_arms.end());
+        else
+            free.push_back(&inside);
+    }
+    bool uses_waiting(const ir::Block& block) const
+    {
+        const auto does = [&](const ir::Instruction& inside) {
+            if (does_wait(inside.operands)) return true;
+            if (const auto* choice = std::get_if<ir::If>(&inside.kind))
+                return uses_waiting(choice->arms[0]) || uses_waiting(choice->arms[1]);
+            const auto* loop = std::get_if<ir::For>(&inside.kind);
+            return loop && uses_waiting(loop->body[0]);
+        };
+        return does_wait(block.yields) || std::any_of(block.instructions.begin(), block.instructions.end(), does);
+    }
+    void mark_all(const ir::Block& block)
+    {
+        for (Value parameter : block.parameters) found_loop.waits[parameter.index] = true;
+        for (const ir::Instruction& inside : block.instructions) {
+            for (Value result : inside.results) found_loop.waits[result.index] = true;
+            if (const auto* choice = std::get_if<ir::If>(&inside.kind))
+                for (const ir::Block& arm : choice->arms) mark_all(arm);
+            if (const auto* loop = std::get_if<ir::For>(&inside.kind)) mark_all(loop->body[0]);
+        }
+    }
+    static uint32_t work_of(const ir::Instruction& inside)
+    {
+        if (std::holds_alternative<ir::Call>(inside.kind) || std::holds_alternative<ir::For>(inside.kind))
+            return work_least;
+        uint32_t work = std::holds_alternative<ir::Operation>(inside.kind) ? 1 : 0;
+        if (const auto* choice = std::get_if<ir::If>(&inside.kind))
+            for (const ir::Block& arm : choice->arms)
+                for (const ir::Instruction& of_arm : arm.instructions) work += work_of(of_arm);
+        return work;
     }
     // Is `value` the parameter with things added to it? Counts the uses of the parameter on the way.
     bool adds_to(Value parameter, Value value, uint32_t& accounted, int depth)

@@ -1,10 +1,14 @@
 // Loops whose iterations can run side by side, in the lanes of a register: the octaves of a fractal, the terms of a
 // Fourier series.
 //
-// That takes carried values that no iteration has to wait for: a sum, to which each iteration adds something of its
-// own; a factor or a step that is the same each time, so that the value is known from the iteration's number; or a
-// value that stays. A sum of a sum's derivative is a sum again, and what is the same for all points has no derivative:
-// a loop and the same loop with derivatives are always judged alike, and give the same bits.
+// Best are carried values that no iteration has to wait for: a sum, to which each iteration adds something of its own;
+// a factor or a step that is the same each time, so that the value is known from the iteration's number; or a value
+// that stays. A sum of a sum's derivative is a sum again, and what is the same for all points has no derivative: a loop
+// and the same loop with derivatives are always judged alike, and give the same bits.
+//
+// Where others are carried (a product, a maximum, the weights of a hybrid fractal), the loop is split: what does not
+// wait for them runs side by side, then they follow one iteration after the other, with the bits of a loop that is not
+// split.
 #pragma once
 
 #include "lang/ir/ir.h"
@@ -23,6 +27,7 @@ struct Carried {
         back,     // initial - i by
         replaced, // initial, then `by`
         kept,     // initial
+        serial,   // only as the iterations before have left it
     };
     Kind kind = Kind::kept;
     ir::Value by{};
@@ -32,6 +37,10 @@ struct LaneLoop {
     std::vector<Carried> carried;
     // Of the body: made from nothing that changes from one iteration to the next, `by` among them; in their order.
     std::vector<const ir::Instruction*> fixed;
+    // Where something is serial, else empty: what waits for it, by ir::Value::index, and in their order the
+    // instructions that do not, also of branches whose other instructions do.
+    std::vector<bool> waits;
+    std::vector<const ir::Instruction*> side_by_side;
 };
 using LaneLoops = std::map<const ir::For*, LaneLoop>;
 

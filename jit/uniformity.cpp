@@ -19,13 +19,14 @@ public:
 
 private:
     const LaneLoops* const lane_loops;
+    const std::vector<bool>* waits = nullptr; // of the lane loop that is looked at, if it is split
 
     bool is_varying(ir::Value value) const { return varies[value.index]; }
     bool is_any_varying(const std::vector<ir::Value>& values) const
     {
         return std::any_of(values.begin(), values.end(), [&](ir::Value value) { return is_varying(value); });
     }
-    void set(ir::Value value, bool varying) { varies[value.index] = varying; }
+    void set(ir::Value value, bool varying) { varies[value.index] = varying && !(waits && (*waits)[value.index]); }
 
     void block(const ir::Block& from)
     {
@@ -71,10 +72,12 @@ private:
     // Its results are one for all iterations.
     void side_by_side(const ir::Block& body, const LaneLoop& loop)
     {
+        waits = loop.waits.empty() ? nullptr : &loop.waits;
         set(body.parameters[0], true);
         for (size_t i = 0; i < loop.carried.size(); ++i)
             set(body.parameters[i + 1], loop.carried[i].kind != Carried::Kind::kept);
         block(body);
+        waits = nullptr;
     }
 };
 

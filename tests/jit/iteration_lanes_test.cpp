@@ -99,6 +99,53 @@ const std::vector<Case>& cases()
          "float s = 0.0; float f = 1.0; for (int i = 0; i < min(n, 10); ++i) { s += p.x; f *= 2.0; } "
          "return s + f;",
          false, [](const double* p, int n) { return p[0] * std::min(n, 10) + std::exp2(std::min(n, 10)); }},
+        {"split: a product and a maximum",
+         "float a = 1.0; float b = -9.0; for (int i = 0; i < min(n, 20); ++i) { float t = term(p, float(i)); "
+         "a *= t > 0.0 ? -1.0 : 1.0; b = max(b, t); } return 10.0 * a + b;",
+         true,
+         [](const double* p, int n) {
+             double a = 1, b = -9;
+             for (int i = 0; i < std::min(n, 20); ++i) {
+                 const double t = (p[0] - i) * (p[1] - i) - i;
+                 a *= t > 0 ? -1 : 1;
+                 b = std::max(b, t);
+             }
+             return 10 * a + b;
+         }},
+        {"split: a weight, a branch that waits around work that does not, a factor used after, a loop inside",
+         "float s = 0.0; float w = 1.0; float f = 1.0; bool odd = false; for (int i = 0; i < min(n, 20); ++i) { "
+         "if (w < 50.0) { float t = term(p, f); s += w * t; w = min(abs(t) + w, 60.0); } else { w -= term(p.yxz, 3.0); "
+         "} "
+         "odd = odd != (term(p, float(i)) > 2.0); f += 2.0; "
+         "for (int j = 0; j < i % 3; ++j) s = s - float(j) * w; } return s + f + (odd ? 0.5 : 0.0);",
+         true,
+         [](const double* p, int n) {
+             const auto term = [](double x, double y, double k) { return (x - k) * (y - k) - k; };
+             double s = 0, w = 1, f = 1;
+             bool odd = false;
+             for (int i = 0; i < std::min(n, 20); ++i) {
+                 if (w < 50) {
+                     const double t = term(p[0], p[1], f);
+                     s += w * t;
+                     w = std::min(std::fabs(t) + w, 60.0);
+                 } else {
+                     w -= term(p[1], p[0], 3);
+                 }
+                 odd = odd != (term(p[0], p[1], i) > 2);
+                 f += 2;
+                 for (int j = 0; j < i % 3; ++j) s -= j * w;
+             }
+             return s + f + (odd ? 0.5 : 0.0);
+         }},
+        {"split: it leaves when it has enough",
+         "float s = 0.0; for (int i = 0; i < min(n, 20); ++i) { s += abs(term(p, float(i))); if (s > 40.0) break; } "
+         "return s;",
+         true,
+         [](const double* p, int n) {
+             double s = 0;
+             for (int i = 0; i < std::min(n, 20) && s <= 40; ++i) s += std::fabs((p[0] - i) * (p[1] - i) - i);
+             return s;
+         }},
         {"too few to fill lanes", "float s = 0.0; for (int i = 0; i < min(n, 2); ++i) s += p.x * float(i); return s;",
          false, [](const double* p, int n) { return n >= 2 ? p[0] : 0; }},
     };
@@ -107,8 +154,8 @@ const std::vector<Case>& cases()
 
 std::string source(const Case& one)
 {
-    return std::string("float f(vec3 p, int n) { ") + one.body +
-           " }\ntexture t(int n = 0 in 0 .. 100) { return 1m * f(p / 1m, n); }";
+    return std::string("float term(vec3 q, float k) { return (q.x - k) * (q.y - k) - k; }\nfloat f(vec3 p, int n) { ") +
+           one.body + " }\ntexture t(int n = 0 in 0 .. 100) { return 1m * f(p / 1m, n); }";
 }
 
 size_t loops_in_lanes(const ir::Module& module, const std::string& name_part)
