@@ -106,7 +106,7 @@ Number noise(const Point<Number>& q, const Tables<Real>& tables)
         between(between(corner(0, 0, 1), corner(1, 0, 1), u), between(corner(0, 1, 1), corner(1, 1, 1), u), v), w);
 }
 
-constexpr double octave_shift[] = {17.375, 41.625, 29.1875};
+constexpr double octave_shift[] = {1.375, 0.625, 0.1875};
 
 template <typename Number, typename Real>
 Number fbm(const Point<Number>& q, const Tables<Real>& tables, int octaves)

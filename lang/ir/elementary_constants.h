@@ -48,7 +48,6 @@ struct Constants<double> {
     static constexpr double ln2[] = {0x1.62e42fefa38p-1, 0x1.ef35793c76730p-45};      // times a whole number to 2^11
     static constexpr double ln2_halves[] = {0x1.62e42f8p-1, 0x1.be8e7bcd5e4f2p-27};   // times half a significand
     static constexpr double log2e_halves[] = {0x1.7154760p+0, 0x1.4ae0bf85ddf44p-26}; // 1 / ln 2
-    static constexpr double tail_scale[] = {0x1.ec709d8p-1, 0x1.0e80ff5d27f05p-27};   // 2 / (3 ln 2)
     static constexpr double pi[] = {0x1.921fb54442d18p+1, 0x1.1a62633145c07p-53};
     static constexpr double half_pi[] = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
     static constexpr double quarter_pi[] = {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55};

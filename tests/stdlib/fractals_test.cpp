@@ -26,8 +26,8 @@ FieldSample expected_sum(double (*shape)(double), double (*shape_slope)(double),
     double frequency = 1;
     for (int i = 0; i < octaves; ++i) {
         const double amplitude = strength(footprint * std::sqrt(3.0) * frequency) * std::pow(gain, i);
-        const double x = q[0] * frequency + 17.375 * i, y = q[1] * frequency + 41.625 * i,
-                     z = q[2] * frequency + 29.1875 * i;
+        const double x = q[0] * frequency + 1.375 * i, y = q[1] * frequency + 0.625 * i,
+                     z = q[2] * frequency + 0.1875 * i;
         const double b = std::sin(x) * std::cos(y) + 0.5 * std::sin(z), outer = amplitude * frequency * shape_slope(b);
         sum.value += amplitude * shape(b);
         sum.gradient[0] += outer * std::cos(x) * std::cos(y);

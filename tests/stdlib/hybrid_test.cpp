@@ -36,8 +36,8 @@ FieldSample expected(const Vec3& q, int octaves, double lacunarity, double gain,
     double weight = 1, frequency = 1, amplitude = 1;
     Vec3 weight_slope{};
     for (int i = 0; i < octaves; ++i) {
-        const double x = q[0] * frequency + 17.375 * i, y = q[1] * frequency + 41.625 * i,
-                     z = q[2] * frequency + 29.1875 * i;
+        const double x = q[0] * frequency + 1.375 * i, y = q[1] * frequency + 0.625 * i,
+                     z = q[2] * frequency + 0.1875 * i;
         const double b = amplitude * (std::sin(x) * std::cos(y) + 0.5 * std::sin(z) + 0.7);
         const Vec3 slope{amplitude * frequency * std::cos(x) * std::cos(y),
                          -amplitude * frequency * std::sin(x) * std::sin(y), amplitude * frequency * 0.5 * std::cos(z)};
