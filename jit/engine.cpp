@@ -7,6 +7,7 @@
 #include "jit/llvm.h"
 #include "jit/machine_code.h"
 #include "jit/object_cache.h"
+#include "jit/replaceable.h"
 #include "jit/stopwatch.h"
 
 #include <atomic>
@@ -93,6 +94,11 @@ public:
         else
             entries[entry.name] = address.toPtr<haptel_entry*>();
     }
+    void add_slot(const EntryPoint& entry, llvm::orc::ExecutorAddr address)
+    {
+        slots[entry.name] = address.toPtr<void**>();
+    }
+    void set_full() { is_final = true; }
 
 private:
     llvm::orc::JITDylib& place;
@@ -233,11 +239,19 @@ CodeResult Engine::link(const Object& object, const ir::Module& module, std::spa
     }
     times.kernels_s = stopwatch.lap_s();
 
-    for (const EntryPoint& entry : entries) entry_addresses[entry.name];
+    const bool is_quick = object.effort == Effort::quick;
+    for (const EntryPoint& entry : entries) {
+        entry_addresses[entry.name];
+        if (is_quick) entry_addresses[slot_of(entry.name)];
+    }
     const Linker::Linked linked = linker.link(object.bytes, kernel_addresses, entry_addresses);
     if (!linked.place) return {nullptr, object.is_from_disk ? "" : linked.error};
     auto code = std::make_shared<LinkedCode>(*linked.place);
-    for (const EntryPoint& entry : entries) code->add(entry, entry_addresses[entry.name]);
+    for (const EntryPoint& entry : entries) {
+        code->add(entry, entry_addresses[entry.name]);
+        if (is_quick) code->add_slot(entry, entry_addresses[slot_of(entry.name)]);
+    }
+    if (!is_quick) code->set_full();
     times.link_s = stopwatch.lap_s();
     code->times = times;
     return {std::move(code), {}};
@@ -252,8 +266,10 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     const std::string identity = identity_of(calls, entries);
     const auto generate_for = [&](Effort effort) {
         const bool has_kernels = options.kernels && effort == Effort::quick;
-        return [&, has_kernels](llvm::LLVMContext& context) {
-            return generate(module, entries, processor, context, has_kernels ? &calls : nullptr);
+        return [&, has_kernels, effort](llvm::LLVMContext& context) {
+            auto generated = generate(module, entries, processor, context, has_kernels ? &calls : nullptr);
+            if (effort == Effort::quick) make_replaceable(*generated, entries);
+            return generated;
         };
     };
     Object object;
@@ -275,6 +291,19 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
 }
 
 } // namespace
+
+void Code::replace_by(std::shared_ptr<const Code> better) const
+{
+    const std::lock_guard lock(replacing);
+    if (is_final) return;
+    replacement = std::move(better); // first, so that it outlives every call
+    for (const auto& [name, slot] : slots) {
+        void* code = reinterpret_cast<void*>(replacement->entry(name));
+        if (!code) code = reinterpret_cast<void*>(replacement->batch_entry(name));
+        if (code) std::atomic_ref(*slot).store(code, std::memory_order_release);
+    }
+    is_final = true;
+}
 
 haptel_entry* Code::entry(const std::string& name) const
 {

@@ -10,8 +10,10 @@
 #include "jit/codegen.h"
 #include "lang/abi.h"
 
+#include <atomic>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 
@@ -37,9 +39,21 @@ public:
     haptel_batch_entry* batch_entry(const std::string& name) const;
     CompileTimes times;
 
+    // True where the code is of full effort, made so or replaced.
+    bool is_full() const { return is_final; }
+    // From now on the entries of this quick code run those of `better`, of the same program: callers in any thread go
+    // on and hold the pointers that they held. Once.
+    void replace_by(std::shared_ptr<const Code> better) const;
+
 protected:
     std::map<std::string, haptel_entry*> entries;
     std::map<std::string, haptel_batch_entry*> batch_entries;
+    std::map<std::string, void**> slots; // by entry, jit/replaceable.h; none in code of full effort
+    mutable std::atomic<bool> is_final{false};
+
+private:
+    mutable std::mutex replacing;
+    mutable std::shared_ptr<const Code> replacement;
 };
 
 struct CodeResult {

@@ -1,5 +1,6 @@
 #include "jit/program_cache.h"
 
+#include "jit/background_optimiser.h"
 #include "jit/source_file.h"
 
 #include <algorithm>
@@ -33,6 +34,7 @@ std::shared_ptr<const CompiledTextures> ProgramCache::load(const std::string& pa
         TextureOptions options;
         options.entries = Entries::height_gradient;
         known = std::make_shared<CompiledTextures>(compile_texture_file(path, options));
+        BackgroundOptimiser::shared().add(known->program);
     }
     return known;
 }

@@ -21,8 +21,8 @@ namespace haptel::jit {
 // The textures of one file with their code. Immutable; the code lives as long as the program.
 class CompiledProgram {
 public:
-    CompiledProgram(std::shared_ptr<const lang::Program> checked, std::shared_ptr<const Code> machine_code,
-                    bool has_facts);
+    CompiledProgram(std::shared_ptr<const lang::Program> checked, std::vector<EntryPoint> of_code,
+                    std::shared_ptr<const Code> machine_code, bool has_facts);
     CompiledProgram(const CompiledProgram&) = delete;
     CompiledProgram& operator=(const CompiledProgram&) = delete;
 
@@ -38,8 +38,14 @@ public:
 
     const CompileTimes& times() const { return code->times; }
 
+    // Puts code of full effort in the place of quick code, in seconds rather than milliseconds; the same bits. Any
+    // thread, whoever calls the entries meanwhile. Nothing happens where that is done, or cannot be.
+    void optimise() const;
+    bool is_optimised() const { return code->is_full(); }
+
 private:
     std::shared_ptr<const lang::Program> program;
+    std::vector<EntryPoint> entries;
     std::shared_ptr<const Code> code;
     std::vector<std::vector<haptel_parameter>> parameters; // by texture
     std::vector<haptel_texture> table;
