@@ -19,7 +19,7 @@ namespace haptel::jit {
 
 namespace {
 
-// What is made in less time than that is not worth a file.
+// A program that is made in less time than that is not worth a file. Kernels always are: textures share them.
 constexpr double worth_keeping_s = 2e-3;
 // More makes no kernel faster that was measured, and takes twice as long.
 constexpr Effort kernel_effort = Effort::quick;
@@ -161,10 +161,9 @@ Object Engine::make(Effort effort, CompileTimes& times, const Generate& generate
     return {std::string(made.data(), made.size()), std::move(error), effort};
 }
 
-void keep(const Object& object, const std::string& identity, double seconds)
+void keep(const Object& object, const std::string& identity)
 {
-    if (object.error.empty() && !object.is_from_disk && seconds > worth_keeping_s)
-        ObjectCache::shared().store(key_of(identity, object.effort), object.bytes);
+    ObjectCache::shared().store(key_of(identity, object.effort), object.bytes);
 }
 
 // What programs share, once per process: a function of that name, known on disk by its identity.
@@ -183,10 +182,9 @@ std::string Engine::link_shared(const std::string& name, const std::string& iden
     Object object = found_object(identity, kernel_effort);
     if (object.bytes.empty() || !linker.link(object.bytes, {}, wanted).place) {
         CompileTimes unused;
-        Stopwatch stopwatch;
         object = make(kernel_effort, unused, generate);
         if (!object.error.empty()) return object.error;
-        keep(object, identity, stopwatch.lap_s());
+        keep(object, identity);
         if (Linker::Linked linked = linker.link(object.bytes, {}, wanted); !linked.place) return linked.error;
     }
     address = wanted.begin()->second;
@@ -286,7 +284,7 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     times.generate_s = stopwatch.lap_s();
     object = make(options.effort, times, generate_for(options.effort));
     if (!object.error.empty()) return {nullptr, object.error};
-    if (options.kernels) keep(object, identity, stopwatch.lap_s());
+    if (options.kernels && stopwatch.lap_s() > worth_keeping_s) keep(object, identity);
     return link(object, module, entries, calls, times);
 }
 
