@@ -48,6 +48,7 @@ std::shared_ptr<const jit::CompiledProgram> compiled(const std::string& text)
 {
     jit::TextureOptions options;
     options.entries = jit::Entries::height_gradient;
+    options.effort = jit::Effort::draft; // as a scene does
     jit::CompiledTextures made = jit::compile_texture(text, options);
     if (!made.program) throw std::runtime_error("a text that is measured does not compile: " + made.rendered());
     return made.program;

@@ -11,8 +11,8 @@
 
 namespace haptel::bench {
 
-// From text to a callable entry, as a servo asks for it (height and gradient). Each time the text is another one: a
-// constant of it was edited.
+// From text to a callable entry, as a scene asks for it (height and gradient, a draft that better code replaces soon).
+// Each time the text is another one: a constant of it was edited.
 struct CompileRow {
     std::string texture;
     uint32_t lines = 0;

@@ -66,7 +66,7 @@ void BackgroundOptimiser::run()
         try {
             if (const auto program = next.lock()) program->optimise();
         } catch (...) {
-            // No memory for faster code: the quick code stays.
+            // No memory for faster code: the draft stays.
         }
         lock.lock();
     }

@@ -1,6 +1,6 @@
-// The thread that makes the code of programs in use faster: full effort, after quick code is in the hand.
+// The thread that makes the code of programs in use faster: full effort, after a draft is in the hand.
 //
-// What it makes has the same bits and takes the place of the quick code under the feet of its callers
+// What it makes has the same bits and takes the place of the draft under the feet of its callers
 // (CompiledProgram::optimise), so nobody is told. It is kept on disk, and the next process begins with it. It yields to
 // every other thread, waits until edits have come to rest, and drops programs that nobody holds any more.
 #pragma once

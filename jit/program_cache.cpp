@@ -33,6 +33,7 @@ std::shared_ptr<const CompiledTextures> ProgramCache::load(const std::string& pa
     if (!known || !is_current(*known)) {
         TextureOptions options;
         options.entries = Entries::height_gradient;
+        options.effort = Effort::draft;
         known = std::make_shared<CompiledTextures>(compile_texture_file(path, options));
         BackgroundOptimiser::shared().add(known->program);
     }
