@@ -288,7 +288,8 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     times.generate_s = stopwatch.lap_s();
     object = make(options.effort, times, generate_for(options.effort));
     if (!object.error.empty()) return {nullptr, object.error};
-    if (options.kernels && (stopwatch.lap_s() > worth_keeping_s || options.effort == Effort::full)) keep(object, identity);
+    if (options.kernels && (stopwatch.lap_s() > worth_keeping_s || options.effort == Effort::full))
+        keep(object, identity);
     return link(object, module, entries, calls, times);
 }
 
