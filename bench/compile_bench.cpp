@@ -1,66 +1,158 @@
 #include "bench/compile_bench.h"
 
+#include "bench/example_textures.h"
 #include "bench/generated_texture.h"
 #include "jit/texture.h"
 #include "lang/compile.h"
 #include "stdlib/stdlib.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <unistd.h>
 
 namespace haptel::bench {
 namespace {
 
-struct Measured {
-    CompileRow row;
-    std::string text;
-    std::vector<double> front_end_ms, warm_ms;
+namespace fs = std::filesystem;
+
+constexpr const char* field = "field"; // the generated texts' name
+
+struct Text {
+    std::string name, text;
 };
+
+std::vector<Text> all_texts()
+{
+    std::vector<Text> all{{"one line", "texture waves() { return 50um * sinturn(p.x / 2mm); }\n"}};
+    for (const stdlib::LibraryFile& file : stdlib::example_textures())
+        all.push_back({fs::path(file.name).stem().string(), std::string(file.text)});
+    for (uint32_t lines : {100, 200, 400, 800, 1600})
+        all.push_back({field + (" " + std::to_string(lines)), generated_texture(lines)});
+    return all;
+}
+
+// Another constant factor for every edit, in what the last texture returns.
+std::string edited(std::string text, uint32_t edit)
+{
+    const std::string before = "return ";
+    const size_t begin = text.rfind(before) + before.size();
+    char factor[32];
+    std::snprintf(factor, sizeof factor, "1.%07u * (", edit);
+    text.insert(text.find(';', begin), ")");
+    return text.insert(begin, factor);
+}
+
+std::shared_ptr<const jit::CompiledProgram> compiled(const std::string& text)
+{
+    jit::TextureOptions options;
+    options.entries = jit::Entries::height_gradient;
+    options.effort = jit::Effort::draft; // as a scene does
+    jit::CompiledTextures made = jit::compile_texture(text, options);
+    if (!made.program) throw std::runtime_error("a text that is measured does not compile: " + made.rendered());
+    return made.program;
+}
 
 void compile_front_end(const std::string& text)
 {
     lang::CompileOptions options;
     for (const stdlib::LibraryFile& file : stdlib::library())
         options.library.push_back({std::string(file.name), std::string(file.text)});
-    lang::compile({"field.haptel", text}, options);
+    lang::compile({"texture.haptel", text}, options);
+}
+
+void bind_to_object(const std::shared_ptr<const jit::CompiledProgram>& program)
+{
+    TextureRequest request;
+    for (size_t i = 0; i < 3; ++i) request.box_minimum_m[i] = -0.1, request.box_maximum_m[i] = 0.1;
+    jit::make_binding(program, program->textures()[0].name, request, jit::Unbounded::allowed);
+}
+
+struct Measured {
+    CompileRow row;
+    std::string text;
+    std::vector<double> front_end_ms, warm_ms, binding_ms, cold_ms, first_ms, cached_ms;
+};
+
+void measure_warm(Measured& one, uint32_t edit)
+{
+    const std::string text = edited(one.text, edit);
+    one.front_end_ms.push_back(milliseconds([&] { compile_front_end(text); }));
+    std::shared_ptr<const jit::CompiledProgram> program;
+    one.warm_ms.push_back(milliseconds([&] { program = compiled(text); }));
+    one.binding_ms.push_back(milliseconds([&] { bind_to_object(program); }));
+}
+
+// Processes with a folder of code on disk that is empty at first.
+void measure_fresh(Measured& one, uint32_t round, const FreshProcess& fresh_process)
+{
+    const fs::path folder =
+        fs::temp_directory_path() / ("haptel-bench-" + std::to_string(getpid()) + "-" + std::to_string(round));
+    std::error_code ignored;
+    const auto add = [&](std::vector<double>& times, uint32_t edit) {
+        if (const auto time = fresh_process(one.row.texture, edit, folder.string())) times.push_back(*time);
+    };
+    add(one.cold_ms, 0);
+    add(one.first_ms, 1);
+    add(one.cached_ms, 1);
+    fs::remove_all(folder, ignored);
 }
 
 } // namespace
 
-std::vector<CompileRow> bench_compile(bool quick)
+std::vector<CompileRow> bench_compile(bool quick, const FreshProcess& fresh_process)
 {
     std::vector<Measured> all;
-    const auto add = [&](std::string name, std::string text) {
-        const auto lines = static_cast<uint32_t>(std::count(text.begin(), text.end(), '\n'));
-        all.push_back({{std::move(name), lines, {}, 0, {}}, std::move(text), {}, {}});
-    };
-    add("one line", "texture waves() { return 50um * sinturn(p.x / 2mm); }\n");
-    for (uint32_t lines : {100, 200, 400, 800, 1600}) add("field", generated_texture(lines));
-
-    const uint32_t longest_to_code = quick ? 100 : 400; // machine code of the longer ones takes seconds
-    for (Measured& one : all)
-        if (one.row.lines <= longest_to_code) one.row.first_ms = milliseconds([&] { jit::compile_texture(one.text); });
-    const int rounds = quick ? 11 : 101;
-    for (int round = 0; round < rounds; ++round)
+    for (Text& text : all_texts()) {
+        const auto lines = static_cast<uint32_t>(std::count(text.text.begin(), text.text.end(), '\n'));
+        all.push_back(
+            {{std::move(text.name), lines, {}, {}, {}, 0, 0, 0}, std::move(text.text), {}, {}, {}, {}, {}, {}});
+    }
+    const uint32_t rounds = quick ? 11 : 101, fresh_rounds = quick ? 1 : 5;
+    const uint32_t rounds_of_long = quick ? 2 : 11; // a second each
+    for (Measured& one : all) measure_warm(one, 0); // what is only done once per process is not warm
+    for (Measured& one : all) one.front_end_ms.clear(), one.warm_ms.clear(), one.binding_ms.clear();
+    for (uint32_t round = 1; round <= rounds; ++round)
         for (Measured& one : all) {
-            one.front_end_ms.push_back(milliseconds([&] { compile_front_end(one.text); }));
-            if (one.row.lines <= longest_to_code && round < (quick ? 2 : 9))
-                one.warm_ms.push_back(milliseconds([&] { jit::compile_texture(one.text); }));
+            if (one.row.lines <= 100 || round <= rounds_of_long) measure_warm(one, round);
+            if (round <= fresh_rounds) measure_fresh(one, round, fresh_process);
         }
     std::vector<CompileRow> rows;
     for (Measured& one : all) {
         one.row.front_end = summary(std::move(one.front_end_ms));
         one.row.warm = summary(std::move(one.warm_ms));
+        one.row.binding = summary(std::move(one.binding_ms));
+        one.row.cold_ms = summary(std::move(one.cold_ms)).median;
+        one.row.first_ms = summary(std::move(one.first_ms)).median;
+        one.row.cached_ms = summary(std::move(one.cached_ms)).median;
         rows.push_back(one.row);
     }
     return rows;
 }
 
-double growth(const std::vector<CompileRow>& rows)
+std::optional<double> first_compile(const std::string& texture, uint32_t edit)
 {
+    for (const Text& one : all_texts()) {
+        if (one.name != texture) continue;
+        const std::string text = edited(one.text, edit);
+        std::shared_ptr<const jit::CompiledProgram> program;
+        const double time = milliseconds([&] { program = compiled(text); });
+        program->optimise();
+        return time;
+    }
+    return std::nullopt;
+}
+
+double growth(const std::vector<CompileRow>& rows, Times CompileRow::* times)
+{
+    std::vector<const CompileRow*> by_length{&rows[0]};
+    for (const CompileRow& row : rows)
+        if (row.texture.starts_with(field)) by_length.push_back(&row);
     const auto per_line = [&](const CompileRow& row) {
-        return (row.front_end.median - rows[0].front_end.median) / (row.lines - rows[0].lines);
+        return ((row.*times).median - (rows[0].*times).median) / (row.lines - rows[0].lines);
     };
-    return per_line(rows.back()) / per_line(rows[1]);
+    return per_line(*by_length.back()) / per_line(*by_length[1]);
 }
 
 } // namespace haptel::bench

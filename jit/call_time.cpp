@@ -1,5 +1,7 @@
 #include "jit/call_time.h"
 
+#include "jit/texture.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -53,6 +55,14 @@ std::string too_slow(const TextureBinding& binding, const TextureRequest& reques
     return std::string("texture '") + binding.texture->name + "' takes " + microseconds(call_s) +
            " per call (median), more than the " + microseconds(most_s) + " that a servo period of " +
            microseconds(request.servo_period_s) + " leaves for it";
+}
+
+std::string too_slow(const CompiledProgram& program, const TextureBinding& binding, const TextureRequest& request)
+{
+    std::string slow = too_slow(binding, request);
+    if (slow.empty() || program.is_optimised()) return slow;
+    program.optimise();
+    return too_slow(binding, request);
 }
 
 } // namespace haptel::jit

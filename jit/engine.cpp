@@ -7,8 +7,10 @@
 #include "jit/llvm.h"
 #include "jit/machine_code.h"
 #include "jit/object_cache.h"
+#include "jit/replaceable.h"
 #include "jit/stopwatch.h"
 
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <functional>
@@ -18,8 +20,9 @@ namespace haptel::jit {
 
 namespace {
 
-// What is made in less time than that is not worth a file.
-constexpr double worth_keeping_s = 2e-3;
+// A program that is made in less time than that is not worth a file, unless it is of full effort: that is what the next
+// process begins with. Kernels always are: textures share them.
+constexpr double worth_keeping_s = 10e-3;
 // More makes no kernel faster that was measured, and takes twice as long.
 constexpr Effort kernel_effort = Effort::quick;
 
@@ -48,7 +51,7 @@ public:
         return kernels.size();
     }
     uint32_t lanes() const { return processor.lanes; }
-    std::string isa() const { return quick.machine ? isa_of(*quick.machine) : ""; }
+    std::string isa() const { return compilers[0].machine ? isa_of(*compilers[0].machine) : ""; }
 
 private:
     struct Compiler {
@@ -70,7 +73,7 @@ private:
     std::string machine_name;
     std::string target; // all that decides what code is made of an IR
     Processor processor;
-    Compiler quick, full;
+    std::array<Compiler, 3> compilers; // by Effort
     Linker linker;
     std::mutex kernels_mutex;
     Addresses kernels; // linked, by name
@@ -93,6 +96,11 @@ public:
         else
             entries[entry.name] = address.toPtr<haptel_entry*>();
     }
+    void add_slot(const EntryPoint& entry, llvm::orc::ExecutorAddr address)
+    {
+        slots[entry.name] = address.toPtr<void**>();
+    }
+    void set_full() { is_final = true; }
 
 private:
     llvm::orc::JITDylib& place;
@@ -114,28 +122,30 @@ std::string Engine::start()
     host->getOptions().AllowFPOpFusion = llvm::FPOpFusion::Strict;
     machine_name = "LLVM " LLVM_VERSION_STRING " " + host->getTargetTriple().str() + " " + host->getCPU();
 
-    for (Effort effort : {Effort::quick, Effort::full}) {
-        const bool is_quick = effort == Effort::quick;
-        host->setCodeGenOptLevel(is_quick ? llvm::CodeGenOptLevel::Less : llvm::CodeGenOptLevel::Default);
+    constexpr llvm::CodeGenOptLevel levels[] = {llvm::CodeGenOptLevel::None, llvm::CodeGenOptLevel::Less,
+                                                llvm::CodeGenOptLevel::Default};
+    for (size_t effort = 0; effort < compilers.size(); ++effort) {
+        host->setCodeGenOptLevel(levels[effort]);
         auto made = host->createTargetMachine();
         if (!made) return "no code generator for " + machine_name + ": " + llvm::toString(made.takeError());
-        (is_quick ? quick : full).machine = std::move(*made);
+        compilers[effort].machine = std::move(*made);
     }
-    processor = processor_of(*quick.machine);
-    target = std::string(code_version) + ";" + machine_name + ";" + quick.machine->getTargetFeatureString().str() +
-             ";" + std::to_string(processor.lanes);
-    return linker.start(*host, quick.machine->createDataLayout());
+    const llvm::TargetMachine& machine = *compilers[0].machine;
+    processor = processor_of(machine);
+    target = std::string(code_version) + ";" + machine_name + ";" + machine.getTargetFeatureString().str() + ";" +
+             std::to_string(processor.lanes);
+    return linker.start(*host, machine.createDataLayout());
 }
 
 ContentHash key_of(const std::string& identity, Effort effort)
 {
-    return content_hash(identity + (effort == Effort::quick ? ";quick" : ";full"));
+    return content_hash(identity + ";" + std::to_string(static_cast<int>(effort)));
 }
 
 // On disk, of that effort or a greater one.
 Object found_object(const std::string& identity, Effort effort)
 {
-    for (Effort kept : {Effort::full, Effort::quick})
+    for (Effort kept : {Effort::full, Effort::quick, Effort::draft})
         if (kept >= effort)
             if (std::optional<std::string> found = ObjectCache::shared().load(key_of(identity, kept)))
                 return {std::move(*found), {}, kept, true};
@@ -144,7 +154,7 @@ Object found_object(const std::string& identity, Effort effort)
 
 Object Engine::make(Effort effort, CompileTimes& times, const Generate& generate)
 {
-    Compiler& compiler = effort == Effort::quick ? quick : full;
+    Compiler& compiler = compilers[static_cast<size_t>(effort)];
     const std::lock_guard lock(compiler.in_use);
     Stopwatch stopwatch;
     llvm::LLVMContext context;
@@ -155,10 +165,9 @@ Object Engine::make(Effort effort, CompileTimes& times, const Generate& generate
     return {std::string(made.data(), made.size()), std::move(error), effort};
 }
 
-void keep(const Object& object, const std::string& identity, double seconds)
+void keep(const Object& object, const std::string& identity)
 {
-    if (object.error.empty() && !object.is_from_disk && seconds > worth_keeping_s)
-        ObjectCache::shared().store(key_of(identity, object.effort), object.bytes);
+    ObjectCache::shared().store(key_of(identity, object.effort), object.bytes);
 }
 
 // What programs share, once per process: a function of that name, known on disk by its identity.
@@ -177,10 +186,9 @@ std::string Engine::link_shared(const std::string& name, const std::string& iden
     Object object = found_object(identity, kernel_effort);
     if (object.bytes.empty() || !linker.link(object.bytes, {}, wanted).place) {
         CompileTimes unused;
-        Stopwatch stopwatch;
         object = make(kernel_effort, unused, generate);
         if (!object.error.empty()) return object.error;
-        keep(object, identity, stopwatch.lap_s());
+        keep(object, identity);
         if (Linker::Linked linked = linker.link(object.bytes, {}, wanted); !linked.place) return linked.error;
     }
     address = wanted.begin()->second;
@@ -233,11 +241,19 @@ CodeResult Engine::link(const Object& object, const ir::Module& module, std::spa
     }
     times.kernels_s = stopwatch.lap_s();
 
-    for (const EntryPoint& entry : entries) entry_addresses[entry.name];
+    const bool is_replaceable = object.effort != Effort::full;
+    for (const EntryPoint& entry : entries) {
+        entry_addresses[entry.name];
+        if (is_replaceable) entry_addresses[slot_of(entry.name)];
+    }
     const Linker::Linked linked = linker.link(object.bytes, kernel_addresses, entry_addresses);
     if (!linked.place) return {nullptr, object.is_from_disk ? "" : linked.error};
     auto code = std::make_shared<LinkedCode>(*linked.place);
-    for (const EntryPoint& entry : entries) code->add(entry, entry_addresses[entry.name]);
+    for (const EntryPoint& entry : entries) {
+        code->add(entry, entry_addresses[entry.name]);
+        if (is_replaceable) code->add_slot(entry, entry_addresses[slot_of(entry.name)]);
+    }
+    if (!is_replaceable) code->set_full();
     times.link_s = stopwatch.lap_s();
     code->times = times;
     return {std::move(code), {}};
@@ -251,17 +267,19 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     KernelCalls calls(module, target);
     const std::string identity = identity_of(calls, entries);
     const auto generate_for = [&](Effort effort) {
-        const bool has_kernels = options.kernels && effort == Effort::quick;
-        return [&, has_kernels](llvm::LLVMContext& context) {
-            return generate(module, entries, processor, context, has_kernels ? &calls : nullptr);
+        const bool has_kernels = options.kernels && effort != Effort::full;
+        return [&, has_kernels, effort](llvm::LLVMContext& context) {
+            auto generated = generate(module, entries, processor, context, has_kernels ? &calls : nullptr);
+            if (effort != Effort::full) make_replaceable(*generated, entries);
+            return generated;
         };
     };
     Object object;
     if (options.kernels) object = found_object(identity, options.effort);
     if (!object.bytes.empty()) {
-        if (object.effort == Effort::quick) { // which kernels it calls
+        if (object.effort != Effort::full) { // which kernels it calls
             llvm::LLVMContext context;
-            generate_for(Effort::quick)(context);
+            generate_for(object.effort)(context);
         }
         times.generate_s = stopwatch.lap_s();
         CodeResult linked = link(object, module, entries, calls, times);
@@ -270,11 +288,25 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     times.generate_s = stopwatch.lap_s();
     object = make(options.effort, times, generate_for(options.effort));
     if (!object.error.empty()) return {nullptr, object.error};
-    if (options.kernels) keep(object, identity, stopwatch.lap_s());
+    if (options.kernels && (stopwatch.lap_s() > worth_keeping_s || options.effort == Effort::full))
+        keep(object, identity);
     return link(object, module, entries, calls, times);
 }
 
 } // namespace
+
+void Code::replace_by(std::shared_ptr<const Code> better) const
+{
+    const std::lock_guard lock(replacing);
+    if (is_final) return;
+    replacement = std::move(better); // first, so that it outlives every call
+    for (const auto& [name, slot] : slots) {
+        void* code = reinterpret_cast<void*>(replacement->entry(name));
+        if (!code) code = reinterpret_cast<void*>(replacement->batch_entry(name));
+        if (code) std::atomic_ref(*slot).store(code, std::memory_order_release);
+    }
+    is_final = true;
+}
 
 haptel_entry* Code::entry(const std::string& name) const
 {

@@ -10,8 +10,10 @@
 #include "jit/codegen.h"
 #include "lang/abi.h"
 
+#include <atomic>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 
@@ -19,7 +21,8 @@ namespace haptel::jit {
 
 // Time spent against speed of the code; never a difference in any bit of a result.
 enum class Effort : uint8_t {
-    quick, // callable soon: what a hand waits for; calls kernels, which costs 5 ns a call
+    draft, // callable at once, at half the speed: for who replaces it soon (CompiledProgram::optimise)
+    quick, // callable soon; calls kernels as a draft does, which costs 5 ns a call
     full   // all of LLVM's -O2 over the program with all that it calls: what a long exploration deserves
 };
 
@@ -37,9 +40,21 @@ public:
     haptel_batch_entry* batch_entry(const std::string& name) const;
     CompileTimes times;
 
+    // True where the code is of full effort, made so or replaced.
+    bool is_full() const { return is_final; }
+    // From now on the entries of this code, of less than full effort, run those of `better`, of the same program:
+    // callers in any thread go on and hold the pointers that they held. Once.
+    void replace_by(std::shared_ptr<const Code> better) const;
+
 protected:
     std::map<std::string, haptel_entry*> entries;
     std::map<std::string, haptel_batch_entry*> batch_entries;
+    std::map<std::string, void**> slots; // by entry, jit/replaceable.h; none in code of full effort
+    mutable std::atomic<bool> is_final{false};
+
+private:
+    mutable std::mutex replacing;
+    mutable std::shared_ptr<const Code> replacement;
 };
 
 struct CodeResult {
@@ -49,7 +64,7 @@ struct CodeResult {
 
 struct CodeOptions {
     Effort effort = Effort::quick;
-    bool kernels = true; // false: quick code too holds everything that it calls
+    bool kernels = true; // false: code of less than full effort, too, holds everything that it calls
 };
 
 // `module` must be verified.

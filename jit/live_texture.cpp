@@ -173,7 +173,7 @@ void LiveTexture::Client::make_and_publish(const CompiledTextures& compiled)
     const TextureRequest fitting = request_for(*compiled.program, said);
     TextureResult result = make_binding(compiled.program, reference.texture, fitting);
     if (!result.binding) return report(said + lang::printable(reference.file) + ": " + result.diagnostics);
-    if (const std::string slow = too_slow(*result.binding, request); !slow.empty())
+    if (const std::string slow = too_slow(*compiled.program, *result.binding, request); !slow.empty())
         return report(said + lang::printable(reference.file) + ": error: " + slow +
                       "; the old texture stays\n  hint: fewer octaves or terms\n");
     callbacks.publish(std::move(*result.binding));

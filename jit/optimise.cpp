@@ -41,7 +41,7 @@ void optimise(llvm::Module& module, llvm::TargetMachine& machine, Effort effort)
     passes.registerLoopAnalyses(loops);
     passes.crossRegisterProxies(loops, functions, components, modules);
     llvm::ModulePassManager list =
-        effort == Effort::quick ? short_list() : passes.buildPerModuleDefaultPipeline(llvm::OptimizationLevel::O2);
+        effort != Effort::full ? short_list() : passes.buildPerModuleDefaultPipeline(llvm::OptimizationLevel::O2);
     list.run(module, modules);
 }
 

@@ -1,4 +1,4 @@
-// LLVM's passes over generated code: a short list for quick compilation, the standard pipeline for full effort.
+// LLVM's passes over generated code: a short list for drafts and quick code, the standard pipeline for full effort.
 #pragma once
 
 #include "jit/engine.h"

@@ -1,5 +1,6 @@
 #include "jit/program_cache.h"
 
+#include "jit/background_optimiser.h"
 #include "jit/source_file.h"
 
 #include <algorithm>
@@ -32,7 +33,9 @@ std::shared_ptr<const CompiledTextures> ProgramCache::load(const std::string& pa
     if (!known || !is_current(*known)) {
         TextureOptions options;
         options.entries = Entries::height_gradient;
+        options.effort = Effort::draft;
         known = std::make_shared<CompiledTextures>(compile_texture_file(path, options));
+        BackgroundOptimiser::shared().add(known->program);
     }
     return known;
 }

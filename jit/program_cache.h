@@ -1,5 +1,5 @@
 // Texture files compiled once per process, known by path and content: what the resolver and live reload share. Only
-// height_gradient becomes code.
+// height_gradient becomes code: a draft, which becomes fast code in the background.
 #pragma once
 
 #include "jit/texture.h"

@@ -13,7 +13,8 @@ TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache, Unbounded unb
         std::string said = compiled->rendered();
         if (!compiled->program) return {std::nullopt, std::move(said)};
         TextureResult result = make_binding(compiled->program, reference.texture, request, unbounded);
-        if (const std::string slow = result.binding ? too_slow(*result.binding, request) : ""; !slow.empty())
+        if (const std::string slow = result.binding ? too_slow(*compiled->program, *result.binding, request) : "";
+            !slow.empty())
             return {std::nullopt, said + lang::printable(reference.file) + ": error: " + slow +
                                       "\n  hint: fewer octaves or terms, or a lower rate_hz\n"};
         if (!result.diagnostics.empty()) said += lang::printable(reference.file) + ": " + result.diagnostics;

@@ -63,9 +63,9 @@ lang::CompileOptions language_options(const TextureOptions& options)
 
 } // namespace
 
-CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, std::shared_ptr<const Code> machine_code,
-                                 bool has_facts)
-    : program(std::move(checked)), code(std::move(machine_code))
+CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, std::vector<EntryPoint> of_code,
+                                 std::shared_ptr<const Code> machine_code, bool has_facts)
+    : program(std::move(checked)), entries(std::move(of_code)), code(std::move(machine_code))
 {
     parameters.reserve(module().textures.size());
     for (const ir::Texture& texture : module().textures) {
@@ -78,6 +78,13 @@ CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, s
                          code->batch_entry(texture.name + of_many),
                          code->batch_entry(texture.name + with_gradient + of_many)});
     }
+}
+
+void CompiledProgram::optimise() const
+{
+    if (is_optimised()) return;
+    CodeResult made = compile_code(module(), entries, {.effort = Effort::full, .kernels = true});
+    if (made.code) code->replace_by(std::move(made.code));
 }
 
 const haptel_texture* CompiledProgram::find(std::string_view name) const
@@ -100,18 +107,18 @@ CompiledTextures compile_texture(std::string_view text, const TextureOptions& op
     if (!checked.program) return result;
     // lang has verified it too; a servo trusts whoever hands out the pointer.
     std::string fault = ir::verify(checked.program->module);
+    std::vector<EntryPoint> entries = entry_points(checked.program->module, options);
     CodeResult code;
     if (fault.empty()) {
-        code = compile_code(checked.program->module, entry_points(checked.program->module, options),
-                            {options.effort, options.kernels});
+        code = compile_code(checked.program->module, entries, {options.effort, options.kernels});
         fault = code.error;
     }
     if (!fault.empty()) {
         result.diagnostics.error({}, "no-code", "no machine code could be made: " + fault);
         return result;
     }
-    result.program =
-        std::make_shared<CompiledProgram>(std::move(checked.program), std::move(code.code), options.facts_over_ranges);
+    result.program = std::make_shared<CompiledProgram>(std::move(checked.program), std::move(entries),
+                                                       std::move(code.code), options.facts_over_ranges);
     return result;
 }
 

@@ -21,8 +21,8 @@ namespace haptel::jit {
 // The textures of one file with their code. Immutable; the code lives as long as the program.
 class CompiledProgram {
 public:
-    CompiledProgram(std::shared_ptr<const lang::Program> checked, std::shared_ptr<const Code> machine_code,
-                    bool has_facts);
+    CompiledProgram(std::shared_ptr<const lang::Program> checked, std::vector<EntryPoint> of_code,
+                    std::shared_ptr<const Code> machine_code, bool has_facts);
     CompiledProgram(const CompiledProgram&) = delete;
     CompiledProgram& operator=(const CompiledProgram&) = delete;
 
@@ -38,8 +38,14 @@ public:
 
     const CompileTimes& times() const { return code->times; }
 
+    // Puts code of full effort in the place of a draft or of quick code, in seconds rather than milliseconds; the same
+    // bits. Any thread, whoever calls the entries meanwhile. Nothing happens where that is done, or cannot be.
+    void optimise() const;
+    bool is_optimised() const { return code->is_full(); }
+
 private:
     std::shared_ptr<const lang::Program> program;
+    std::vector<EntryPoint> entries;
     std::shared_ptr<const Code> code;
     std::vector<std::vector<haptel_parameter>> parameters; // by texture
     std::vector<haptel_texture> table;
@@ -56,7 +62,7 @@ struct TextureOptions {
     lang::ImportLoader load_import = {}; // empty: imports are errors
     std::string only_texture = {};       // compile this one alone; empty: all
     Effort effort = Effort::quick;
-    bool kernels = true; // of quick code; no difference but in speed, of compilation and of the code
+    bool kernels = true; // of drafts and quick code; no difference but in speed, of compilation and of the code
     // Whether haptel_texture::facts are looked for, which takes longer than all else: a binding has its own.
     bool facts_over_ranges = false;
     std::optional<Precision> precision = {}; // of every entry; none: f64 for one point, mixed for many

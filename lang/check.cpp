@@ -7,6 +7,7 @@
 #include "lang/library.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 
 namespace haptel::lang {
@@ -15,10 +16,15 @@ using namespace ast;
 
 std::optional<Type> type_named(std::string_view name)
 {
-    for (Type type : {float_type, int_type, uint_type, bool_type, vec(2), vec(3), vec(4), mat(2), mat(3), mat(4),
-                      image_type, void_type})
-        if (to_string(type) == name) return type;
-    return std::nullopt;
+    static const auto types = [] {
+        std::map<std::string, Type, std::less<>> by_name;
+        for (Type type : {float_type, int_type, uint_type, bool_type, vec(2), vec(3), vec(4), mat(2), mat(3), mat(4),
+                          image_type, void_type})
+            by_name.emplace(to_string(type), type);
+        return by_name;
+    }();
+    const auto found = types.find(name);
+    return found == types.end() ? std::nullopt : std::optional(found->second);
 }
 
 Type resolve_type(CheckContext& context, const TypeName& name)

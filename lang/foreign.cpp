@@ -1,5 +1,8 @@
 #include "lang/foreign.h"
 
+#include <algorithm>
+#include <unordered_map>
+
 namespace haptel::lang {
 
 namespace {
@@ -281,10 +284,14 @@ constexpr ForeignWord words[] = {
 
 const ForeignWord* foreign_word(ForeignKind kind, std::string_view word)
 {
-    for (const ForeignWord& known : words) {
-        if (known.kind == kind && known.word == word) return &known;
-    }
-    return nullptr;
+    static const auto by_word = [] {
+        std::unordered_multimap<std::string_view, const ForeignWord*> all;
+        for (const ForeignWord& known : words) all.emplace(known.word, &known);
+        return all;
+    }();
+    const auto [first, last] = by_word.equal_range(word);
+    const auto found = std::find_if(first, last, [&](const auto& known) { return known.second->kind == kind; });
+    return found == last ? nullptr : found->second;
 }
 
 } // namespace haptel::lang

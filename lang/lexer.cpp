@@ -1,5 +1,6 @@
 #include "lang/lexer.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -62,6 +63,7 @@ public:
     TokenList run()
     {
         skip_byte_order_mark();
+        list.tokens.reserve(std::min<size_t>(text.size() / 4, 1 << 16)); // as texts go
         while (at < text.size() && !diagnostics.full()) next();
         list.tokens.push_back({Token::end, size(), size()});
         return std::move(list);

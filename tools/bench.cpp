@@ -23,6 +23,9 @@ namespace {
 struct BenchOptions {
     std::string what = "compile", out;
     bool quick = false, json = false;
+    // compile, in a process that another one has started: this texture alone, edited so
+    std::string first;
+    uint32_t edit = 0;
     // of batch alone
     std::vector<std::string> paths;
     ParameterTexts parameters;
@@ -42,10 +45,11 @@ struct Figures {
 
 Figures compile_figures(const BenchOptions& options)
 {
-    const std::vector<bench::CompileRow> rows = bench::bench_compile(options.quick);
+    const std::vector<bench::CompileRow> rows = compile_rows(options.quick);
     Figures figures;
     for (const bench::CompileRow& row : rows) figures.rows.push_back(to_json(row));
-    figures.more.emplace_back("growth", bench::growth(rows));
+    figures.more.emplace_back("growth", bench::growth(rows, &bench::CompileRow::front_end));
+    figures.more.emplace_back("growth_to_code", bench::growth(rows, &bench::CompileRow::warm));
     figures.table = to_table(rows);
     return figures;
 }
@@ -135,6 +139,11 @@ std::string write_files(const std::string& folder, const std::string& what, cons
 
 ExitCode run(const BenchOptions& given)
 {
+    if (!given.first.empty()) {
+        const std::optional<double> time_ms = bench::first_compile(given.first, given.edit);
+        if (time_ms) fmt::print("{}\n", *time_ms);
+        return time_ms ? ExitCode::fine : ExitCode::misuse;
+    }
     BenchOptions options = given;
     if (options.what != "batch" && !(options.paths.empty() && options.parameters.empty())) {
         say_error("texture files and --set are for haptel bench batch: the others bring their own textures");
@@ -190,6 +199,8 @@ Command bench_command(CLI::App& app)
         ->capture_default_str();
     add_length(*command, "--box", options->box_m, "batch: side of the cube of points round the origin [50mm]");
     add_parameters(*command, options->parameters);
+    command->add_option("--first", options->first, "")->group(""); // not for people
+    command->add_option("--edit", options->edit, "")->group("");
     command->add_flag("--quick", options->quick, "Fewer rounds and points");
     command->add_option("--out", options->out, "Folder for WHAT.json, WHAT.csv and WHAT.png")->type_name("DIR");
     command->add_flag("--json", options->json, "One JSON object on standard output");

@@ -6,6 +6,8 @@
 
 namespace haptel::tools {
 
+// Each texture in this process and in fresh ones, which run this command.
+std::vector<bench::CompileRow> compile_rows(bool quick);
 std::string to_table(const std::vector<bench::CompileRow>& rows);
 Json to_json(const bench::CompileRow& row);
 

@@ -26,6 +26,7 @@ struct CheckOptions {
     ParameterTexts parameters;
     double box_m = 0.2, footprint_m = 0;
     std::optional<double> normal_turn_per_m; // nothing: of a ball that fills the box
+    std::optional<double> error_max;         // given: a precision is picked
     bool strict = false, fix = false, cost = false, json = false;
     const CLI::Option* explain = nullptr; // given: nothing is checked, a code is explained
     std::string code;                     // empty: all are listed
@@ -69,6 +70,8 @@ private:
     // Defaults, but for what --set says.
     std::vector<std::shared_ptr<const ir::SplineImage>> images_of(const std::string& path, const ir::Texture& texture);
     std::vector<double> values_of(const std::string& path, const ir::Texture& texture);
+    // Measures, and says which precision is the fastest within error_max, or that none is.
+    void pick_precision(CheckedTexture& checked);
     // A finding that belongs to no line.
     void say(lang::ErrorCode code, std::string message, std::string hint, const std::string& file);
 
@@ -139,6 +142,30 @@ std::vector<std::shared_ptr<const ir::SplineImage>> CheckRun::images_of(const st
     return images;
 }
 
+void CheckRun::pick_precision(CheckedTexture& checked)
+{
+    TextureRequest request;
+    std::fill(request.box_minimum_m, request.box_minimum_m + 3, -options.box_m / 2);
+    std::fill(request.box_maximum_m, request.box_maximum_m + 3, options.box_m / 2);
+    request.footprint_m = options.footprint_m;
+    for (const auto& value : options.parameters)
+        for (const ir::Parameter& parameter : checked.texture->parameters)
+            if (value.first == parameter.name) request.parameters.push_back(value);
+    checked.precision = {*options.error_max, jit::measure_precisions(checked.file, checked.texture->name, request)};
+    if (!checked.precision->choice.error.empty()) {
+        say("no-code", checked.texture->name + " cannot be measured: " + checked.precision->choice.error, "",
+            checked.file);
+        checked.precision.reset();
+    } else if (!checked.precision->is_met()) {
+        say("not-close-enough",
+            fmt::format("no precision of {} keeps the gradient within {:g} of its largest: {}", checked.texture->name,
+                        *options.error_max, checked.precision->closest()),
+            "allow that much, or bring coordinates nearer to the origin, --box: far away f64 has fewer digits for the "
+            "place within a wavelength",
+            checked.file);
+    }
+}
+
 void CheckRun::check(const std::string& path)
 {
     if (options.fix) fix(path);
@@ -160,6 +187,7 @@ void CheckRun::check(const std::string& path)
                  lang::analyse(*result.program, texture, values, views,
                                {options.box_m, options.footprint_m, report.normal_turn_per_m}, diagnostics),
                  std::move(any_picture)});
+            if (options.error_max && !diagnostics.has_errors()) pick_precision(report.textures.back());
         }
         diagnostics.sort_by_place();
     }
@@ -216,6 +244,12 @@ Command check_command(CLI::App& app)
         ->type_name("PER_M")
         ->check(CLI::NonNegativeNumber);
     add_parameters(*command, options->parameters);
+    command
+        ->add_option("--max-error", options->error_max,
+                     "Pick the fastest precision whose gradient is off by at most this share of its largest, by "
+                     "measurement")
+        ->type_name("SHARE")
+        ->check(CLI::PositiveNumber);
     command->add_flag("--strict", options->strict, "Warnings are errors");
     command->add_flag("--fix", options->fix, "Write what the compiler proposes into the files");
     options->explain = command->add_option("--explain", options->code, "What a code means; without CODE all are listed")
@@ -226,6 +260,7 @@ Command check_command(CLI::App& app)
     set_examples(*command, "  haptel check rock.haptel\n"
                            "  haptel check --strict examples/textures/*.haptel\n"
                            "  haptel check rock.haptel --box 50mm --set depth=0.1mm --json\n"
+                           "  haptel check --max-error 1e-5 rock.haptel\n"
                            "  haptel check --fix rock.haptel\n"
                            "  haptel check --explain dimension");
     return {command, [options] { return run(*options); }};

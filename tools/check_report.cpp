@@ -240,6 +240,7 @@ Json CheckReport::to_json() const
         const bool reads_normal = (checked.texture->reads & HAPTEL_READS_NORMAL) != 0;
         all.back()["normal_turn_max_per_m"] = reads_normal ? Json(normal_turn_per_m) : Json(nullptr);
         if (with_cost) all.back()["cost"] = cost_json(checked);
+        all.back()["precision"] = checked.precision ? precision_json(*checked.precision) : Json(nullptr);
     }
     return {{"diagnostics", std::move(diagnostics)}, {"textures", std::move(all)}};
 }
@@ -277,6 +278,7 @@ std::string CheckReport::to_text() const
                             inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")),
                             outputs.empty() ? "" : fmt::format(", writes {}", fmt::join(outputs, ", ")));
         if (with_cost) text += cost_text(checked);
+        if (checked.precision) text += precision_text(*checked.precision);
     }
     return text;
 }

@@ -2,9 +2,11 @@
 #pragma once
 
 #include "lang/analyse.h"
+#include "tools/check_precision.h"
 #include "tools/json.h"
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -24,7 +26,8 @@ struct CheckedTexture {
     std::shared_ptr<const lang::Program> program;
     const ir::Texture* texture = nullptr;
     lang::Analysis analysis;
-    std::vector<std::string> any_picture; // image parameters that nobody set
+    std::vector<std::string> any_picture;           // image parameters that nobody set
+    std::optional<CheckedPrecision> precision = {}; // where a precision is asked for
 };
 
 struct CheckReport {

@@ -1,4 +1,4 @@
-// One module on every engine: interpreter, code compiled quickly, code compiled with full effort, batches of both.
+// One module on every engine: interpreter, code of every effort, batches of all.
 #pragma once
 
 #include "jit/engine.h"
@@ -46,7 +46,7 @@ public:
                 entries.push_back({texture.name + "'", &texture, jit::EntryPoint::Kind::height_gradient});
             entries.push_back({texture.name + "*", &texture, jit::EntryPoint::Kind::height, jit::LaneForm::points});
         }
-        for (jit::Effort effort : {jit::Effort::quick, jit::Effort::full}) {
+        for (jit::Effort effort : {jit::Effort::draft, jit::Effort::quick, jit::Effort::full}) {
             jit::CodeResult result = jit::compile_code(module, entries, {effort});
             INFO(result.error);
             REQUIRE(result.code);
@@ -100,7 +100,7 @@ public:
         return agree;
     }
 
-    std::vector<std::shared_ptr<const jit::Code>> code; // quick, full
+    std::vector<std::shared_ptr<const jit::Code>> code; // draft, quick, full
 
 private:
     const ir::Module& module;
