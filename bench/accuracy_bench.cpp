@@ -222,7 +222,7 @@ private:
     // Nanoseconds per point of that part of the points, with the gradient or without.
     static double time_of(const Contender& one, Points& points, bool with_gradient, size_t first, size_t count)
     {
-        const double whole_ms = milliseconds([&] {
+        const double whole_ms = processor_milliseconds([&] {
             if (one.row.is_batch)
                 points.evaluate(with_gradient ? one.batch : one.height_batch, one.block, first, count);
             else

@@ -11,7 +11,10 @@ struct Times {
     double median = 0, p99 = 0; // p99: the nearest rank, which is the slowest of fewer than 100
 };
 
-double milliseconds(const std::function<void()>& work);
+double milliseconds(const std::function<void()>& work); // as the clock on the wall runs
+// Of this thread on a processor: what others do on the machine meanwhile is not counted, but for what they do to
+// caches.
+double processor_milliseconds(const std::function<void()>& work);
 Times summary(std::vector<double> times);
 
 } // namespace haptel::bench
