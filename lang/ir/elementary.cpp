@@ -32,9 +32,9 @@ float elementary_f32_of_angle(Op op, double a)
 
 double elementary_error(Op op)
 {
-    const bool has_two_roundings = op == Op::tan || op == Op::atan2 || op == Op::tanh || op == Op::asinh ||
-                                   op == Op::acosh || op == Op::atanh; // a quotient's beside the sum's
-    return has_two_roundings ? 2 : 1;
+    const bool has_quotient = op == Op::tan || op == Op::atan || op == Op::atan2 || op == Op::tanh || op == Op::asinh ||
+                              op == Op::acosh || op == Op::atanh; // whose rounding adds to that of the sum
+    return has_quotient ? 2 : 1;
 }
 
 } // namespace haptel::ir

@@ -15,23 +15,19 @@ struct Constants<double> {
                                       0x1.71de356f6f24fp-19, -0x1.ae5e4c548ee98p-26, 0x1.5d8772b4d9cbap-33};
     static constexpr double cosine[] = {0x1.5555555555553p-5,   -0x1.6c16c16c16134p-10, 0x1.a01a019e24eecp-16,
                                         -0x1.27e4f9040ac21p-22, 0x1.1eea895c65350p-29,  -0x1.8ff9dc418ad3ep-37};
-    // cosh r = 1 + u E(u) and sinh r = r + r u O(u), |r| <= ln(2) / 2: 2^-69, 2^-60
-    static constexpr double even[] = {0x1p-1,
-                                      0x1.555555555555bp-5,
-                                      0x1.6c16c16c14080p-10,
-                                      0x1.a01a01b19d326p-16,
-                                      0x1.27e4c4128deb6p-22,
-                                      0x1.1f9768c12fd7cp-29};
+    // cosh r = 1 + u / 2 + u^2 E(u) and sinh r = r + r u O(u), |r| <= ln(2) / 2: 2^-69, 2^-60
+    static constexpr double even[] = {0x1.555555555555bp-5, 0x1.6c16c16c14080p-10, 0x1.a01a01b19d326p-16,
+                                      0x1.27e4c4128deb6p-22, 0x1.1f9768c12fd7cp-29};
     static constexpr double odd[] = {0x1.5555555555558p-3, 0x1.111111110f808p-7, 0x1.a01a01b009bf8p-13,
                                      0x1.71ddf6bacd0bcp-19, 0x1.af631de8e150cp-26};
     // ln((1 + s) / (1 - s)) = 2 s + s z L(z) with z = s^2, |s| <= (sqrt 2 - 1) / (sqrt 2 + 1): 2^-58
     static constexpr double logarithm[] = {0x1.555555555557cp-1, 0x1.99999999847e8p-2, 0x1.2492493fad674p-2,
                                            0x1.c71c52be70e38p-3, 0x1.746647e0c1185p-3, 0x1.399d28e921f6ep-3,
                                            0x1.2f50f877b20fcp-3};
-    // the same as 2 s / 3 (3 + z + z^2 T(z)): 2^-64
-    static constexpr double logarithm_tail[] = {0x1.3333333333367p-1, 0x1.b6db6db6bf11ap-2, 0x1.55555579c1322p-2,
-                                                0x1.1745bc9b1110ap-2, 0x1.d8a9e2a660561p-3, 0x1.97a2755befe40p-3,
-                                                0x1.920a15b6d7df3p-3};
+    // the same as 2 s / 3 (3 + z + 3 / 5 z^2 + z^3 T(z)): 2^-71
+    static constexpr double logarithm_tail[] = {0x1.b6db6db6dbb6cp-2, 0x1.55555554da6afp-2, 0x1.1745d1d20b593p-2,
+                                                0x1.d89d3d9bb8195p-3, 0x1.99ab4694a39b3p-3, 0x1.67134839f4479p-3,
+                                                0x1.6d08282c13dcbp-3};
     // atan t = t + t u A(u) with u = t^2, |t| <= 7 / 16: 2^-61
     static constexpr double arc_tangent[] = {-0x1.5555555555554p-2, 0x1.9999999999372p-3,  -0x1.24924924585b0p-3,
                                              0x1.c71c71a7404c2p-4,  -0x1.745d12541c6a3p-4, 0x1.3b1336d25b6f3p-4,
@@ -62,7 +58,7 @@ template <>
 struct Constants<float> {
     static constexpr double sine[] = {-0x1.555546p-3, 0x1.1106bap-7, -0x1.99071ap-13};   // 2^-27
     static constexpr double cosine[] = {0x1.55554ep-5, -0x1.6c0e78p-10, 0x1.9a6f60p-16}; // 2^-31
-    static constexpr double even[] = {0x1p-1, 0x1.555470p-5, 0x1.6da758p-10};            // 2^-33
+    static constexpr double even[] = {0x1.555470p-5, 0x1.6da758p-10};                    // 2^-33
     static constexpr double odd[] = {0x1.555494p-3, 0x1.123d88p-7};                      // 2^-25
     static constexpr double logarithm[] = {0x1.55557ap-1, 0x1.995ae6p-2, 0x1.326fcap-2}; // 2^-29
     static constexpr double arc_tangent[] = {-0x1.555546p-2, 0x1.998e34p-3, -0x1.2367f8p-3, 0x1.ad19cap-4,

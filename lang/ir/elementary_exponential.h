@@ -43,9 +43,10 @@ R exp_near_zero(const Pair<R>& r)
 {
     using C = Constants<typename R::Float>;
     const R u = r.high * r.high;
-    const Pair<R> first = exact_sum_of_ordered(constant(u, 1), r.high);
-    const R odd = r.high * u * polynomial(C::odd, u), even = u * polynomial(C::even, u);
-    return first.high + (first.low + (first.high * r.low + odd + even));
+    const Pair<R> linear = exact_sum_of_ordered(constant(u, 1), r.high);
+    const Pair<R> quadratic = exact_sum_of_ordered(linear.high, 0.5 * u);
+    const R odd = r.high * u * polynomial(C::odd, u), even = u * u * polynomial(C::even, u);
+    return quadratic.high + ((linear.low + quadratic.low) + (linear.high * r.low + odd + even));
 }
 
 // ln 2 times a number of |a| <= 1 / 2, given in halves.

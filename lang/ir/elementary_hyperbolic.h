@@ -22,7 +22,8 @@ private:
         const R high = x - k * C::ln2[0];
         const Pair<R> r = exact_sum_of_ordered(high, -(k * C::ln2[1]));
         const R u = r.high * r.high;
-        const R odd = r.low + r.high * u * polynomial(C::odd, u), even = u * polynomial(C::even, u) + r.high * r.low;
+        const R odd = r.low + r.high * u * polynomial(C::odd, u),
+                even = u * u * polynomial(C::even, u) + (0.5 * u + r.high * r.low);
         const R a = power_of_two(k - 3), b = power_of_two(-3 - select(k > 60, constant(k, 60), k));
         const Pair<R> difference = exact_sum_of_ordered(a, -b), sum = exact_sum_of_ordered(a, b);
         const Pair<R> linear_sine = exact_sum_of_ordered(a * r.high, b * r.high),

@@ -20,10 +20,13 @@ Pair<R> logarithm_in_halves(R x)
     const R rounded = 2 * f * third, q_high = with_bits(x, bits(rounded) & ~uint64_t{0x1fffffff}), thrice = 3 * q_high;
     const R q_low = ((2 * f - thrice * d_high) - (thrice * (d - d_high) + thrice * d_low)) * third;
     const R q = q_high + q_low;
-    // ln m = q t with t = 3 + z + z^2 T(z), z = s^2
-    const R square = 2.25 * (rounded * rounded), tail = square * square * polynomial(C::logarithm_tail, square);
-    const R z_high = 2.25 * (q_high * q_high), z_low = 2.25 * (q_low * (q_high + q));
-    const R t_high = without_low_half(3 + z_high), t_low = (z_high - (t_high - 3)) + (z_low + tail);
+    // ln m = q t with t = 3 + z + 3 / 5 z^2 + z^3 T(z), z = s^2: the polynomial need not wait for q_low
+    const R square = 2.25 * (rounded * rounded), cubic = polynomial(C::logarithm_tail, square);
+    const R z_high = 2.25 * (q_high * q_high), z_low = 2.25 * (q_low * (q_high + q)), z = z_high + z_low;
+    const R z_upper = without_low_half(z_high), z_rest = (z_high - z_upper) + z_low, exact = z_upper * z_upper;
+    const R tail = 0.6 * exact + (0.6 * (z_rest * (z_upper + z)) + z * z * z * cubic);
+    const R most = square * square * (0.6 + 3.0 / 7 * square); // of the tail, early
+    const R t_high = without_low_half(3 + (z_high + most)), t_low = (z_high - (t_high - 3)) + (z_low + tail);
     const Pair<R> sum = exact_sum_of_ordered(split.exponent * C::ln2[0], q_high * t_high);
     const R upper = without_low_half(sum.high), low = split.exponent * C::ln2[1] + q_low * t_high + q * t_low;
     return {upper, (sum.high - upper) + (sum.low + low)};

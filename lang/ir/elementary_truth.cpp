@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 namespace haptel::ir {
@@ -90,6 +91,9 @@ std::vector<std::pair<double, double>> elementary_arguments(Op op, int count)
         // a power near the ends of the range, in f64 and in f32
         const double base = std::fabs(some(-60, 60)), ends[] = {1024, -1022, -1075, 128, -126, -150};
         made.emplace_back(base, (ends[random() % 6] + uniform(random, -1, 1)) / std::log2(base));
+        // where the logarithm's rounding counts most: a base of no exponent, a result at the end of the range
+        const double halfway = (i % 2 ? std::numbers::sqrt2 : 1 / std::numbers::sqrt2) * uniform(random, 0.999, 1.001);
+        made.emplace_back(halfway, uniform(random, 1000, 1024) * (i % 4 < 2 ? 1 : -1) / std::log2(halfway));
         made.emplace_back(std::floor(uniform(random, -9, 9)), std::floor(uniform(random, -300, 300)));
         // what is nearest to a multiple of a quarter turn, and its neighbours
         const Quad quarter = Quad(2) * atan(Quad(1));
