@@ -167,3 +167,29 @@ TEST_CASE("bench batch: every texture that paths name, on one thread and on all,
     CHECK(contains(broken.err, "broken.haptel:1:"));
     CHECK(run_command("bench compile --quick '" + file + "'").code == 2);
 }
+
+TEST_CASE("bench math: every elementary function is as exact as promised, with its times")
+{
+    const Folder folder;
+    const Ran ran = run_command("bench math --quick --json --out '" + folder.file("figures") + "'");
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+    const Json json = Json::parse(ran.out);
+    CHECK(json["rows"].size() == 18);
+    for (const Json& row : json["rows"]) {
+        INFO(row["function"]);
+        CHECK(row["lanes"].get<int>() > 1);
+        for (const char* format : {"f64", "f32"}) {
+            const Json& figures = row[format];
+            CHECK(figures["error_ulp"].get<double>() > 0.4);
+            CHECK(figures["error_ulp"].get<double>() <= row["promised_ulp"].get<double>());
+            CHECK(figures["library_error_ulp"].get<double>() > 0.4);
+            for (const char* times : {"alone_ns", "lanes_ns", "library_ns"})
+                CHECK(figures[times]["median"].get<double>() > 0);
+            CHECK(figures["lanes_ns"]["median"].get<double>() < figures["alone_ns"]["median"].get<double>());
+        }
+    }
+    const std::string csv = read_file(folder.path / "figures/math.csv");
+    CHECK(contains(csv.substr(0, csv.find('\n')), ",commit,isa,cpu"));
+    CHECK(std::count(csv.begin(), csv.end(), '\n') == 1 + 18);
+}
