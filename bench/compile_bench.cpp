@@ -72,7 +72,7 @@ void bind_to_object(const std::shared_ptr<const jit::CompiledProgram>& program)
 struct Measured {
     CompileRow row;
     std::string text;
-    std::vector<double> front_end_ms, warm_ms, binding_ms, cold_ms, first_ms, cached_ms;
+    std::vector<double> front_end_ms, warm_ms, binding_ms, first_ms, primed_ms, cached_ms;
 };
 
 void measure_warm(Measured& one, uint32_t edit)
@@ -93,8 +93,8 @@ void measure_fresh(Measured& one, uint32_t round, const FreshProcess& fresh_proc
     const auto add = [&](std::vector<double>& times, uint32_t edit) {
         if (const auto time = fresh_process(one.row.texture, edit, folder.string())) times.push_back(*time);
     };
-    add(one.cold_ms, 0);
-    add(one.first_ms, 1);
+    add(one.first_ms, 0);
+    add(one.primed_ms, 1);
     add(one.cached_ms, 1);
     fs::remove_all(folder, ignored);
 }
@@ -123,8 +123,8 @@ std::vector<CompileRow> bench_compile(bool quick, const FreshProcess& fresh_proc
         one.row.front_end = summary(std::move(one.front_end_ms));
         one.row.warm = summary(std::move(one.warm_ms));
         one.row.binding = summary(std::move(one.binding_ms));
-        one.row.cold_ms = summary(std::move(one.cold_ms)).median;
         one.row.first_ms = summary(std::move(one.first_ms)).median;
+        one.row.primed_ms = summary(std::move(one.primed_ms)).median;
         one.row.cached_ms = summary(std::move(one.cached_ms)).median;
         rows.push_back(one.row);
     }

@@ -19,8 +19,8 @@ struct CompileRow {
     Times front_end;      // text to checked, differentiated, verified IR
     Times warm;           // to code, in a process that has compiled before
     Times binding;        // what is proven about it over an object of 0.2 m, before a hand gets it
-    double cold_ms = 0;   // to code, first of all in a fresh process, with nothing on disk
-    double first_ms = 0;  // the same where the library's functions are on disk, as after a build
+    double first_ms = 0;  // to code, first of all in a fresh process, with nothing on disk
+    double primed_ms = 0; // the same where the library's functions are on disk, as after a build
     double cached_ms = 0; // the same where the text was felt before: its own code is on disk, too
 };
 

@@ -24,7 +24,7 @@ namespace {
 // process begins with. Kernels always are: textures share them.
 constexpr double worth_keeping_s = 10e-3;
 // More makes no kernel faster that was measured, and takes twice as long.
-constexpr Effort kernel_effort = Effort::quick;
+constexpr Effort kernel_effort_max = Effort::quick;
 
 // An object file and how to come by it.
 struct Object {
@@ -43,6 +43,7 @@ public:
     }
 
     CodeResult compile(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options);
+    void prepare_kernels(const ir::Module& module, std::span<const EntryPoint> entries);
     void remove(llvm::orc::JITDylib& place) { linker.remove(place); }
     std::string name() const { return machine_name; }
     size_t kernel_count()
@@ -58,6 +59,10 @@ private:
         std::mutex in_use;
         std::unique_ptr<llvm::TargetMachine> machine;
     };
+    struct Shared {
+        llvm::orc::ExecutorAddr address;
+        Effort effort;
+    };
     using Generate = std::function<std::unique_ptr<llvm::Module>(llvm::LLVMContext&)>;
 
     Engine();
@@ -65,8 +70,9 @@ private:
     Object make(Effort effort, CompileTimes& times, const Generate& generate);
     CodeResult link(const Object& object, const ir::Module& module, std::span<const EntryPoint> entries,
                     const KernelCalls& calls, CompileTimes& times);
-    std::string link_shared(const std::string& name, const std::string& identity, const Generate& generate,
-                            llvm::orc::ExecutorAddr& address);
+    std::string link_shared(const std::string& name, const std::string& identity, Effort effort,
+                            const Generate& generate, llvm::orc::ExecutorAddr& address);
+    std::string link_calls(const ir::Module& module, const KernelCalls& calls, Effort effort, Addresses& addresses);
     std::string identity_of(const KernelCalls& calls, std::span<const EntryPoint> entries) const;
 
     std::string fault; // why there is no engine; empty: there is
@@ -76,7 +82,7 @@ private:
     std::array<Compiler, 3> compilers; // by Effort
     Linker linker;
     std::mutex kernels_mutex;
-    Addresses kernels; // linked, by name
+    std::map<std::string, Shared> kernels; // linked, by name; the best of each
 };
 
 std::atomic<size_t> alive{0};
@@ -171,29 +177,29 @@ void keep(const Object& object, const std::string& identity)
 }
 
 // What programs share, once per process: a function of that name, known on disk by its identity.
-std::string Engine::link_shared(const std::string& name, const std::string& identity, const Generate& generate,
-                                llvm::orc::ExecutorAddr& address)
+std::string Engine::link_shared(const std::string& name, const std::string& identity, Effort effort,
+                                const Generate& generate, llvm::orc::ExecutorAddr& address)
 {
     {
         const std::lock_guard lock(kernels_mutex);
         const auto known = kernels.find(name);
-        if (known != kernels.end()) {
-            address = known->second;
+        if (known != kernels.end() && known->second.effort >= effort) {
+            address = known->second.address;
             return {};
         }
     }
     Addresses wanted{{name, {}}};
-    Object object = found_object(identity, kernel_effort);
+    Object object = found_object(identity, effort);
     if (object.bytes.empty() || !linker.link(object.bytes, {}, wanted).place) {
         CompileTimes unused;
-        object = make(kernel_effort, unused, generate);
+        object = make(effort, unused, generate);
         if (!object.error.empty()) return object.error;
-        keep(object, identity);
+        if (effort != Effort::draft) keep(object, identity);
         if (Linker::Linked linked = linker.link(object.bytes, {}, wanted); !linked.place) return linked.error;
     }
     address = wanted.begin()->second;
     const std::lock_guard lock(kernels_mutex);
-    kernels.emplace(name, address);
+    kernels.insert_or_assign(name, Shared{address, object.effort});
     return {};
 }
 
@@ -218,27 +224,44 @@ std::string Engine::identity_of(const KernelCalls& calls, std::span<const EntryP
     return text;
 }
 
+// What a program calls, linked. Nothing or why not.
+std::string Engine::link_calls(const ir::Module& module, const KernelCalls& calls, Effort effort, Addresses& addresses)
+{
+    std::string error;
+    for (const auto& [name, kernel] : calls.used()) {
+        const auto generate_it = [&, &symbol = name, &wanted = kernel](llvm::LLVMContext& context) {
+            return generate_kernel(module, symbol, wanted, processor, context);
+        };
+        if (error.empty()) error = link_shared(name, name, effort, generate_it, addresses[name]);
+    }
+    for (const auto& [name, form] : calls.used_elementary()) {
+        const auto generate_it = [&symbol = name, &wanted = form](llvm::LLVMContext& context) {
+            return generate_elementary(symbol, wanted, context);
+        };
+        if (error.empty()) error = link_shared(name, name + ";" + target, effort, generate_it, addresses[name]);
+    }
+    return error;
+}
+
+void Engine::prepare_kernels(const ir::Module& module, std::span<const EntryPoint> entries)
+{
+    if (!fault.empty()) return;
+    KernelCalls calls(module, target);
+    llvm::LLVMContext context;
+    generate(module, entries, processor, context, &calls);
+    Addresses unused;
+    link_calls(module, calls, kernel_effort_max, unused);
+}
+
 // With the kernels that the object calls. An object from disk that cannot be linked leaves no code and no error.
 CodeResult Engine::link(const Object& object, const ir::Module& module, std::span<const EntryPoint> entries,
                         const KernelCalls& calls, CompileTimes& times)
 {
     Stopwatch stopwatch;
     Addresses kernel_addresses, entry_addresses;
-    for (const auto& [name, kernel] : calls.used()) {
-        const auto generate_it = [&, &symbol = name, &wanted = kernel](llvm::LLVMContext& context) {
-            return generate_kernel(module, symbol, wanted, processor, context);
-        };
-        if (std::string error = link_shared(name, name, generate_it, kernel_addresses[name]); !error.empty())
-            return {nullptr, error};
-    }
-    for (const auto& [name, form] : calls.used_elementary()) {
-        const auto generate_it = [&symbol = name, &wanted = form](llvm::LLVMContext& context) {
-            return generate_elementary(symbol, wanted, context);
-        };
-        const std::string identity = name + ";" + target;
-        if (std::string error = link_shared(name, identity, generate_it, kernel_addresses[name]); !error.empty())
-            return {nullptr, error};
-    }
+    const Effort effort = std::min(object.effort, kernel_effort_max);
+    if (std::string error = link_calls(module, calls, effort, kernel_addresses); !error.empty())
+        return {nullptr, error};
     times.kernels_s = stopwatch.lap_s();
 
     const bool is_replaceable = object.effort != Effort::full;
@@ -323,6 +346,11 @@ haptel_batch_entry* Code::batch_entry(const std::string& name) const
 CodeResult compile_code(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options)
 {
     return Engine::get().compile(module, entries, options);
+}
+
+void prepare_kernels(const ir::Module& module, std::span<const EntryPoint> entries)
+{
+    Engine::get().prepare_kernels(module, entries);
 }
 
 size_t programs_alive()

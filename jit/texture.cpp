@@ -6,6 +6,8 @@
 #include "stdlib/stdlib.h"
 
 #include <algorithm>
+#include <atomic>
+#include <future>
 
 namespace haptel::jit {
 
@@ -85,6 +87,7 @@ void CompiledProgram::optimise() const
     if (is_optimised()) return;
     CodeResult made = compile_code(module(), entries, {.effort = Effort::full, .kernels = true});
     if (made.code) code->replace_by(std::move(made.code));
+    prepare_kernels(module(), entries); // of which a draft has drafts: the next edit gets better ones
 }
 
 const haptel_texture* CompiledProgram::find(std::string_view name) const
@@ -99,8 +102,21 @@ const ir::Texture& CompiledProgram::source_of(const haptel_texture& texture) con
     return module().textures[static_cast<size_t>(&texture - table.data())];
 }
 
+namespace {
+
+// Beside the front end of the first text: neither needs the other.
+std::future<void> start_engine_once()
+{
+    static std::atomic<bool> has_begun{false};
+    if (has_begun.exchange(true)) return {};
+    return std::async(std::launch::async, [] { engine_name(); });
+}
+
+} // namespace
+
 CompiledTextures compile_texture(std::string_view text, const TextureOptions& options)
 {
+    const std::future<void> starting = start_engine_once();
     lang::CompileResult checked = lang::compile({options.name, std::string(text)}, language_options(options));
     CompiledTextures result{nullptr, std::move(checked.diagnostics), std::move(checked.sources),
                             std::move(checked.files)};

@@ -116,12 +116,15 @@ TEST_CASE("one function in several forms: of what varies and of what does not, w
                              "    float wide = fract(1e4 * perlin(p / 3mm));\n"
                              "    float partly = perlin(vec3(p.x / 2mm, depth / 7mm, 0.5));\n"
                              "    return depth * (uniform_one + wide + partly + perlin(p / 1mm) * 0.5);\n}\n";
-    for (jit::Precision precision : {jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32}) {
+    for (int form = 0; form < 6; ++form) {
         jit::TextureOptions options;
+        const auto precision = static_cast<jit::Precision>(form / 2);
+        options.effort = form % 2 ? jit::Effort::quick : jit::Effort::draft;
         options.entries = jit::Entries::both_and_batches;
         options.precision = precision;
         const auto with = jit::compile_texture(text, options);
         options.kernels = false;
+        options.effort = jit::Effort::full;
         const auto without = jit::compile_texture(text, options);
         REQUIRE((with.program && without.program));
         const TextureResult bound = jit::make_binding(with.program, "t", request_over(0.1), jit::Unbounded::allowed);

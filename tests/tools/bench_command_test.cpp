@@ -25,10 +25,10 @@ TEST_CASE("bench compile: rows by length, with machine, commit and flags")
         CHECK(row["front_end_ms"]["median"].get<double>() > 0);
         CHECK(row["front_end_ms"]["p99"].get<double>() >= row["front_end_ms"]["median"].get<double>());
         for (const char* times : {"warm_ms", "binding_ms"}) CHECK(row[times]["median"].get<double>() > 0);
-        for (const char* time : {"cold_ms", "first_ms", "cached_ms"}) CHECK(row[time].get<double>() > 0);
+        for (const char* time : {"first_ms", "primed_ms", "cached_ms"}) CHECK(row[time].get<double>() > 0);
         // What it is all for, with room for a busy machine.
         INFO(row["texture"]);
-        CHECK(row["cached_ms"].get<double>() < 0.8 * row["cold_ms"].get<double>());
+        CHECK(row["cached_ms"].get<double>() < 0.8 * row["first_ms"].get<double>());
     }
     for (const Json& row : json["rows"])
         if (row["texture"] == "field 400") CHECK(row["lines"].get<int>() >= 370);
