@@ -59,10 +59,23 @@ double any_bits(std::mt19937_64& random)
     return made == made ? made : 1;
 }
 
+#ifndef HAPTEL_QUAD_IS_FLOAT128
+// Boost's number reduces an angle by as many digits of pi as it has itself.
+Quad truth_of_large_angle(Op op, double angle)
+{
+    using namespace boost::multiprecision;
+    using Wide = number<cpp_bin_float<1400, digit_base_2>>;
+    return static_cast<Quad>(semantics::elementary_value(op, Wide(angle), Wide(0)));
+}
+#endif
+
 } // namespace
 
 Quad elementary_truth(Op op, double a, double b)
 {
+#ifndef HAPTEL_QUAD_IS_FLOAT128
+    if (takes_angle(op) && std::fabs(a) > 1e9) return truth_of_large_angle(op, a);
+#endif
     return semantics::elementary_value(op, Quad(a), Quad(b));
 }
 
