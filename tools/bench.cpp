@@ -39,8 +39,8 @@ struct Figures {
     Json rows = Json::array();
     std::vector<std::pair<std::string, Json>> more; // by name
     std::string table, csv;
-    std::shared_ptr<plot::Picture> picture;
-    std::string error; // why there are none
+    std::vector<std::pair<std::string, std::shared_ptr<plot::Picture>>> pictures; // by file name
+    std::string error;                                                            // why there are none
 };
 
 Figures compile_figures(const BenchOptions& options)
@@ -65,7 +65,9 @@ Figures accuracy_figures(const BenchOptions& options, const std::string& machine
     figures.more.emplace_back("differences", differences_json(rows));
     figures.table = to_table(rows);
     figures.csv = to_csv(rows);
-    figures.picture = std::make_shared<plot::Picture>(draw_accuracy(rows, machine));
+    for (const auto& [name, shown] :
+         {std::pair{"accuracy.png", Shown::gradient}, {"accuracy_height.png", Shown::height}})
+        figures.pictures.emplace_back(name, std::make_shared<plot::Picture>(draw_accuracy(rows, shown, machine)));
     return figures;
 }
 
@@ -134,7 +136,9 @@ std::string write_files(const std::string& folder, const std::string& what, cons
         written.close();
         if (!written) return fmt::format("cannot write '{}'", (path / name).string());
     }
-    return figures.picture ? figures.picture->write_png((path / (what + ".png")).string()) : "";
+    for (const auto& [name, picture] : figures.pictures)
+        if (std::string error = picture->write_png((path / name).string()); !error.empty()) return error;
+    return {};
 }
 
 ExitCode run(const BenchOptions& given)
@@ -202,7 +206,7 @@ Command bench_command(CLI::App& app)
     command->add_option("--first", options->first, "")->group(""); // not for people
     command->add_option("--edit", options->edit, "")->group("");
     command->add_flag("--quick", options->quick, "Fewer rounds and points");
-    command->add_option("--out", options->out, "Folder for WHAT.json, WHAT.csv and WHAT.png")->type_name("DIR");
+    command->add_option("--out", options->out, "Folder for WHAT.json, WHAT.csv and pictures")->type_name("DIR");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel bench compile\n"
                            "  haptel bench accuracy --out figures\n"

@@ -104,7 +104,7 @@ Json to_json(const bench::AccuracyRow& row)
             {"frontier", row.is_on_frontier}};
 }
 
-plot::Picture draw_accuracy(const std::vector<bench::AccuracyRow>& all, const std::string& subtitle)
+plot::Picture draw_accuracy(const std::vector<bench::AccuracyRow>& all, Shown shown, const std::string& subtitle)
 {
     using namespace plot;
     constexpr double panel_width = 230, panel_height = 170;
@@ -113,7 +113,9 @@ plot::Picture draw_accuracy(const std::vector<bench::AccuracyRow>& all, const st
     for (const AccuracyRow& row : rows)
         if (textures.empty() || textures.back() != row.texture) textures.push_back(row.texture);
     Picture picture(80 + 2 * (panel_width + 60), 90 + static_cast<double>(textures.size()) * (panel_height + 62), 2);
-    draw_title(picture, "Error of the gradient over time per point",
+    draw_title(picture,
+               shown == Shown::height ? "Error of the height over time per point"
+                                      : "Error of the gradient over time per point",
                "blue: Haptel, red: plain C++ and differences; squares: largest, lines down to rms   " + subtitle);
     for (const bool is_batch : {false, true})
         for (std::size_t i = 0; i < textures.size(); ++i) {
@@ -127,17 +129,19 @@ plot::Picture draw_accuracy(const std::vector<bench::AccuracyRow>& all, const st
             for (const AccuracyRow& row : rows) {
                 if (row.texture != textures[i] || row.is_batch != is_batch) continue;
                 const bool is_ours = row.method == "haptel";
-                const double error = std::clamp(row.errors[0].gradient_max, 1e-17, 10.0);
+                const bench::Accuracy& near = row.errors[0];
+                const double largest = shown == Shown::height ? near.height_max : near.gradient_max;
+                const double rms_error = shown == Shown::height ? near.height_rms : near.gradient_rms;
+                const double error = std::clamp(largest, 1e-17, 10.0);
                 const Point at = axes.at(std::clamp(row.median_ns, 1.0, 1e4), error);
                 const double half = is_ours ? 3 : 2;
-                const Point rms =
-                    axes.at(std::clamp(row.median_ns, 1.0, 1e4), std::clamp(row.errors[0].gradient_rms, 1e-17, 10.0));
+                const Point rms = axes.at(std::clamp(row.median_ns, 1.0, 1e4), std::clamp(rms_error, 1e-17, 10.0));
                 picture.line(at, rms, is_ours ? accent : accent_2, 0.7);
                 picture.fill({at.x - half, at.y - half, 2 * half, 2 * half}, is_ours ? accent : accent_2);
+                const bool is_left = row.lane_form == "iterations"; // beside the same without
                 if (is_ours)
-                    picture.text({at.x + 5, at.y + 3},
-                                 row.precision + (row.lane_form == "iterations" ? " iterations" : ""),
-                                 {6.5, is_ours ? accent : accent_2});
+                    picture.text({at.x + (is_left ? -5 : 5), at.y + 3}, row.precision + (is_left ? ", iterations" : ""),
+                                 {6.5, accent, is_left ? Align::right : Align::left});
             }
             draw_axes(picture, axes);
         }

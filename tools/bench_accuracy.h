@@ -10,7 +10,8 @@ namespace haptel::tools {
 std::string to_table(const std::vector<bench::AccuracyRow>& rows);
 std::string to_csv(const std::vector<bench::AccuracyRow>& rows);
 Json to_json(const bench::AccuracyRow& row);
-// Largest error of the gradient over time, a panel for each texture, one point and many.
-plot::Picture draw_accuracy(const std::vector<bench::AccuracyRow>& rows, const std::string& subtitle);
+// Errors near the origin over time, largest and rms, a panel for each texture, one point and many.
+enum class Shown : uint8_t { height, gradient };
+plot::Picture draw_accuracy(const std::vector<bench::AccuracyRow>& rows, Shown shown, const std::string& subtitle);
 
 } // namespace haptel::tools

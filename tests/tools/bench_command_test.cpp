@@ -79,6 +79,7 @@ TEST_CASE("bench accuracy: every way computes the same texture, each as closely 
     CHECK(Json::parse(read_file(folder.path / "figures/accuracy.json")) == json);
     CHECK(read_file(folder.path / "figures/accuracy.csv").starts_with("texture,mode,method,precision"));
     CHECK(std::filesystem::file_size(folder.path / "figures/accuracy.png") > 10'000);
+    CHECK(std::filesystem::file_size(folder.path / "figures/accuracy_height.png") > 10'000);
 
     // The verdict, drawn from the rows once more.
     std::map<std::string, size_t> plain_ways;
