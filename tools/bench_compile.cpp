@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <memory>
+#include <unistd.h>
 
 namespace haptel::tools {
 namespace {
@@ -38,7 +39,14 @@ std::optional<double> in_fresh_process(const std::string& texture, uint32_t edit
 
 std::vector<bench::CompileRow> compile_rows(bool quick)
 {
-    return bench::bench_compile(quick, in_fresh_process);
+    // Not the user's folder: what an earlier run has left there would be found, and what is left here be of no use.
+    const std::filesystem::path folder =
+        std::filesystem::temp_directory_path() / ("haptel-bench-" + std::to_string(getpid()));
+    setenv("HAPTEL_CACHE", folder.c_str(), 1);
+    std::vector<bench::CompileRow> rows = bench::bench_compile(quick, in_fresh_process);
+    std::error_code ignored;
+    std::filesystem::remove_all(folder, ignored);
+    return rows;
 }
 
 Json to_json(const bench::CompileRow& row)
