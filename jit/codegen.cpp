@@ -139,6 +139,7 @@ private:
         builder.CreateCondBr(builder.CreateIsNull(array), next, wanted);
         builder.SetInsertPoint(wanted);
         llvm::Type* element = lanes->getType()->getScalarType();
+        ask_ahead(builder, element, array, first, module.lanes, true);
         builder.CreateMaskedStore(lanes, builder.CreateInBoundsGEP(element, array, first),
                                   llvm::Align(element->getPrimitiveSizeInBits() / 8), is_there);
         builder.CreateBr(next);

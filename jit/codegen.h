@@ -46,6 +46,9 @@ enum class LaneForm : uint8_t {
     points,     // points: a batch
 };
 
+// A batch asks for memory ahead of the lanes that it works on: what is not near yet arrives meanwhile.
+constexpr uint32_t points_ahead = 128;
+
 // One entry point to be emitted: a haptel_entry of this name, or for points in lanes a haptel_batch_entry.
 struct EntryPoint {
     enum class Kind : uint8_t { height, height_gradient };

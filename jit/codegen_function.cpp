@@ -160,6 +160,7 @@ void FunctionEmitter::emit(const ir::Instruction& made, const ir::ReadInput& rea
                               forms[made.results[0]].is_single));
     Value* array = builder.CreateLoad(builder.getPtrTy(), at_offset(arguments.points, index * sizeof(double*)));
     llvm::Type* lanes = llvm::FixedVectorType::get(real, module.lanes);
+    ask_ahead(builder, real, array, arguments.first, module.lanes, false);
     Value* loaded =
         builder.CreateMaskedLoad(lanes, builder.CreateInBoundsGEP(real, array, arguments.first),
                                  llvm::Align(alignof(double)), arguments.is_there, llvm::Constant::getNullValue(lanes));

@@ -17,6 +17,20 @@ bool any(const std::vector<bool>& flags)
 
 } // namespace
 
+// Beyond the array's end nothing is fetched, and nothing is wrong.
+void ask_ahead(llvm::IRBuilder<>& builder, llvm::Type* element, llvm::Value* array, llvm::Value* first, uint32_t lanes,
+               bool to_write)
+{
+    constexpr uint32_t line_bytes = 64;
+    const uint32_t per_line = line_bytes * 8 / element->getScalarSizeInBits();
+    for (uint32_t lane = 0; lane < lanes; lane += per_line) {
+        llvm::Value* index = builder.CreateAdd(first, builder.getInt64(points_ahead + lane));
+        builder.CreateIntrinsic(llvm::Intrinsic::prefetch, {array->getType()},
+                                {builder.CreateGEP(element, array, index), builder.getInt32(to_write ? 1 : 0),
+                                 builder.getInt32(3), builder.getInt32(1)});
+    }
+}
+
 llvm::Type* ModuleEmitter::type(ir::Type type, Form held)
 {
     llvm::LLVMContext& context = target.getContext();

@@ -43,6 +43,10 @@ struct ValueForms {
     }
 };
 
+// Asks for the memory that these lanes of an array will be in, `points_ahead` later: to read, or to write.
+void ask_ahead(llvm::IRBuilder<>& builder, llvm::Type* element, llvm::Value* array, llvm::Value* first, uint32_t lanes,
+               bool to_write);
+
 class ModuleEmitter {
 public:
     // With `kernel_calls`, what is worth a kernel is called and not written.
