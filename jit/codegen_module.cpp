@@ -87,6 +87,7 @@ Form ModuleEmitter::result(const Key& key, size_t i) const
 
 std::string Signature::text() const
 {
+    static_assert(sizeof(Signature) == 3 * sizeof(std::vector<bool>), "what a signature gains belongs into its text");
     std::string bits;
     for (const std::vector<bool>* flags : {&arguments, &in_lanes, &wide_results}) {
         for (bool flag : *flags) bits += flag ? '1' : '0';

@@ -73,3 +73,15 @@ TEST_CASE("a library texture becomes an object for AArch64 that asks for nothing
     }
     CHECK_FALSE(jit::compile_object(program->module(), entries, "nowhere-linux", "generic").error.empty());
 }
+
+TEST_CASE("what does not fit the registers of AVX-512 goes to a stack that is aligned to them")
+{
+    const auto program = test::compiled("texture t() { return 1mm * noise(p / 1mm); }");
+    const std::vector<jit::EntryPoint> entries{{"t", &program->module().textures[0],
+                                                jit::EntryPoint::Kind::height_gradient, jit::LaneForm::points,
+                                                jit::Precision::mixed}};
+    const jit::ObjectResult made = jit::compile_object(program->module(), entries, "x86_64-linux-gnu", "x86-64-v4");
+    INFO(made.error);
+    REQUIRE(made.error.empty());
+    CHECK(made.object.find("\x48\x83\xe4\xc0") != std::string::npos); // and rsp, -64
+}

@@ -21,15 +21,16 @@ TEST_CASE("bench compile: rows by length, with machine, commit and flags")
     const Json json = Json::parse(ran.out);
     for (const char* field : {"machine", "isa", "commit", "flags"}) CHECK(!json[field].get<std::string>().empty());
     REQUIRE(json["rows"].size() >= 1 + 10 + 5); // one line, the examples, texts of five lengths
+    double first_ms = 0, cached_ms = 0;
     for (const Json& row : json["rows"]) {
         CHECK(row["front_end_ms"]["median"].get<double>() > 0);
         CHECK(row["front_end_ms"]["p99"].get<double>() >= row["front_end_ms"]["median"].get<double>());
         for (const char* times : {"warm_ms", "binding_ms"}) CHECK(row[times]["median"].get<double>() > 0);
         for (const char* time : {"first_ms", "primed_ms", "cached_ms"}) CHECK(row[time].get<double>() > 0);
-        // What it is all for, with room for a busy machine.
-        INFO(row["texture"]);
-        CHECK(row["cached_ms"].get<double>() < 0.8 * row["first_ms"].get<double>());
+        first_ms += row["first_ms"].get<double>();
+        cached_ms += row["cached_ms"].get<double>();
     }
+    CHECK(cached_ms < 0.7 * first_ms); // what it is all for, with room for a busy machine
     for (const Json& row : json["rows"])
         if (row["texture"] == "field 400") CHECK(row["lines"].get<int>() >= 370);
     // a ratio of times side by side: a front end that grew with the square would be at 16
