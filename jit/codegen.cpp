@@ -159,6 +159,7 @@ std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const
         ModuleEmitter& emitter =
             emitters.try_emplace(form, module, *generated, processor, entry.lanes, entry.precision, kernels)
                 .first->second;
+        if (!kernels && entry.lanes == LaneForm::points) emitter.called_by_batches = worth_a_kernel(module);
         entry.lanes == LaneForm::points ? EntryEmitter(emitter, entry).batch()
                                         : EntryEmitter(emitter, entry).one_point();
     }

@@ -195,6 +195,9 @@ void FunctionEmitter::emit(const ir::Instruction& made, const ir::Call& call)
     for (ir::Value operand : made.operands) signature.in_lanes.push_back(forms[operand].in_lanes);
     for (ir::Value result : made.results) signature.wide_results.push_back(forms.is_wide(result));
     const ModuleEmitter::Function& callee = module.function(call.function, signature);
+    const std::vector<bool>& called = module.called_by_batches;
+    if (!source.is_library && !called.empty() && called[call.function])
+        callee.code->addFnAttr(llvm::Attribute::NoInline);
     std::vector<Value*> operands;
     for (size_t i = 0; i < made.operands.size(); ++i)
         operands.push_back(

@@ -76,6 +76,10 @@ public:
 
     bool fuses() const { return plan.precision != Precision::f64 && processor.fuses; }
 
+    // Where a program is written whole: library functions that its batches call all the same. Within a batch's loop
+    // LLVM would take their constants out of it, and these would fill the registers.
+    std::vector<bool> called_by_batches; // by function; empty: none
+
     const ir::Module& source;
     llvm::Module& target;
     const Processor& processor;

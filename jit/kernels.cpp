@@ -28,6 +28,8 @@ void measure(const ir::Block& block, const std::vector<Extent>& callees, Extent&
     }
 }
 
+} // namespace
+
 // Callees stand before their callers.
 std::vector<bool> worth_a_kernel(const ir::Module& module)
 {
@@ -42,8 +44,6 @@ std::vector<bool> worth_a_kernel(const ir::Module& module)
     }
     return worth;
 }
-
-} // namespace
 
 KernelCalls::KernelCalls(const ir::Module& module, std::string of_target)
     : target(std::move(of_target)), hashes(function_hashes(module)), is_worth_it(worth_a_kernel(module))

@@ -17,6 +17,9 @@
 
 namespace haptel::jit {
 
+// By index: library functions, with all that they call, that are long enough to be called.
+std::vector<bool> worth_a_kernel(const ir::Module& module);
+
 struct Kernel {
     uint32_t function; // of the module that calls it
     Signature signature;
