@@ -1,7 +1,7 @@
 // IR to LLVM IR, one point at a time or many, in one of three precisions.
 //
 // In f64 every operation means what lang/ir/semantics.h says, bit for bit: no fast-math flags, no contraction,
-// elementary functions by the templates of lang/ir/elementary_*.h.
+// elementary functions by the templates of lang/ir/elementary_*.h. Iterations in lanes alone may add in another order.
 // In mixed and f32, what varies is fused where the processor can: a product that a sum or difference takes is not
 // rounded by itself (the choice rests on the two operations alone, so that a height with and without its gradient has
 // the same bits).

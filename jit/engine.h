@@ -2,9 +2,9 @@
 // make is kept on disk (jit/object_cache.h).
 //
 // Code may call the functions of code_library() and kernels, and nothing else of the process. It is compiled for the
-// host's processor, every feature of it that the environment's HAPTEL_ISA leaves (jit/isa.h), but no multiplication and
-// addition are ever fused: the same program gives the same bits whatever the effort, with kernels or without. Any
-// thread may compile: the two efforts do not wait for each other. Running needs no lock.
+// host's processor, every feature of it that the environment's HAPTEL_ISA leaves (jit/isa.h). What LLVM does to it
+// changes no bit: it is the same whatever the effort, with kernels or without. Any thread may compile: efforts do not
+// wait for each other. Running needs no lock.
 #pragma once
 
 #include "jit/codegen.h"
@@ -22,7 +22,7 @@ namespace haptel::jit {
 // Time spent against speed of the code; never a difference in any bit of a result.
 enum class Effort : uint8_t {
     draft, // callable at once, at half the speed: for who replaces it soon (CompiledProgram::optimise)
-    quick, // callable soon; calls kernels as a draft does, which costs 5 ns a call
+    quick, // callable soon; calls kernels as a draft does, which costs some nanoseconds a call
     full   // all of LLVM's -O2 over the program with all that it calls: what a long exploration deserves
 };
 

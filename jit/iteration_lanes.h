@@ -7,7 +7,7 @@
 // and the same loop with derivatives are always judged alike, and give the same bits.
 //
 // Where others are carried (a product, a maximum, the weights of a hybrid fractal), the loop is split: what does not
-// wait for them runs side by side, then they follow one iteration after the other, with the bits of a loop that is not
+// wait for them runs side by side, then they follow one iteration after the other, in the order of a loop that is not
 // split.
 #pragma once
 

@@ -77,7 +77,7 @@ Command cache_command(CLI::App& app)
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel cache\n"
                            "  haptel cache --clear --prime\n"
-                           "  HAPTEL_CACHE=/tmp/other haptel cache --prime --json");
+                           "  HAPTEL_CACHE=$PWD/cache haptel cache --prime --json");
     return {command, [options] { return run(*options); }};
 }
 
