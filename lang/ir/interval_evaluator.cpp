@@ -256,9 +256,7 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
     }
     const Smoothness own = smoothness_of(op, operands, active, result, partials);
     const bool was_smooth = variation.smoothness == Smoothness::smooth;
-    const bool by_constant = op == Op::mod && operands[1].is_point() && !operands[1].contains(0);
-    if (own == Smoothness::jump && variation.smoothness >= Smoothness::c0 && (op == Op::fract || by_constant))
-        variation.wrap = {0, op == Op::fract ? 1 : operands[1].minimum, variation.smoothness};
+    if (own != Smoothness::smooth) variation.wrap = wrap_made_by(op, operands, variations[0]);
     roughen(variation, own, {made.span, op});
     if (own != Smoothness::smooth && variation.kink != 0) variation.kink = 0;
     const bool is_length = op == Op::length2 || op == Op::length3 || op == Op::length4;

@@ -145,26 +145,55 @@ void keep_kink(Op op, std::span<const Variation> variations, Variation& made)
     made.smoothness = of_power(power);
 }
 
-// A wrap moves with the value; folded at its middle it is a kink.
+using Wrap = Variation::Wrap;
+
+// What does not jump wraps by 0; a constant from where it is.
+Wrap wrap_of(const Variation& a, const Interval& value)
+{
+    if (a.wrap) return *a.wrap;
+    const bool is_constant = !a.is_active && value.is_point();
+    return {0, is_constant ? std::optional(value.minimum) : std::nullopt, a.smoothness};
+}
+
+Wrap negated(const Wrap& a)
+{
+    return {-a.by, a.from ? std::optional(-*a.from) : std::nullopt, a.between};
+}
+
+bool is_whole(double by)
+{
+    return std::isfinite(by) && std::floor(by) == by;
+}
+
+std::optional<Wrap> sum(const Wrap& a, const Wrap& b)
+{
+    const Smoothness between = std::min(a.between, b.between);
+    if (a.by != 0 && b.by != 0)
+        return is_whole(a.by) && is_whole(b.by) ? std::optional(Wrap{1, {}, between}) : std::nullopt;
+    return Wrap{a.by + b.by, a.from && b.from ? std::optional(*a.from + *b.from) : std::nullopt, between};
+}
+
+// A wrap moves with the value; folded at its middle it is a kink, and none to what repeats with every whole number.
 void keep_wrap(Op op, std::span<const Interval> operands, std::span<const Variation> variations, Variation& made)
 {
-    for (size_t i = 0; i < variations.size() && i < 2; ++i) {
-        if (!variations[i].wrap) continue;
-        const auto [low, high, between] = *variations[i].wrap;
-        if (op == Op::abs && low == -high) {
-            made.smoothness = std::min(between, Smoothness::c0);
-        } else if (op == Op::neg) {
-            made.wrap = {-low, -high, between};
-        } else if (operands.size() == 2 && !variations[1 - i].is_active && operands[1 - i].is_point()) {
-            const double by = operands[1 - i].minimum;
-            if (op == Op::add) made.wrap = {low + by, high + by, between};
-            if (op == Op::sub)
-                made.wrap = i == 0 ? Variation::Wrap{low - by, high - by, between}
-                                   : Variation::Wrap{by - low, by - high, between};
-            if (op == Op::mul) made.wrap = {low * by, high * by, between};
-            if (op == Op::div && i == 0) made.wrap = {low / by, high / by, between};
-        }
-    }
+    if (std::none_of(variations.begin(), variations.end(), [](const Variation& part) { return part.wrap.has_value(); }))
+        return;
+    const Wrap a = wrap_of(variations[0], operands[0]);
+    if (op == Op::sinturn || op == Op::costurn) made.smoothness = smoothness_but_for_turns(variations[0]);
+    if (op == Op::abs && a.from == -0.5 * a.by) made.smoothness = std::min(a.between, Smoothness::c0);
+    if (op == Op::neg) made.wrap = negated(a);
+    if (variations.size() != 2) return;
+    const Wrap b = wrap_of(variations[1], operands[1]);
+    const auto constant = [](const Wrap& wrap) { return wrap.by == 0 ? wrap.from : std::nullopt; };
+    const auto product = [](const Wrap& wrap, double by) {
+        return Wrap{wrap.by * by, wrap.from ? std::optional(*wrap.from * by) : std::nullopt, wrap.between};
+    };
+    if (op == Op::add) made.wrap = sum(a, b);
+    if (op == Op::sub) made.wrap = sum(a, negated(b));
+    if (op == Op::mul && constant(b)) made.wrap = product(a, *b.from);
+    if (op == Op::mul && constant(a)) made.wrap = product(b, *a.from);
+    if (op == Op::div && constant(b))
+        made.wrap = {a.by / *b.from, a.from ? std::optional(*a.from / *b.from) : std::nullopt, a.between};
 }
 
 bool is_bounded(const std::array<Interval, axes>& gradient)
@@ -227,6 +256,11 @@ Variation join(const Variation& a, const Variation& b)
     all.slope = std::max(a.slope, b.slope);
     all.curvature = std::max(a.curvature, b.curvature);
     return all;
+}
+
+Smoothness smoothness_but_for_turns(const Variation& variation)
+{
+    return variation.wrap && is_whole(variation.wrap->by) ? variation.wrap->between : variation.smoothness;
 }
 
 Variation intersect(const Variation& a, const Variation& b)

@@ -33,10 +33,12 @@ struct Variation {
     // C2..
     uint32_t kink = 0;       // which kink: values that share it are 0 in the same places
     uint32_t kink_power = 0; // of max(u, 0) in it
-    // Where the value jumps from one of these ends to the other and nowhere else, as fract and mod do, and how smooth
-    // it is between: ends that lie as far from 0 are one and the same to |value|.
+    // The value jumps by multiples of this alone, as fract and mod do, and is so smooth between: whole jumps are none
+    // to what repeats with every whole number. Where it only jumps between `from` and from + by, and these lie as far
+    // from 0, they are one and the same to |value|.
     struct Wrap {
-        double low, high;
+        double by;
+        std::optional<double> from;
         Smoothness between;
     };
     std::optional<Wrap> wrap;
@@ -51,6 +53,9 @@ Variation unknown_variation(Span where);
 
 // Rougher of the two, with its cause.
 void roughen(Variation& variation, Smoothness smoothness, const Cause& cause);
+
+// How smooth it is but for jumps by whole numbers.
+Smoothness smoothness_but_for_turns(const Variation& variation);
 
 // Of what may be either: an `if`, a choice, the lesser of two.
 Variation join(const Variation& a, const Variation& b);

@@ -121,7 +121,7 @@ TEST_CASE("short forms are the long ones with perlin, 2, 0.5 and seed 0")
             check_same(name + "(" + q + ", 0)", "0.0 * q.x");
             check_same(name + "(" + q + ", -1)", "0.0 * q.x");
         }
-        check_same(name + "(flat_basis, q.xy, 3, 2.0, 0.5)", name + "(flat_basis, q.xy, 3, 2.0, 0.5, 0)");
+        check_same(name + "(noise, q.xy, 3, 2.0, 0.5)", name + "(noise, q.xy, 3, 2.0, 0.5, 0)");
     }
     check_same("fbm(q, 1)", "perlin(q)");
     check_same("fbm(noise, q.xy, 1, 2.0, 0.5)", "noise(q.xy)");

@@ -78,7 +78,7 @@ TEST_CASE("hybrid: short forms are the long ones with perlin, 2, 0.5 and seed 0"
             {"hybrid(" + q + ", 16)", "hybrid(" + q + ", 17)"},
             {"hybrid(" + q + ", 1)", "perlin(" + q + ") + 0.7"},
             {"hybrid(" + q + ", 0)", "0.0 * q.x"},
-            {"hybrid(flat_basis, q.xy, 3, 2.0, 0.5)", "hybrid(flat_basis, q.xy, 3, 2.0, 0.5, 0)"}};
+            {"hybrid(noise, " + q + ", 3, 2.0, 0.5)", "hybrid(noise, " + q + ", 3, 2.0, 0.5, 0)"}};
         for (const auto& [a, b] : same) {
             CAPTURE(a, b);
             const Field first(a, own_basis), second(b, own_basis);
