@@ -126,18 +126,22 @@ Renderer::ObjectForce Renderer::force_of(Touched& touched, const Contact& contac
     SurfacePoint at;
     at.p_m = contact.proxy_m;
     at.time_s = static_cast<double>(period_) * period_s_;
-    if (texture_reads(touched.texture) & (HAPTEL_READS_NORMAL | HAPTEL_READS_UV))
+    // What nobody reads is not computed.
+    const bool turns = scene_->servo.force.model == ForceModel::displaced && touched.texture.textured() &&
+                       surface.normal_turn_max_per_m > 0;
+    if (turns || texture_reads(touched.texture) & (HAPTEL_READS_NORMAL | HAPTEL_READS_UV))
         at.shading = shade(surface, contact.face, contact.side, contact.barycentric);
-    else if (object.force_shading)
+    else
         at.shading.normal = shading_normal(surface, contact.face, contact.side, contact.barycentric);
-    if (!object.force_shading) {
+    if (contact.normal != contact.facet_normal && on_crease(surface, contact.face, contact.side, contact.barycentric)) {
         at.shading.normal = contact.normal;
         at.shading.normal_dp = glm::dmat3(0);
     }
 
     const TextureSample texture = sample_texture(touched.texture, at);
-    const TouchedSurface felt{contact.depth_m, contact.normal, at.shading.normal, object.material.stiffness_n_per_m};
-    const ModelForce elastic = model_force(scene_->servo.force_model, felt, texture);
+    const TouchedSurface felt{contact.depth_m, contact.normal, at.shading.normal, at.shading.normal_dp,
+                              object.material.stiffness_n_per_m};
+    const ModelForce elastic = model_force(scene_->servo.force, felt, texture);
     const double stiffness = felt.stiffness_n_per_m * texture.stiffness_scale;
 
     ObjectForce result;

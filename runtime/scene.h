@@ -41,7 +41,6 @@ struct SceneObject {
     std::shared_ptr<const Surface> surface;
     Placement placement;
     Material material;
-    bool force_shading = true; // eq. 1; false: every facet is felt flat
     std::shared_ptr<TextureSlot> texture = std::make_shared<TextureSlot>();
     std::optional<TextureRequest> request; // what the texture was resolved from, for live reload
 };
@@ -55,7 +54,7 @@ struct ProbeSettings {
 
 struct ServoSettings {
     double rate_hz = 1000;
-    ForceModel force_model = ForceModel::displaced;
+    ForceRule force;
     double force_limit_n = 7;   // > 0; the device's own limit applies too
     double v_max_m_per_s = 0.3; // hand speed that textures are band-limited for
     double force_rise_s = 0.1;  // forces grow linearly from 0 over this time after start or interruption

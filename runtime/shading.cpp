@@ -1,17 +1,17 @@
 #include "runtime/shading.h"
 
+#include "runtime/fan.h"
+
 namespace haptel::runtime {
 
 namespace {
-
-// Shorter than this the vertex normals cancel and the sum has no direction.
-constexpr double least_length = 1e-6;
 
 struct CornerNormals {
     glm::dvec3 n[3];
     CornerNormals(const Surface& surface, uint32_t face, uint32_t side)
     {
-        for (int i = 0; i < 3; ++i) n[i] = surface.fans[surface.faces[face].fan[size_t(i)][side]].normal;
+        const auto& of_corner = surface.shading_normal_of[face];
+        for (size_t i = 0; i < 3; ++i) n[i] = surface.shading_normals[of_corner[i][side]].normal;
     }
     glm::dvec3 at(const glm::dvec3& w) const { return w.x * n[0] + w.y * n[1] + w.z * n[2]; }
 };
@@ -22,7 +22,27 @@ glm::dvec3 shading_normal(const Surface& surface, uint32_t face, uint32_t side, 
 {
     const glm::dvec3 sum = CornerNormals(surface, face, side).at(barycentric);
     const double length = glm::length(sum);
-    return length > least_length ? sum / length : surface.facet_normal(face, side);
+    return length > Surface::least_normal ? sum / length : surface.facet_normal(face, side);
+}
+
+bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept
+{
+    constexpr double on_feature = 1e-9; // of a corner's weight, which is 0 there but for rounding
+    const auto& of_corner = surface.shading_normal_of[face];
+    for (uint32_t i = 0; i < 3; ++i)
+        if (barycentric[int(i)] > 1 - on_feature) return !surface.shading_normals[of_corner[i][side]].whole;
+    for (uint32_t i = 0; i < 3; ++i) {
+        if (barycentric[int(previous(i))] > on_feature) continue;
+        const SideEdge link = surface.faces[face].link[i][side];
+        if (link.face() == face) return false; // a border: nothing meets the face there
+        const auto& there = surface.shading_normal_of[link.face()];
+        const bool same_way = surface.faces[link.face()].vertex[link.edge()] == surface.faces[face].vertex[i];
+        const uint32_t first = same_way ? link.edge() : next(link.edge());
+        const uint32_t second = same_way ? next(link.edge()) : link.edge();
+        return of_corner[i][side] != there[first][link.side()] ||
+               of_corner[next(i)][side] != there[second][link.side()];
+    }
+    return false;
 }
 
 Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept
@@ -43,9 +63,9 @@ Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::d
         weight_dp[i] = inward / (twice_area * surface.lattice.unit_m);
     }
 
-    shading.normal = length > least_length ? sum / length : surface.facet_normal(face, side);
+    shading.normal = length > Surface::least_normal ? sum / length : surface.facet_normal(face, side);
     for (int j = 0; j < 3; ++j) {
-        if (length > least_length) {
+        if (length > Surface::least_normal) {
             glm::dvec3 change{0};
             for (int i = 0; i < 3; ++i) change += corners.n[i] * weight_dp[i][j];
             shading.normal_dp[j] = (change - glm::dot(change, shading.normal) * shading.normal) / length;

@@ -35,7 +35,7 @@ std::string MeshReport::note() const
     return "open mesh: " + std::to_string(border_edges) + " border edges, past which a hand gets behind the surface";
 }
 
-SurfaceResult build_surface(const Mesh& mesh)
+SurfaceResult build_surface(const Mesh& mesh, double crease_deg)
 {
     SurfaceResult result;
     auto surface = std::make_shared<Surface>();
@@ -46,6 +46,7 @@ SurfaceResult build_surface(const Mesh& mesh)
     }
     link_faces(*surface, result.report);
     make_fans(*surface);
+    make_shading_normals(*surface, crease_deg);
     surface->tree = BoxTree::build(surface->vertices, surface->faces, result.error);
     if (!surface->tree) return result;
     find_piercing(*surface, result.report);

@@ -67,6 +67,12 @@ struct Fan {
     uint32_t next;
 };
 
+// Mean of the facet normals around a vertex, weighted by their angles, as far as no crease parts them.
+struct ShadingNormal {
+    glm::dvec3 normal; // unit; zero where they cancel
+    bool whole;        // of a whole fan: no crease ends in the vertex, or one that does not part it
+};
+
 struct SegmentHit {
     uint32_t face = 0;
     uint32_t side = 0;   // that faces the start of the segment
@@ -84,9 +90,16 @@ struct Surface {
     std::vector<Fan> fans;
     std::vector<std::array<glm::dvec2, 3>> uv; // per face and corner; empty without texture coordinates
     std::vector<uint32_t> pierced_by;
+    // Force shading: the normals at corners, and which of them a face has [corner][side].
+    std::vector<ShadingNormal> shading_normals;
+    std::vector<std::array<std::array<uint32_t, 2>, 3>> shading_normal_of;
+    double normal_turn_max_per_m = 0; // no shading normal turns faster along its face (spectral norm); 0: flat facets
     std::unique_ptr<const BoxTree> tree;
     glm::dvec3 box_minimum{0}, box_maximum{0};     // of the vertices, lattice units
     glm::dvec3 box_minimum_m{0}, box_maximum_m{0}; // the same, metres
+
+    // Interpolated normals shorter than this have no direction: the facet's is felt.
+    static constexpr double least_normal = 1e-6;
 
     Surface();
     ~Surface();
@@ -114,7 +127,11 @@ struct SurfaceResult {
     std::string error; // why there is nothing to touch: "the mesh has no triangle left: ..."
 };
 
+// Faces that meet at more than this angle do so in a crease, which force shading keeps: 0 leaves every facet flat, 180
+// rounds everything.
+inline constexpr double default_crease_deg = 40;
+
 // Never throws on bad geometry; memory is all that it can run out of.
-SurfaceResult build_surface(const Mesh& mesh);
+SurfaceResult build_surface(const Mesh& mesh, double crease_deg = default_crease_deg);
 
 } // namespace haptel::runtime

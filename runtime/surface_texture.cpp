@@ -70,6 +70,7 @@ TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& 
 
     result.height_m = sample.height_m;
     result.envelope_m = std::min(0.0, sample.height_m - binding.facts.height_max_m);
+    result.raised_m = std::max(0.0, sample.height_m - std::min(0.0, binding.facts.height_min_m));
     result.surface_gradient =
         tangential(glm::dvec3(sample.gradient[0], sample.gradient[1], sample.gradient[2]), at.shading.normal);
     result.stiffness_scale = sample.stiffness_scale;
@@ -91,6 +92,7 @@ TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at
     const auto mix = [w](const auto& a, const auto& b) { return a + w * (b - a); };
     to.height_m = mix(from.height_m, to.height_m);
     to.envelope_m = mix(from.envelope_m, to.envelope_m);
+    to.raised_m = mix(from.raised_m, to.raised_m);
     to.surface_gradient = mix(from.surface_gradient, to.surface_gradient);
     to.stiffness_scale = mix(from.stiffness_scale, to.stiffness_scale);
     to.friction_scale = mix(from.friction_scale, to.friction_scale);

@@ -78,6 +78,8 @@ public:
     bool fading() const noexcept { return from_ != to_; }
     const PublishedBinding& from() const noexcept { return *from_; }
     const PublishedBinding& to() const noexcept { return *to_; }
+    // Whether there is a texture at all.
+    bool textured() const noexcept { return from_->binding.texture || to_->binding.texture; }
     // Share of to() in what is felt, 0 .. 1; 1 outside a fade.
     double weight() const noexcept { return weight_; }
 

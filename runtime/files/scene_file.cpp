@@ -27,6 +27,7 @@ constexpr double default_shape_size_m = 0.1;
 struct ObjectText {
     std::string mesh, shape, texture;
     double size_m = 0; // 0: as it is
+    double crease_deg = default_crease_deg;
     SceneObject object;
     std::vector<std::pair<std::string, std::string>> parameters;
     toml::source_region mesh_at, texture_at;
@@ -72,8 +73,11 @@ ServoSettings read_servo(const toml::table& root, FileMessages& messages)
     ServoSettings servo;
     TableReader table(table_named(root, "servo", messages), "[servo]", messages);
     table.number("rate_hz", servo.rate_hz, Quantity::frequency, {10, 100'000});
-    if (const auto model = table.word("force_model", {"displaced", "paper"}))
-        servo.force_model = *model == 0 ? ForceModel::displaced : ForceModel::paper;
+    if (const auto model = table.word("force_model", {force_model_names.begin(), force_model_names.end()}))
+        servo.force.model = static_cast<ForceModel>(*model);
+    table.number("lateral_depth_m", servo.force.lateral_depth_m, Quantity::length, {0, 1, true});
+    if (table.has("lateral_depth_m") && servo.force.model != ForceModel::lateral)
+        messages.error(table.where("lateral_depth_m"), "`lateral_depth_m` is for `force_model = \"lateral\"` alone");
     table.number("force_limit_n", servo.force_limit_n, Quantity::force, {0, 100, true});
     table.number("v_max_m_per_s", servo.v_max_m_per_s, Quantity::speed, {0, 10, true});
     table.number("force_rise_s", servo.force_rise_s, Quantity::time, {0, 10});
@@ -135,6 +139,8 @@ ObjectText read_object(const toml::table& source, FileMessages& messages)
     if (!table.has("mesh")) text.size_m = default_shape_size_m;
     table.number("size_m", text.size_m, Quantity::length, {0, 1000, true});
 
+    table.number("crease_deg", text.crease_deg, Quantity::angle_deg, {0, 180});
+
     table.three_numbers("position_m", text.object.placement.position_m, Quantity::length, {-1000, 1000});
     glm::dvec3 turn_deg(0);
     table.three_numbers("rotation_deg", turn_deg, Quantity::angle_deg, {-3600, 3600});
@@ -195,7 +201,7 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, FileMe
         mesh = std::move(read.mesh);
     }
     if (text.size_m > 0) scale_to_size(mesh, text.size_m);
-    SurfaceResult built = build_surface(mesh);
+    SurfaceResult built = build_surface(mesh, text.crease_deg);
     if (!built.surface)
         messages.error(text.mesh_at, "mesh `" + text.object.name + "`: " + built.error);
     else if (const std::string warning = built.report.warning(); !warning.empty())
@@ -227,6 +233,7 @@ void load_texture(ObjectText& text, const SceneText& scene, const std::filesyste
         request.box_maximum_m[i] = text.object.surface->box_maximum_m[i];
     }
     request.footprint_m = 2 * scene.servo.v_max_m_per_s / scene.servo.rate_hz;
+    request.normal_turn_max_per_m = text.object.surface->normal_turn_max_per_m;
     request.servo_period_s = 1 / scene.servo.rate_hz;
 
     TextureResult result = textures(request);

@@ -26,50 +26,7 @@ double degrees_between(const glm::dvec3& a, const glm::dvec3& b)
     return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
 }
 
-// Work that the static force field does on a hand taken once around the rectangle in the xz plane (J).
-double loop_work_j(Renderer& renderer, double x0, double x1, double z_shallow, double z_deep, int steps)
-{
-    const std::array<glm::dvec2, 5> corners{
-        {{x0, z_shallow}, {x0, z_deep}, {x1, z_deep}, {x1, z_shallow}, {x0, z_shallow}}};
-    double work = 0;
-    for (std::size_t edge = 0; edge + 1 < corners.size(); ++edge) {
-        const glm::dvec2 along = corners[edge + 1] - corners[edge];
-        for (int i = 0; i <= steps; ++i) { // Simpson's rule
-            const double weight = (i == 0 || i == steps ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) / (3.0 * steps);
-            const glm::dvec2 p = corners[edge] + along * (static_cast<double>(i) / steps);
-            const glm::dvec3 force = renderer.tick(at(p.x, 1e-3, p.y)).force_n;
-            work += weight * (force.x * along.x + force.z * along.y);
-        }
-    }
-    return work;
-}
-
-// The same, refined until it changes by less than 1e-10 J.
-double refined_loop_work_j(ForceModel model)
-{
-    constexpr double amplitude_m = 0.1e-3, wavelength_m = 2e-3;
-    Scene scene = bare_scene(plane_mesh(), sine_texture(amplitude_m, wavelength_m));
-    scene.servo.force_model = model;
-    Renderer renderer(shared(std::move(scene)));
-    renderer.tick(at(0, 1e-3, 1e-3)); // put down above
-    // From a valley to a crest and back: height changes by 0.2 mm, depth by 0.5 mm.
-    double work = 0, before = 1;
-    for (int steps = 16; std::abs(work - before) >= 1e-10 && steps <= 1 << 14; steps *= 2) {
-        before = work;
-        work = loop_work_j(renderer, -wavelength_m / 4, wavelength_m / 4, -0.3e-3, -0.8e-3, steps);
-    }
-    REQUIRE(std::abs(work - before) < 1e-10);
-    return work;
-}
-
 } // namespace
-
-TEST_CASE("displaced is conservative, paper gives energy away on a loop")
-{
-    CHECK(std::abs(refined_loop_work_j(ForceModel::displaced)) < 1e-9);
-    // K times change of depth times change of height: 1000 N/m * 0.5 mm * 0.2 mm
-    CHECK(std::abs(std::abs(refined_loop_work_j(ForceModel::paper)) - 1.0e-4) < 1e-9);
-}
 
 TEST_CASE("displaced is minus the gradient of its potential")
 {

@@ -163,7 +163,7 @@ shape = "icosphere"
     CHECK(scene.probe.kind == ProbeKind::stylus);
     CHECK(scene.probe.length_m == 0.12);
     CHECK(scene.servo.rate_hz == 2000);
-    CHECK(scene.servo.force_model == ForceModel::paper);
+    CHECK(scene.servo.force.model == ForceModel::paper);
     CHECK(scene.servo.force_limit_n == 5);
     CHECK(scene.servo.v_max_m_per_s == 0.5);
     REQUIRE(scene.objects.size() == 2);
@@ -218,7 +218,7 @@ TEST_CASE("a scene of one line has the defaults of the documentation")
     const Scene& scene = *loaded.scene;
     CHECK(scene.probe.kind == ProbeKind::point);
     CHECK(scene.servo.rate_hz == 1000);
-    CHECK(scene.servo.force_model == ForceModel::displaced);
+    CHECK(scene.servo.force.model == ForceModel::displaced);
     CHECK(scene.servo.force_limit_n == 7);
     CHECK(scene.servo.v_max_m_per_s == 0.3);
     const Material& material = scene.objects[0].material;
@@ -232,6 +232,44 @@ TEST_CASE("a scene of one line has the defaults of the documentation")
     CHECK(device->speed_m_per_s == 0.1);
     CHECK(device->press_n == 1);
     CHECK(device->stylus_length_m == 0);
+}
+
+TEST_CASE("force models, creases and the turning of normals reach the scene")
+{
+    CHECK(diagnostics_of("[servo]\nlateral_depth_m = 0.1\n[[object]]\nshape = \"plane\"\n") ==
+          "scene.toml:2:19: error: `lateral_depth_m` is for `force_model = \"lateral\"` alone\n");
+    const Folder folder;
+    for (const ForceModel model :
+         {ForceModel::displaced, ForceModel::paper, ForceModel::paper_unit, ForceModel::ho99, ForceModel::lateral}) {
+        const std::string named = "[servo]\nforce_model = \"" + std::string(name_of(model)) + "\"\n";
+        const Scene scene = *load(folder, named + "[[object]]\nshape = \"plane\"\n").scene;
+        CHECK(scene.servo.force.model == model);
+        CHECK(scene.servo.force.lateral_depth_m == 1e-3);
+    }
+    CHECK(load(folder, "[servo]\nforce_model = \"lateral\"\nlateral_depth_m = \"2mm\"\n[[object]]\nshape = \"plane\"\n")
+              .scene->servo.force.lateral_depth_m == 2e-3);
+
+    struct Turning {
+        const char* object;
+        double per_m;
+    };
+    for (const auto& [object, per_m] :
+         {Turning{"shape = \"icosphere\"\nsize_m = 0.04", 50},
+          Turning{"shape = \"icosphere\"\nsize_m = 0.04\ncrease_deg = 0", 0}, Turning{"shape = \"box\"", 0}}) {
+        std::optional<TextureRequest> asked;
+        const Scene scene = *load(folder, "[[object]]\n" + std::string(object) + "\ntexture = \"a.haptel:b\"\n",
+                                  [&](const TextureRequest& request) {
+                                      asked = request;
+                                      return resolve_flat(request);
+                                  })
+                                 .scene;
+        REQUIRE(asked);
+        CHECK(asked->normal_turn_max_per_m == scene.objects[0].surface->normal_turn_max_per_m);
+        CHECK(std::abs(asked->normal_turn_max_per_m - per_m) <= 0.06 * per_m);
+    }
+    CHECK(load(folder, "[[object]]\nshape = \"box\"\ncrease_deg = 100\n")
+              .scene->objects[0]
+              .surface->normal_turn_max_per_m > 1);
 }
 
 TEST_CASE("the surface below a point is the first hit from above, wherever the object is put")
@@ -271,8 +309,8 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "scene.toml:3:1: error: unknown key `stiffness` in [[object]]: did you mean `stiffness_n_per_m`?\n"},
         {"[servo]\nrate = 3\nqqqqqqqq = 1\n[[object]]\nshape = \"plane\"\n",
          "scene.toml:2:1: error: unknown key `rate` in [servo]: did you mean `rate_hz`?\n"
-         "scene.toml:3:1: error: unknown key `qqqqqqqq` in [servo]: it may hold rate_hz, force_model, force_limit_n, "
-         "v_max_m_per_s, force_rise_s\n"},
+         "scene.toml:3:1: error: unknown key `qqqqqqqq` in [servo]: it may hold rate_hz, force_model, lateral_depth_m, "
+         "force_limit_n, v_max_m_per_s, force_rise_s\n"},
         {"[[objects]]\nshape = \"plane\"\n",
          "scene.toml:1:1: error: a scene needs something to touch: add an `[[object]]` with a `mesh` or a `shape`\n"
          "scene.toml:1:3: error: unknown key `objects`: did you mean `object`?\n"},
@@ -283,8 +321,9 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
         {"[probe]\nkind = \"sphere\"\nradius_m = 0.01\n[[object]]\nshape = \"plane\"\n",
          "scene.toml:2:8: error: expected \"point\" or \"stylus\" for `kind`, found \"sphere\"\n"
          "scene.toml:3:12: error: `radius_m` is for a sphere, but the probe is a point or a stylus: write 0\n"},
-        {"[servo]\nforce_model = \"ho99\"\nrate_hz = 0\nforce_limit_n = -1\n[[object]]\nshape = \"plane\"\n",
-         "scene.toml:2:15: error: expected \"displaced\" or \"paper\" for `force_model`, found \"ho99\"\n"
+        {"[servo]\nforce_model = \"ho89\"\nrate_hz = 0\nforce_limit_n = -1\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:15: error: expected \"displaced\", \"paper\", \"paper_unit\", \"ho99\" or \"lateral\" for "
+         "`force_model`, found \"ho89\"\n"
          "scene.toml:3:11: error: `rate_hz` must be from 10 to 100000, found 0\n"
          "scene.toml:4:17: error: `force_limit_n` must be above 0 up to 100, found -1\n"},
         {"[[object]]\nshape = \"plane\"\nsize_m = \"15kg\"\n",
