@@ -12,8 +12,7 @@
 // sequence of poses. Everything is in the object's space, metres: transform the hand into it first.
 //
 // Known limits: where faces pierce each other without sharing edges (walls.h) the proxy goes from crease to crease, one
-// a tick, and in a corner of three sheets it may rest before the nearest point. A crack between two borders is open:
-// the proxy can slip through it.
+// a tick, and in a corner of three sheets it may rest before the nearest point.
 #pragma once
 
 #include "runtime/proxy.h"

@@ -81,6 +81,11 @@ int compare_products(Int128 a, Int128 b, Int128 c, Int128 d)
 
 } // namespace
 
+bool ExactNormal::points_forward() const noexcept
+{
+    return first_sign(x, y, z) > 0;
+}
+
 glm::dvec3 ExactNormal::unit() const noexcept
 {
     return glm::normalize(glm::dvec3(double(x), double(y), double(z)));
@@ -165,7 +170,8 @@ bool earlier(const Crossing& a, const Crossing& b) noexcept
     const Int128* const nb[] = {&b.normal.x, &b.normal.y, &b.normal.z};
     for (int k = 0; k < 3; ++k)
         if (const int moved = compare_products(*na[k], b.denominator, *nb[k], a.denominator)) return moved > 0;
-    return a.face < b.face;
+    // Faces of one plane: the lower number lies in front, as seen against the first component of the normal.
+    return a.normal.points_forward() ? a.face > b.face : a.face < b.face;
 }
 
 } // namespace haptel::runtime

@@ -33,6 +33,7 @@ int line_orientation(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3&
 struct ExactNormal {
     Int128 x, y, z;
     bool is_zero() const { return x == 0 && y == 0 && z == 0; }
+    bool points_forward() const noexcept; // along its first axis that it has a component of
     glm::dvec3 unit() const noexcept;
 };
 ExactNormal exact_normal(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) noexcept;
@@ -55,7 +56,9 @@ bool crosses_plane(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a
 bool crosses(const glm::dvec3& p, const glm::dvec3& q, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c,
              Crossing& crossing) noexcept;
 
-// Which of two crossings of one segment comes first: a total order, exact, ties decided as above and at last by face.
+// Which of two crossings of one segment comes first: a total order, exact, ties decided as above. Of faces that lie on
+// each other the one with the lower number is the upper one, "up" being where the normal of their plane points_forward:
+// one order for all, so that a path does not come between them.
 bool earlier(const Crossing& a, const Crossing& b) noexcept;
 
 } // namespace haptel::runtime

@@ -36,8 +36,8 @@ struct WalkFriction {
 // At each feature it asks for the nearest point, to the hand, of the surface around (a face, the two faces of an edge,
 // the fan of a vertex). There the sign of the hand's height says whether the hand is on the free side: if so the proxy
 // leaves, if not it slides there.
-void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction,
-          WalkCount& count) noexcept;
+void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count,
+          uint32_t step_limit = 4096) noexcept;
 
 // Puts a free proxy on the face that its way crosses.
 void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const glm::dvec3& from,

@@ -44,6 +44,7 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg)
         result.error = "the mesh has no triangle to touch" + (warning.empty() ? "" : ": " + warning);
         return result;
     }
+    close_cracks(*surface, result.report);
     link_faces(*surface, result.report);
     make_fans(*surface);
     make_shading_normals(*surface, crease_deg);

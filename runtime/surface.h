@@ -29,6 +29,7 @@ struct MeshReport {
     size_t not_finite = 0;           // triangles dropped for a NaN or infinite coordinate
     size_t degenerate = 0;           // triangles dropped for having no area
     size_t duplicate = 0;            // triangles dropped for having the corners of another
+    size_t cracks_closed = 0;        // corners of borders that now belong to the border beside them, too
     size_t border_edges = 0;         // edges of one face only: the mesh is open there
     size_t nonmanifold_edges = 0;    // edges of more than two faces
     size_t pierced = 0;              // faces cut or touched by faces that are not their neighbours

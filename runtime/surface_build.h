@@ -8,6 +8,9 @@ namespace haptel::runtime {
 // Lattice, vertices and faces without normal or links: what is left after repair. False: no triangle left.
 bool repair(const Mesh& mesh, Surface& surface, MeshReport& report);
 
+// Joins borders that lie on each other without sharing vertices.
+void close_cracks(Surface& surface, MeshReport& report);
+
 // Face normals, and links around each edge, by exact radial order.
 void link_faces(Surface& surface, MeshReport& report);
 

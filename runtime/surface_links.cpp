@@ -46,8 +46,9 @@ struct RadialOrder {
     {
         const int qi = quarter(i), qj = quarter(j);
         if (qi != qj) return qi < qj;
-        const int turn = orientation(v[i.low], v[i.high], v[i.tip], v[j.tip]);
-        return turn != 0 ? turn > 0 : i.face < j.face;
+        if (const int turn = orientation(v[i.low], v[i.high], v[i.tip], v[j.tip])) return turn > 0;
+        // They lie on each other: in the order in which a path meets them, see earlier().
+        return exact_normal(v[i.low], v[i.high], v[i.tip]).points_forward() ? i.face > j.face : i.face < j.face;
     }
 };
 

@@ -21,8 +21,6 @@ constexpr double clear_above = 2; // height that rounding to the lattice cannot 
 // Length of the sum of two unit normals below which the faces nearly fold onto each other.
 constexpr double sharp = 1.0 / 16;
 
-constexpr uint32_t step_limit = 4096;
-
 class Walk {
 public:
     Walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count)
@@ -30,7 +28,7 @@ public:
     {
     }
 
-    void run()
+    void run(uint32_t step_limit)
     {
         Step step = Step::again;
         for (count_.steps = 0; step == Step::again && count_.steps < step_limit; ++count_.steps) {
@@ -354,10 +352,10 @@ private:
 
 } // namespace
 
-void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction,
-          WalkCount& count) noexcept
+void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count,
+          uint32_t step_limit) noexcept
 {
-    Walk(surface, proxy, hand, friction, count).run();
+    Walk(surface, proxy, hand, friction, count).run(step_limit);
 }
 
 void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const glm::dvec3& from,

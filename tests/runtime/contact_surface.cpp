@@ -1,11 +1,13 @@
 #include "runtime/surface.h"
 
+#include "runtime/contact.h"
 #include "runtime/fan.h"
 #include "runtime/shapes.h"
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"
 
 #include <cmath>
+#include <random>
 #include <set>
 
 using namespace haptel::runtime;
@@ -224,4 +226,52 @@ TEST_CASE("faces that pierce each other are found, and only those")
     CHECK(build_surface(make_star(3)).report.pierced == 0);
     CHECK(build_surface(make_stairs()).report.pierced == 0);
     CHECK(build_surface(make_stairs()).report.border_edges == 0);
+}
+
+TEST_CASE("cracks between borders are closed, and only cracks")
+{
+    // Every triangle with corners of its own, each off by up to 4e-7 of the size, as a file of rounded numbers has it.
+    const Mesh whole = make_icosphere(3);
+    Mesh apart;
+    std::mt19937 random(5);
+    const auto jitter = [&] { return 4e-7 / std::sqrt(3.0) * (double(random()) / 2147483648.0 - 1); };
+    for (const auto& triangle : whole.triangles) {
+        const uint32_t first = uint32_t(apart.positions_m.size());
+        for (uint32_t i : triangle)
+            apart.positions_m.push_back(whole.positions_m[i] + dvec3(jitter(), jitter(), jitter()));
+        apart.triangles.push_back({first, first + 1, first + 2});
+    }
+    const SurfaceResult mended = build_surface(apart);
+    CHECK(mended.report.cracks_closed == apart.positions_m.size() - whole.positions_m.size());
+    CHECK(mended.report.border_edges == 0);
+    CHECK(mended.report.nonmanifold_edges == 0);
+    CHECK(mended.surface->faces.size() == whole.triangles.size());
+
+    // T-junctions: rows of 2, 4, 8 and 16 cells share 3 lines; what is left open is the outline.
+    Mesh rows;
+    for (const NamedMesh& hard : make_hard_meshes())
+        if (hard.name == "T-junctions") rows = hard.mesh;
+    rows.uv.resize(rows.positions_m.size());
+    for (size_t i = 0; i < rows.uv.size(); ++i) rows.uv[i] = {rows.positions_m[i].x, rows.positions_m[i].y};
+    const SurfaceResult rowed = build_surface(rows);
+    CHECK(rowed.report.cracks_closed == 2 + 4 + 8);
+    CHECK(rowed.report.border_edges == 2 + 16 + 4 * 2);
+    CHECK(rowed.surface->faces.size() == 2 * (2 + 4 + 8 + 16) + 2 + 4 + 8);
+    for (uint32_t f = 0; f < rowed.surface->faces.size(); ++f)
+        for (uint32_t i = 0; i < 3; ++i)
+            CHECK(glm::length(rowed.surface->uv[f][i] - glm::dvec2(rowed.surface->vertex_m(f, i))) < 1e-9);
+
+    // A hand that is drawn along the lines, pressing down and exactly on them, stays on top.
+    PointContact contact(rowed.surface);
+    int lost = 0, ticks = 0;
+    for (int row = 1; row < 4; ++row) {
+        contact.update({0.01, row, 1});
+        for (double x = 0.01; x < 3.99; x += 0.003, ++ticks)
+            lost += !contact.update({x, row + 1e-7 * (ticks % 3 - 1), 0.3 * std::sin(row) - 0.1}).touching;
+        contact.update({3.98, row, 1});
+    }
+    CHECK(lost == 0);
+
+    for (const Mesh& mesh : {make_plane(4), make_bumpy_sphere(2), make_star(3), make_stairs()})
+        CHECK(build_surface(mesh).report.cracks_closed == 0);
 }

@@ -88,6 +88,141 @@ Mesh make_crossing_boxes()
     return mesh;
 }
 
+namespace {
+
+void add(Mesh& mesh, const Mesh& other, const dvec3& by_m = dvec3(0))
+{
+    const uint32_t first = uint32_t(mesh.positions_m.size());
+    for (const dvec3& p : other.positions_m) mesh.positions_m.push_back(p + by_m);
+    for (const auto& [a, b, c] : other.triangles) mesh.triangles.push_back({a + first, b + first, c + first});
+}
+
+// A wavy square whose rows have twice as many cells as the row before: every other vertex of a row's far side lies on
+// the middle of an edge of the next.
+Mesh make_t_junctions()
+{
+    Mesh mesh;
+    for (int row = 0; row < 4; ++row) {
+        const int cells = 2 << row;
+        const uint32_t first = uint32_t(mesh.positions_m.size());
+        for (int y = row; y <= row + 1; ++y)
+            for (int i = 0; i <= cells; ++i) mesh.positions_m.emplace_back(4.0 * i / cells, y, 0.3 * std::sin(y));
+        for (int i = 0; i < cells; ++i) {
+            const uint32_t a = first + uint32_t(i), c = a + uint32_t(cells) + 1;
+            mesh.triangles.push_back({a, a + 1, c + 1});
+            mesh.triangles.push_back({a, c + 1, c});
+        }
+    }
+    return mesh;
+}
+
+Mesh make_soup(uint32_t seed, int triangles, double size)
+{
+    std::mt19937 random(seed);
+    const auto point = [&] {
+        return dvec3(double(random()) / 4294967296.0, double(random()) / 4294967296.0, double(random()) / 4294967296.0);
+    };
+    Mesh mesh;
+    for (int i = 0; i < triangles; ++i) {
+        const dvec3 centre = point();
+        for (int k = 0; k < 3; ++k) mesh.positions_m.push_back(centre + size * (point() - 0.5));
+        const uint32_t first = uint32_t(mesh.positions_m.size()) - 3;
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    return mesh;
+}
+
+// A strip with half a twist.
+Mesh make_moebius_strip()
+{
+    Mesh mesh;
+    const uint32_t n = 24;
+    for (uint32_t i = 0; i < n; ++i) {
+        const double angle = 2 * std::numbers::pi * i / n;
+        const dvec3 out(std::cos(angle), std::sin(angle), 0);
+        const dvec3 across = 0.3 * (std::cos(angle / 2) * out + std::sin(angle / 2) * dvec3(0, 0, 1));
+        mesh.positions_m.push_back(out - across);
+        mesh.positions_m.push_back(out + across);
+    }
+    for (uint32_t i = 0; i < n; ++i) {
+        const uint32_t a = 2 * i, b = a + 1;
+        const uint32_t c = i + 1 < n ? a + 2 : 1, d = i + 1 < n ? a + 3 : 0;
+        mesh.triangles.push_back({a, c, d});
+        mesh.triangles.push_back({a, d, b});
+    }
+    return mesh;
+}
+
+} // namespace
+
+std::vector<NamedMesh> make_hard_meshes()
+{
+    std::vector<NamedMesh> meshes;
+    meshes.push_back({"crossing boxes", make_crossing_boxes()});
+
+    Mesh stars = make_star(1);
+    add(stars, make_star(1), {0.21, 0.13, 0.17});
+    meshes.push_back({"stars that pierce each other", stars});
+
+    Mesh bowls = runtime::make_icosphere(2);
+    add(bowls, runtime::make_torus(0.4, 16, 8), {0.1, 0.05, 0.2});
+    meshes.push_back({"a ball through a torus", bowls});
+
+    meshes.push_back({"T-junctions", make_t_junctions()});
+
+    Mesh open = make_bumpy_sphere(2);
+    std::erase_if(open.triangles, [&](const auto& t) { return open.positions_m[t[0]].z > 0.6; });
+    meshes.push_back({"open bowl", open});
+
+    Mesh holes = make_star(2);
+    for (size_t i = 0; i < holes.triangles.size(); i += 5) holes.triangles.erase(holes.triangles.begin() + long(i));
+    meshes.push_back({"star with holes", holes});
+
+    meshes.push_back({"Moebius strip", make_moebius_strip()});
+
+    Mesh random_winding = make_star(2);
+    for (size_t i = 0; i < random_winding.triangles.size(); i += 3)
+        std::swap(random_winding.triangles[i][0], random_winding.triangles[i][1]);
+    meshes.push_back({"star wound at random", random_winding});
+
+    Mesh twice = runtime::make_box();
+    for (size_t i = 0; i + 1 < twice.triangles.size(); i += 2) { // the quads' other diagonals
+        const auto s = twice.triangles[i], t = twice.triangles[i + 1];
+        twice.triangles.push_back({s[0], s[1], t[2]});
+        twice.triangles.push_back({s[1], s[2], t[2]});
+        if (i >= 10) break;
+    }
+    meshes.push_back({"box given twice, other diagonals", twice});
+
+    Mesh book; // many faces at one edge, one vertex
+    book.positions_m = {{0, 0, 0}, {0, 0, 1}};
+    for (uint32_t i = 0; i < 9; ++i) {
+        const double angle = i < 7 ? 0.9 * i : 0.9 + 1e-3 * i;
+        book.positions_m.emplace_back(std::cos(angle), std::sin(angle), 0.1 * i);
+        book.triangles.push_back(i % 2 ? std::array{0u, 1u, i + 2} : std::array{i + 2, 1u, 0u});
+    }
+    meshes.push_back({"book", book});
+
+    Mesh slivers = runtime::make_sphere(300, 3);
+    for (dvec3& p : slivers.positions_m) p.z *= 1e-3;
+    meshes.push_back({"slivers", slivers});
+
+    meshes.push_back({"needles", make_soup(5, 60, 1.0)});
+    for (size_t i = 0; i < meshes.back().mesh.positions_m.size(); i += 3) {
+        auto& p = meshes.back().mesh.positions_m;
+        p[i + 2] = 0.5 * (p[i] + p[i + 1]) + 1e-8 * (p[i + 2] - p[i]);
+    }
+    meshes.push_back({"soup", make_soup(6, 150, 0.4)});
+    meshes.push_back({"soup far away", far_away(make_soup(7, 150, 0.4))});
+    return meshes;
+}
+
+Mesh far_away(Mesh mesh)
+{
+    for (dvec3& p : mesh.positions_m) p += dvec3(1e4, -1e4, 1e4);
+    return mesh;
+}
+
 std::shared_ptr<const runtime::Surface> surface_of(const Mesh& mesh)
 {
     runtime::SurfaceResult result = runtime::build_surface(mesh);

@@ -5,6 +5,8 @@
 #include "runtime/surface.h"
 
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace haptel::test {
 
@@ -24,6 +26,17 @@ runtime::Mesh make_touching_cubes(Touching touching);
 
 // Boxes that overlap without sharing edges.
 runtime::Mesh make_crossing_boxes();
+
+// What people have and no algorithm likes, by name: piercing itself, with T-junctions, open, one-sided, wound at
+// random, given twice in other triangles, slivers, or no surface at all.
+struct NamedMesh {
+    std::string name;
+    runtime::Mesh mesh;
+};
+std::vector<NamedMesh> make_hard_meshes();
+
+// The same mesh where coordinates are large: 1e4 m from the origin.
+runtime::Mesh far_away(runtime::Mesh mesh);
 
 std::shared_ptr<const runtime::Surface> surface_of(const runtime::Mesh& mesh);
 

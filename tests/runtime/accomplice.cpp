@@ -1,0 +1,144 @@
+#include "tests/runtime/accomplice.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::test {
+
+using glm::dvec3;
+using runtime::Proxy;
+
+namespace {
+
+dvec3 on_grid(const dvec3& p)
+{
+    return glm::round(p * 1024.0) / 1024.0;
+}
+
+// A hand that lies on a face, an edge or a vertex is taken to be moved by (e, e^2, e^3).
+dvec3 beside(const dvec3& hand, double e)
+{
+    return on_grid(hand + e * dvec3(1, 1.0 / 64, 1.0 / 4096));
+}
+
+} // namespace
+
+dvec3 Accomplice::in_ball()
+{
+    for (;;) {
+        const dvec3 p(2 * uniform() - 1, 2 * uniform() - 1, 2 * uniform() - 1);
+        if (glm::dot(p, p) < 1) return p;
+    }
+}
+
+void Accomplice::put(const dvec3& hand)
+{
+    before_ = hand;
+    at_ = mesh_.holds(hand) ? beside(hand, 4) : hand;
+    placed_ = true;
+}
+
+// Points near the proxy, on the claimed side, the likeliest first.
+dvec3 Accomplice::witness(const Proxy& proxy, int attempt)
+{
+    if (proxy.on == Proxy::On::nothing)
+        return mesh_.holds(proxy.at) ? beside(proxy.at, reach * std::exp2(-6 * uniform() - 0.1)) : proxy.at;
+    const dvec3 &a = mesh_.corner(proxy.face, 0), &b = mesh_.corner(proxy.face, 1), &c = mesh_.corner(proxy.face, 2);
+    double u = std::sqrt(uniform()), v = uniform();
+    if (attempt == 0) u = 2.0 / 3, v = 0.5; // the middle
+    const dvec3 inside = (1 - u) * a + u * (1 - v) * b + u * v * c;
+    const dvec3 start = mesh_.nearest(proxy.face, proxy.at);
+    const double length = glm::length(inside - start);
+    const double way = attempt == 0 ? 32.0 : 0.9 * reach * std::exp2(-10 * uniform());
+    const dvec3 foot = length > way ? start + way / length * (inside - start) : inside;
+    const double height = attempt == 0 ? 4.0 : way * std::exp2(-10 * uniform());
+    return on_grid(foot + (proxy.side ? -height : height) * mesh_.normal(proxy.face));
+}
+
+bool Accomplice::bears_out(const Proxy& proxy, const dvec3& point) const
+{
+    if (glm::length(point - proxy.at) > reach) return false;
+    if (proxy.on == Proxy::On::nothing) return true;
+    if (mesh_.side_of(proxy.face, point) != (proxy.side ? -1 : 1)) return false;
+    const dvec3 n = mesh_.normal(proxy.face);
+    const double height = glm::dot(point - mesh_.corner(proxy.face, 0), n);
+    const dvec3 beyond = on_grid(point - (height + (proxy.side ? -1.0 : 1.0) / 128) * n);
+    return mesh_.side_of(proxy.face, beyond) != (proxy.side ? -1 : 1) && mesh_.touches_only(proxy.face, point, beyond);
+}
+
+// A point near the place, or just above one of the faces that pass near it, at any scale.
+dvec3 Accomplice::scout(const dvec3& around, const std::vector<uint32_t>& faces, double radius)
+{
+    dvec3 p = around + radius * in_ball();
+    if (!faces.empty() && uniform() < 0.7) {
+        const uint32_t face = faces[random_() % faces.size()];
+        const double height = radius * std::exp2(-12 * uniform());
+        p = mesh_.nearest(face, p) + (uniform() < 0.5 ? height : -height) * mesh_.normal(face);
+    }
+    return on_grid(p);
+}
+
+// Grows what the accomplice can see, and what the goals can see, until they meet.
+bool Accomplice::search(const Proxy& proxy, const Points& goals)
+{
+    const std::vector<uint32_t> faces[2] = {mesh_.near(before_, reach), mesh_.near(proxy.at, reach)};
+    Points here{at_}, there = goals;
+    std::vector<dvec3> root = goals; // the goal that each of `there` leads to
+    for (int i = 0; i < tries; ++i) {
+        const int end = int(random_() % 2);
+        const dvec3& centre = end == 0 ? before_ : proxy.at;
+        const dvec3 p = scout(centre, faces[end], 0.7 * reach * std::exp2(-8 * uniform()));
+        if (glm::length(p - centre) > reach) continue;
+        const auto sees = [&](const dvec3& q) { return mesh_.open(p, q); };
+        // The latest first: they are deepest in whatever the way leads through.
+        const auto from = std::find_if(here.rbegin(), here.rend(), sees);
+        const auto to = std::find_if(there.rbegin(), there.rend(), sees);
+        if (from != here.rend() && to != there.rend()) {
+            at_ = root[size_t(there.rend() - to) - 1];
+            return true;
+        }
+        if (from != here.rend()) {
+            if (bears_out(proxy, p)) {
+                at_ = p;
+                return true;
+            }
+            here.push_back(p);
+        } else if (to != there.rend()) {
+            const dvec3 goal = root[size_t(there.rend() - to) - 1];
+            there.push_back(p);
+            root.push_back(goal);
+        }
+    }
+    return false;
+}
+
+bool Accomplice::follow(const Proxy& proxy)
+{
+    if (!placed_) return false;
+    Points goals;
+    for (int attempt = 0; attempt < 200 && goals.size() < 8; ++attempt) {
+        const dvec3 goal = witness(proxy, attempt);
+        if (!bears_out(proxy, goal)) continue;
+        if (mesh_.open(at_, goal)) {
+            detours += attempt > 0;
+            at_ = goal;
+            before_ = proxy.at;
+            return true;
+        }
+        goals.push_back(goal);
+    }
+    Proxy claim = proxy;
+    if (goals.empty()) {
+        ++sideless;
+        claim.on = Proxy::On::nothing;
+    }
+    ++detours;
+    if (!search(claim, goals)) {
+        placed_ = false;
+        return false;
+    }
+    before_ = proxy.at;
+    return true;
+}
+
+} // namespace haptel::test

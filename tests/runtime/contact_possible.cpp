@@ -1,0 +1,192 @@
+// Every step of the proxy is possible, on any mesh: shown by an accomplice (accomplice.h) that goes the same way in
+// free space, by exact arithmetic that shares nothing with what it judges.
+#include "runtime/contact.h"
+
+#include "runtime/files/mesh_file.h"
+#include "tests/runtime/accomplice.h"
+#include "tests/runtime/meshes.h"
+#include "tests/runtime/wild_hand.h"
+#include "tests/support/catch.h"
+
+#include <cstdlib>
+#include <iostream>
+#include <sstream>
+
+using namespace haptel::runtime;
+using namespace haptel::test;
+using glm::dvec3;
+
+namespace {
+
+// A probe taken apart: the same ticks as PointContact, but each step of each walk by itself, so that each can be
+// followed.
+class Stepped {
+public:
+    explicit Stepped(const Surface& surface) : surface_(surface) {}
+
+    const Proxy& proxy() const { return proxy_; }
+    void put(const dvec3& hand)
+    {
+        proxy_ = {};
+        proxy_.at = hand;
+    }
+
+    template <class Followed>
+    bool tick(const dvec3& hand, const WalkFriction& friction, Followed&& followed)
+    {
+        WalkCount count;
+        if (proxy_.on == Proxy::On::nothing) {
+            Crossing crossing;
+            if (first_crossing(surface_, proxy_.at, hand, StartsOn::nothing(), crossing, count.collision))
+                land(surface_, proxy_, crossing, proxy_.at, hand);
+            else
+                proxy_.at = hand;
+            if (!followed(proxy_)) return false;
+            if (proxy_.on == Proxy::On::nothing) return true;
+        }
+        const bool slid_before = proxy_.sliding;
+        bool slid = false;
+        do {
+            proxy_.sliding = slid_before || slid;
+            count = {};
+            walk(surface_, proxy_, hand, friction, count, 1);
+            slid = slid || proxy_.sliding;
+            if (!followed(proxy_)) return false;
+        } while (count.cut);
+        proxy_.sliding = slid;
+        return true;
+    }
+
+private:
+    const Surface& surface_;
+    Proxy proxy_;
+};
+
+struct Verdict {
+    uint64_t ticks = 0, touching = 0, steps = 0, impossible = 0, differing = 0, cut = 0, detours = 0, sideless = 0;
+    double off_surface = 0; // farthest from its face, in sizes of the object
+
+    void operator+=(const Verdict& v)
+    {
+        ticks += v.ticks, touching += v.touching, steps += v.steps, impossible += v.impossible;
+        differing += v.differing, cut += v.cut, detours += v.detours, sideless += v.sideless;
+        off_surface = std::max(off_surface, v.off_surface);
+    }
+};
+
+std::ostream& operator<<(std::ostream& out, const Verdict& v)
+{
+    return out << v.ticks << " ticks, " << v.touching << " touching, " << v.steps << " steps: impossible "
+               << v.impossible << ", unlike the probe's " << v.differing << ", cut " << v.cut << ", off the surface by "
+               << v.off_surface << " sizes; detours " << v.detours << ", side not resolved " << v.sideless;
+}
+
+// How far the proxy is from the face that it says it touches, in sizes of the object.
+double off_surface(const Surface& surface, const ExactMesh& exact, const Proxy& proxy)
+{
+    if (proxy.on == Proxy::On::nothing) return 0;
+    const dvec3 sides = surface.box_maximum - surface.box_minimum;
+    return glm::length(proxy.at - exact.nearest(proxy.face, proxy.at)) / std::max({sides.x, sides.y, sides.z});
+}
+
+Verdict judge(const std::shared_ptr<const Surface>& shared, uint64_t ticks, uint64_t seed, const Friction& friction)
+{
+    const Surface& surface = *shared;
+    const ExactMesh exact(surface);
+    WildHand hand(surface, seed);
+    PointContact contact(shared);
+    Stepped stepped(surface);
+    Accomplice accomplice(exact, seed);
+    const auto start = [&](const dvec3& at_m) {
+        contact.reset();
+        contact.update(at_m);
+        stepped.put(surface.lattice.snap(at_m));
+        accomplice.put(surface.lattice.snap(at_m));
+    };
+    start(hand.outside());
+    Verdict verdict;
+    for (uint64_t i = 0; i < ticks; ++i) {
+        const dvec3 at_m = hand.next();
+        const Contact& touch = contact.update(at_m, friction);
+        const bool possible =
+            stepped.tick(surface.lattice.snap(at_m), {friction.static_coefficient, friction.dynamic_coefficient},
+                         [&](const Proxy& proxy) {
+                             ++verdict.steps;
+                             verdict.off_surface = std::max(verdict.off_surface, off_surface(surface, exact, proxy));
+                             return accomplice.follow(proxy);
+                         });
+        const Proxy& proxy = stepped.proxy();
+        const bool differs = touch.touching != (proxy.on != Proxy::On::nothing) ||
+                             touch.proxy_m != surface.lattice.metres(proxy.at) ||
+                             (touch.touching && (touch.face != proxy.face || touch.side != proxy.side));
+        ++verdict.ticks;
+        verdict.touching += touch.touching;
+        verdict.impossible += !possible;
+        verdict.differing += possible && differs;
+        if (possible && !differs) continue;
+        hand.restart();
+        start(hand.outside());
+    }
+    verdict.cut = contact.counters().walks_cut;
+    verdict.detours = accomplice.detours;
+    verdict.sideless = accomplice.sideless;
+    return verdict;
+}
+
+} // namespace
+
+TEST_CASE("every step of the proxy is possible, on any mesh")
+{
+    std::vector<NamedMesh> meshes = make_hard_meshes();
+    meshes.push_back({"star", make_star(2)});
+    meshes.push_back({"plate 2e-6", make_box({1, 1, 2e-6})});
+    meshes.push_back({"plate 2e-10", make_box({1, 1, 2e-10})});
+    meshes.push_back({"stairs", make_stairs()});
+    meshes.push_back({"cubes sharing corners", make_touching_cubes(Touching::corners)});
+    for (const auto& [name, mesh] : meshes)
+        for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}}) {
+            if (name == "a ball through a torus") continue;
+            const Verdict verdict = judge(surface_of(mesh), 1000, 17, friction);
+            CAPTURE(name, friction.static_coefficient, verdict);
+            CHECK(verdict.impossible == 0);
+            CHECK(verdict.differing == 0);
+            CHECK(verdict.cut == 0);
+            CHECK(verdict.touching > 50);
+            CHECK(verdict.off_surface < 1e-9);
+        }
+}
+
+// HAPTEL_TEST_MESHES: files to be touched too, with ':' between; HAPTEL_TEST_TICKS: for each mesh and each friction;
+// HAPTEL_TEST_SEED.
+TEST_CASE("every step of the proxy is possible, on any mesh: long run", "[.long]")
+{
+    std::vector<NamedMesh> meshes = make_hard_meshes();
+    if (const char* files = std::getenv("HAPTEL_TEST_MESHES")) {
+        std::istringstream list(files);
+        for (std::string file; std::getline(list, file, ':');) {
+            MeshFileResult read = load_mesh(file);
+            if (!read.error.empty()) FAIL(read.error);
+            meshes.push_back({file, read.mesh});
+            meshes.push_back({file + ", far away", far_away(std::move(read.mesh))});
+        }
+    }
+    const auto number = [](const char* name, uint64_t otherwise) {
+        const char* text = std::getenv(name);
+        return text ? std::strtoull(text, nullptr, 10) : otherwise;
+    };
+    const uint64_t ticks = number("HAPTEL_TEST_TICKS", 100000), seed = number("HAPTEL_TEST_SEED", 1);
+    Verdict sum;
+    for (const auto& [name, mesh] : meshes) {
+        const auto surface = surface_of(mesh);
+        for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}}) {
+            const Verdict verdict = judge(surface, ticks, seed, friction);
+            std::cerr << name << ": " << verdict << std::endl;
+            sum += verdict;
+        }
+    }
+    WARN("in all " << sum);
+    CHECK(sum.impossible == 0);
+    CHECK(sum.differing == 0);
+    CHECK(sum.cut == 0);
+    CHECK(sum.off_surface < 1e-9);
+}
