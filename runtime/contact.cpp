@@ -1,6 +1,7 @@
 #include "runtime/contact.h"
 
 #include "runtime/box_tree.h"
+#include "runtime/placement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +9,6 @@
 namespace haptel::runtime {
 
 namespace {
-
-bool finite(const glm::dvec3& v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 WalkFriction checked(const Friction& friction)
 {
@@ -23,6 +19,14 @@ WalkFriction checked(const Friction& friction)
 
 // Below this many lattice units the direction from hand to proxy is rounding.
 constexpr double direction_needs = 64;
+
+// From the object's box to the box of a segment.
+double gap_to_box_m(const Surface& surface, const glm::dvec3& a_m, const glm::dvec3& b_m)
+{
+    const glm::dvec3 gap_m =
+        glm::max(surface.box_minimum_m - glm::max(a_m, b_m), glm::min(a_m, b_m) - surface.box_maximum_m);
+    return glm::length(glm::max(gap_m, glm::dvec3(0)));
+}
 
 // A ball is worth looking for if the hand needs several ticks to cross it.
 constexpr double ticks_per_ball = 4;
@@ -56,6 +60,20 @@ const Contact& PointContact::update(const glm::dvec3& hand_m, const glm::dvec3* 
     }
     finish(friction);
     return contact_;
+}
+
+void PointContact::follow(const glm::dvec3& hand_m) noexcept
+{
+    if (!take(hand_m)) return;
+    ++counters_.skipped;
+    proxy_.at = hand_;
+    describe();
+}
+
+double PointContact::gap_m(const glm::dvec3& hand_m) const noexcept
+{
+    const double in_ball = clear_.radius - glm::distance(hand_, clear_.centre);
+    return std::max(gap_to_box_m(*surface_, hand_m, hand_m), in_ball * surface_->lattice.unit_m);
 }
 
 // Takes the pose; false if there has never been a good one.
@@ -176,6 +194,18 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
     if (!has_tail_) return tip_.update(tip_m, friction);
     tail_ = tip_.surface().lattice.snap(tail_m);
     return tip_.update(tip_m, &tail_, friction);
+}
+
+void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
+{
+    has_tail_ = finite(tail_m);
+    if (has_tail_) tail_ = tip_.surface().lattice.snap(tail_m);
+    tip_.follow(tip_m);
+}
+
+double StylusContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept
+{
+    return gap_to_box_m(tip_.surface(), tip_m, tail_m);
 }
 
 void StylusContact::reset() noexcept

@@ -74,7 +74,12 @@ public:
     {
         return update(hand_m, nullptr, friction);
     }
+    // One tick of a probe that is free and known to have met nothing on its way: the same as update, for nothing.
+    void follow(const glm::dvec3& hand_m) noexcept;
     void reset() noexcept;
+
+    // At least so far is it from the hand to the nearest triangle; 0: not known.
+    double gap_m(const glm::dvec3& hand_m) const noexcept;
 
     const Contact& contact() const noexcept { return contact_; }
     const ContactCounters& counters() const noexcept { return counters_; }
@@ -108,7 +113,11 @@ public:
     explicit StylusContact(std::shared_ptr<const Surface> surface);
 
     const Contact& update(const glm::dvec3& tip_m, const glm::dvec3& tail_m, const Friction& friction = {}) noexcept;
+    void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
     void reset() noexcept;
+
+    // At least so far is it from any point of the stylus to the nearest triangle.
+    double gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept;
 
     // The shaft passes through the surface while the tip does not press. A query, made only for who asks.
     bool shaft_crosses() const noexcept;

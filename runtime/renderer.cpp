@@ -11,11 +11,6 @@ namespace haptel::runtime {
 
 namespace {
 
-bool finite(const glm::dvec3& v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 std::variant<PointContact, StylusContact> make_contact(ProbeKind kind, const std::shared_ptr<const Surface>& surface)
 {
     switch (kind) {
@@ -25,6 +20,9 @@ std::variant<PointContact, StylusContact> make_contact(ProbeKind kind, const std
     return PointContact(surface);
 }
 
+// An object is left alone if the hand needs several ticks to come near it.
+constexpr double ticks_per_sleep = 8;
+
 } // namespace
 
 Renderer::Renderer(std::shared_ptr<const Scene> scene, double device_force_max_n)
@@ -32,13 +30,15 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, double device_force_max_n
     , period_s_(1 / scene_->servo.rate_hz)
     , force_limit_n_(device_force_max_n > 0 ? std::min(device_force_max_n, scene_->servo.force_limit_n)
                                             : scene_->servo.force_limit_n)
-    , velocity_gain_(1 - std::exp(-2 * 3.14159265358979323846 * velocity_cutoff_hz * period_s_))
+    , reach_(scene_->objects.size())
+    , velocity_(period_s_)
 {
     objects_.reserve(scene_->objects.size());
     for (const SceneObject& object : scene_->objects) {
         TextureReader reader(*object.texture);
         const uint64_t serial = reader.to().serial;
-        objects_.push_back({&object, make_contact(scene_->probe.kind, object.surface), std::move(reader), serial});
+        objects_.push_back({&object, make_contact(scene_->probe.kind, object.surface), std::move(reader), serial,
+                            object.placement, HandVelocity(period_s_)});
     }
 }
 
@@ -55,25 +55,45 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     const uint64_t periods = std::max(uint64_t{1}, pose.periods);
     if (std::exchange(started_, true)) period_ += periods;
     result.time_s = static_cast<double>(period_) * period_s_;
-    for (Touched& touched : objects_) touched.texture.advance(static_cast<double>(periods) * period_s_);
-    if (!objects_.empty()) result.binding = objects_.front().texture.to().serial;
+    texture_period_ += periods;
+    // Who is out of reach is looked at in turn, so that nobody keeps a texture that is to be freed.
+    if (!objects_.empty()) {
+        advance_texture(objects_.front());
+        advance_texture(objects_[texture_period_ % objects_.size()]);
+        result.binding = objects_.front().texture.to().serial;
+    }
+    for (const uint32_t object : reach_.awake()) advance_texture(objects_[object]);
     if (!finite(pose.tip_m) || !finite(pose.tail_m)) {
-        has_last_tip_ = false;
+        velocity_.lose_hand();
+        for (Touched& touched : objects_) touched.velocity.lose_hand();
         interrupted_ = true;
         result.faults = fault_pose_not_finite;
         return result;
     }
-    update_velocity(pose.tip_m, periods);
+    velocity_.update(pose.tip_m, periods);
     result.interrupted = std::exchange(interrupted_, false) || pose.interrupted;
     if (result.interrupted) rise_period_ = period_;
 
+    double way_m = 0;
+    if (last_pose_)
+        way_m = std::max(glm::distance(pose.tip_m, last_pose_->tip_m), glm::distance(pose.tail_m, last_pose_->tail_m));
+    reach_.go(way_m);
+    skipped_.objects += reach_.asleep();
     bool no_query = true;
-    for (Touched& touched : objects_) {
+    for (std::size_t i = 0; i < reach_.awake().size(); ++i) {
+        const uint32_t number = reach_.awake()[i];
+        Touched& touched = objects_[number];
+        if (touched.asleep) wake(touched);
         const uint64_t skipped_before = counters(touched).skipped;
-        const Contact& contact = update_contact(touched, pose);
+        const Contact& contact = update_contact(touched, pose, periods);
         no_query = no_query && counters(touched).skipped > skipped_before;
         if (!contact.touching) {
             touched.friction_share = 0;
+            if (const double gap_m = gap_to_sleep_m(touched, pose, way_m); gap_m > 0) {
+                touched.asleep = true;
+                reach_.sleep(number, gap_m);
+                --i;
+            }
             continue;
         }
         const ObjectForce object = force_of(touched, contact);
@@ -86,6 +106,7 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
             result.binding = touched.texture.to().serial;
         }
     }
+    last_pose_ = pose;
     skipped_.free_space += no_query;
 
     if (!finite(result.unlimited_force_n)) {
@@ -106,15 +127,52 @@ const ContactCounters& Renderer::counters(const Touched& touched) const noexcept
     return std::get_if<PointContact>(&touched.contact)->counters();
 }
 
-const Contact& Renderer::update_contact(Touched& touched, const DevicePose& pose) const noexcept
+void Renderer::advance_texture(Touched& touched) noexcept
 {
-    const Placement& placement = touched.object->placement;
+    const uint64_t periods = texture_period_ - std::exchange(touched.texture_period, texture_period_);
+    if (periods > 0) touched.texture.advance(static_cast<double>(periods) * period_s_);
+}
+
+// Takes the contact to where the hand was in the tick before: nothing lay on its way.
+void Renderer::wake(Touched& touched) noexcept
+{
+    touched.asleep = false;
+    advance_texture(touched);
+    const glm::dvec3 tip_m = touched.placement.to_object(last_pose_->tip_m);
+    if (auto* stylus = std::get_if<StylusContact>(&touched.contact))
+        stylus->follow(tip_m, touched.placement.to_object(last_pose_->tail_m));
+    else
+        std::get_if<PointContact>(&touched.contact)->follow(tip_m);
+}
+
+// How far the hand must go before an object that it does not touch is looked at again; 0: look at it every tick.
+double Renderer::gap_to_sleep_m(const Touched& touched, const DevicePose& pose, double way_m) const noexcept
+{
+    if (touched.object->motion) return 0;
+    const glm::dvec3 tip_m = touched.placement.to_object(pose.tip_m);
+    double gap_m = 0;
+    if (const auto* stylus = std::get_if<StylusContact>(&touched.contact))
+        gap_m = stylus->gap_m(tip_m, touched.placement.to_object(pose.tail_m));
+    else
+        gap_m = std::get_if<PointContact>(&touched.contact)->gap_m(tip_m);
+    // Well above what rounding does to coordinates, and worth it.
+    const double coordinate_m = std::max({std::fabs(tip_m.x), std::fabs(tip_m.y), std::fabs(tip_m.z)});
+    return gap_m > std::max(ticks_per_sleep * way_m, 1e-6 * coordinate_m) ? gap_m : 0;
+}
+
+const Contact& Renderer::update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept
+{
+    if (const Motion* motion = touched.object->motion.get()) {
+        const double time_s = static_cast<double>(period_) * period_s_;
+        if (const auto placement = motion->at(time_s); placement && finite(*placement)) touched.placement = *placement;
+        touched.velocity.update(touched.placement.to_object(pose.tip_m), periods);
+    }
     const Material& material = touched.object->material;
     const Friction friction{material.static_friction * touched.friction_share,
                             material.dynamic_friction * touched.friction_share};
-    const glm::dvec3 tip_m = placement.to_object(pose.tip_m);
+    const glm::dvec3 tip_m = touched.placement.to_object(pose.tip_m);
     if (auto* stylus = std::get_if<StylusContact>(&touched.contact))
-        return stylus->update(tip_m, placement.to_object(pose.tail_m), friction);
+        return stylus->update(tip_m, touched.placement.to_object(pose.tail_m), friction);
     return std::get_if<PointContact>(&touched.contact)->update(tip_m, friction);
 }
 
@@ -151,27 +209,16 @@ Renderer::ObjectForce Renderer::force_of(Touched& touched, const Contact& contac
         contact.depth_m > 0 ? texture.friction_scale * std::min(1.0, elastic.depth_m / contact.depth_m) : 0.0;
     if (elastic.depth_m == 0) return result; // below the base surface, but not yet below the texture
 
-    const glm::dvec3 velocity = object.placement.direction_to_object(velocity_m_per_s_);
+    const glm::dvec3 velocity =
+        object.motion ? touched.velocity.m_per_s() : touched.placement.direction_to_object(velocity_.m_per_s());
     const double approach = -glm::dot(velocity, at.shading.normal);
     const double damping =
         object.material.damping_n_s_per_m * approach * std::min(1.0, elastic.depth_m / full_damping_depth_m);
     const double not_sticky = std::max(damping, -stiffness * elastic.depth_m);
 
     const glm::dvec3 force = elastic.force_n + stiffness * contact.lag_m + not_sticky * at.shading.normal;
-    result.force_n = object.placement.direction_to_world(force);
+    result.force_n = touched.placement.direction_to_world(force);
     return result;
-}
-
-void Renderer::update_velocity(const glm::dvec3& tip_m, uint64_t periods) noexcept
-{
-    // One period: the same bits as ever. Several: the low-pass as if each of them had seen the mean speed.
-    const double count = static_cast<double>(periods);
-    const double gain = periods == 1 ? velocity_gain_ : 1 - std::pow(1 - velocity_gain_, count);
-    if (has_last_tip_) velocity_m_per_s_ += gain * ((tip_m - last_tip_m_) / (count * period_s_) - velocity_m_per_s_);
-    // Speeds may overflow where positions do not, and what is not finite would never leave a low-pass again.
-    if (!has_last_tip_ || !finite(velocity_m_per_s_)) velocity_m_per_s_ = glm::dvec3(0);
-    last_tip_m_ = tip_m;
-    has_last_tip_ = true;
 }
 
 } // namespace haptel::runtime

@@ -7,7 +7,9 @@
 #pragma once
 
 #include "runtime/contact.h"
+#include "runtime/hand_velocity.h"
 #include "runtime/haptic_device.h"
+#include "runtime/reach.h"
 #include "runtime/scene.h"
 #include "runtime/servo_report.h"
 #include "runtime/surface_texture.h"
@@ -17,6 +19,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <variant>
 #include <vector>
 
@@ -25,10 +28,6 @@ namespace haptel::runtime {
 // Damping of a material is full from this depth on and proportional to depth above it: a touch begins without a step in
 // force, however fast the hand comes (Hunt and Crossley 1975 have the same reason for the same product).
 inline constexpr double full_damping_depth_m = 1e-3;
-
-// The hand's velocity is the backward difference of its positions, over the periods that really passed between them,
-// through a one-pole low-pass of this cut-off.
-inline constexpr double velocity_cutoff_hz = 100;
 
 // Bits of TickResult::faults, beside those of TextureSample::faults.
 enum : uint32_t {
@@ -72,6 +71,10 @@ private:
         std::variant<PointContact, StylusContact> contact;
         TextureReader texture;
         uint64_t serial_at_start;
+        Placement placement;        // of this tick
+        HandVelocity velocity;      // in the space of an object that moves; else not kept
+        bool asleep = false;        // out of the hand's reach: its contact stands where the hand last was
+        uint64_t texture_period = 0; // up to which its texture has faded
         // What the texture leaves of the friction coefficients: its own scale, times the share of the depth below the
         // base surface that is also below the texture. Of the tick before: contact comes before texture.
         double friction_share = 0;
@@ -83,23 +86,25 @@ private:
     };
 
     const ContactCounters& counters(const Touched& touched) const noexcept;
-    const Contact& update_contact(Touched& touched, const DevicePose& pose) const noexcept;
+    void advance_texture(Touched& touched) noexcept;
+    void wake(Touched& touched) noexcept;
+    double gap_to_sleep_m(const Touched& touched, const DevicePose& pose, double way_m) const noexcept;
+    const Contact& update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept;
     ObjectForce force_of(Touched& touched, const Contact& contact) const noexcept;
-    void update_velocity(const glm::dvec3& tip_m, uint64_t periods) noexcept;
 
     std::shared_ptr<const Scene> scene_;
-    std::vector<Touched> objects_;
     double period_s_;
     double force_limit_n_;
-    double velocity_gain_; // of the low-pass
+    std::vector<Touched> objects_;
+    Reach reach_;
     bool started_ = false;
-    uint64_t period_ = 0;      // number of this tick's period, 0 at the first pose
-    uint64_t rise_period_ = 0; // the force rises from this one on
-    bool interrupted_ = false; // the tick before sent no force, for a fault
+    uint64_t period_ = 0;         // number of this tick's period, 0 at the first pose
+    uint64_t texture_period_ = 0; // the same, those before a pose included
+    uint64_t rise_period_ = 0;    // the force rises from this one on
+    bool interrupted_ = false;    // the tick before sent no force, for a fault
     SkippedStages skipped_;
-    bool has_last_tip_ = false;
-    glm::dvec3 last_tip_m_{0};
-    glm::dvec3 velocity_m_per_s_{0};
+    std::optional<DevicePose> last_pose_; // that was finite
+    HandVelocity velocity_;               // world frame
 };
 
 } // namespace haptel::runtime

@@ -5,6 +5,8 @@
 #include "lang/texture_binding.h"
 #include "runtime/force_model.h"
 #include "runtime/haptic_device.h"
+#include "runtime/motion.h"
+#include "runtime/placement.h"
 #include "runtime/surface.h"
 #include "runtime/texture_slot.h"
 
@@ -25,21 +27,11 @@ struct Material {
     double dynamic_friction = 0.2;  // >= 0: the same while sliding
 };
 
-// Rotation and translation, nothing else: object space keeps its metres.
-struct Placement {
-    glm::dmat3 rotation{1}; // orthonormal
-    glm::dvec3 position_m{0};
-
-    glm::dvec3 to_world(const glm::dvec3& p) const { return rotation * p + position_m; }
-    glm::dvec3 direction_to_world(const glm::dvec3& v) const { return rotation * v; }
-    glm::dvec3 to_object(const glm::dvec3& p) const { return (p - position_m) * rotation; }
-    glm::dvec3 direction_to_object(const glm::dvec3& v) const { return v * rotation; }
-};
-
 struct SceneObject {
     std::string name; // for messages: the mesh file or the shape
     std::shared_ptr<const Surface> surface;
-    Placement placement;
+    Placement placement;                  // at the start
+    std::shared_ptr<const Motion> motion; // null: it stays there
     Material material;
     std::shared_ptr<TextureSlot> texture = std::make_shared<TextureSlot>();
     std::optional<TextureRequest> request; // what the texture was resolved from, for live reload

@@ -20,6 +20,7 @@ enum class ServoState : uint8_t {
 // Ticks in which a stage had nothing to do. Empty: the stage cannot be skipped by this program.
 struct SkippedStages {
     uint64_t free_space = 0; // no collision query was needed
+    uint64_t objects = 0;    // summed over the ticks: objects out of the hand's reach, not looked at
     std::optional<uint64_t> texture, octaves, mapping;
 };
 

@@ -1,0 +1,81 @@
+#include "runtime/motion.h"
+
+#include <cmath>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace haptel::runtime {
+
+namespace {
+
+constexpr double two_pi = 6.283185307179586;
+
+// Rotations made by others are rounded; what is farther from one scales or shears.
+constexpr double orthonormal_within = 1e-6;
+
+bool is_rotation(const glm::dmat3& m)
+{
+    const glm::dmat3 square = glm::transpose(m) * m;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            if (!(std::fabs(square[i][j] - (i == j)) < orthonormal_within)) return false;
+    return glm::determinant(m) > 0;
+}
+
+} // namespace
+
+SteadyMotion::SteadyMotion(const Placement& start, const Figures& figures) : start_(start), figures_(figures) {}
+
+std::optional<Placement> SteadyMotion::at(double time_s) const noexcept
+{
+    Placement now = start_;
+    now.position_m += std::sin(two_pi * std::remainder(figures_.swing_hz * time_s, 1.0)) * figures_.swing_m;
+    if (figures_.spin_rad_per_s != 0) {
+        const double angle = two_pi * std::remainder(figures_.spin_rad_per_s * time_s / two_pi, 1.0);
+        now.rotation = glm::dmat3(glm::rotate(glm::dmat4(1), angle, figures_.axis)) * start_.rotation;
+    }
+    return now;
+}
+
+LivePlacement::LivePlacement(const Placement& start)
+{
+    store(start);
+}
+
+std::string LivePlacement::publish(const Placement& placement)
+{
+    if (!finite(placement)) return "the placement is not finite";
+    if (!is_rotation(placement.rotation))
+        return "the rotation is not one: its columns must be unit vectors at right angles to each other, right-handed";
+    store(placement);
+    return {};
+}
+
+void LivePlacement::store(const Placement& placement) noexcept
+{
+    const uint64_t version = version_.load(std::memory_order_relaxed);
+    version_.store(version + 1, std::memory_order_relaxed);
+    std::atomic_thread_fence(std::memory_order_release);
+    for (int i = 0; i < 3; ++i) {
+        values_[9 + i].store(placement.position_m[i], std::memory_order_relaxed);
+        for (int j = 0; j < 3; ++j) values_[3 * i + j].store(placement.rotation[i][j], std::memory_order_relaxed);
+    }
+    version_.store(version + 2, std::memory_order_release);
+}
+
+std::optional<Placement> LivePlacement::at(double) const noexcept
+{
+    for (int attempt = 0; attempt < 2; ++attempt) {
+        const uint64_t before = version_.load(std::memory_order_acquire);
+        Placement now;
+        for (int i = 0; i < 3; ++i) {
+            now.position_m[i] = values_[9 + i].load(std::memory_order_relaxed);
+            for (int j = 0; j < 3; ++j) now.rotation[i][j] = values_[3 * i + j].load(std::memory_order_relaxed);
+        }
+        std::atomic_thread_fence(std::memory_order_acquire);
+        if (before % 2 == 0 && version_.load(std::memory_order_relaxed) == before) return now;
+    }
+    return std::nullopt;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,61 @@
+// Objects that move: where one is at any time of the run. The proxy lives in object space, so that an object that moves
+// meets a hand at rest as a hand that moves meets an object at rest: by the same swept path, and nothing slips through.
+#pragma once
+
+#include "runtime/placement.h"
+
+#include <glm/glm.hpp>
+
+#include <atomic>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace haptel::runtime {
+
+// Asked by servo threads, several if there are several devices, once per tick: allocates, locks and throws nothing.
+class Motion {
+public:
+    virtual ~Motion() = default;
+    // Nothing: the object stays where it was.
+    virtual std::optional<Placement> at(double time_s) const noexcept = 0;
+};
+
+// Turns about an axis through the object's origin while its origin swings along a line: what a scene file can say.
+// A function of time alone, so that runs can be repeated bit for bit.
+class SteadyMotion final : public Motion {
+public:
+    struct Figures {
+        glm::dvec3 axis{0, 0, 1};           // not 0; any length
+        double spin_rad_per_s = 0;          // about it, right-handed
+        glm::dvec3 swing_m{0};              // amplitude: from the start to the farthest point
+        double swing_hz = 0;                // begins from the start, toward +swing_m
+    };
+    SteadyMotion(const Placement& start, const Figures& figures);
+    std::optional<Placement> at(double time_s) const noexcept override;
+
+private:
+    Placement start_;
+    Figures figures_;
+};
+
+// A pose that an application sets whenever it likes, such as that of a simulated body. One writer at a time.
+class LivePlacement final : public Motion {
+public:
+    explicit LivePlacement(const Placement& start);
+
+    // Any thread but a servo. Returns why the placement is refused, with the object left where it is, or nothing.
+    std::string publish(const Placement& placement);
+
+    // While a writer is at work, as seen twice, the object stays where it was for one more tick.
+    std::optional<Placement> at(double time_s) const noexcept override;
+
+private:
+    void store(const Placement& placement) noexcept;
+
+    static constexpr int numbers = 12;
+    std::atomic<uint64_t> version_{0}; // odd while it is written
+    std::atomic<double> values_[numbers];
+};
+
+} // namespace haptel::runtime

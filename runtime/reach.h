@@ -1,0 +1,40 @@
+// Which objects the hand may have come near. An object that is so far away that the hand cannot have got there yet is
+// not looked at: neither its contact nor its texture costs anything, so that a tick does not grow with the scene.
+//
+// Known by the way that the hand has gone, added up: an object at least a gap away sleeps until the way has grown by
+// that gap. One heap, ordered by the way at which to wake.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace haptel::runtime {
+
+class Reach {
+public:
+    // Of so many objects, all awake.
+    explicit Reach(std::size_t objects);
+
+    // The hand has gone so far since the last call. Wakes whoever it may have reached.
+    void go(double way_m) noexcept;
+
+    // The object, which is awake, is at least this far from the hand: more than a micrometre.
+    void sleep(uint32_t object, double gap_m) noexcept;
+
+    // In rising order, so that what is summed over them does not depend on who slept when.
+    const std::vector<uint32_t>& awake() const noexcept { return awake_; }
+    std::size_t asleep() const noexcept { return sleepers_.size(); }
+
+private:
+    void wake_all() noexcept;
+
+    using Sleeper = std::pair<double, uint32_t>; // the way at which it wakes; the object
+
+    std::vector<Sleeper> sleepers_; // heap: the first to wake in front
+    std::vector<uint32_t> awake_;
+    double way_m_ = 0;
+};
+
+} // namespace haptel::runtime
