@@ -166,7 +166,7 @@ TEST_CASE("image: mirrored copies go on where the last one ends, the other way r
     const TextureBinding mirrored = pictures.bound("mirrored", {{"picture", "a.pgm"}}),
                          pressed = pictures.bound("pressed", {{"picture", "a.pgm"}});
     for (int i = 1; i < 300; ++i) {
-        const double u = std::fmod(0.618 * i, 1.0), v = std::fmod(0.755 * i, 1.0);
+        const double u = std::fmod(0.618 * i, 1.0), v = std::fmod(0.7553 * i, 1.0);
         const haptel_sample once = sample_at(pressed, {u, v, 0}), turned = sample_at(mirrored, {-u, 2 - v, 0}),
                             again = sample_at(mirrored, {u + 2, v - 4, 0});
         for (const haptel_sample* copy : {&turned, &again}) {
