@@ -40,6 +40,7 @@ public:
 
     std::vector<CheckFile> files; // by Span::file
     std::vector<std::string> names;
+    Names named; // in any of them
 
 private:
     struct Edge {
@@ -50,7 +51,10 @@ private:
     uint32_t add(SourceFile file)
     {
         const uint32_t index = sources.add(std::move(file));
-        files.push_back({parse(sources, index, diagnostics), {}});
+        TokenList tokens = lex(sources, index, diagnostics);
+        for (const PlacedToken& token : tokens.tokens)
+            if (token.kind == Token::name) named.insert(sources.text({index, token.begin, token.end}));
+        files.push_back({parse(sources, index, std::move(tokens), diagnostics), {}});
         by_name.emplace(sources.file(index).name, index);
         return index;
     }
@@ -122,17 +126,20 @@ bool holds_nothing(const CheckFile& file)
     return tree.imports.empty() && tree.constants.empty() && tree.functions.empty() && tree.textures.empty();
 }
 
-} // namespace
-
-CompileResult compile(SourceFile main, const CompileOptions& options)
+// With this library; where it is null, with what the files name of it, which is put there.
+CompileResult compile(const SourceFile& main, const CompileOptions& options,
+                      std::shared_ptr<const CheckedLibrary>& library)
 {
     CompileResult result;
-    std::shared_ptr<const CheckedLibrary> library = checked_library(options.library);
-    if (library) result.sources.share(library->sources);
     if (library) result.diagnostics = library->diagnostics;
     Files files(options, result.sources, result.diagnostics);
-    files.load(std::move(main));
+    files.load(main);
     result.files = std::move(files.names);
+    if (!library) {
+        library = checked_library(options.library, files.named);
+        if (library && !library->diagnostics.all().empty()) return result; // to begin anew with what is to be told
+    }
+    if (library) result.sources.share(library->sources);
 
     Diagnostics& diagnostics = result.diagnostics;
     if (holds_nothing(files.files.front()) && !diagnostics.has_errors())
@@ -168,6 +175,21 @@ CompileResult compile(SourceFile main, const CompileOptions& options)
     if (options.strict) diagnostics.make_warnings_errors();
     diagnostics.sort_by_place();
     return result;
+}
+
+} // namespace
+
+// Once as a rule; again where something is said that rests on the whole library, as who mistypes a name is told of
+// names that nobody has written yet.
+CompileResult compile(SourceFile main, const CompileOptions& options)
+{
+    std::shared_ptr<const CheckedLibrary> library;
+    CompileResult result = compile(main, options, library);
+    if (!library) return result;
+    const bool is_all_known = library->is_whole || !result.diagnostics.has_errors();
+    if (is_all_known && library->diagnostics.all().empty()) return result;
+    library = whole_library(options.library);
+    return compile(main, options, library);
 }
 
 } // namespace haptel::lang

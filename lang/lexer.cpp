@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <utility>
 
 namespace haptel::lang {
@@ -40,6 +41,11 @@ constexpr Lookalike lookalikes[] = {
 
 constexpr uint32_t longest_file = 64u << 20;
 
+constexpr uint8_t index_of(char c)
+{
+    return static_cast<uint8_t>(c);
+}
+
 bool is_digit(char c)
 {
     return c >= '0' && c <= '9';
@@ -48,10 +54,41 @@ bool is_name_start(char c)
 {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
+constexpr auto name_parts = [] {
+    std::array<bool, 256> is_part{};
+    for (char c = 'a'; c <= 'z'; ++c) is_part[index_of(c)] = true;
+    for (char c = 'A'; c <= 'Z'; ++c) is_part[index_of(c)] = true;
+    for (char c = '0'; c <= '9'; ++c) is_part[index_of(c)] = true;
+    is_part['_'] = true;
+    return is_part;
+}();
 bool is_name_part(char c)
 {
-    return is_name_start(c) || is_digit(c);
+    return name_parts[index_of(c)];
 }
+
+// Spellings by their first character, so that a text is read at the speed of its bytes and not of the list.
+template <size_t count>
+struct ByFirstCharacter {
+    std::array<Spelling, count> spellings;
+    std::array<uint8_t, 256> begins{}, ends{};
+
+    constexpr explicit ByFirstCharacter(const Spelling (&listed)[count]) : spellings(std::to_array(listed))
+    {
+        for (size_t i = 1; i < count; ++i) // which of them comes first matters: as listed
+            for (size_t at = i; at > 0 && first(at) < first(at - 1); --at) std::swap(spellings[at], spellings[at - 1]);
+        for (size_t i = count; i-- > 0;) begins[first(i)] = static_cast<uint8_t>(i);
+        for (size_t i = 0; i < count; ++i) ends[first(i)] = static_cast<uint8_t>(i + 1);
+    }
+    constexpr uint8_t first(size_t i) const { return index_of(spellings[i].second[0]); }
+    std::span<const Spelling> with(char c) const
+    {
+        const uint8_t begin = begins[index_of(c)];
+        return std::span(spellings).subspan(begin, static_cast<size_t>(ends[index_of(c)] - begin));
+    }
+};
+constexpr ByFirstCharacter symbols_by_character(symbols);
+constexpr ByFirstCharacter keywords_by_character(keywords);
 
 class Lexer {
 public:
@@ -76,9 +113,9 @@ private:
         const uint32_t begin = at;
         if (c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f') {
             ++at;
-        } else if (rest().starts_with("//")) {
+        } else if (c == '/' && peek(1) == '/') {
             line_comment();
-        } else if (rest().starts_with("/*")) {
+        } else if (c == '/' && peek(1) == '*') {
             block_comment();
         } else if (is_name_start(c)) {
             while (is_name_part(peek())) ++at;
@@ -104,9 +141,8 @@ private:
 
     static Token keyword_or_name(std::string_view word)
     {
-        for (const auto& [token, spelling] : keywords) {
+        for (const auto& [token, spelling] : keywords_by_character.with(word[0]))
             if (word == spelling) return token;
-        }
         return Token::name;
     }
 
@@ -132,7 +168,8 @@ private:
     {
         const uint32_t begin = at;
         const bool doc = rest().starts_with("///") && !rest().starts_with("////");
-        while (!at_line_end()) ++at;
+        const std::string_view line = rest().substr(0, rest().find('\n'));
+        at += static_cast<uint32_t>(std::min(line.size(), line.find('\r')));
         if (doc) list.docs.push_back({span_from(begin), static_cast<uint32_t>(list.tokens.size())});
     }
 
@@ -209,13 +246,12 @@ private:
 
     bool symbol()
     {
-        for (const auto& [token, spelling] : symbols) {
-            if (spelling[0] == text[at] && rest().starts_with(spelling)) {
-                const uint32_t begin = at;
-                at += static_cast<uint32_t>(spelling.size());
-                push(token, begin);
-                return true;
-            }
+        for (const auto& [token, spelling] : symbols_by_character.with(text[at])) {
+            if (!rest().starts_with(spelling)) continue;
+            const uint32_t begin = at;
+            at += static_cast<uint32_t>(spelling.size());
+            push(token, begin);
+            return true;
         }
         return false;
     }

@@ -10,7 +10,12 @@ using namespace ast;
 
 File parse(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics)
 {
-    return Grammar(sources, file, lex(sources, file, diagnostics), diagnostics).parse_file();
+    return parse(sources, file, lex(sources, file, diagnostics), diagnostics);
+}
+
+File parse(const SourceSet& sources, uint32_t file, TokenList tokens, Diagnostics& diagnostics)
+{
+    return Grammar(sources, file, std::move(tokens), diagnostics).parse_file();
 }
 
 Grammar::Grammar(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink)

@@ -3,9 +3,12 @@
 
 #include "lang/ast.h"
 #include "lang/diagnostic.h"
+#include "lang/lexer.h"
 
 namespace haptel::lang {
 
 ast::File parse(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics);
+// Of tokens of that file.
+ast::File parse(const SourceSet& sources, uint32_t file, TokenList tokens, Diagnostics& diagnostics);
 
 } // namespace haptel::lang

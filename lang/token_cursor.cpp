@@ -31,11 +31,6 @@ TokenCursor::TokenCursor(const SourceSet& all_sources, uint32_t file_index, Toke
 {
 }
 
-const PlacedToken& TokenCursor::token(size_t ahead) const
-{
-    return list.tokens[std::min(position + ahead, list.tokens.size() - 1)];
-}
-
 void TokenCursor::advance()
 {
     if (position + 1 < list.tokens.size()) ++position;

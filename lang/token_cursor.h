@@ -8,6 +8,7 @@
 
 #include "lang/lexer.h"
 
+#include <algorithm>
 #include <string>
 
 namespace haptel::lang {
@@ -18,7 +19,10 @@ protected:
 
     Token kind(size_t ahead = 0) const { return token(ahead).kind; }
     bool at(Token wanted) const { return kind() == wanted; }
-    const PlacedToken& token(size_t ahead = 0) const;
+    const PlacedToken& token(size_t ahead = 0) const
+    {
+        return list.tokens[std::min(position + ahead, list.tokens.size() - 1)];
+    }
     Span span(size_t ahead = 0) const { return span_of(token(ahead)); }
     Span previous_span() const { return position > 0 ? span_of(list.tokens[position - 1]) : Span{file, 0, 0}; }
     Span since(Span first) const { return join(first, previous_span()); } // from `first` to what was last taken

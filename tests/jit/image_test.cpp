@@ -38,6 +38,7 @@ std::string pgm(int columns, int rows, double (*gray)(int, int))
 const char* const source = R"(
 texture pressed(image picture, float depth = 1mm in 0mm .. 1mm) { return depth * sample(picture, p.xy / 1m); }
 texture tiled(image picture) { return 1mm * sample_tiled(picture, p.xy / 1m); }
+texture mirrored(image picture) { return 1mm * sample_mirrored(picture, p.xy / 1m); }
 texture central(image picture, float epsilon = 0.03 in 0.001 .. 0.1) { return 1m * sample_central(picture, p.xy / 1m, epsilon); }
 texture single(image picture, int column = 0 in -100 .. 100, int row = 0 in -100 .. 100) { return 1m * texel(picture, column, row); }
 texture wide(image picture) { return 1mm * float(image_width(picture)) + 1um * float(image_height(picture)); }
@@ -157,6 +158,27 @@ TEST_CASE("image: sample_central has the spline's height and the gradient of equ
     CHECK(differs > 0.1);                                 // it is another gradient than the height's
     CHECK(std::isinf(central.facts.curvature_max_per_m)); // of which nothing is claimed
     CHECK(central.facts.height_max_m < 1.5);              // while the height is bounded as ever
+}
+
+TEST_CASE("image: mirrored copies go on where the last one ends, the other way round")
+{
+    const Pictures pictures;
+    const TextureBinding mirrored = pictures.bound("mirrored", {{"picture", "a.pgm"}}),
+                         pressed = pictures.bound("pressed", {{"picture", "a.pgm"}});
+    for (int i = 1; i < 300; ++i) {
+        const double u = std::fmod(0.618 * i, 1.0), v = std::fmod(0.7553 * i, 1.0);
+        const haptel_sample once = sample_at(pressed, {u, v, 0}), turned = sample_at(mirrored, {-u, 2 - v, 0}),
+                            again = sample_at(mirrored, {u + 2, v - 4, 0});
+        for (const haptel_sample* copy : {&turned, &again}) {
+            const int sign = copy == &turned ? -1 : 1;
+            CHECK(std::fabs(copy->height_m - once.height_m) < 1e-16);
+            CHECK(std::fabs(copy->gradient[0] - sign * once.gradient[0]) < 1e-14);
+            CHECK(std::fabs(copy->gradient[1] - sign * once.gradient[1]) < 1e-14);
+        }
+        for (const double seam : {-1.0, 0.0, 1.0, 2.0})
+            CHECK(std::fabs(at(mirrored, seam - 1e-9, v) - at(mirrored, seam + 1e-9, v)) < 1e-10);
+    }
+    CHECK(mirrored.facts.continuity == HAPTEL_CONTINUITY_C0);
 }
 
 TEST_CASE("image: without a picture a texture is flat, and that is said")

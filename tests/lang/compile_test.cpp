@@ -2,6 +2,7 @@
 #include "lang/abi.h"
 #include "lang/compile.h"
 #include "lang/ir/text.h"
+#include "lang/library.h"
 #include "tests/support/catch.h"
 
 #include <algorithm>
@@ -402,4 +403,60 @@ TEST_CASE("compile: programs share the library and do not change it for one anot
     }
     options.library[0].text = "const float K = 2.0;\nfloat base(vec3 q) { return K * q.x; }\n";
     CHECK(answer(texts[0]) == alone[0]);
+}
+
+TEST_CASE("compile: of the library only what is named is read, and what that calls")
+{
+    const std::vector<SourceFile> texts = {
+        {"library/a.haptel",
+         "/// Of a.\n/// @facts value 0 .. 1\nfloat a(vec3 q) { return B * c(q); }\n"
+         "float a(vec2 q) { return q.x; }\n// d in a comment\nfloat unused(vec3 q) { return d(q); }\n"},
+        {"library/b.haptel", "const float B = 2.0, E[2] = float[](1.0, 2.0);\nfloat c(vec3 q) { return E[0] * q.x; }\n"
+                             "float d(vec3 q) { for (int i = 0; i < 2; ++i) { } return q.x; }\n"
+                             "const int F[] = {1, 2};\n"}};
+    const auto read = [](const std::shared_ptr<const CheckedLibrary>& library) {
+        std::string names;
+        for (const auto& [name, overloads] : library->declarations.functions)
+            names += name + ":" + std::to_string(overloads.size()) + " ";
+        for (const auto& [name, symbol] : library->declarations.constants) names += name + " ";
+        return names;
+    };
+    CHECK(read(checked_library(texts, {"F"})) == "F ");
+    const auto first = checked_library(texts, {"c"});
+    CHECK(read(first) == "c:1 B E F ");
+    CHECK(checked_library(texts, {"B", "nobody"}) == first); // what has been read is there
+    const auto second = checked_library(texts, {"a"});
+    CHECK(read(second) == "a:2 c:1 B E F ");
+    CHECK(second->declarations.functions.at("a")[0]->tree->doc == "Of a.");
+    CHECK(second->declarations.functions.at("a")[0]->tree->facts->value_maximum == 1.0);
+    CHECK(!second->is_whole);
+    const auto whole = whole_library(texts);
+    CHECK(whole->is_whole);
+    CHECK(read(whole) == "a:2 c:1 d:1 unused:1 B E F ");
+    CHECK(whole_library(texts) == whole);
+
+    // Other texts are another library. Who mistypes a name is told of all that there are.
+    CompileOptions options;
+    options.library = {texts[0], texts[1], {"library/none.haptel", ""}};
+    CHECK(read(checked_library(options.library, {})).empty());
+    const CompileResult mistyped = compile({"main.haptel", "texture t() { return 1mm * unsed(p / 1mm); }"}, options);
+    CHECK(render(mistyped.diagnostics.all(), mistyped.sources).find("did you mean 'unused'?") != std::string::npos);
+    CHECK(checked_library(options.library, {})->is_whole);
+}
+
+TEST_CASE("compile: mistakes in the library are told where they are read, and where they are in nothing's way")
+{
+    CompileOptions options;
+    const auto said = [&](const std::string& library) {
+        options.library = {{"library/a.haptel", library}};
+        const CompileResult result = compile({"main.haptel", "texture t() { return 1mm * a(p / 1mm); }"}, options);
+        return render(result.diagnostics.all(), result.sources);
+    };
+    const std::string good = "float a(vec3 q) { return q.x; }\n";
+    CHECK(said(good).empty());
+    CHECK(said(good + "float wrong(vec3 q) { return q; }\n").empty());
+    CHECK(said(good + "float a(vec2 q) { return q; }\n").find("library/a.haptel:2:") != std::string::npos);
+    CHECK(said(good + "}\n").find("library/a.haptel:2:1") != std::string::npos);
+    CHECK(said(good + "float a(vec2 q) { return (q.x; }\n").find("library/a.haptel:2:") != std::string::npos);
+    CHECK(said("float $;\n" + good).find("library/a.haptel:1:7") != std::string::npos);
 }

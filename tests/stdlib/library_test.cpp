@@ -1,6 +1,8 @@
 // The library as a whole: what it offers is documented, tried and right.
 #include "jit/check_gradient.h"
 #include "jit/texture.h"
+#include "lang/ir/text.h"
+#include "lang/library.h"
 #include "lang/parser.h"
 #include "stdlib/stdlib.h"
 #include "tests/support/catch.h"
@@ -124,5 +126,29 @@ TEST_CASE("library and examples: gradients are those of the heights, heights sta
                 CHECK(failures == "");
             }
         }
+    }
+}
+
+TEST_CASE("a program is the same whether all of the library has been read or what it names")
+{
+    const auto options_of = [](const stdlib::LibraryFile& file) {
+        lang::CompileOptions options;
+        for (const stdlib::LibraryFile& text : stdlib::library())
+            options.library.push_back({std::string(text.name), std::string(text.text)});
+        options.library.push_back({std::string(file.name), ""}); // so that nothing of this library has been read
+        return options;
+    };
+    const auto printed = [](const stdlib::LibraryFile& file, const lang::CompileOptions& options) {
+        const lang::CompileResult result = lang::compile({std::string(file.name), std::string(file.text)}, options);
+        REQUIRE(result.program);
+        return lang::render(result.diagnostics.all(), result.sources) + ir::print(result.program->module);
+    };
+    for (const stdlib::LibraryFile& file : stdlib::tests()) {
+        CAPTURE(file.name);
+        const lang::CompileOptions options = options_of(file);
+        const std::string of_part = printed(file, options);
+        CHECK(!lang::checked_library(options.library, {})->is_whole);
+        lang::whole_library(options.library);
+        CHECK(printed(file, options) == of_part);
     }
 }
