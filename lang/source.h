@@ -67,7 +67,7 @@ private:
         std::vector<uint32_t> line_starts;
     };
     uint32_t first;
-    std::deque<Entry> entries; // texts stay where they are
+    std::deque<Entry> entries;                // texts stay where they are
     std::shared_ptr<const SourceSet> library; // null: none
 
     const Entry* find(uint32_t index) const;

@@ -26,10 +26,10 @@ public:
 class SteadyMotion final : public Motion {
 public:
     struct Figures {
-        glm::dvec3 axis{0, 0, 1};           // not 0; any length
-        double spin_rad_per_s = 0;          // about it, right-handed
-        glm::dvec3 swing_m{0};              // amplitude: from the start to the farthest point
-        double swing_hz = 0;                // begins from the start, toward +swing_m
+        glm::dvec3 axis{0, 0, 1};  // not 0; any length
+        double spin_rad_per_s = 0; // about it, right-handed
+        glm::dvec3 swing_m{0};     // amplitude: from the start to the farthest point
+        double swing_hz = 0;       // begins from the start, toward +swing_m
     };
     SteadyMotion(const Placement& start, const Figures& figures);
     std::optional<Placement> at(double time_s) const noexcept override;

@@ -71,9 +71,9 @@ private:
         std::variant<PointContact, StylusContact> contact;
         TextureReader texture;
         uint64_t serial_at_start;
-        Placement placement;        // of this tick
-        HandVelocity velocity;      // in the space of an object that moves; else not kept
-        bool asleep = false;        // out of the hand's reach: its contact stands where the hand last was
+        Placement placement;         // of this tick
+        HandVelocity velocity;       // in the space of an object that moves; else not kept
+        bool asleep = false;         // out of the hand's reach: its contact stands where the hand last was
         uint64_t texture_period = 0; // up to which its texture has faded
         // What the texture leaves of the friction coefficients: its own scale, times the share of the depth below the
         // base surface that is also below the texture. Of the tick before: contact comes before texture.

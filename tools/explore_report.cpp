@@ -105,6 +105,7 @@ Json to_json(const ExploreOutcome& outcome)
     json["reloads"] = servo.reloads;
     json["allocations_in_tick"] = value_or_null(servo.allocations_in_tick);
     json["skipped"]["free_space"] = servo.skipped.free_space;
+    json["skipped"]["objects"] = servo.skipped.objects;
     json["skipped"]["texture"] = value_or_null(servo.skipped.texture);
     json["skipped"]["octaves"] = value_or_null(servo.skipped.octaves);
     json["skipped"]["mapping"] = value_or_null(servo.skipped.mapping);
@@ -131,7 +132,8 @@ std::string to_lines(const ExploreOutcome& outcome)
     line("tick", percentiles_text(servo.tick_ns));
     if (servo.wake_late_ns.count() > 0) line("woke late", percentiles_text(servo.wake_late_ns));
     line("textures", fmt::format("{} compiled, {} reloads", outcome.textures_compiled, servo.reloads));
-    line("skipped", fmt::format("collision in {} ticks", servo.skipped.free_space));
+    line("skipped", fmt::format("collision in {} ticks, {} looks at objects out of reach", servo.skipped.free_space,
+                                servo.skipped.objects));
     if (servo.allocations_in_tick) line("allocations", fmt::format("{} in ticks", *servo.allocations_in_tick));
     if (servo.faults > 0) line("faults", fmt::format("in {} ticks: {}", servo.faults, faults_text(servo.fault_bits)));
     if (servo.records_dropped > 0) line("telemetry", fmt::format("{} records were dropped", servo.records_dropped));

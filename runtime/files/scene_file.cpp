@@ -124,6 +124,26 @@ Material read_material(TableReader& table, FileMessages& messages)
     return material;
 }
 
+// Steady motion from where the object starts, or none.
+std::shared_ptr<const Motion> read_motion(TableReader& table, const Placement& start, FileMessages& messages)
+{
+    glm::dvec3 spin_deg_per_s(0);
+    SteadyMotion::Figures figures;
+    table.three_numbers("spin_deg_per_s", spin_deg_per_s, Quantity::number, {-36'000, 36'000});
+    table.three_numbers("swing_m", figures.swing_m, Quantity::length, {-1000, 1000});
+    table.number("swing_hz", figures.swing_hz, Quantity::frequency, {0, 1000, true});
+    if (table.has("swing_m") != table.has("swing_hz"))
+        messages.error(table.where(table.has("swing_m") ? "swing_m" : "swing_hz"),
+                       "an object swings by `swing_m = [x, y, z]` at `swing_hz`: write both");
+    const double rate_deg_per_s = glm::length(spin_deg_per_s);
+    if (rate_deg_per_s > 0) {
+        figures.axis = spin_deg_per_s / rate_deg_per_s;
+        figures.spin_rad_per_s = glm::radians(rate_deg_per_s);
+    }
+    if (rate_deg_per_s == 0 && figures.swing_m == glm::dvec3(0)) return nullptr;
+    return std::make_shared<SteadyMotion>(start, figures);
+}
+
 ObjectText read_object(const toml::table& source, FileMessages& messages)
 {
     ObjectText text;
@@ -152,6 +172,7 @@ ObjectText read_object(const toml::table& source, FileMessages& messages)
     }
     text.object.placement.rotation = glm::dmat3(rotation);
 
+    text.object.motion = read_motion(table, text.object.placement, messages);
     text.object.material = read_material(table, messages);
     table.text("texture", text.texture);
     text.texture_at = table.where("texture");
@@ -303,7 +324,18 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
     }
     if (messages.any_error()) return loaded;
 
-    for (ObjectText& object : text.objects) load_geometry(object, folder, messages);
+    for (auto object = text.objects.begin(); object != text.objects.end(); ++object) {
+        const auto same = std::find_if(text.objects.begin(), object, [&](const ObjectText& other) {
+            return other.mesh == object->mesh && other.shape == object->shape && other.size_m == object->size_m &&
+                   other.crease_deg == object->crease_deg;
+        });
+        if (same == object) {
+            load_geometry(*object, folder, messages);
+        } else { // what is there many times is held once
+            object->object.name = same->object.name;
+            object->object.surface = same->object.surface;
+        }
+    }
     if (messages.any_error()) return loaded;
     for (ObjectText& object : text.objects) load_texture(object, text, folder, textures, messages);
     if (messages.any_error()) return loaded;

@@ -93,7 +93,8 @@ TEST_CASE("an object that moves meets the hand as the hand would meet it")
         int contacts = 0;
         for (int i = 0; i < 3000; ++i) {
             const glm::dvec3 hand = place(i * 1e-3);
-            const TickResult expected = hand_moves.tick(at(hand.x, hand.y, hand.z)), found = object_moves.tick(at(0, 0, 0));
+            const TickResult expected = hand_moves.tick(at(hand.x, hand.y, hand.z)),
+                             found = object_moves.tick(at(0, 0, 0));
             CHECK(glm::length(found.force_n - expected.force_n) < 1e-7 * (1 + glm::length(expected.force_n)));
             CHECK(found.contacts == expected.contacts);
             contacts += static_cast<int>(found.contacts);
@@ -211,7 +212,8 @@ TEST_CASE("a texture published to an object out of reach is there when the hand 
     slot->collect();
     CHECK(slot->kept() <= 2);
     TickResult felt;
-    for (int i = 0; i <= 300; ++i) felt = renderer.tick(at(0.1, 0.1, 0.02 - 1e-5 * std::min(i, 150) - 1e-4 * std::max(0, i - 215)));
+    for (int i = 0; i <= 300; ++i)
+        felt = renderer.tick(at(0.1, 0.1, 0.02 - 1e-5 * std::min(i, 150) - 1e-4 * std::max(0, i - 215)));
     CHECK(felt.contacts == 1);
     CHECK(std::abs(felt.height_m + 1e-4) < 1e-15);
 }

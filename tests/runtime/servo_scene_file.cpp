@@ -205,6 +205,32 @@ shape = "icosphere"
     CHECK(glm::length(device->box_maximum_m - glm::dvec3(1, 0.24, 3.03)) < 1e-9);
 }
 
+TEST_CASE("objects turn and swing as the scene says, and equal ones share their surface")
+{
+    const Folder folder;
+    const LoadedScene loaded = load(folder, R"(
+[[object]]
+shape = "box"
+position_m = [0.1, 0, 0]
+spin_deg_per_s = [0, 0, 90]
+[[object]]
+shape = "box"
+swing_m = [0, 0, "5mm"]
+swing_hz = 0.25
+[[object]]
+shape = "box"
+size_m = 0.2
+)");
+    REQUIRE(loaded.scene);
+    const auto& objects = loaded.scene->objects;
+    const Placement turned = *objects[0].motion->at(1);
+    CHECK(glm::length(turned.to_world({0.05, 0, 0}) - glm::dvec3(0.1, 0.05, 0)) < 1e-15);
+    CHECK(glm::length(objects[1].motion->at(1)->position_m - glm::dvec3(0, 0, 0.005)) < 1e-15);
+    CHECK(objects[2].motion == nullptr);
+    CHECK(objects[0].surface == objects[1].surface);
+    CHECK(objects[0].surface != objects[2].surface);
+}
+
 TEST_CASE("a scene of one line has the defaults of the documentation")
 {
     const Folder folder;
@@ -332,6 +358,8 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
         {"[[object]]\nshape = \"plane\"\nsize_m = nan\nstiffness_n_per_m = inf\n",
          "scene.toml:3:10: error: `size_m` must be above 0 up to 1000, found nan\n"
          "scene.toml:4:21: error: `stiffness_n_per_m` must be above 0 up to 1000000, found inf\n"},
+        {"[[object]]\nshape = \"plane\"\nswing_m = [0, 0, 0.01]\n",
+         "scene.toml:3:11: error: an object swings by `swing_m = [x, y, z]` at `swing_hz`: write both\n"},
         {"[[object]]\nshape = \"plane\"\nposition_m = [0, 1]\nrotation_deg = 3\n",
          "scene.toml:3:14: error: expected three numbers, such as [0, 0, 0], for `position_m`, found a list of 2\n"
          "scene.toml:4:16: error: expected three numbers, such as [0, 0, 0], for `rotation_deg`, found 3\n"},
