@@ -19,9 +19,14 @@ struct Proxy {
 };
 
 struct WalkCount {
+    // Turns from wall to wall in one walk. Each but the last few leads nearer; those may go round in a corner that
+    // rounding does not resolve.
+    static constexpr uint32_t most_wall_turns = 64;
+
     CollisionCount collision;
-    uint32_t steps = 0; // in this walk
-    bool cut = false;   // ended by the step limit
+    uint32_t steps = 0;      // in this walk
+    uint32_t wall_turns = 0; // of these, decided beside walls; goes on from walk to walk
+    bool cut = false;        // ended by the step limit, or by too many turns
 };
 
 // Coulomb coefficients, checked: 0 <= dynamic <= static, finite.

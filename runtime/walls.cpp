@@ -1,5 +1,6 @@
 #include "runtime/walls.h"
 
+#include "runtime/fan.h"
 #include "runtime/predicates.h"
 
 #include <algorithm>
@@ -10,65 +11,188 @@ namespace haptel::runtime {
 namespace {
 
 constexpr double distance = 16; // of the proxy from a wall's plane; rounding is below 1
+constexpr double beside = 20;   // nearer than this is beside it
+constexpr double slack = 0.25;  // what moves along a wall may lose of the distance by rounding
+
+// Sheets are pushed apart by 1 / sine of their angle; beyond this they are taken as parallel.
+constexpr double least_square_of_sine = 1e-5;
 
 const glm::dvec3& corner(const Surface& surface, uint32_t face, uint32_t i)
 {
     return surface.vertices[surface.faces[face].vertex[i]];
 }
 
-} // namespace
+glm::dvec3 inward(const Surface& surface, uint32_t face, uint32_t i)
+{
+    return glm::normalize(
+        glm::cross(surface.faces[face].normal, corner(surface, face, next(i)) - corner(surface, face, i)));
+}
 
-bool blocked(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to,
-             Crossing& wall) noexcept
+// How far a place beside the face's plane is within its outline; negative outside.
+double within_outline(const Surface& surface, uint32_t face, const glm::dvec3& at)
+{
+    double least = INFINITY;
+    for (uint32_t i = 0; i < 3; ++i)
+        least = std::min(least, glm::dot(inward(surface, face, i), at - corner(surface, face, i)));
+    return least;
+}
+
+// Whether a wall of the face stands in the straight way: exact but for the ends, which are rounded to the lattice.
+bool blocked(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to)
 {
     const Face& data = surface.faces[face];
-    bool found = false;
     for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {
-        Crossing candidate;
-        candidate.face = surface.pierced_by[k];
-        if (!crosses(glm::round(from), glm::round(to), corner(surface, candidate.face, 0),
-                     corner(surface, candidate.face, 1), corner(surface, candidate.face, 2), candidate))
-            continue;
-        if (!found || earlier(candidate, wall)) wall = candidate;
-        found = true;
+        Crossing crossing;
+        const uint32_t wall = surface.pierced_by[k];
+        if (crosses(glm::round(from), glm::round(to), corner(surface, wall, 0), corner(surface, wall, 1),
+                    corner(surface, wall, 2), crossing))
+            return true;
     }
-    return found;
+    return false;
 }
 
-double share_before(const Surface& surface, const Crossing& wall, const glm::dvec3& way) noexcept
+// Moves the place, which is in the face's plane, off the sheets and into the face's outline: by turns, since few are
+// concerned. False: that does not end, they leave no room.
+bool keep_off(const Surface& surface, uint32_t face, const Cell& sheets, glm::dvec3& place)
 {
-    const double toward = std::abs(glm::dot(way, surface.faces[wall.face].normal));
-    return std::max(0.0, wall.fraction() - distance / toward);
+    const glm::dvec3& front = surface.faces[face].normal;
+    for (int round = 0; round < 24; ++round) {
+        bool moved = false;
+        for (uint32_t k = 0; k < sheets.count; ++k) {
+            const Sheet& sheet = sheets.sheet[k];
+            const double away = glm::dot(place - corner(surface, sheet.face, 0), sheet.normal);
+            if (away >= distance - slack) continue;
+            const glm::dvec3 within = sheet.normal - glm::dot(sheet.normal, front) * front;
+            const double square = glm::dot(within, within);
+            if (square < least_square_of_sine) return false;
+            place += (distance - away) / square * within;
+            moved = true;
+        }
+        for (uint32_t i = 0; i < 3; ++i) {
+            const glm::dvec3 in = inward(surface, face, i);
+            const double inside = glm::dot(in, place - corner(surface, face, i));
+            if (inside >= -slack) continue;
+            place -= inside * in;
+            moved = true;
+        }
+        if (!moved) return true;
+    }
+    return false;
 }
 
-glm::dvec3 along_crease(const Surface& surface, uint32_t face, const Crossing& wall, const glm::dvec3& way) noexcept
-{
-    const glm::dvec3 crease = glm::cross(surface.faces[face].normal, surface.faces[wall.face].normal);
-    const double square = glm::dot(crease, crease);
-    return square > 0 ? glm::dot(way, crease) / square * crease : glm::dvec3(0);
-}
+} // namespace
 
-glm::dvec3 off_walls(const Surface& surface, const Crossing& landing, const glm::dvec3& from, const glm::dvec3& to,
-                     const glm::dvec3& point) noexcept
+void add_walls(const Surface& surface, uint32_t face, const glm::dvec3& at, Cell& cell) noexcept
 {
-    const Face& data = surface.faces[landing.face];
-    glm::dvec3 moved = point;
+    const Face& data = surface.faces[face];
     for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {
         const uint32_t wall = surface.pierced_by[k];
+        const double height = glm::dot(at - corner(surface, wall, 0), surface.faces[wall].normal);
+        if (std::abs(height) > beside || within_outline(surface, wall, at) < -beside) continue;
+        const uint32_t side = height >= 0 ? 0 : 1;
+        cell.add({wall, side, surface.facet_normal(wall, side), false});
+    }
+}
+
+Descent steepest(const Cell& cell, const glm::dvec3& way) noexcept
+{
+    const double tolerance = 1e-9 * glm::length(way);
+    const auto feasible = [&](const glm::dvec3& candidate) {
+        for (uint32_t k = 0; k < cell.count; ++k)
+            if (glm::dot(cell.sheet[k].normal, candidate) < -tolerance) return false;
+        return true;
+    };
+    // The projection onto a cone is the longest of the feasible projections onto the planes and lines that bound it.
+    if (feasible(way)) return {way, {}, 0};
+    Descent best{glm::dvec3(0), {}, 3};
+    double longest = 0;
+    for (uint32_t i = 0; i < cell.count; ++i) {
+        const glm::dvec3& n = cell.sheet[i].normal;
+        const glm::dvec3 on_plane = way - glm::dot(way, n) * n;
+        if (const double square = glm::dot(on_plane, on_plane); square > longest && feasible(on_plane)) {
+            best = {on_plane, {i}, 1};
+            longest = square;
+        }
+    }
+    if (best.count == 1) return best; // no line that bounds a plane is longer than the plane's own
+    for (uint32_t i = 0; i < cell.count; ++i)
+        for (uint32_t j = 0; j < i; ++j) {
+            const glm::dvec3 line = glm::cross(cell.sheet[i].normal, cell.sheet[j].normal);
+            const double sine = glm::dot(line, line);
+            if (sine < 1e-24) continue;
+            const glm::dvec3 on_line = glm::dot(way, line) / sine * line;
+            if (const double square = glm::dot(on_line, on_line); square > longest && feasible(on_line)) {
+                best = {on_line, {j, i}, 2};
+                longest = square;
+            }
+        }
+    return best;
+}
+
+double open_share(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept
+{
+    const Face& data = surface.faces[face];
+    if (data.pierced_begin == data.pierced_end) return 1;
+    double share = 1;
+    for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {
+        const uint32_t wall = surface.pierced_by[k];
+        const glm::dvec3 &a = corner(surface, wall, 0), &n = surface.faces[wall].normal;
+        double begin = glm::dot(from - a, n), end = glm::dot(to - a, n);
+        if (begin < 0) begin = -begin, end = -end;
+        if (end >= std::min(distance, begin - slack)) continue;
+        // The part of the way that is near the plane, and of that the part that is near the triangle.
+        double enter = begin <= distance ? 0 : (begin - distance) / (begin - end);
+        double leave = end >= -distance ? 1 : (begin + distance) / (begin - end);
+        for (uint32_t i = 0; i < 3; ++i) {
+            const glm::dvec3 in = inward(surface, wall, i);
+            const double first = glm::dot(in, from - corner(surface, wall, i)) + distance;
+            const double last = glm::dot(in, to - corner(surface, wall, i)) + distance;
+            if (first < 0 && last < 0) leave = -1;
+            if (first < 0 && last >= 0) enter = std::max(enter, first / (first - last));
+            if (first >= 0 && last < 0) leave = std::min(leave, first / (first - last));
+        }
+        if (enter <= leave) share = std::min(share, enter);
+    }
+    return share > 0 && blocked(surface, face, from, from + share * (to - from)) ? 0 : share;
+}
+
+glm::dvec3 off_walls(const Surface& surface, uint32_t face, const glm::dvec3& at) noexcept
+{
+    Cell walls;
+    add_walls(surface, face, at, walls);
+    glm::dvec3 place = at;
+    return keep_off(surface, face, walls, place) && !blocked(surface, face, at, place) ? place : at;
+}
+
+bool onto_wall(const Surface& surface, const Cell& cell, const Sheet& wall, const glm::dvec3& at,
+               glm::dvec3& place) noexcept
+{
+    Cell others;
+    for (uint32_t k = 0; k < cell.count; ++k)
+        if (cell.sheet[k].face != wall.face && !cell.sheet[k].is_ridge) others.add(cell.sheet[k]);
+    place = at - glm::dot(at - corner(surface, wall.face, 0), wall.normal) * wall.normal;
+    return keep_off(surface, wall.face, others, place);
+}
+
+glm::dvec3 landing_off_walls(const Surface& surface, const Crossing& landing, const glm::dvec3& from,
+                             const glm::dvec3& to, const glm::dvec3& point) noexcept
+{
+    const Face& data = surface.faces[landing.face];
+    Cell walls;
+    for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {
+        const uint32_t wall = surface.pierced_by[k];
+        if (within_outline(surface, wall, point) < -beside) continue;
         const glm::dvec3 &a = corner(surface, wall, 0), &b = corner(surface, wall, 1), &c = corner(surface, wall, 2);
         // The way may have passed the wall's plane beside the wall.
         Crossing passing;
         passing.face = wall;
         const bool passed = crosses_plane(from, to, a, b, c, passing) && earlier(passing, landing);
-        const glm::dvec3 normal = double(side_of_plane(a, b, c, passed ? to : from)) * surface.faces[wall].normal;
-        const double away = glm::dot(moved - a, normal);
-        const glm::dvec3 within = normal - glm::dot(normal, data.normal) * data.normal;
-        const double square = glm::dot(within, within);
-        // Nearly parallel sheets would push far; and far behind a wall's plane the wall is elsewhere.
-        if (away < -distance || away >= distance || square < 1e-4) continue;
-        moved += (distance - away) / square * within;
+        const uint32_t side = side_of_plane(a, b, c, passed ? to : from) > 0 ? 0 : 1;
+        const Sheet sheet{wall, side, surface.facet_normal(wall, side), false};
+        if (std::abs(glm::dot(point - a, sheet.normal)) < distance) walls.add(sheet);
     }
-    return moved;
+    glm::dvec3 place = point;
+    return keep_off(surface, landing.face, walls, place) ? place : point;
 }
 
 } // namespace haptel::runtime

@@ -1,6 +1,7 @@
 // Where faces pierce each other without sharing edges, the links do not see it: the faces listed in Surface::pierced_by
-// are walls that stand on the face walked on. Each move within such a face is tested against its walls, and the proxy
-// keeps a little off them, so that rounding cannot put it behind one. Lattice units.
+// are walls that stand on the face walked on. The proxy keeps a little off their planes, so that no rounding can put it
+// behind one, and every move within a face is tested against its walls. Beside walls the sheets around the proxy are
+// half-spaces, and up to three of them at once decide where it goes. Lattice units.
 #pragma once
 
 #include "runtime/collision.h"
@@ -13,19 +14,56 @@ inline bool has_walls(const Surface& surface, uint32_t face)
     return surface.faces[face].pierced_begin != surface.faces[face].pierced_end;
 }
 
-// Whether a wall of the face stands in the straight way within it; the first. Ends are rounded to the lattice.
-bool blocked(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to,
-             Crossing& wall) noexcept;
+// A face seen from one side; or the plane that rises over a ridge, as the bound of one of the ridge's two faces.
+struct Sheet {
+    uint32_t face = 0, side = 0;
+    glm::dvec3 normal{0}; // unit, toward that side; of a ridge's plane into the face
+    bool is_ridge = false;
+};
 
-// How much of the way that meets the wall may be gone, keeping off its plane: a fraction, 0 if none.
-double share_before(const Surface& surface, const Crossing& wall, const glm::dvec3& way) noexcept;
+// The sheets around a place, in a cell of free space that they are taken to bound as half-spaces: the first is, or the
+// first two are, what the proxy is on, the others are walls within reach.
+struct Cell {
+    static constexpr uint32_t most = 8;
+    Sheet sheet[most];
+    uint32_t count = 0;
 
-// Part of the way along the crease of face and wall.
-glm::dvec3 along_crease(const Surface& surface, uint32_t face, const Crossing& wall, const glm::dvec3& way) noexcept;
+    void add(const Sheet& another)
+    {
+        if (count < most) sheet[count++] = another;
+    }
+};
+
+// Adds the walls of the face that the place is beside.
+void add_walls(const Surface& surface, uint32_t face, const glm::dvec3& at, Cell& cell) noexcept;
+
+// The steepest way: the part of `way` that the half-spaces leave, and the sheets that it runs on: up to three.
+struct Descent {
+    glm::dvec3 way{0};
+    uint32_t sheet[3] = {};
+    uint32_t count = 0;
+
+    bool runs_on(uint32_t index) const
+    {
+        return (count > 0 && sheet[0] == index) || (count > 1 && sheet[1] == index) || (count > 2 && sheet[2] == index);
+    }
+};
+Descent steepest(const Cell& cell, const glm::dvec3& way) noexcept;
+
+// How much of the straight way within the face may be gone: all, or up to where it comes too near to a wall.
+double open_share(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept;
+
+// The place, moved within the face off the walls that it is too near to; the place itself if that cannot be done.
+glm::dvec3 off_walls(const Surface& surface, uint32_t face, const glm::dvec3& at) noexcept;
+
+// The place nearest to `at` that is on the wall and off the other sheets of the cell. False: they are too nearly
+// parallel, or that is not on the wall's triangle.
+bool onto_wall(const Surface& surface, const Cell& cell, const Sheet& wall, const glm::dvec3& at,
+               glm::dvec3& place) noexcept;
 
 // The point where the way from `from` to `to` lands on a face, moved within the face off the walls beside it, to the
 // side on which the way arrives. Both ends must be lattice points.
-glm::dvec3 off_walls(const Surface& surface, const Crossing& landing, const glm::dvec3& from, const glm::dvec3& to,
-                     const glm::dvec3& point) noexcept;
+glm::dvec3 landing_off_walls(const Surface& surface, const Crossing& landing, const glm::dvec3& from,
+                             const glm::dvec3& to, const glm::dvec3& point) noexcept;
 
 } // namespace haptel::runtime

@@ -87,7 +87,8 @@ bool Accomplice::search(const Proxy& proxy, const Points& goals)
     for (int i = 0; i < tries; ++i) {
         const int end = int(random_() % 2);
         const dvec3& centre = end == 0 ? before_ : proxy.at;
-        const dvec3 p = scout(centre, faces[end], 0.7 * reach * std::exp2(-8 * uniform()));
+        const double radius = reach * (i % 2 == 0 ? uniform() : std::exp2(-8 * uniform()));
+        const dvec3 p = scout(centre, faces[end], radius);
         if (glm::length(p - centre) > reach) continue;
         const auto sees = [&](const dvec3& q) { return mesh_.open(p, q); };
         // The latest first: they are deepest in whatever the way leads through.
@@ -129,6 +130,7 @@ bool Accomplice::follow(const Proxy& proxy)
     }
     Proxy claim = proxy;
     if (goals.empty()) {
+        if (glm::length(proxy.at - mesh_.nearest(proxy.face, proxy.at)) > reach) return placed_ = false;
         ++sideless;
         claim.on = Proxy::On::nothing;
     }

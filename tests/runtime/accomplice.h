@@ -27,7 +27,7 @@ namespace haptel::test {
 class Accomplice {
 public:
     static constexpr double reach = 256; // lattice units: 2.4e-10 of the object's half extent
-    static constexpr int tries = 1500;
+    static constexpr int tries = 4000;
 
     Accomplice(const ExactMesh& mesh, uint64_t seed) : mesh_(mesh), random_(seed) {}
 

@@ -48,11 +48,10 @@ public:
         bool slid = false;
         do {
             proxy_.sliding = slid_before || slid;
-            count = {};
             walk(surface_, proxy_, hand, friction, count, 1);
             slid = slid || proxy_.sliding;
             if (!followed(proxy_)) return false;
-        } while (count.cut);
+        } while (count.cut && count.wall_turns <= WalkCount::most_wall_turns);
         proxy_.sliding = slid;
         return true;
     }
@@ -145,7 +144,6 @@ TEST_CASE("every step of the proxy is possible, on any mesh")
     meshes.push_back({"cubes sharing corners", make_touching_cubes(Touching::corners)});
     for (const auto& [name, mesh] : meshes)
         for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}}) {
-            if (name == "a ball through a torus") continue;
             const Verdict verdict = judge(surface_of(mesh), 1000, 17, friction);
             CAPTURE(name, friction.static_coefficient, verdict);
             CHECK(verdict.impossible == 0);

@@ -197,7 +197,7 @@ std::vector<NamedMesh> make_hard_meshes()
     Mesh book; // many faces at one edge, one vertex
     book.positions_m = {{0, 0, 0}, {0, 0, 1}};
     for (uint32_t i = 0; i < 9; ++i) {
-        const double angle = i < 7 ? 0.9 * i : 0.9 + 1e-3 * i;
+        const double angle = i < 7 ? 0.9 * i : 0.9 + 1e-2 * i;
         book.positions_m.emplace_back(std::cos(angle), std::sin(angle), 0.1 * i);
         book.triangles.push_back(i % 2 ? std::array{0u, 1u, i + 2} : std::array{i + 2, 1u, 0u});
     }
