@@ -100,6 +100,12 @@ struct BallQuery {
     const Boxes& boxes;
     glm::dvec3 centre;
     double radius;
+    BallVisitor& visitor;
+};
+
+class IsEmpty final : public BallVisitor {
+public:
+    bool visit(uint32_t) noexcept override { return empty = false; }
     bool empty = true;
 };
 
@@ -110,7 +116,7 @@ bool visit_box(RTCPointQueryFunctionArguments* arguments)
     query.boxes.of(arguments->primID, minimum, maximum);
     const glm::dvec3 away = query.centre - glm::clamp(query.centre, minimum, maximum);
     if (glm::dot(away, away) > query.radius * query.radius) return false;
-    query.empty = false;
+    if (query.visitor.visit(arguments->primID)) return false;
     arguments->query->radius = 0; // seen enough
     return true;
 }
@@ -183,9 +189,9 @@ void BoxTree::segment(const glm::dvec3& from, const glm::dvec3& to, SegmentVisit
     intersect(handles_->scene, query.embree, ray);
 }
 
-bool BoxTree::ball_is_empty(const glm::dvec3& centre, double radius) const noexcept
+void BoxTree::ball(const glm::dvec3& centre, double radius, BallVisitor& visitor) const noexcept
 {
-    BallQuery ball{handles_->boxes, centre, radius};
+    BallQuery ball{handles_->boxes, centre, radius, visitor};
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     const glm::vec3 at = embree_point(centre);
@@ -193,7 +199,13 @@ bool BoxTree::ball_is_empty(const glm::dvec3& centre, double radius) const noexc
     query.x = at.x, query.y = at.y, query.z = at.z;
     query.radius = float(radius * scale) * (1.0f + 1e-6f) + widening;
     rtcPointQuery(handles_->scene, &query, &context, visit_box, &ball);
-    return ball.empty;
+}
+
+bool BoxTree::ball_is_empty(const glm::dvec3& centre, double radius) const noexcept
+{
+    IsEmpty is_empty;
+    ball(centre, radius, is_empty);
+    return is_empty.empty;
 }
 
 } // namespace haptel::runtime

@@ -25,6 +25,15 @@ protected:
     ~SegmentVisitor() = default;
 };
 
+// Told of each candidate within a ball; false: enough is known.
+class BallVisitor {
+public:
+    virtual bool visit(uint32_t face) noexcept = 0;
+
+protected:
+    ~BallVisitor() = default;
+};
+
 class BoxTree {
 public:
     // Null if Embree cannot be started or runs out of memory: `error` says why.
@@ -35,6 +44,9 @@ public:
     BoxTree& operator=(const BoxTree&) = delete;
 
     void segment(const glm::dvec3& from, const glm::dvec3& to, SegmentVisitor& visitor) const noexcept;
+
+    // Every face whose box comes within `radius` of the centre.
+    void ball(const glm::dvec3& centre, double radius, BallVisitor& visitor) const noexcept;
 
     // Whether no triangle's box comes within `radius` of the centre.
     bool ball_is_empty(const glm::dvec3& centre, double radius) const noexcept;

@@ -11,8 +11,8 @@
 // One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
 // sequence of poses. Everything is in the object's space, metres: transform the hand into it first.
 //
-// Where faces pierce each other without sharing edges (walls.h) up to three sheets at once hold the proxy. Known limits:
-// where a vertex lies within rounding on another sheet the proxy may rest before the nearest point.
+// Where faces pierce each other without sharing edges (walls.h) up to three sheets at once hold the proxy. Known
+// limits: where a vertex lies within rounding on another sheet the proxy may rest before the nearest point.
 #pragma once
 
 #include "runtime/proxy.h"

@@ -11,15 +11,6 @@ namespace haptel::runtime {
 
 namespace {
 
-std::variant<PointContact, StylusContact> make_contact(ProbeKind kind, const std::shared_ptr<const Surface>& surface)
-{
-    switch (kind) {
-    case ProbeKind::point: return PointContact(surface);
-    case ProbeKind::stylus: return StylusContact(surface);
-    }
-    return PointContact(surface);
-}
-
 // An object is left alone if the hand needs several ticks to come near it.
 constexpr double ticks_per_sleep = 8;
 
@@ -37,7 +28,7 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, double device_force_max_n
     for (const SceneObject& object : scene_->objects) {
         TextureReader reader(*object.texture);
         const uint64_t serial = reader.to().serial;
-        objects_.push_back({&object, make_contact(scene_->probe.kind, object.surface), std::move(reader), serial,
+        objects_.push_back({&object, ProbeContact(scene_->probe, object.surface), std::move(reader), serial,
                             object.placement, HandVelocity(period_s_)});
     }
 }
@@ -84,10 +75,10 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
         const uint32_t number = reach_.awake()[i];
         Touched& touched = objects_[number];
         if (touched.asleep) wake(touched);
-        const uint64_t skipped_before = counters(touched).skipped;
-        const Contact& contact = update_contact(touched, pose, periods);
-        no_query = no_query && counters(touched).skipped > skipped_before;
-        if (!contact.touching) {
+        const uint64_t skipped_before = touched.contact.counters().skipped;
+        const std::span<const Contact> contacts = update_contact(touched, pose, periods);
+        no_query = no_query && touched.contact.counters().skipped > skipped_before;
+        if (contacts.empty()) {
             touched.friction_share = 0;
             if (const double gap_m = gap_to_sleep_m(touched, pose, way_m); gap_m > 0) {
                 touched.asleep = true;
@@ -96,13 +87,16 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
             }
             continue;
         }
-        const ObjectForce object = force_of(touched, contact);
-        result.unlimited_force_n += object.force_n;
-        result.faults |= object.faults;
         ++result.contacts;
-        if (result.contacts == 1 || contact.depth_m > result.depth_m) {
+        for (const Contact& contact : contacts) { // what presses most first
+            const ObjectForce force = force_of(touched, contact);
+            result.unlimited_force_n += force.force_n;
+            result.faults |= force.faults;
+            if (&contact != contacts.data()) continue;
+            touched.friction_share = force.friction_share;
+            if (result.contacts > 1 && contact.depth_m <= result.depth_m) continue;
             result.depth_m = contact.depth_m;
-            result.height_m = object.height_m;
+            result.height_m = force.height_m;
             result.binding = touched.texture.to().serial;
         }
     }
@@ -121,10 +115,9 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     return result;
 }
 
-const ContactCounters& Renderer::counters(const Touched& touched) const noexcept
+ProbePose Renderer::in_object(const Touched& touched, const DevicePose& pose) noexcept
 {
-    if (const auto* stylus = std::get_if<StylusContact>(&touched.contact)) return stylus->counters();
-    return std::get_if<PointContact>(&touched.contact)->counters();
+    return {touched.placement.to_object(pose.tip_m), touched.placement.to_object(pose.tail_m)};
 }
 
 void Renderer::advance_texture(Touched& touched) noexcept
@@ -138,29 +131,22 @@ void Renderer::wake(Touched& touched) noexcept
 {
     touched.asleep = false;
     advance_texture(touched);
-    const glm::dvec3 tip_m = touched.placement.to_object(last_pose_->tip_m);
-    if (auto* stylus = std::get_if<StylusContact>(&touched.contact))
-        stylus->follow(tip_m, touched.placement.to_object(last_pose_->tail_m));
-    else
-        std::get_if<PointContact>(&touched.contact)->follow(tip_m);
+    touched.contact.follow(in_object(touched, *last_pose_));
 }
 
 // How far the hand must go before an object that it does not touch is looked at again; 0: look at it every tick.
 double Renderer::gap_to_sleep_m(const Touched& touched, const DevicePose& pose, double way_m) const noexcept
 {
     if (touched.object->motion) return 0;
-    const glm::dvec3 tip_m = touched.placement.to_object(pose.tip_m);
-    double gap_m = 0;
-    if (const auto* stylus = std::get_if<StylusContact>(&touched.contact))
-        gap_m = stylus->gap_m(tip_m, touched.placement.to_object(pose.tail_m));
-    else
-        gap_m = std::get_if<PointContact>(&touched.contact)->gap_m(tip_m);
+    const ProbePose probe = in_object(touched, pose);
+    const double gap_m = touched.contact.gap_m(probe);
     // Well above what rounding does to coordinates, and worth it.
-    const double coordinate_m = std::max({std::fabs(tip_m.x), std::fabs(tip_m.y), std::fabs(tip_m.z)});
+    const double coordinate_m =
+        std::max({std::fabs(probe.tip_m.x), std::fabs(probe.tip_m.y), std::fabs(probe.tip_m.z)});
     return gap_m > std::max(ticks_per_sleep * way_m, 1e-6 * coordinate_m) ? gap_m : 0;
 }
 
-const Contact& Renderer::update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept
+std::span<const Contact> Renderer::update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept
 {
     if (const Motion* motion = touched.object->motion.get()) {
         const double time_s = static_cast<double>(period_) * period_s_;
@@ -170,13 +156,10 @@ const Contact& Renderer::update_contact(Touched& touched, const DevicePose& pose
     const Material& material = touched.object->material;
     const Friction friction{material.static_friction * touched.friction_share,
                             material.dynamic_friction * touched.friction_share};
-    const glm::dvec3 tip_m = touched.placement.to_object(pose.tip_m);
-    if (auto* stylus = std::get_if<StylusContact>(&touched.contact))
-        return stylus->update(tip_m, touched.placement.to_object(pose.tail_m), friction);
-    return std::get_if<PointContact>(&touched.contact)->update(tip_m, friction);
+    return touched.contact.update(in_object(touched, pose), friction);
 }
 
-Renderer::ObjectForce Renderer::force_of(Touched& touched, const Contact& contact) const noexcept
+Renderer::ObjectForce Renderer::force_of(const Touched& touched, const Contact& contact) const noexcept
 {
     const SceneObject& object = *touched.object;
     const Surface& surface = *object.surface;
@@ -205,7 +188,7 @@ Renderer::ObjectForce Renderer::force_of(Touched& touched, const Contact& contac
     ObjectForce result;
     result.height_m = texture.height_m;
     result.faults = texture.faults;
-    touched.friction_share =
+    result.friction_share =
         contact.depth_m > 0 ? texture.friction_scale * std::min(1.0, elastic.depth_m / contact.depth_m) : 0.0;
     if (elastic.depth_m == 0) return result; // below the base surface, but not yet below the texture
 

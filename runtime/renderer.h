@@ -6,9 +6,9 @@
 // friction and damping, limits. tick() allocates nothing, locks nothing, throws nothing.
 #pragma once
 
-#include "runtime/contact.h"
 #include "runtime/hand_velocity.h"
 #include "runtime/haptic_device.h"
+#include "runtime/probe_contact.h"
 #include "runtime/reach.h"
 #include "runtime/scene.h"
 #include "runtime/servo_report.h"
@@ -20,7 +20,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <variant>
+#include <span>
 #include <vector>
 
 namespace haptel::runtime {
@@ -68,7 +68,7 @@ private:
     // What the servo remembers of one object.
     struct Touched {
         const SceneObject* object;
-        std::variant<PointContact, StylusContact> contact;
+        ProbeContact contact;
         TextureReader texture;
         uint64_t serial_at_start;
         Placement placement;         // of this tick
@@ -82,15 +82,16 @@ private:
     struct ObjectForce {
         glm::dvec3 force_n{0}; // world frame
         double height_m = 0;
+        double friction_share = 0; // as in Touched
         uint32_t faults = 0;
     };
 
-    const ContactCounters& counters(const Touched& touched) const noexcept;
+    static ProbePose in_object(const Touched& touched, const DevicePose& pose) noexcept;
     void advance_texture(Touched& touched) noexcept;
     void wake(Touched& touched) noexcept;
     double gap_to_sleep_m(const Touched& touched, const DevicePose& pose, double way_m) const noexcept;
-    const Contact& update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept;
-    ObjectForce force_of(Touched& touched, const Contact& contact) const noexcept;
+    std::span<const Contact> update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept;
+    ObjectForce force_of(const Touched& touched, const Contact& contact) const noexcept;
 
     std::shared_ptr<const Scene> scene_;
     double period_s_;

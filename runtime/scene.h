@@ -7,6 +7,7 @@
 #include "runtime/haptic_device.h"
 #include "runtime/motion.h"
 #include "runtime/placement.h"
+#include "runtime/probe_contact.h"
 #include "runtime/surface.h"
 #include "runtime/texture_slot.h"
 
@@ -35,13 +36,6 @@ struct SceneObject {
     Material material;
     std::shared_ptr<TextureSlot> texture = std::make_shared<TextureSlot>();
     std::optional<TextureRequest> request; // what the texture was resolved from, for live reload
-};
-
-enum class ProbeKind : uint8_t { point, stylus };
-
-struct ProbeSettings {
-    ProbeKind kind = ProbeKind::point;
-    double length_m = 0.15; // of the stylus, tip to tail
 };
 
 struct ServoSettings {

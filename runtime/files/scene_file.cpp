@@ -57,13 +57,14 @@ ProbeSettings read_probe(const toml::table& root, FileMessages& messages)
 {
     ProbeSettings probe;
     TableReader table(table_named(root, "probe", messages), "[probe]", messages);
-    if (table.word("kind", {"point", "stylus"}) == std::size_t{1}) probe.kind = ProbeKind::stylus;
+    if (const auto kind = table.word("kind", {"point", "sphere", "stylus"})) probe.kind = static_cast<ProbeKind>(*kind);
     table.number("length_m", probe.length_m, Quantity::length, {0, 10, true});
-    double radius_m = 0;
-    table.number("radius_m", radius_m, Quantity::length, {0, 10});
-    if (radius_m > 0)
-        messages.error(table.where("radius_m"),
-                       "`radius_m` is for a sphere, but the probe is a point or a stylus: write 0");
+    table.number("radius_m", probe.radius_m, Quantity::length, {0, 10});
+    if (probe.kind == ProbeKind::sphere && probe.radius_m == 0)
+        messages.error(table.where(table.has("radius_m") ? "radius_m" : "kind"),
+                       "a sphere needs a radius: write `radius_m = 0.005`, or `kind = \"point\"`");
+    if (probe.kind != ProbeKind::sphere && probe.radius_m > 0)
+        messages.error(table.where("radius_m"), "`radius_m` is for `kind = \"sphere\"` alone: write 0");
     table.report_unknown_keys();
     return probe;
 }
@@ -232,6 +233,15 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, FileMe
     text.object.surface = std::move(built.surface);
 }
 
+void check_radius(const ObjectText& text, double radius_m, FileMessages& messages)
+{
+    const glm::dvec3 sides_m = text.object.surface->box_maximum_m - text.object.surface->box_minimum_m;
+    const double largest_m = std::max({sides_m.x, sides_m.y, sides_m.z});
+    if (radius_m > largest_m * (1 + 1e-9))
+        messages.error(text.mesh_at, "the probe's `radius_m` is larger than `" + text.object.name +
+                                         "`: at most the largest side of its box");
+}
+
 void load_texture(ObjectText& text, const SceneText& scene, const std::filesystem::path& folder,
                   const TextureResolver& textures, FileMessages& messages)
 {
@@ -268,15 +278,16 @@ void load_texture(ObjectText& text, const SceneText& scene, const std::filesyste
     text.object.request = std::move(request);
 }
 
-// First hit of the vertical line at (x, y) from above, world frame.
+// First hit of the vertical line at (x, y) from above, world frame; raised by the radius of a probe that lies there.
 std::optional<SurfaceHit> surface_below(const SceneObject& object, double x_m, double y_m, double above_m,
-                                        double below_m)
+                                        double below_m, double radius_m)
 {
     const Placement& placement = object.placement;
     const auto hit =
         object.surface->first_hit(placement.to_object({x_m, y_m, above_m}), placement.to_object({x_m, y_m, below_m}));
     if (!hit) return std::nullopt;
-    return SurfaceHit{placement.to_world(hit->point_m), placement.direction_to_world(hit->facet_normal)};
+    const glm::dvec3 normal = placement.direction_to_world(hit->facet_normal);
+    return SurfaceHit{placement.to_world(hit->point_m) + radius_m * normal, normal};
 }
 
 // What the driver needs to know of the object that is explored, the first one.
@@ -292,9 +303,10 @@ void describe_object(DeviceRequest& request, const std::shared_ptr<const Scene>&
     }
     const glm::dvec3 sides = request.box_maximum_m - request.box_minimum_m;
     const double margin_m = 0.01 * std::max({sides.x, sides.y, sides.z});
-    request.surface_below = [scene, above_m = request.box_maximum_m.z + margin_m,
+    const double radius_m = scene->probe.kind == ProbeKind::sphere ? scene->probe.radius_m : 0;
+    request.surface_below = [scene, radius_m, above_m = request.box_maximum_m.z + margin_m,
                              below_m = request.box_minimum_m.z - margin_m](double x_m, double y_m) {
-        return surface_below(scene->objects.front(), x_m, y_m, above_m, below_m);
+        return surface_below(scene->objects.front(), x_m, y_m, above_m, below_m, radius_m);
     };
 }
 
@@ -335,6 +347,8 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
             object->object.name = same->object.name;
             object->object.surface = same->object.surface;
         }
+        if (object->object.surface && text.probe.kind == ProbeKind::sphere)
+            check_radius(*object, text.probe.radius_m, messages);
     }
     if (messages.any_error()) return loaded;
     for (ObjectText& object : text.objects) load_texture(object, text, folder, textures, messages);

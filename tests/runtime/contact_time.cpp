@@ -1,5 +1,6 @@
 // How long a tick of contact takes, by size of the mesh. Reported, never asserted: run it with contact_test "[.time]".
 #include "runtime/contact.h"
+#include "runtime/sphere_contact.h"
 
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"
@@ -41,7 +42,7 @@ void report(const char* what, size_t triangles, const std::vector<dvec3>& stroke
     }
     std::sort(times_ns.begin(), times_ns.end());
     const auto share = [&](double s) { return times_ns[size_t(s * double(times_ns.size() - 1))]; };
-    std::printf("%-22s %8zu triangles: median %5.0f  p99 %5.0f  p99.9 %5.0f ns\n", what, triangles, share(0.5),
+    std::printf("%-24s %8zu triangles: median %5.0f  p99 %5.0f  p99.9 %5.0f ns\n", what, triangles, share(0.5),
                 share(0.99), share(0.999));
 }
 
@@ -62,6 +63,11 @@ TEST_CASE("time of a tick", "[.time]")
         report("pressed", triangles, pressed, [&](const dvec3& p) { point.update(p); });
         report("pressed, friction", triangles, pressed, [&](const dvec3& p) { rubbing.update(p, {0.3, 0.2}); });
         report("pressed, stylus", triangles, pressed, [&](const dvec3& p) { stylus.update(p, 1.15 * p); });
+        SphereContact ball(surface, 0.05), rubbing_ball(surface, 0.05);
+        for (SphereContact* contact : {&ball, &rubbing_ball}) contact->update({0, 0, 1.5});
+        report("pressed, ball", triangles, pressed, [&](const dvec3& p) { ball.update(1.05 * p); });
+        report("pressed, ball, friction", triangles, pressed,
+               [&](const dvec3& p) { rubbing_ball.update(1.05 * p, {0.3, 0.2}); });
         report("hovering", triangles, hovering, [&](const dvec3& p) { free.update(p); });
         report("tapping", triangles, tapping, [&](const dvec3& p) { taps.update(p); });
     }

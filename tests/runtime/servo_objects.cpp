@@ -38,7 +38,7 @@ std::shared_ptr<const Motion> moved_by(std::function<glm::dvec3(double)> positio
 }
 
 // Balls of 2 cm on a grid of 5 cm.
-Scene field_of_balls(int count)
+Scene field_of_balls(int count, double friction = 0.2)
 {
     Mesh ball = make_icosphere(3);
     scale_to_size(ball, 0.02);
@@ -50,13 +50,13 @@ Scene field_of_balls(int count)
         scene.objects.push_back(first);
         scene.objects.back().texture = std::make_shared<TextureSlot>();
         scene.objects.back().placement.position_m = {0.05 * (i % side), 0.05 * (i / side), 0};
-        scene.objects.back().material.static_friction = scene.objects.back().material.dynamic_friction = 0.2;
+        scene.objects.back().material.static_friction = scene.objects.back().material.dynamic_friction = friction;
     }
     return scene;
 }
 
 // Strolls through the field, at times slowly, at times across it in one tick.
-std::vector<DevicePose> wild_walk(int ticks, double side_m)
+std::vector<DevicePose> wild_walk(int ticks, double side_m, double step_max_m)
 {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> uniform(0, 1);
@@ -66,7 +66,7 @@ std::vector<DevicePose> wild_walk(int ticks, double side_m)
     for (int i = 0; i < ticks; ++i) {
         if (i % 100 == 0) {
             goal = {side_m * uniform(random), side_m * uniform(random), 0.03 * (uniform(random) - 0.5)};
-            step_m = std::pow(10.0, -5 + 4 * uniform(random));
+            step_m = std::min(step_max_m, std::pow(10.0, -5 + 4 * uniform(random)));
         }
         const glm::dvec3 way = goal - place;
         const double length = glm::length(way);
@@ -176,16 +176,22 @@ TEST_CASE("two threads: a live placement is read whole or not at all")
 
 TEST_CASE("objects out of reach are left alone, and nobody feels it")
 {
-    for (const ProbeKind probe : {ProbeKind::point, ProbeKind::stylus}) {
-        Scene lazy = field_of_balls(49), eager = field_of_balls(49);
-        lazy.probe.kind = eager.probe.kind = probe;
+    for (const ProbeKind probe : {ProbeKind::point, ProbeKind::sphere, ProbeKind::stylus}) {
+        const bool is_sphere = probe == ProbeKind::sphere;
+        const double friction = is_sphere ? 0 : 0.2;
+        Scene lazy = field_of_balls(49, friction), eager = field_of_balls(49, friction);
+        lazy.probe = eager.probe = {probe, 0.1, is_sphere ? 0.004 : 0.0};
         for (SceneObject& object : eager.objects) // one that may move is looked at every tick
             object.motion = std::make_shared<SteadyMotion>(object.placement, SteadyMotion::Figures{});
         Renderer sleeping(shared(std::move(lazy))), watching(shared(std::move(eager)));
         int contacts = 0;
-        for (const DevicePose& pose : wild_walk(60000, 0.3)) {
+        for (const DevicePose& pose : wild_walk(60000, 0.3, is_sphere ? 5e-4 : 0.1)) {
             const TickResult expected = watching.tick(pose), found = sleeping.tick(pose);
-            REQUIRE(found.force_n == expected.force_n);
+            // A ball goes in steps as long as it knows its surroundings, until it moves too little to be felt.
+            if (is_sphere)
+                REQUIRE(glm::length(found.force_n - expected.force_n) < 1e-4);
+            else
+                REQUIRE(found.force_n == expected.force_n);
             REQUIRE(found.contacts == expected.contacts);
             contacts += static_cast<int>(found.contacts);
         }
@@ -193,6 +199,30 @@ TEST_CASE("objects out of reach are left alone, and nobody feels it")
         CHECK(sleeping.skipped().objects > 40 * 60000ull);
         CHECK(watching.skipped().objects == 0);
     }
+}
+
+TEST_CASE("a ball feels what it lies on at its radius, and both walls of a corner")
+{
+    constexpr double r = 0.01, stiffness = 1000;
+    Scene scene = bare_scene(plane_mesh());
+    Scene wall = bare_scene(plane_mesh());
+    // The second plane stands upright at x = 0.02 and faces -x.
+    wall.objects[0].placement = {glm::dmat3(glm::dvec3(0, 0, 1), glm::dvec3(0, 1, 0), glm::dvec3(-1, 0, 0)),
+                                 {0.02, 0, 0}};
+    scene.objects.push_back(wall.objects[0]);
+    scene.probe = {ProbeKind::sphere, 0.1, r};
+    Renderer renderer(shared(std::move(scene)));
+    renderer.tick(at(0, 0, 0.03));
+    for (int i = 0; i < 3; ++i) {
+        const TickResult on_plane = renderer.tick(at(0, 0, r - 0.002));
+        CHECK(glm::length(on_plane.force_n - glm::dvec3(0, 0, 0.002 * stiffness)) < 1e-7);
+        CHECK(std::abs(on_plane.depth_m - 0.002) < 1e-10);
+    }
+    for (int i = 0; i < 3; ++i) renderer.tick(at(0.005, 0, r - 0.002));
+    TickResult in_corner;
+    for (int i = 0; i < 3; ++i) in_corner = renderer.tick(at(0.02 - r + 0.001, 0, r - 0.003));
+    CHECK(in_corner.contacts == 2);
+    CHECK(glm::length(in_corner.force_n - stiffness * glm::dvec3(-0.001, 0, 0.003)) < 1e-7);
 }
 
 TEST_CASE("a texture published to an object out of reach is there when the hand comes, and the old one is freed")

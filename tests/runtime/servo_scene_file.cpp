@@ -344,9 +344,13 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "scene.toml:1:1: error: expected `[[object]]` in double brackets: a scene may hold several objects\n"},
         {"probe = 3\n[[object]]\nshape = \"plane\"\n",
          "scene.toml:1:9: error: expected a table: write `[probe]` on a line of its own, its keys below\n"},
-        {"[probe]\nkind = \"sphere\"\nradius_m = 0.01\n[[object]]\nshape = \"plane\"\n",
-         "scene.toml:2:8: error: expected \"point\" or \"stylus\" for `kind`, found \"sphere\"\n"
-         "scene.toml:3:12: error: `radius_m` is for a sphere, but the probe is a point or a stylus: write 0\n"},
+        {"[probe]\nkind = \"ball\"\nradius_m = 0.01\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:8: error: expected \"point\", \"sphere\" or \"stylus\" for `kind`, found \"ball\"\n"
+         "scene.toml:3:12: error: `radius_m` is for `kind = \"sphere\"` alone: write 0\n"},
+        {"[probe]\nkind = \"sphere\"\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:8: error: a sphere needs a radius: write `radius_m = 0.005`, or `kind = \"point\"`\n"},
+        {"[probe]\nkind = \"sphere\"\nradius_m = 0.2\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:5:9: error: the probe's `radius_m` is larger than `plane`: at most the largest side of its box\n"},
         {"[servo]\nforce_model = \"ho89\"\nrate_hz = 0\nforce_limit_n = -1\n[[object]]\nshape = \"plane\"\n",
          "scene.toml:2:15: error: expected \"displaced\", \"paper\", \"paper_unit\", \"ho99\" or \"lateral\" for "
          "`force_model`, found \"ho89\"\n"

@@ -1,0 +1,58 @@
+#include "runtime/probe_contact.h"
+
+namespace haptel::runtime {
+
+namespace {
+
+std::variant<PointContact, SphereContact, StylusContact> make(const ProbeSettings& probe,
+                                                              const std::shared_ptr<const Surface>& surface)
+{
+    switch (probe.kind) {
+    case ProbeKind::point: return PointContact(surface);
+    case ProbeKind::sphere: return SphereContact(surface, probe.radius_m);
+    case ProbeKind::stylus: return StylusContact(surface);
+    }
+    return PointContact(surface);
+}
+
+std::span<const Contact> touched(const Contact& contact)
+{
+    return {&contact, contact.touching ? std::size_t{1} : std::size_t{0}};
+}
+
+} // namespace
+
+ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface)
+    : contact_(make(probe, surface))
+{
+}
+
+std::span<const Contact> ProbeContact::update(const ProbePose& pose, const Friction& friction) noexcept
+{
+    if (auto* point = std::get_if<PointContact>(&contact_)) return touched(point->update(pose.tip_m, friction));
+    if (auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->update(pose.tip_m, friction);
+    return touched(std::get_if<StylusContact>(&contact_)->update(pose.tip_m, pose.tail_m, friction));
+}
+
+void ProbeContact::follow(const ProbePose& pose) noexcept
+{
+    if (auto* point = std::get_if<PointContact>(&contact_)) return point->follow(pose.tip_m);
+    if (auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->follow(pose.tip_m);
+    std::get_if<StylusContact>(&contact_)->follow(pose.tip_m, pose.tail_m);
+}
+
+double ProbeContact::gap_m(const ProbePose& pose) const noexcept
+{
+    if (const auto* point = std::get_if<PointContact>(&contact_)) return point->gap_m(pose.tip_m);
+    if (const auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->gap_m(pose.tip_m);
+    return std::get_if<StylusContact>(&contact_)->gap_m(pose.tip_m, pose.tail_m);
+}
+
+const ContactCounters& ProbeContact::counters() const noexcept
+{
+    if (const auto* point = std::get_if<PointContact>(&contact_)) return point->counters();
+    if (const auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->counters();
+    return std::get_if<StylusContact>(&contact_)->counters();
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,43 @@
+// The contact of the scene's probe with one object, whatever the probe is. Object space, metres.
+#pragma once
+
+#include "runtime/contact.h"
+#include "runtime/sphere_contact.h"
+
+#include <memory>
+#include <span>
+#include <variant>
+
+namespace haptel::runtime {
+
+enum class ProbeKind : uint8_t { point, sphere, stylus };
+
+struct ProbeSettings {
+    ProbeKind kind = ProbeKind::point;
+    double length_m = 0.15; // of the stylus, tip to tail
+    double radius_m = 0;    // of the sphere, > 0
+};
+
+// Where the hand holds it: the centre of a sphere is its tip, only a stylus has a tail.
+struct ProbePose {
+    glm::dvec3 tip_m{0}, tail_m{0};
+};
+
+class ProbeContact {
+public:
+    ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface);
+
+    // One tick: where it touches, none if it does not.
+    std::span<const Contact> update(const ProbePose& pose, const Friction& friction) noexcept;
+    // One tick of a probe that is free and known to have met nothing on its way.
+    void follow(const ProbePose& pose) noexcept;
+
+    // At least so far is it from any point of the probe to the nearest triangle; 0: not known.
+    double gap_m(const ProbePose& pose) const noexcept;
+    const ContactCounters& counters() const noexcept;
+
+private:
+    std::variant<PointContact, SphereContact, StylusContact> contact_;
+};
+
+} // namespace haptel::runtime

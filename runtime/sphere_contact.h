@@ -1,0 +1,83 @@
+// Contact of a ball with one surface: the proxy is the ball's centre, kept at least its radius away from every
+// triangle, as near to the hand as it can slide.
+//
+// Seen from the centre, a triangle lies behind the plane that touches the ball there if ball and triangle touch, or
+// would touch. As long as the centre stays in front of all these planes no triangle comes nearer than the radius: each
+// move is a straight way within the intersection of half-spaces, so that nothing is crossed at any speed and by any
+// mesh, self-piercing ones included. The nearest point of the intersection to the hand is exact (half_spaces.h); the
+// planes are laid anew there, until that moves nothing. Where many triangles are within reach, a
+// tick may take it three radii far and no farther: the rest is for the next.
+//
+// One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
+// sequence of poses. Everything is in the object's space, metres.
+#pragma once
+
+#include "runtime/contact.h"
+#include "runtime/half_spaces.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace haptel::runtime {
+
+class SphereContact {
+public:
+    // Largest radius, in half extents of the object's box: beyond, the ball would not fit beside it.
+    static constexpr double radius_max = 2;
+
+    SphereContact(std::shared_ptr<const Surface> surface, double radius_m);
+
+    // One tick: where it touches, at most three places, the one that presses most first. The proxy_m of each is the
+    // point touched, its depth and normal what it holds of the way from the hand to the proxy: depths times normals
+    // add up to that way, friction's lag apart. The first tick puts the ball down where the hand is; what it overlaps
+    // there it does not push away, but as it leaves it grows to its radius.
+    std::span<const Contact> update(const glm::dvec3& centre_m, const Friction& friction = {}) noexcept;
+    // One tick of a probe that is free and known to have met nothing on its way.
+    void follow(const glm::dvec3& centre_m) noexcept;
+    void reset() noexcept;
+
+    // At least so far is it from the ball to the nearest triangle; 0: not known.
+    double gap_m(const glm::dvec3& centre_m) const noexcept;
+
+    glm::dvec3 proxy_m() const noexcept { return surface_->lattice.metres(centre_); }
+    const ContactCounters& counters() const noexcept { return counters_; }
+    const Surface& surface() const noexcept { return *surface_; }
+
+private:
+    static constexpr uint32_t rounds_max = 48;
+
+    // The triangles that may be met within `margin` of where they were looked for.
+    struct Neighbourhood {
+        glm::dvec3 centre{0};
+        double margin = -1; // below 0: none
+    };
+
+    void place() noexcept;
+    bool look_around(double margin) noexcept;
+    double room() const noexcept;
+    void lay_planes(double reach) noexcept;
+    NearestInHalfSpaces approach(double step_max) noexcept;
+    void move(const Friction& friction) noexcept;
+    void hold_by_friction(const Friction& friction) noexcept;
+    void describe(const NearestInHalfSpaces& found) noexcept;
+
+    std::shared_ptr<const Surface> surface_;
+    double radius_, grown_; // lattice units; `grown_` of the ball that was put down into something
+    glm::dvec3 hand_{0}, centre_{0};
+    bool placed_ = false, sliding_ = false;
+    Neighbourhood around_;
+    double margin_ = 0;               // that suits the density of the mesh here
+    std::vector<uint32_t> faces_;     // of the neighbourhood; room for all is made beforehand
+    std::vector<HalfSpace> planes_;   // of the last round
+    std::vector<uint32_t> plane_of_;  // the face of each
+    std::vector<glm::dvec3> touched_; // the point of each
+    glm::dvec3 path_[rounds_max + 1]; // of this tick, from where it began to touch
+    uint32_t path_length_ = 0;
+    Contact contacts_[3];
+    std::size_t contact_count_ = 0;
+    ContactCounters counters_;
+};
+
+} // namespace haptel::runtime
