@@ -1,20 +1,17 @@
 #include "jit/engine.h"
 
 #include "jit/code_version.h"
+#include "jit/compilers.h"
 #include "jit/isa.h"
 #include "jit/kernels.h"
 #include "jit/linker.h"
 #include "jit/llvm.h"
-#include "jit/machine_code.h"
-#include "jit/object_cache.h"
 #include "jit/replaceable.h"
+#include "jit/shared_code.h"
 #include "jit/stopwatch.h"
 
-#include <array>
 #include <atomic>
 #include <cstdlib>
-#include <functional>
-#include <mutex>
 
 namespace haptel::jit {
 
@@ -25,13 +22,6 @@ namespace {
 constexpr double worth_keeping_s = 10e-3;
 // More makes no kernel faster that was measured, and takes twice as long.
 constexpr Effort kernel_effort_max = Effort::quick;
-
-// An object file and how to come by it.
-struct Object {
-    std::string bytes, error;
-    Effort effort = Effort::quick; // what went into it, at least what was asked for
-    bool is_from_disk = false;
-};
 
 // What is made once per process and never taken down: code may outlive every static object.
 class Engine {
@@ -46,43 +36,24 @@ public:
     void prepare_kernels(const ir::Module& module, std::span<const EntryPoint> entries);
     void remove(llvm::orc::JITDylib& place) { linker.remove(place); }
     std::string name() const { return machine_name; }
-    size_t kernel_count()
-    {
-        const std::lock_guard lock(kernels_mutex);
-        return kernels.size();
-    }
+    size_t kernel_count() { return shared.count(); }
     uint32_t lanes() const { return processor.lanes; }
-    std::string isa() const { return compilers[0].machine ? isa_of(*compilers[0].machine) : ""; }
+    std::string isa() const { return isa_text; }
 
 private:
-    struct Compiler {
-        std::mutex in_use;
-        std::unique_ptr<llvm::TargetMachine> machine;
-    };
-    struct Shared {
-        llvm::orc::ExecutorAddr address;
-        Effort effort;
-    };
-    using Generate = std::function<std::unique_ptr<llvm::Module>(llvm::LLVMContext&)>;
-
     Engine();
     std::string start();
-    Object make(Effort effort, CompileTimes& times, const Generate& generate);
-    CodeResult link(const Object& object, const ir::Module& module, std::span<const EntryPoint> entries,
-                    const KernelCalls& calls, CompileTimes& times);
-    std::string link_shared(const std::string& name, const std::string& identity, Effort effort,
-                            const Generate& generate, llvm::orc::ExecutorAddr& address);
-    std::string link_calls(const ir::Module& module, const KernelCalls& calls, Effort effort, Addresses& addresses);
+    CodeResult link(const Object& object, std::span<const EntryPoint> entries, Fetch& callees, CompileTimes& times);
+    std::vector<SharedCode::Function> called(const ir::Module& module, const KernelCalls& calls) const;
     std::string identity_of(const KernelCalls& calls, std::span<const EntryPoint> entries) const;
 
     std::string fault; // why there is no engine; empty: there is
-    std::string machine_name;
+    std::string machine_name, isa_text;
     std::string target; // all that decides what code is made of an IR
     Processor processor;
-    std::array<Compiler, 3> compilers; // by Effort
+    Compilers compilers;
     Linker linker;
-    std::mutex kernels_mutex;
-    std::map<std::string, Shared> kernels; // linked, by name; the best of each
+    SharedCode shared{compilers, linker};
 };
 
 std::atomic<size_t> alive{0};
@@ -128,79 +99,15 @@ std::string Engine::start()
     host->getOptions().AllowFPOpFusion = llvm::FPOpFusion::Strict;
     machine_name = "LLVM " LLVM_VERSION_STRING " " + host->getTargetTriple().str() + " " + host->getCPU();
 
-    constexpr llvm::CodeGenOptLevel levels[] = {llvm::CodeGenOptLevel::None, llvm::CodeGenOptLevel::Less,
-                                                llvm::CodeGenOptLevel::Default};
-    for (size_t effort = 0; effort < compilers.size(); ++effort) {
-        host->setCodeGenOptLevel(levels[effort]);
-        auto made = host->createTargetMachine();
-        if (!made) return "no code generator for " + machine_name + ": " + llvm::toString(made.takeError());
-        compilers[effort].machine = std::move(*made);
-    }
-    const llvm::TargetMachine& machine = *compilers[0].machine;
-    processor = processor_of(machine);
-    target = std::string(code_version) + ";" + machine_name + ";" + machine.getTargetFeatureString().str() + ";" +
-             std::to_string(processor.lanes);
-    return linker.start(*host, machine.createDataLayout());
-}
-
-ContentHash key_of(const std::string& identity, Effort effort)
-{
-    return content_hash(identity + ";" + std::to_string(static_cast<int>(effort)));
-}
-
-// On disk, of that effort or a greater one.
-Object found_object(const std::string& identity, Effort effort)
-{
-    for (Effort kept : {Effort::full, Effort::quick, Effort::draft})
-        if (kept >= effort)
-            if (std::optional<std::string> found = ObjectCache::shared().load(key_of(identity, kept)))
-                return {std::move(*found), {}, kept, true};
-    return {};
-}
-
-Object Engine::make(Effort effort, CompileTimes& times, const Generate& generate)
-{
-    Compiler& compiler = compilers[static_cast<size_t>(effort)];
-    const std::lock_guard lock(compiler.in_use);
-    Stopwatch stopwatch;
-    llvm::LLVMContext context;
-    const std::unique_ptr<llvm::Module> generated = generate(context);
-    times.generate_s += stopwatch.lap_s();
-    llvm::SmallVector<char, 0> made;
-    std::string error = make_object(*generated, *compiler.machine, effort, made, times);
-    return {std::string(made.data(), made.size()), std::move(error), effort};
-}
-
-void keep(const Object& object, const std::string& identity)
-{
-    ObjectCache::shared().store(key_of(identity, object.effort), object.bytes);
-}
-
-// What programs share, once per process: a function of that name, known on disk by its identity.
-std::string Engine::link_shared(const std::string& name, const std::string& identity, Effort effort,
-                                const Generate& generate, llvm::orc::ExecutorAddr& address)
-{
-    {
-        const std::lock_guard lock(kernels_mutex);
-        const auto known = kernels.find(name);
-        if (known != kernels.end() && known->second.effort >= effort) {
-            address = known->second.address;
-            return {};
-        }
-    }
-    Addresses wanted{{name, {}}};
-    Object object = found_object(identity, effort);
-    if (object.bytes.empty() || !linker.link(object.bytes, {}, wanted).place) {
-        CompileTimes unused;
-        object = make(effort, unused, generate);
-        if (!object.error.empty()) return object.error;
-        if (effort != Effort::draft) keep(object, identity);
-        if (Linker::Linked linked = linker.link(object.bytes, {}, wanted); !linked.place) return linked.error;
-    }
-    address = wanted.begin()->second;
-    const std::lock_guard lock(kernels_mutex);
-    kernels.insert_or_assign(name, Shared{address, object.effort});
-    return {};
+    if (std::string error = compilers.start(*host); !error.empty()) return error;
+    compilers.with_machine([&](const llvm::TargetMachine& machine) {
+        processor = processor_of(machine);
+        isa_text = isa_of(machine);
+        target = std::string(code_version) + ";" + machine_name + ";" + machine.getTargetFeatureString().str() + ";" +
+                 std::to_string(processor.lanes);
+        fault = linker.start(*host, machine.createDataLayout());
+    });
+    return fault;
 }
 
 // Equal for programs of equal code: what their entries do, under which names, and where they find the parameters.
@@ -224,23 +131,18 @@ std::string Engine::identity_of(const KernelCalls& calls, std::span<const EntryP
     return text;
 }
 
-// What a program calls, linked. Nothing or why not.
-std::string Engine::link_calls(const ir::Module& module, const KernelCalls& calls, Effort effort, Addresses& addresses)
+std::vector<SharedCode::Function> Engine::called(const ir::Module& module, const KernelCalls& calls) const
 {
-    std::string error;
-    for (const auto& [name, kernel] : calls.used()) {
-        const auto generate_it = [&, &symbol = name, &wanted = kernel](llvm::LLVMContext& context) {
-            return generate_kernel(module, symbol, wanted, processor, context);
-        };
-        if (error.empty()) error = link_shared(name, name, effort, generate_it, addresses[name]);
-    }
-    for (const auto& [name, form] : calls.used_elementary()) {
-        const auto generate_it = [&symbol = name, &wanted = form](llvm::LLVMContext& context) {
-            return generate_elementary(symbol, wanted, context);
-        };
-        if (error.empty()) error = link_shared(name, name + ";" + target, effort, generate_it, addresses[name]);
-    }
-    return error;
+    std::vector<SharedCode::Function> functions;
+    for (const auto& [name, kernel] : calls.used())
+        functions.push_back({name, name, [&, &symbol = name, &wanted = kernel](llvm::LLVMContext& context) {
+                                 return generate_kernel(module, symbol, wanted, processor, context);
+                             }});
+    for (const auto& [name, form] : calls.used_elementary())
+        functions.push_back({name, name + ";" + target, [&symbol = name, &wanted = form](llvm::LLVMContext& context) {
+                                 return generate_elementary(symbol, wanted, context);
+                             }});
+    return functions;
 }
 
 void Engine::prepare_kernels(const ir::Module& module, std::span<const EntryPoint> entries)
@@ -250,18 +152,15 @@ void Engine::prepare_kernels(const ir::Module& module, std::span<const EntryPoin
     llvm::LLVMContext context;
     generate(module, entries, processor, context, &calls);
     Addresses unused;
-    link_calls(module, calls, kernel_effort_max, unused);
+    Fetch(shared, called(module, calls), kernel_effort_max).finish(unused);
 }
 
-// With the kernels that the object calls. An object from disk that cannot be linked leaves no code and no error.
-CodeResult Engine::link(const Object& object, const ir::Module& module, std::span<const EntryPoint> entries,
-                        const KernelCalls& calls, CompileTimes& times)
+// With what the object calls. An object from disk that cannot be linked leaves no code and no error.
+CodeResult Engine::link(const Object& object, std::span<const EntryPoint> entries, Fetch& callees, CompileTimes& times)
 {
     Stopwatch stopwatch;
-    Addresses kernel_addresses, entry_addresses;
-    const Effort effort = std::min(object.effort, kernel_effort_max);
-    if (std::string error = link_calls(module, calls, effort, kernel_addresses); !error.empty())
-        return {nullptr, error};
+    Addresses callee_addresses, entry_addresses;
+    if (std::string error = callees.finish(callee_addresses); !error.empty()) return {nullptr, error};
     times.kernels_s = stopwatch.lap_s();
 
     const bool is_replaceable = object.effort != Effort::full;
@@ -269,7 +168,7 @@ CodeResult Engine::link(const Object& object, const ir::Module& module, std::spa
         entry_addresses[entry.name];
         if (is_replaceable) entry_addresses[slot_of(entry.name)];
     }
-    const Linker::Linked linked = linker.link(object.bytes, kernel_addresses, entry_addresses);
+    const Linker::Linked linked = linker.link(object.bytes, callee_addresses, entry_addresses);
     if (!linked.place) return {nullptr, object.is_from_disk ? "" : linked.error};
     auto code = std::make_shared<LinkedCode>(*linked.place);
     for (const EntryPoint& entry : entries) {
@@ -289,31 +188,36 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     Stopwatch stopwatch;
     KernelCalls calls(module, target);
     const std::string identity = identity_of(calls, entries);
-    const auto generate_for = [&](Effort effort) {
+    const auto generate_for = [&](Effort effort, llvm::LLVMContext& context) {
         const bool has_kernels = options.kernels && effort != Effort::full;
-        return [&, has_kernels, effort](llvm::LLVMContext& context) {
-            auto generated = generate(module, entries, processor, context, has_kernels ? &calls : nullptr);
-            if (effort != Effort::full) make_replaceable(*generated, entries);
-            return generated;
-        };
+        auto generated = generate(module, entries, processor, context, has_kernels ? &calls : nullptr);
+        if (effort != Effort::full) make_replaceable(*generated, entries);
+        return generated;
+    };
+    const auto callees_for = [&](Effort effort) {
+        return Fetch(shared, called(module, calls), std::min(effort, kernel_effort_max));
     };
     Object object;
     if (options.kernels) object = found_object(identity, options.effort);
     if (!object.bytes.empty()) {
         if (object.effort != Effort::full) { // which kernels it calls
             llvm::LLVMContext context;
-            generate_for(object.effort)(context);
+            generate_for(object.effort, context);
         }
         times.generate_s = stopwatch.lap_s();
-        CodeResult linked = link(object, module, entries, calls, times);
+        Fetch callees = callees_for(object.effort);
+        CodeResult linked = link(object, entries, callees, times);
         if (linked.code || !linked.error.empty()) return linked;
     }
+    llvm::LLVMContext context;
+    const std::unique_ptr<llvm::Module> generated = generate_for(options.effort, context);
     times.generate_s = stopwatch.lap_s();
-    object = make(options.effort, times, generate_for(options.effort));
+    Fetch callees = callees_for(options.effort);
+    object = compilers.make(*generated, options.effort, times);
     if (!object.error.empty()) return {nullptr, object.error};
     if (options.kernels && (stopwatch.lap_s() > worth_keeping_s || options.effort == Effort::full))
         keep(object, identity);
-    return link(object, module, entries, calls, times);
+    return link(object, entries, callees, times);
 }
 
 } // namespace

@@ -26,7 +26,7 @@ enum class Effort : uint8_t {
     full   // all of LLVM's -O2 over the program with all that it calls: what a long exploration deserves
 };
 
-// Time from IR to callable, by stage, seconds; of kernels that had to be fetched or made, all in one.
+// Time from IR to callable, by stage, seconds; of kernels, that for which the program waited.
 struct CompileTimes {
     double generate_s = 0, optimise_s = 0, select_s = 0, kernels_s = 0, link_s = 0;
 };

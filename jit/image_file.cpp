@@ -1,6 +1,7 @@
 #include "jit/image_file.h"
 
 #include "jit/content_hash.h"
+#include "jit/picture.h"
 #include "lang/diagnostic.h"
 
 #include <chrono>
@@ -9,16 +10,6 @@
 #include <iterator>
 #include <map>
 #include <mutex>
-
-#define STBI_ONLY_PNG
-#define STBI_ONLY_JPEG
-#define STBI_ONLY_BMP
-#define STBI_ONLY_TGA
-#define STBI_ONLY_PNM
-#define STBI_NO_STDIO
-#define STB_IMAGE_STATIC
-#define STB_IMAGE_IMPLEMENTATION
-#include <stb/stb_image.h>
 
 namespace haptel::jit {
 
@@ -31,38 +22,15 @@ ImageFile fail(std::string error, std::string hint = {})
     return {nullptr, std::move(error), std::move(hint)};
 }
 
-std::shared_ptr<const ir::SplineImage> image_of(const stbi_us* gray, int width, int height, std::string& error)
-{
-    std::vector<double> texels(static_cast<size_t>(width) * static_cast<size_t>(height));
-    for (int row = 0; row < height; ++row) // files begin at the top
-        for (int column = 0; column < width; ++column) {
-            const auto to =
-                static_cast<size_t>(height - 1 - row) * static_cast<size_t>(width) + static_cast<size_t>(column);
-            texels[to] =
-                gray[static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column)] / 65535.0;
-        }
-    return ir::SplineImage::make(texels, width, height, error);
-}
-
 ImageFile decode(const std::string& bytes, const std::string& shown)
 {
-    const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
-    const int size = static_cast<int>(bytes.size());
-    constexpr const char* formats = "a picture is a PNG, JPEG, BMP, TGA or PGM file";
-    int width = 0, height = 0, channels = 0;
-    if (!stbi_info_from_memory(data, size, &width, &height, &channels))
-        return fail("'" + shown + "' is no picture that can be read", formats);
-    if (width > ir::SplineImage::side_max || height > ir::SplineImage::side_max ||
-        int64_t{width} * height > ir::SplineImage::texels_max)
-        return fail("'" + shown + "' is too large: " + std::to_string(width) + " x " + std::to_string(height) +
-                        " texels",
-                    "a side may have " + std::to_string(ir::SplineImage::side_max) + ", the whole " +
-                        std::to_string(ir::SplineImage::texels_max));
-    const std::unique_ptr<stbi_us, void (*)(void*)> gray(
-        stbi_load_16_from_memory(data, size, &width, &height, &channels, 1), stbi_image_free);
-    if (!gray) return fail("'" + shown + "' is damaged: " + stbi_failure_reason(), formats);
+    const Picture picture = is_tiff(bytes)  ? read_tiff(bytes)
+                            : is_exr(bytes) ? read_exr(bytes)
+                                            : read_common_picture(bytes);
+    if (!picture.error.empty()) return fail("'" + shown + "' " + lang::printable(picture.error), picture.hint);
     ImageFile made;
-    made.image = image_of(gray.get(), width, height, made.error);
+    made.image = ir::SplineImage::make(picture.gray, picture.width, picture.height, made.error);
+    if (!made.image) made.error = "'" + shown + "': " + made.error;
     return made;
 }
 

@@ -14,11 +14,14 @@ namespace haptel::jit {
 
 namespace {
 
-llvm::ModulePassManager short_list()
+// A draft does not wait for the inliner, which takes as long as all else: its calls make it twice as slow as full code.
+llvm::ModulePassManager short_list(Effort effort)
 {
     llvm::ModulePassManager passes;
-    passes.addPass(llvm::ModuleInlinerWrapperPass(llvm::getInlineParams(250)));
-    passes.addPass(llvm::GlobalDCEPass());
+    if (effort != Effort::draft) {
+        passes.addPass(llvm::ModuleInlinerWrapperPass(llvm::getInlineParams(250)));
+        passes.addPass(llvm::GlobalDCEPass());
+    }
     llvm::FunctionPassManager in_function;
     in_function.addPass(llvm::SimplifyCFGPass());
     in_function.addPass(llvm::EarlyCSEPass());
@@ -57,7 +60,7 @@ void optimise(llvm::Module& module, llvm::TargetMachine& machine, Effort effort)
     passes.registerLoopAnalyses(loops);
     passes.crossRegisterProxies(loops, functions, components, modules);
     llvm::ModulePassManager list =
-        effort != Effort::full ? short_list() : passes.buildPerModuleDefaultPipeline(llvm::OptimizationLevel::O2);
+        effort != Effort::full ? short_list(effort) : passes.buildPerModuleDefaultPipeline(llvm::OptimizationLevel::O2);
     list.run(module, modules);
     align_stack_of_wide_vectors(module);
 }

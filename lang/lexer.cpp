@@ -247,7 +247,7 @@ private:
     bool symbol()
     {
         for (const auto& [token, spelling] : symbols_by_character.with(text[at])) {
-            if (!rest().starts_with(spelling)) continue;
+            if (spelling.size() > 1 && !rest().starts_with(spelling)) continue;
             const uint32_t begin = at;
             at += static_cast<uint32_t>(spelling.size());
             push(token, begin);
@@ -304,9 +304,17 @@ std::optional<uint32_t> first_of_garbage(std::string_view text)
 {
     constexpr size_t tolerated = 16, one_in = 20;
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return std::nullopt; // the lexer knows better
+    static constexpr auto plain = [] { // characters that every text has
+        std::array<bool, 256> is_plain{};
+        for (char c = ' '; c < 127; ++c) is_plain[index_of(c)] = true;
+        is_plain['\n'] = true;
+        return is_plain;
+    }();
     size_t odd = 0;
     uint32_t first = 0;
     for (uint32_t at = 0; at < text.size();) {
+        while (at < text.size() && plain[index_of(text[at])]) ++at; // nearly all
+        if (at == text.size()) break;
         const char c = text[at];
         if (c == '\0') return odd > 0 ? first : at;
         const bool is_control =

@@ -12,10 +12,14 @@ constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
 std::vector<uint32_t> find_line_starts(std::string_view text)
 {
     std::vector<uint32_t> starts{0};
-    for (size_t i = 0; i < text.size(); ++i) {
-        if (text[i] == '\n' || (text[i] == '\r' && (i + 1 == text.size() || text[i + 1] != '\n')))
-            starts.push_back(static_cast<uint32_t>(i + 1));
-    }
+    starts.reserve(text.size() / 32); // as texts go
+    const bool has_returns = text.find('\r') != std::string_view::npos;
+    const auto next_end = [&](size_t from) {
+        return has_returns ? text.find_first_of("\r\n", from) : text.find('\n', from);
+    };
+    for (size_t end = next_end(0); end != std::string_view::npos; end = next_end(end + 1))
+        if (text[end] == '\n' || end + 1 == text.size() || text[end + 1] != '\n')
+            starts.push_back(static_cast<uint32_t>(end + 1));
     return starts;
 }
 

@@ -6,7 +6,7 @@
 //
 //   displaced   K max(d + h - h_max, 0) (N - (I - d W)^-1 g), W = dN/dp. Minus the gradient of K/2 (d + h - h_max)^2,
 //               h where the tip projects to: conservative, no closed path of the hand gains energy. The default.
-//   paper       K (AP . N) M: Ho, Basdogan and Srinivasan's rule of 1997, sec. 2.2 and 2.3, AP from the tip to the
+//   paper       K (AP . N) M: Basdogan, Ho and Srinivasan, 1997, sec. 2.2 and 2.3, AP from the tip to the
 //               contact. Not conservative: going round a loop gains K times change of depth times change of height.
 //   paper_unit  K (AP . N) M / |M|, the same with a unit normal, as widely implemented: slopes add no force, only turn
 //               it. Not conservative.

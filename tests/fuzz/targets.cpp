@@ -14,6 +14,7 @@ constexpr Target all[] = {
     {"compile", "checker, lowering and analysis on bytes", false, haptel_corpus, compile_text},
     {"format", "the formatter: stable, and true to the meaning", false, haptel_corpus, format_text},
     {"ir", "reader of IR text, verifier, printer, interpreter", false, ir_corpus, read_ir},
+    {"picture", "readers of pictures on bytes", false, picture_corpus, read_picture},
     {"programs", "random programs: interpreter, 113-bit oracle and machine code", true, nullptr, run_program},
     {"bounds", "random programs: what is measured lies in the bounds", true, nullptr, bound_program},
 };

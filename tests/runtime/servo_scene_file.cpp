@@ -9,7 +9,9 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 
@@ -229,6 +231,36 @@ size_m = 0.2
     CHECK(objects[2].motion == nullptr);
     CHECK(objects[0].surface == objects[1].surface);
     CHECK(objects[0].surface != objects[2].surface);
+}
+
+TEST_CASE("the scene of the documentation is one, and has every key")
+{
+    const Folder folder;
+    folder.write("bunny.obj", triangle_obj);
+    std::ifstream page(HAPTEL_SOURCE_DIR "/docs/scenes.md");
+    const std::string text{std::istreambuf_iterator<char>(page), {}};
+    const std::size_t begin = text.find("```toml\n") + 8, end = text.find("```", begin);
+    REQUIRE(end != std::string::npos);
+    const std::string scene = text.substr(begin, end - begin);
+    const Scene loaded = *load(folder, scene).scene;
+    CHECK(loaded.objects.size() == 1);
+    CHECK(loaded.servo.force.model == ForceModel::lateral);
+
+    // What a wrong key in each table is told of, is there.
+    for (const char* table : {"[probe]", "[servo]", "[device]", "[[object]]\nshape = \"plane\""}) {
+        folder.write("wrong.toml", std::string(table) + "\nqqqqqqqqqqqqq = 1\n");
+        const std::string said = load_scene(folder.path() / "wrong.toml", resolve_flat, open_scripted).diagnostics;
+        const std::string before = "it may hold ";
+        const std::size_t at = said.find(before);
+        REQUIRE(at != std::string::npos);
+        std::istringstream keys(said.substr(at + before.size(), said.find('\n', at) - at - before.size()));
+        for (std::string key; keys >> key;) {
+            if (key.back() == ',') key.pop_back();
+            if (key == "radius_m" || key == "shape") continue;
+            CAPTURE(table, key);
+            CHECK(scene.find("\n" + key + " = ") != std::string::npos);
+        }
+    }
 }
 
 TEST_CASE("a scene of one line has the defaults of the documentation")

@@ -18,16 +18,19 @@ using HeightFunction = std::function<double(const haptel_point&, glm::dvec3& gra
 inline constexpr uint32_t reads_everything =
     HAPTEL_READS_POINT | HAPTEL_READS_NORMAL | HAPTEL_READS_UV | HAPTEL_READS_TIME;
 
+// Writes the whole sample, which comes with material scales of 1 and the rest 0.
+using SampleFunction = std::function<void(const haptel_point&, haptel_sample&)>;
+
 // A binding of the function, whose height is promised to stay within [minimum, maximum].
-inline TextureBinding lambda_texture(HeightFunction function, double minimum_m, double maximum_m,
-                                     uint32_t reads = reads_everything)
+inline TextureBinding sample_lambda(SampleFunction function, double minimum_m, double maximum_m,
+                                    uint32_t reads = reads_everything)
 {
     struct Block {
         haptel_block_head head = {};
-        const HeightFunction* function = nullptr;
+        const SampleFunction* function = nullptr;
     };
     struct Owner {
-        HeightFunction function;
+        SampleFunction function;
         Block block;
         haptel_texture texture = {};
     };
@@ -37,14 +40,12 @@ inline TextureBinding lambda_texture(HeightFunction function, double minimum_m, 
     owner->texture.abi = HAPTEL_ABI_VERSION;
     owner->texture.size = sizeof(haptel_texture);
     owner->texture.reads = reads;
+    owner->texture.writes = HAPTEL_WRITES_STIFFNESS_SCALE | HAPTEL_WRITES_FRICTION_SCALE;
     owner->texture.block_size = sizeof(Block);
     owner->texture.name = "lambda";
     owner->texture.height_gradient = [](const haptel_point* point, const void* block, haptel_sample* sample) {
-        glm::dvec3 gradient(0);
-        sample->height_m = (*static_cast<const Block*>(block)->function)(*point, gradient);
-        for (int i = 0; i < 3; ++i) sample->gradient[i] = gradient[i];
-        sample->stiffness_scale = sample->friction_scale = 1;
-        sample->faults = 0;
+        *sample = {0, {0, 0, 0}, 1, 1, 0};
+        (*static_cast<const Block*>(block)->function)(*point, *sample);
     };
 
     TextureBinding binding;
@@ -54,6 +55,19 @@ inline TextureBinding lambda_texture(HeightFunction function, double minimum_m, 
     binding.facts.height_max_m = maximum_m;
     binding.owner = std::move(owner);
     return binding;
+}
+
+// The same of height and gradient alone.
+inline TextureBinding lambda_texture(HeightFunction function, double minimum_m, double maximum_m,
+                                     uint32_t reads = reads_everything)
+{
+    return sample_lambda(
+        [function = std::move(function)](const haptel_point& point, haptel_sample& sample) {
+            glm::dvec3 gradient(0);
+            sample.height_m = function(point, gradient);
+            for (int i = 0; i < 3; ++i) sample.gradient[i] = gradient[i];
+        },
+        minimum_m, maximum_m, reads);
 }
 
 inline TextureBinding flat_texture(double height_m)

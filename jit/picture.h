@@ -1,0 +1,41 @@
+// Pictures as numbers: what image_file.cpp asks of each kind of file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace haptel::jit {
+
+struct Picture {
+    // Rows from the lowest up. Whole numbers of a file without a sign: 0 to 1, with a sign: -1 to 1; real ones as they
+    // are. A colour counts by its brightness, transparency not at all.
+    std::vector<double> gray;
+    int64_t width = 0, height = 0;
+    std::string error, hint; // why there is none; the former empty: there is one
+};
+
+// Bytes are anybody's: what is no picture, damaged or cut off is an error in words and never more.
+Picture read_common_picture(std::string_view bytes); // PNG, JPEG, BMP, TGA, PGM
+Picture read_tiff(std::string_view bytes);
+Picture read_exr(std::string_view bytes);
+
+// By the first bytes.
+bool is_tiff(std::string_view bytes);
+bool is_exr(std::string_view bytes);
+
+Picture no_picture(std::string error, std::string hint = {});
+
+// Asked before memory is taken for texels. Empty: no error yet, and a picture of that size, all 0.
+Picture picture_of(int64_t width, int64_t height);
+
+// The largest side and number of texels that a picture may have.
+int64_t picture_side_max();
+
+inline double brightness(double red, double green, double blue)
+{
+    return 0.299 * red + 0.587 * green + 0.114 * blue; // ITU-R BT.601
+}
+
+} // namespace haptel::jit
