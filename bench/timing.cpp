@@ -34,7 +34,7 @@ Times summary(std::vector<double> times)
         const auto index = static_cast<size_t>(std::ceil(share * static_cast<double>(times.size())));
         return times[std::max<size_t>(index, 1) - 1];
     };
-    return {rank(0.5), rank(0.99)};
+    return {rank(0.5), rank(0.99), rank(0.999)};
 }
 
 } // namespace haptel::bench

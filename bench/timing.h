@@ -8,7 +8,7 @@ namespace haptel::bench {
 
 // Of times in one unit.
 struct Times {
-    double median = 0, p99 = 0; // p99: the nearest rank, which is the slowest of fewer than 100
+    double median = 0, p99 = 0, p999 = 0; // the nearest rank: p99 is the slowest of fewer than 100
 };
 
 double milliseconds(const std::function<void()>& work); // as the clock on the wall runs

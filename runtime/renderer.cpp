@@ -47,10 +47,10 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     if (std::exchange(started_, true)) period_ += periods;
     result.time_s = static_cast<double>(period_) * period_s_;
     texture_period_ += periods;
-    // Who is out of reach is looked at in turn, so that nobody keeps a texture that is to be freed.
+    // Who is out of reach is looked at in turn, now and then, so that nobody keeps a texture that is to be freed.
     if (!objects_.empty()) {
         advance_texture(objects_.front());
-        advance_texture(objects_[texture_period_ % objects_.size()]);
+        if (texture_period_ % 8 == 0) advance_texture(objects_[texture_period_ / 8 % objects_.size()]);
         result.binding = objects_.front().texture.to().serial;
     }
     for (const uint32_t object : reach_.awake()) advance_texture(objects_[object]);
@@ -75,9 +75,14 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
         const uint32_t number = reach_.awake()[i];
         Touched& touched = objects_[number];
         if (touched.asleep) wake(touched);
-        const uint64_t skipped_before = touched.contact.counters().skipped;
+        const ContactCounters& counters = touched.contact.counters();
+        const uint64_t skipped = counters.skipped, queries = counters.sweeps, triangles = counters.triangles_tested,
+                       steps = counters.walk_steps;
         const std::span<const Contact> contacts = update_contact(touched, pose, periods);
-        no_query = no_query && touched.contact.counters().skipped > skipped_before;
+        no_query = no_query && counters.skipped > skipped;
+        work_.queries += counters.sweeps - queries;
+        work_.triangles += counters.triangles_tested - triangles;
+        work_.steps += counters.walk_steps - steps;
         if (contacts.empty()) {
             touched.friction_share = 0;
             if (const double gap_m = gap_to_sleep_m(touched, pose, way_m); gap_m > 0) {

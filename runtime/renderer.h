@@ -48,6 +48,12 @@ struct TickResult {
     uint32_t faults = 0;
 };
 
+// Of all objects since the renderer was made: walks through trees of boxes, triangles that these delivered, and steps
+// of proxies over surfaces.
+struct ContactWork {
+    uint64_t queries = 0, triangles = 0, steps = 0;
+};
+
 class Renderer {
 public:
     // device_force_max_n: what the motors can do; 0: unknown, the scene's limit alone holds.
@@ -61,6 +67,7 @@ public:
 
     double force_limit_n() const noexcept { return force_limit_n_; }
     const SkippedStages& skipped() const noexcept { return skipped_; }
+    const ContactWork& work() const noexcept { return work_; }
     // Bindings published to the scene's slots since this renderer was made.
     uint64_t reloads() const noexcept;
 
@@ -104,6 +111,7 @@ private:
     uint64_t rise_period_ = 0;    // the force rises from this one on
     bool interrupted_ = false;    // the tick before sent no force, for a fault
     SkippedStages skipped_;
+    ContactWork work_;
     std::optional<DevicePose> last_pose_; // that was finite
     HandVelocity velocity_;               // world frame
 };

@@ -4,6 +4,7 @@
 #include "tools/bench_batch.h"
 #include "tools/bench_compile.h"
 #include "tools/bench_math.h"
+#include "tools/bench_tick.h"
 #include "tools/bench_verdict.h"
 #include "tools/command.h"
 #include "tools/precisions.h"
@@ -110,6 +111,19 @@ Figures math_figures(const BenchOptions& options)
     return figures;
 }
 
+Figures tick_figures(const BenchOptions& options)
+{
+    Progress progress;
+    const std::vector<bench::TickRow> rows =
+        bench::bench_tick(options.quick, [&](double share) { progress.show(share); });
+    Figures figures;
+    for (const bench::TickRow& row : rows) figures.rows.push_back(to_json(row));
+    figures.more.emplace_back("growth", growth_json(rows));
+    figures.table = to_table(rows) + growth_table(rows);
+    figures.csv = to_csv(rows);
+    return figures;
+}
+
 // Every line of a table tells where it was taken.
 std::string stamped(const std::string& csv, const bench::Machine& machine)
 {
@@ -159,6 +173,7 @@ ExitCode run(const BenchOptions& given)
     const Figures figures = options.what == "compile" ? compile_figures(options)
                             : options.what == "batch" ? batch_figures(options)
                             : options.what == "math"  ? math_figures(options)
+                            : options.what == "tick"  ? tick_figures(options)
                                                       : accuracy_figures(options, name + ", commit " + machine.commit);
     if (!figures.error.empty()) {
         say_error(figures.error);
@@ -188,10 +203,12 @@ Command bench_command(CLI::App& app)
     const auto options = std::make_shared<BenchOptions>();
     CLI::App* command = app.add_subcommand("bench", "Figures: error against time, and how long text takes to code");
     command
-        ->add_option("what", options->what,
-                     "compile: from text to code; accuracy: error of the gradient against time, ours and plain C++; "
-                     "batch: many points of every texture; math: elementary functions")
-        ->check(CLI::IsMember({"compile", "accuracy", "batch", "math"}))
+        ->add_option(
+            "what", options->what,
+            "compile: from text to code; accuracy: error of the gradient against time, ours and plain C++; "
+            "batch: many points of every texture; math: elementary functions; tick: of the servo, by probe, mesh "
+            "and number of objects")
+        ->check(CLI::IsMember({"compile", "accuracy", "batch", "math", "tick"}))
         ->capture_default_str();
     command->add_option("paths", options->paths, "batch: texture files, FILE:NAME, or folders [stdlib examples]")
         ->type_name("PATH");
@@ -212,6 +229,7 @@ Command bench_command(CLI::App& app)
                            "  haptel bench accuracy --out figures\n"
                            "  haptel bench batch stdlib examples --set picture=examples/scenes/waves.png\n"
                            "  haptel bench math --out figures\n"
+                           "  haptel bench tick --quick\n"
                            "  haptel bench compile --quick --json --out figures");
     return {command, [options] { return run(*options); }};
 }

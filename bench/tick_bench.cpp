@@ -1,0 +1,188 @@
+#include "bench/tick_bench.h"
+
+#include "jit/texture.h"
+#include "runtime/renderer.h"
+#include "runtime/shapes.h"
+#include "stdlib/stdlib.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+
+namespace haptel::bench {
+namespace {
+
+using namespace haptel::runtime;
+
+constexpr double radius_m = 0.05, bump_m = 1e-3, depth_m = 1e-3, way_per_tick_m = 1e-4;
+
+// Small waves all round, smooth: facets nearly in one plane, shallow creases.
+double bumpy_radius_m(const glm::dvec3& d)
+{
+    return radius_m + bump_m * std::sin(9 * d.x) * std::sin(9 * d.y) * std::sin(9 * d.z);
+}
+
+std::shared_ptr<const Surface> bumpy_ball(uint32_t subdivisions)
+{
+    Mesh mesh = make_icosphere(subdivisions);
+    for (glm::dvec3& p : mesh.positions_m) p = glm::normalize(p) * bumpy_radius_m(glm::normalize(p));
+    return build_surface(mesh).surface;
+}
+
+// `height_m` above the surface, below it where negative, over the whole ball.
+glm::dvec3 place_on_stroke(int tick, double height_m)
+{
+    const double angle = way_per_tick_m / radius_m * tick, z = 0.7 * std::sin(0.37 * angle);
+    const double across = std::sqrt(1 - z * z);
+    const glm::dvec3 d(across * std::cos(angle), across * std::sin(angle), z);
+    return d * (bumpy_radius_m(d) + height_m);
+}
+
+TextureBinding stone()
+{
+    const char* const text = "texture stone() { return 60um * fbm(p / 2mm, 4); }";
+    const jit::CompiledTextures compiled = jit::compile_texture(text);
+    if (!compiled.program) throw std::runtime_error(compiled.rendered());
+    TextureRequest request;
+    for (int i = 0; i < 3; ++i) request.box_minimum_m[i] = -0.06, request.box_maximum_m[i] = 0.06;
+    const TextureResult bound = jit::make_binding(compiled.program, "stone", request);
+    if (!bound.binding) throw std::runtime_error(bound.diagnostics);
+    return *bound.binding;
+}
+
+struct Kind {
+    std::string scene;
+    ProbeSettings probe;
+    bool textured = true;
+    double height_m = -depth_m; // of the hand
+};
+
+// One row in the making.
+class Rendered {
+public:
+    Rendered(const Kind& kind, const std::shared_ptr<const Surface>& surface, uint64_t objects,
+             const TextureBinding& texture)
+        : kind_(kind), surface_(surface)
+    {
+        auto scene = std::make_shared<Scene>();
+        scene->probe = kind.probe;
+        scene->servo.force_rise_s = 0;
+        const auto side = static_cast<uint64_t>(std::ceil(std::cbrt(static_cast<double>(objects))));
+        for (uint64_t i = 0; i < objects; ++i) { // on a grid, so near that the hand passes between them
+            SceneObject object;
+            object.surface = surface;
+            object.texture = std::make_shared<TextureSlot>(kind.textured ? texture : TextureBinding{});
+            object.placement.position_m =
+                0.15 * glm::dvec3(static_cast<double>(i % side), static_cast<double>(i / side % side),
+                                   static_cast<double>(i / (side * side)));
+            scene->objects.push_back(std::move(object));
+        }
+        row_.scene = kind.scene;
+        row_.objects = objects;
+        row_.triangles = surface->faces.size();
+        renderer_.emplace(std::move(scene));
+        const glm::dvec3 start = place(0, 0.02);
+        renderer_->tick({start, 1.5 * start});
+        before_ = start;
+    }
+
+    void tick(int number, double clock_ns)
+    {
+        const glm::dvec3 hand = place(number, kind_.height_m);
+        const ContactWork before = renderer_->work();
+        const auto begin = std::chrono::steady_clock::now();
+        const TickResult felt = renderer_->tick({hand, 1.5 * hand});
+        const auto end = std::chrono::steady_clock::now();
+        const auto hit = surface_->first_hit(before_, hand);
+        const auto walked = std::chrono::steady_clock::now();
+        found_ += hit.has_value();
+        before_ = hand;
+        const ContactWork after = renderer_->work();
+        touching_ += felt.contacts > 0;
+        const auto ns = [&](auto from, auto to) {
+            return std::max(0.0, std::chrono::duration<double, std::nano>(to - from).count() - clock_ns);
+        };
+        tick_ns_.push_back(ns(begin, end));
+        tree_ns_.push_back(ns(end, walked));
+        queries_.push_back(static_cast<double>(after.queries - before.queries));
+        touched_.push_back(static_cast<double>(after.triangles - before.triangles + after.steps - before.steps));
+    }
+
+    TickRow row() const
+    {
+        TickRow row = row_;
+        row.contact = static_cast<double>(touching_) / static_cast<double>(tick_ns_.size());
+        row.tick_ns = summary(tick_ns_);
+        row.tree_ns = summary(tree_ns_);
+        row.queries = summary(queries_);
+        row.triangles_touched = summary(touched_);
+        return row;
+    }
+
+private:
+    // What lies on the ball lies its own radius higher.
+    glm::dvec3 place(int number, double height_m) const
+    {
+        return place_on_stroke(number, height_m + (kind_.probe.kind == ProbeKind::sphere ? kind_.probe.radius_m : 0));
+    }
+
+    Kind kind_;
+    std::shared_ptr<const Surface> surface_;
+    TickRow row_;
+    std::optional<Renderer> renderer_;
+    glm::dvec3 before_{0};
+    std::vector<double> tick_ns_, tree_ns_, queries_, touched_;
+    uint64_t touching_ = 0, found_ = 0;
+};
+
+double clock_ns()
+{
+    std::vector<double> times;
+    for (int i = 0; i < 10000; ++i) {
+        const auto begin = std::chrono::steady_clock::now();
+        times.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count());
+    }
+    return summary(times).median;
+}
+
+} // namespace
+
+std::vector<TickRow> bench_tick(bool quick, const std::function<void(double)>& progress)
+{
+    const TextureBinding texture = stone();
+    const Kind textured{"fbm4", {}}, bare{"no texture", {}, false}, free{"free", {}, true, 2e-3};
+    const Kind stylus{"stylus, fbm4", {ProbeKind::stylus}},
+        ball{"ball of 2.5 mm, fbm4", {ProbeKind::sphere, 0, 2.5e-3}};
+    std::vector<Rendered> all;
+    std::shared_ptr<const Surface> middle;
+    for (const uint32_t subdivisions : {3u, 5u, 6u, 7u}) {
+        const auto surface = bumpy_ball(subdivisions);
+        if (subdivisions == 5) middle = surface;
+        for (const Kind& kind : {textured, bare, free, stylus, ball}) all.emplace_back(kind, surface, 1, texture);
+    }
+    for (const uint64_t objects : {uint64_t{30}, uint64_t{1000}}) all.emplace_back(textured, middle, objects, texture);
+
+    const int ticks = quick ? 10'000 : 100'000;
+    const double clock = clock_ns();
+    constexpr int turn = 5000; // ticks of one row before the next: caches are warm, as in a servo
+    for (int first = 0; first < ticks; first += turn) {
+        progress(static_cast<double>(first) / ticks);
+        for (Rendered& row : all)
+            for (int tick = first; tick < first + turn; ++tick) row.tick(tick, clock);
+    }
+    progress(1);
+    std::vector<TickRow> rows;
+    for (const Rendered& row : all) rows.push_back(row.row());
+    return rows;
+}
+
+Growth growth(const TickRow& first, const TickRow& last)
+{
+    return {last.tick_ns.median / first.tick_ns.median, last.tick_ns.p99 / first.tick_ns.p99,
+            last.triangles_touched.p99 / first.triangles_touched.p99};
+}
+
+} // namespace haptel::bench
