@@ -88,7 +88,7 @@ haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& text
 
 haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,
                             std::span<const ir::SplineImage* const> images, const haptel_block_head& head,
-                            double normal_turn_max_per_m)
+                            const TextureRequest& request)
 {
     ir::BoundsBox box = anywhere();
     for (size_t i = 0; i < 3; ++i) {
@@ -100,9 +100,15 @@ haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture
     set(box, Input::center_x, head.center, head.center);
     set(box, Input::extent_x, head.extent, head.extent);
     box.input[static_cast<size_t>(Input::footprint)] = {head.footprint_m, head.footprint_m};
-    std::fill_n(box.input + static_cast<size_t>(Input::n_dp_00), 9,
-                Interval{-normal_turn_max_per_m, normal_turn_max_per_m});
-    box.normal_turn_max_per_m = normal_turn_max_per_m;
+    const double turn = request.normal_turn_max_per_m;
+    std::fill_n(box.input + static_cast<size_t>(Input::n_dp_00), 9, Interval{-turn, turn});
+    box.normal_turn_max_per_m = turn;
+    for (size_t i = 0; i < 2; ++i) {
+        box.input[static_cast<size_t>(Input::uv_x) + i] = {request.uv.minimum[i], request.uv.maximum[i]};
+        set(box, static_cast<Input>(static_cast<size_t>(Input::uv_dp_00) + 3 * i), request.uv.dp_minimum[i],
+            request.uv.dp_maximum[i]);
+        box.uv_slope_max_per_m[i] = request.uv.slope_max_per_m[i];
+    }
     for (double value : values) box.parameters.push_back({value, value});
     box.images.assign(images.begin(), images.end());
     return facts(module, texture, box, evaluations_over_box);

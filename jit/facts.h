@@ -4,6 +4,7 @@
 #include "lang/abi.h"
 #include "lang/ir/ir.h"
 #include "lang/ir/spline_image.h"
+#include "lang/texture_binding.h"
 
 #include <span>
 
@@ -15,10 +16,10 @@ haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& text
 // Nothing is known, but for the operations: their count costs nothing.
 haptel_facts no_facts(const ir::Module& module, const ir::Texture& texture);
 
-// For points of the box, these values and images (by Texture::parameters, SI), this footprint and normals that turn no
-// faster than that.
+// For points of the box, these values and images (by Texture::parameters, SI), this footprint, and normals and mesh
+// coordinates as the request knows them.
 haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,
                             std::span<const ir::SplineImage* const> images, const haptel_block_head& head,
-                            double normal_turn_max_per_m);
+                            const TextureRequest& request);
 
 } // namespace haptel::jit

@@ -14,11 +14,14 @@ namespace haptel::jit {
 
 namespace {
 
-// A draft does not wait for the inliner, which takes as long as all else: its calls make it twice as slow as full code.
-llvm::ModulePassManager short_list(Effort effort)
+// A short draft does not wait for the inliner, which takes as long as all else: the calls that stay make it half as
+// fast; a long one is compiled sooner with it.
+constexpr unsigned short_draft = 2000; // instructions
+
+llvm::ModulePassManager short_list(bool inlines)
 {
     llvm::ModulePassManager passes;
-    if (effort != Effort::draft) {
+    if (inlines) {
         passes.addPass(llvm::ModuleInlinerWrapperPass(llvm::getInlineParams(250)));
         passes.addPass(llvm::GlobalDCEPass());
     }
@@ -59,8 +62,10 @@ void optimise(llvm::Module& module, llvm::TargetMachine& machine, Effort effort)
     passes.registerFunctionAnalyses(functions);
     passes.registerLoopAnalyses(loops);
     passes.crossRegisterProxies(loops, functions, components, modules);
-    llvm::ModulePassManager list =
-        effort != Effort::full ? short_list(effort) : passes.buildPerModuleDefaultPipeline(llvm::OptimizationLevel::O2);
+    const bool inlines = effort != Effort::draft || module.getInstructionCount() > short_draft;
+    llvm::ModulePassManager list = effort != Effort::full
+                                       ? short_list(inlines)
+                                       : passes.buildPerModuleDefaultPipeline(llvm::OptimizationLevel::O2);
     list.run(module, modules);
     align_stack_of_wide_vectors(module);
 }

@@ -3,7 +3,6 @@
 #include "jit/object_cache.h"
 
 #include <algorithm>
-#include <system_error>
 #include <thread>
 
 namespace haptel::jit {
@@ -73,12 +72,8 @@ Fetch::Fetch(SharedCode& from, std::vector<SharedCode::Function> wanted, Effort 
             missing.push_back({std::move(function), {}, {}});
     }
     const size_t others = std::max(std::thread::hardware_concurrency(), 2u) - 1;
-    try {
-        while (helpers.size() < std::min(missing.size(), others))
-            helpers.push_back(std::async(std::launch::async, [this] { work(); }));
-    } catch (const std::system_error&) {
-        // No more threads: finish() does what is left.
-    }
+    while (helpers.size() < std::min(missing.size(), others)) // deferred where no thread is to be had
+        helpers.push_back(std::async(std::launch::async | std::launch::deferred, [this] { work(); }));
 }
 
 void Fetch::work()

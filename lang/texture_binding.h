@@ -27,6 +27,17 @@ struct TextureBinding {
     haptel_facts facts = {};     // for this block and the object's box
 };
 
+// How a mesh is unrolled: the range of its coordinates u and v, of their Jacobian, and how fast each of them changes at
+// most (the length of its row). Infinite where that is not known.
+struct UvFigures {
+    static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+    double minimum[2] = {-infinity, -infinity}, maximum[2] = {infinity, infinity};
+    double dp_minimum[2][3] = {{-infinity, -infinity, -infinity}, {-infinity, -infinity, -infinity}}; // 1/m, along p
+    double dp_maximum[2][3] = {{infinity, infinity, infinity}, {infinity, infinity, infinity}};
+    double slope_max_per_m[2] = {infinity, infinity};
+};
+
 // What an object asks for. Text stays text: only the resolver knows parameters' types and units.
 struct TextureRequest {
     std::string reference; // "rock.haptel:rock" (a path, absolute after scene loading, a colon, a texture's name)
@@ -37,6 +48,7 @@ struct TextureRequest {
     // How fast the object's normals turn along its surface (spectral norm of n_dp); infinite where that is not known,
     // and then what is mapped by the normal has no bound of its slope.
     double normal_turn_max_per_m = std::numeric_limits<double>::infinity();
+    UvFigures uv = {};
     double servo_period_s = 0; // of the servo that will call it and must not be held up; 0: none
     std::string folder = {};   // that relative paths among the values start from; empty: the working directory
 };

@@ -2,6 +2,9 @@
 
 #include "runtime/fan.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace haptel::runtime {
 
 namespace {
@@ -76,6 +79,37 @@ Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::d
     if (!surface.uv.empty())
         for (int i = 0; i < 3; ++i) shading.uv += surface.uv[face][size_t(i)] * barycentric[i];
     return shading;
+}
+
+UvFigures uv_figures(const Surface& surface)
+{
+    constexpr double slack = 1e-12; // a mean of corners may round past them
+    UvFigures figures;
+    for (int i = 0; i < 2; ++i) {
+        figures.minimum[i] = figures.maximum[i] = figures.slope_max_per_m[i] = 0;
+        for (int j = 0; j < 3; ++j) figures.dp_minimum[i][j] = figures.dp_maximum[i][j] = 0;
+    }
+    const auto take_in = [](double value, bool first, double& minimum, double& maximum) {
+        minimum = first ? value : std::min(minimum, value);
+        maximum = first ? value : std::max(maximum, value);
+    };
+    for (uint32_t face = 0; face < surface.uv.size(); ++face) {
+        const bool first = face == 0;
+        const glm::dmat3x2 uv_dp = shade(surface, face, 0, {1, 0, 0}).uv_dp; // the same all over the face
+        for (int i = 0; i < 2; ++i) {
+            for (size_t corner = 0; corner < 3; ++corner)
+                take_in(surface.uv[face][corner][i], first && corner == 0, figures.minimum[i], figures.maximum[i]);
+            for (int j = 0; j < 3; ++j) take_in(uv_dp[j][i], first, figures.dp_minimum[i][j], figures.dp_maximum[i][j]);
+            const double slope = glm::length(glm::dvec3(uv_dp[0][i], uv_dp[1][i], uv_dp[2][i]));
+            figures.slope_max_per_m[i] = std::max(figures.slope_max_per_m[i], slope * (1 + slack));
+        }
+    }
+    for (int i = 0; i < 2; ++i) {
+        const double margin = slack * std::max(std::abs(figures.minimum[i]), std::abs(figures.maximum[i]));
+        figures.minimum[i] -= margin;
+        figures.maximum[i] += margin;
+    }
+    return figures;
 }
 
 } // namespace haptel::runtime

@@ -2,6 +2,7 @@
 // derivatives along the facet, which a texture that reads them needs for its gradient.
 #pragma once
 
+#include "lang/texture_binding.h"
 #include "runtime/surface.h"
 
 namespace haptel::runtime {
@@ -24,5 +25,8 @@ struct Shading {
 
 // All of it at once. `normal` equals shading_normal bit for bit.
 Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept;
+
+// What the mesh's coordinates are bound by, over all faces; all 0 without any.
+UvFigures uv_figures(const Surface& surface);
 
 } // namespace haptel::runtime

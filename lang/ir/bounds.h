@@ -24,6 +24,8 @@ struct BoundsBox {
     std::vector<const SplineImage*> images = {}; // likewise; null or missing: any image
     // Spectral norm of the normal's Jacobian, which says more than bounds of its nine numbers.
     double normal_turn_max_per_m = std::numeric_limits<double>::infinity();
+    // Likewise of the length of each row of the Jacobian of uv.
+    double uv_slope_max_per_m[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 };
 
 // Where a number may end: an operation whose operands are finite, and whose result, or its derivative as an entry

@@ -65,7 +65,11 @@ Variation variation_of_input(const BoundsBox& box, Input input, Span span)
         normal.slope = std::min(normal.slope, box.normal_turn_max_per_m);
         return normal;
     }
-    if (input <= Input::uv_y) return from(Input::uv_x, Input::uv_dp_00, 3);
+    if (input <= Input::uv_y) {
+        Variation coordinate = from(Input::uv_x, Input::uv_dp_00, 3);
+        coordinate.slope = std::min(coordinate.slope, box.uv_slope_max_per_m[input == Input::uv_y]);
+        return coordinate;
+    }
     return {};
 }
 

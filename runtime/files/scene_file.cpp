@@ -2,6 +2,7 @@
 
 #include "runtime/files/mesh_file.h"
 #include "runtime/files/table_reader.h"
+#include "runtime/shading.h"
 #include "runtime/shapes.h"
 
 #include <algorithm>
@@ -265,6 +266,7 @@ void load_texture(ObjectText& text, const SceneText& scene, const std::filesyste
     }
     request.footprint_m = 2 * scene.servo.v_max_m_per_s / scene.servo.rate_hz;
     request.normal_turn_max_per_m = text.object.surface->normal_turn_max_per_m;
+    request.uv = uv_figures(*text.object.surface);
     request.servo_period_s = 1 / scene.servo.rate_hz;
 
     TextureResult result = textures(request);

@@ -324,6 +324,10 @@ TEST_CASE("force models, creases and the turning of normals reach the scene")
         REQUIRE(asked);
         CHECK(asked->normal_turn_max_per_m == scene.objects[0].surface->normal_turn_max_per_m);
         CHECK(std::abs(asked->normal_turn_max_per_m - per_m) <= 0.06 * per_m);
+        // A box's faces have 0 .. 1 over 0.1 m, an icosphere has no coordinates.
+        const bool is_box = std::string_view(object).find("box") != std::string_view::npos;
+        CHECK(std::abs(asked->uv.slope_max_per_m[0] - (is_box ? 10 : 0)) < 1e-6);
+        CHECK(std::abs(asked->uv.maximum[1] - (is_box ? 1 : 0)) < 1e-9);
     }
     CHECK(load(folder, "[[object]]\nshape = \"box\"\ncrease_deg = 100\n")
               .scene->objects[0]

@@ -211,3 +211,40 @@ TEST_CASE("bounds of a texture that reads the normal hold on the mesh that it is
         CHECK(std::isinf(jit::make_binding(program, "in_three_planes", unknown).binding->facts.slope_max));
     }
 }
+
+TEST_CASE("bounds of a texture that reads mesh coordinates hold on the mesh that it is bound for, and are near")
+{
+    const auto program = compiled(source);
+    for (const std::string_view shape : {"plane", "box", "sphere", "torus", "drawn"}) {
+        Mesh mesh = shape == "drawn" ? drawn_plane(0.1, 5, glm::dmat2(4, 1, -3, 2), dvec2(7, 0)) : *make_shape(shape);
+        scale_to_size(mesh, 0.1);
+        const auto surface = build_surface(mesh).surface;
+        const TextureBinding binding = bound_for(program, "printed", *surface);
+        const UvFigures figures = uv_figures(*surface);
+        std::mt19937_64 random(8);
+        double steepest = 0;
+        for (int i = 0; i < 50000; ++i) {
+            const SurfacePoint point =
+                point_on(*surface, uint32_t(random() % surface->faces.size()), uint32_t(i % 2), random_weights(random));
+            steepest = std::max(steepest, slope_of(binding, point));
+            for (int k = 0; k < 2; ++k) {
+                CHECK((point.shading.uv[k] >= figures.minimum[k] && point.shading.uv[k] <= figures.maximum[k]));
+                double squares = 0;
+                for (int j = 0; j < 3; ++j) {
+                    const double partial = point.shading.uv_dp[j][k];
+                    CHECK((partial >= figures.dp_minimum[k][j] && partial <= figures.dp_maximum[k][j]));
+                    squares += partial * partial;
+                }
+                CHECK(std::sqrt(squares) <= figures.slope_max_per_m[k]);
+            }
+        }
+        CAPTURE(shape, steepest, binding.facts.slope_max);
+        CHECK(steepest <= binding.facts.slope_max);
+        // At the poles of the sphere the coordinates crowd together, where no random point comes.
+        CHECK(binding.facts.slope_max < (shape == "sphere" ? 40 : 4) * steepest);
+        CHECK(std::isinf(jit::make_binding(program, "printed", request_over(0.1)).binding->facts.slope_max));
+    }
+    const auto ball = build_surface(make_icosphere(2)).surface; // has none
+    CHECK((uv_figures(*ball).maximum[0] == 0 && uv_figures(*ball).slope_max_per_m[1] == 0));
+    CHECK(bound_for(program, "printed", *ball).facts.slope_max == 0);
+}

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/renderer.h"
+#include "runtime/shading.h"
 #include "tests/jit/samples.h"
 #include "tests/support/touch_scenes.h"
 
@@ -23,6 +24,7 @@ inline TextureBinding bound_for(const std::shared_ptr<const jit::CompiledProgram
         request.box_maximum_m[i] = surface.box_maximum_m[i];
     }
     request.normal_turn_max_per_m = surface.normal_turn_max_per_m;
+    request.uv = runtime::uv_figures(surface);
     request.parameters = std::move(values);
     request.folder = folder;
     TextureResult result = jit::make_binding(program, texture, request);
