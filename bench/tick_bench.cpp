@@ -77,7 +77,7 @@ public:
             object.texture = std::make_shared<TextureSlot>(kind.textured ? texture : TextureBinding{});
             object.placement.position_m =
                 0.15 * glm::dvec3(static_cast<double>(i % side), static_cast<double>(i / side % side),
-                                   static_cast<double>(i / (side * side)));
+                                  static_cast<double>(i / (side * side)));
             scene->objects.push_back(std::move(object));
         }
         row_.scene = kind.scene;

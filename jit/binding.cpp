@@ -164,8 +164,7 @@ TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program
 
     std::vector<const ir::SplineImage*> views; // flat where there is none
     for (const auto& image : images) views.push_back(image ? image.get() : &flat_image());
-    const haptel_facts facts =
-        facts_over_box(program->module(), source, values, views, head, request);
+    const haptel_facts facts = facts_over_box(program->module(), source, values, views, head, request);
     const bool is_bounded = std::isfinite(facts.height_min_m) && std::isfinite(facts.height_max_m);
     if (!is_bounded && unbounded == Unbounded::refused) {
         complaints.add("the height of texture '" + source.name +

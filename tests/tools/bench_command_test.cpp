@@ -41,6 +41,23 @@ TEST_CASE("bench compile: rows by length, with machine, commit and flags")
     CHECK(run_command("bench --quick --out /proc/none").code == 1);
 }
 
+TEST_CASE("bench tick: what a tick looks at does not grow with the mesh or the scene")
+{
+    const Ran ran = run_command("bench tick --quick --json");
+    REQUIRE(ran.code == 0);
+    const Json json = Json::parse(ran.out);
+    for (const Json& row : json["rows"]) {
+        CAPTURE(row["scene"].get<std::string>(), row["triangles"].get<int>(), row["objects"].get<int>());
+        CHECK(row["tick_ns"]["median"].get<double>() > 0);
+        CHECK(row["tree_ns"]["median"].get<double>() > 0);
+        CHECK(row["contact"].get<double>() == (row["scene"] == "free" ? 0 : 1));
+        if (row["scene"] != "fbm4") continue;
+        CHECK(row["queries"]["p99"].get<double>() == 0); // in contact a proxy walks, and asks no tree
+        CHECK(row["triangles_touched"]["p99"].get<double>() <= 6);
+    }
+    REQUIRE(json["growth"].size() == 6);
+}
+
 TEST_CASE("bench accuracy: every way computes the same texture, each as closely as it can")
 {
     const Folder folder;
