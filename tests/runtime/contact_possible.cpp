@@ -2,15 +2,12 @@
 // free space, by exact arithmetic that shares nothing with what it judges.
 #include "runtime/contact.h"
 
-#include "runtime/files/mesh_file.h"
 #include "tests/runtime/accomplice.h"
-#include "tests/runtime/meshes.h"
+#include "tests/runtime/long_run.h"
 #include "tests/runtime/wild_hand.h"
 #include "tests/support/catch.h"
 
-#include <cstdlib>
 #include <iostream>
-#include <sstream>
 
 using namespace haptel::runtime;
 using namespace haptel::test;
@@ -159,20 +156,9 @@ TEST_CASE("every step of the proxy is possible, on any mesh")
 TEST_CASE("every step of the proxy is possible, on any mesh: long run", "[.long]")
 {
     std::vector<NamedMesh> meshes = make_hard_meshes();
-    if (const char* files = std::getenv("HAPTEL_TEST_MESHES")) {
-        std::istringstream list(files);
-        for (std::string file; std::getline(list, file, ':');) {
-            MeshFileResult read = load_mesh(file);
-            if (!read.error.empty()) FAIL(read.error);
-            meshes.push_back({file, read.mesh});
-            meshes.push_back({file + ", far away", far_away(std::move(read.mesh))});
-        }
-    }
-    const auto number = [](const char* name, uint64_t otherwise) {
-        const char* text = std::getenv(name);
-        return text ? std::strtoull(text, nullptr, 10) : otherwise;
-    };
-    const uint64_t ticks = number("HAPTEL_TEST_TICKS", 100000), seed = number("HAPTEL_TEST_SEED", 1);
+    for (NamedMesh& read : meshes_of_environment()) meshes.push_back(std::move(read));
+    const uint64_t ticks = number_of_environment("HAPTEL_TEST_TICKS", 100000),
+                   seed = number_of_environment("HAPTEL_TEST_SEED", 1);
     Verdict sum;
     for (const auto& [name, mesh] : meshes) {
         const auto surface = surface_of(mesh);
