@@ -44,22 +44,33 @@ void Walk::settle()
             edge = i;
         }
         if (edge == 3) return;
-        const Proxy lower = on_edge(proxy_.face, proxy_.side, edge, proxy_.at);
-        if (may_go(proxy_.face, lower.at)) proxy_ = lower;
+        step_onto_edge(proxy_.face, proxy_.side, edge);
     } else if (proxy_.on == Proxy::On::edge) {
-        const Proxy lower = on_edge(proxy_.face, proxy_.side, proxy_.index, proxy_.at);
-        if (may_go(proxy_.face, lower.at)) proxy_ = lower;
+        step_onto_edge(proxy_.face, proxy_.side, proxy_.index);
     }
 }
 
-// The proxy at the point of the edge nearest to `at`, or at an end of the edge that is close.
-Proxy Walk::on_edge(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& at) const
+// Onto the near edge of the face that the proxy is on, or rather onto an end of it that is near. Where a wall is in the
+// way the proxy stays: false.
+bool Walk::step_onto_edge(uint32_t face, uint32_t side, uint32_t edge)
+{
+    for (const double ends : {feature, 0.0}) {
+        const Proxy lower = on_edge(face, side, edge, proxy_.at, ends);
+        if (!may_step(surface_, face, proxy_.at, lower.at)) continue;
+        proxy_ = lower;
+        return true;
+    }
+    return false;
+}
+
+// The proxy at the point of the edge nearest to `at`, or at an end of the edge that is nearer than `ends`.
+Proxy Walk::on_edge(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& at, double ends) const
 {
     const glm::dvec3 along = edge_vector(face, edge);
     const double length = glm::length(along);
     const double way = glm::dot(at - vertex(face, edge), along) / length;
-    const bool near_begin = way < feature;
-    const bool near_end = length - way < feature;
+    const bool near_begin = way < ends;
+    const bool near_end = length - way < ends;
     Proxy proxy = proxy_;
     proxy.face = face;
     proxy.side = side;
@@ -260,14 +271,11 @@ Walk::Step Walk::go_within(uint32_t face, uint32_t side, const glm::dvec3& targe
     const glm::dvec3 from = proxy_.at;
     if (const double share = open_share(surface_, face, from, end); share < 1) {
         proxy_.at += share * (end - from);
-        return went(from, true);
+        return went(from);
     }
     proxy_.at = end;
     if (exit == 3) return Step::stop;
-    const Proxy over = on_edge(face, side, exit, end);
-    if (!may_go(face, over.at)) return went(from, true);
-    proxy_ = over;
-    return Step::again;
+    return step_onto_edge(face, side, exit) ? Step::again : went(from);
 }
 
 // Along the edge toward the foot of the hand on it, at most to its end.
@@ -292,11 +300,12 @@ Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
     if (const double open = std::min(open_share(surface_, face, from, end), open_share(surface_, other, from, end));
         open < 1) {
         proxy_.at += open * (end - from);
-        return went(from, true);
+        return went(from);
     }
     proxy_.at = end;
-    const Proxy at_end = on_edge(face, side, edge, end);
-    if (!may_go(face, at_end.at) || !may_go(other, at_end.at)) return went(from, true);
+    const Proxy at_end = on_edge(face, side, edge, end, feature);
+    if (!may_step(surface_, face, proxy_.at, at_end.at) || !may_step(surface_, other, proxy_.at, at_end.at))
+        return went(from);
     proxy_ = at_end;
     return proxy_.on == Proxy::On::vertex && proxy_.at != from ? Step::again : Step::stop;
 }

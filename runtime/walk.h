@@ -42,7 +42,8 @@ private:
     }
 
     void settle();
-    Proxy on_edge(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& at) const;
+    Proxy on_edge(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& at, double ends) const;
+    bool step_onto_edge(uint32_t face, uint32_t side, uint32_t edge);
 
     Step from_face();
     bool touches_across(const SideEdge& link, uint32_t face, uint32_t edge) const;
@@ -63,9 +64,9 @@ private:
     Step from_edge_among_walls(const Cell& cell, uint32_t edge);
     Step descend(const Cell& cell, uint32_t owned, const Descent& descent, uint32_t from_edge);
     Step slide_along_crease(const Sheet& face, const Sheet& wall, uint32_t from_edge);
-    Step change_over(const Cell& cell, const Sheet& own, const Sheet& wall);
-    bool may_go(uint32_t face, const glm::dvec3& to) const;
-    Step went(const glm::dvec3& from, bool stopped);
+    Step change_over(const Cell& cell, uint32_t to_wall, uint32_t along);
+    Step went(const glm::dvec3& from);
+    Step turn();
 
     const Surface& surface_;
     Proxy& proxy_;

@@ -6,16 +6,18 @@ namespace haptel::runtime {
 
 using namespace tolerance;
 
-bool Walk::may_go(uint32_t face, const glm::dvec3& to) const
+// After a move that a wall has ended: on, now with that wall around, unless there was none.
+Walk::Step Walk::went(const glm::dvec3& from)
 {
-    return open_share(surface_, face, proxy_.at, to) == 1;
+    const double way = glm::distance(from, proxy_.at);
+    if (way < 1) return Step::stop;
+    return way > departure ? Step::again : turn();
 }
 
-// After a move that a wall may have ended: what is worth going on from.
-Walk::Step Walk::went(const glm::dvec3& from, bool stopped)
+// A step that leads no nearer by itself.
+Walk::Step Walk::turn()
 {
-    if (!stopped || glm::distance(from, proxy_.at) <= departure) return Step::stop;
-    return Step::again;
+    return ++count_.wall_turns > WalkCount::most_wall_turns ? Step::stop : Step::again;
 }
 
 Walk::Step Walk::from_face_among_walls()
@@ -41,29 +43,32 @@ bool Walk::walls_at_edge(uint32_t face, uint32_t edge, uint32_t side, Cell& cell
 }
 
 // At an edge there are two cells, of the one face and of the other, each as far as the plane that rises over the edge;
-// of a valley the other face bounds both. The steeper way counts.
+// of a valley the other face bounds both; beyond a border there is none. The steeper way counts.
 Walk::Step Walk::from_edge_among_walls(const Cell& cell, uint32_t edge)
 {
     const SideEdge faces[2] = {SideEdge(proxy_.face, edge, proxy_.side),
                                surface_.faces[proxy_.face].link[edge][proxy_.side]};
     const glm::dvec3& tip = vertex(faces[1].face(), previous(faces[1].edge()));
-    const bool valley =
-        faces[1].face() != proxy_.face && glm::dot(tip - vertex(proxy_.face, edge), cell.sheet[0].normal) > on_plane;
+    const bool border = faces[1].face() == proxy_.face;
+    const bool valley = !border && glm::dot(tip - vertex(proxy_.face, edge), cell.sheet[0].normal) > on_plane;
     Cell cells[2];
     Descent descents[2];
-    const uint32_t owned = valley ? 3 : 2;
+    uint32_t owned[2];
     for (uint32_t i = 0; i < 2; ++i) {
         const glm::dvec3 in = glm::normalize(inward(faces[i].face(), faces[i].edge()));
-        cells[i].add(cell.sheet[i]);
-        cells[i].add({faces[i].face(), faces[i].side(), in, true});
+        const bool beyond = border && i == 1;
+        if (!beyond) cells[i].add(cell.sheet[i]);
+        cells[i].add({faces[i].face(), faces[i].side(), beyond ? -in : in, true});
         if (valley) cells[i].add(cell.sheet[1 - i]);
+        owned[i] = cells[i].count;
         for (uint32_t k = 2; k < cell.count; ++k) cells[i].add(cell.sheet[k]);
         descents[i] = steepest(cells[i], hand_ - proxy_.at);
     }
+    if (border && descents[1].runs_on(0)) descents[1].way = glm::dvec3(0); // under the border: the proxy holds on to it
     // In a narrow valley the first cell holds ways along the second face.
     const bool second = glm::length(descents[1].way) > glm::length(descents[0].way) ||
                         (valley && descents[0].runs_on(2) && !descents[0].runs_on(0));
-    return descend(cells[second], owned, descents[second], faces[second].edge());
+    return descend(cells[second], owned[second], descents[second], faces[second].edge());
 }
 
 // On along the steepest way, from the first sheet of the cell. `owned`: how many of its sheets are no walls;
@@ -71,17 +76,20 @@ Walk::Step Walk::from_edge_among_walls(const Cell& cell, uint32_t edge)
 Walk::Step Walk::descend(const Cell& cell, uint32_t owned, const Descent& descent, uint32_t from_edge)
 {
     if (glm::length(descent.way) <= departure) return Step::stop;
-    if (++count_.wall_turns > WalkCount::most_wall_turns) return Step::stop;
     const Sheet& own = cell.sheet[0];
     uint32_t wall = 0;
     for (uint32_t k = 0; k < descent.count; ++k)
         if (descent.sheet[k] >= owned) wall = descent.sheet[k];
+    if (wall == 0 && own.is_ridge) return Step::stop;
     if (wall == 0) {
         const bool on_edge = owned > 1 && (descent.runs_on(1) || (owned > 2 && descent.runs_on(2)));
         return on_edge ? slide_along(own.face, from_edge, own.side) : slide(own.face, own.side, from_edge, 3);
     }
-    if (descent.runs_on(0)) return slide_along_crease(own, cell.sheet[wall], from_edge);
-    return change_over(cell, own, cell.sheet[wall]);
+    if (!descent.runs_on(0)) return change_over(cell, wall, descent.count > 1 ? descent.sheet[0] : wall);
+    // The wall may end before the way does: from there it may go on otherwise.
+    const glm::dvec3 from = proxy_.at;
+    const Step step = slide_along_crease(own, cell.sheet[wall], from_edge);
+    return step == Step::stop ? went(from) : step;
 }
 
 // Along the crease of a face and its wall, within the face.
@@ -98,10 +106,11 @@ Walk::Step Walk::slide_along_crease(const Sheet& face, const Sheet& wall, uint32
 }
 
 // From the sheet that the proxy is on to a wall beside it: the few units between them are swept like any free way.
-Walk::Step Walk::change_over(const Cell& cell, const Sheet& own, const Sheet& wall)
+Walk::Step Walk::change_over(const Cell& cell, uint32_t to_wall, uint32_t along)
 {
+    const Sheet &own = cell.sheet[0], &wall = cell.sheet[to_wall];
     glm::dvec3 place;
-    if (!onto_wall(surface_, cell, wall, proxy_.at, place)) return Step::stop;
+    if (!onto_wall(surface_, cell, to_wall, along, proxy_.at, place)) return Step::stop;
     const glm::dvec3 from = glm::round(proxy_.at + clear_above * own.normal),
                      to = glm::round(place + clear_above * wall.normal);
     Crossing crossing;
@@ -110,7 +119,7 @@ Walk::Step Walk::change_over(const Cell& cell, const Sheet& own, const Sheet& wa
     proxy_.face = wall.face;
     proxy_.side = wall.side;
     proxy_.at = place;
-    return Step::again;
+    return turn();
 }
 
 } // namespace haptel::runtime

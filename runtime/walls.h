@@ -53,12 +53,15 @@ Descent steepest(const Cell& cell, const glm::dvec3& way) noexcept;
 // How much of the straight way within the face may be gone: all, or up to where it comes too near to a wall.
 double open_share(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept;
 
+// Whether a step of few units, onto an edge or a vertex of the face, stays on this side of all its walls.
+bool may_step(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept;
+
 // The place, moved within the face off the walls that it is too near to; the place itself if that cannot be done.
 glm::dvec3 off_walls(const Surface& surface, uint32_t face, const glm::dvec3& at) noexcept;
 
-// The place nearest to `at` that is on the wall and off the other sheets of the cell. False: they are too nearly
-// parallel, or that is not on the wall's triangle.
-bool onto_wall(const Surface& surface, const Cell& cell, const Sheet& wall, const glm::dvec3& at,
+// A place near `at` that is on a wall of the cell and off its other sheets, or just beside one of them (`along`; the
+// wall itself: none). False: they are too nearly parallel, or that is not on the wall's triangle.
+bool onto_wall(const Surface& surface, const Cell& cell, uint32_t wall, uint32_t along, const glm::dvec3& at,
                glm::dvec3& place) noexcept;
 
 // The point where the way from `from` to `to` lands on a face, moved within the face off the walls beside it, to the

@@ -113,6 +113,41 @@ bool Accomplice::search(const Proxy& proxy, const Points& goals)
     return false;
 }
 
+bool Accomplice::could_go_nearer_from(const dvec3& point, const dvec3& hand) const
+{
+    const double way = 0x1p20;
+    const dvec3 to_hand = hand - point;
+    if (glm::length(to_hand) < 4 * way) return false;
+    std::vector<dvec3> ways{to_hand};
+    const std::vector<uint32_t> faces = mesh_.near(before_, reach);
+    for (size_t i = 0; i < faces.size(); ++i) {
+        const dvec3 n = mesh_.normal(faces[i]);
+        ways.push_back(to_hand - glm::dot(to_hand, n) * n);
+        for (size_t j = 0; j < i; ++j) {
+            const dvec3 crease = glm::cross(n, mesh_.normal(faces[j]));
+            ways.push_back(glm::dot(crease, to_hand) * crease);
+        }
+    }
+    return std::any_of(ways.begin(), ways.end(), [&](const dvec3& direction) {
+        const double length = glm::length(direction);
+        if (length == 0 || glm::dot(direction, to_hand) < 0.05 * length * glm::length(to_hand)) return false;
+        return mesh_.open(point, on_grid(point + way / length * direction));
+    });
+}
+
+bool Accomplice::could_go_nearer(const Proxy& proxy, const dvec3& hand)
+{
+    if (!placed_ || !could_go_nearer_from(at_, hand)) return false;
+    int asked = 0;
+    for (int attempt = 1; attempt < 100 && asked < 12; ++attempt) {
+        const dvec3 point = witness(proxy, attempt);
+        if (!bears_out(proxy, point)) continue;
+        ++asked;
+        if (!could_go_nearer_from(point, hand)) return false;
+    }
+    return asked > 0;
+}
+
 bool Accomplice::follow(const Proxy& proxy)
 {
     if (!placed_) return false;

@@ -35,8 +35,8 @@ BigInteger dot(const BigVector& a, const BigVector& b)
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
-// Everything times 2^1920, so that e, e^2 and e^3 are whole.
-constexpr size_t words = 20;
+// Everything times 2^1344, so that e, e^2 and e^3 are whole.
+constexpr size_t words = 14;
 BigVector scaled(const dvec3& v)
 {
     const BigVector w = big(v);
@@ -194,7 +194,12 @@ std::optional<ExactMesh::Hit> ExactMesh::first_crossing(const dvec3& from, const
             const ExactPlace here(from, to, a, b, c);
             const ExactPlace there(from, to, corner(first->face, 0), corner(first->face, 1), corner(first->face, 2));
             const int order = (here.numerator * there.denominator - there.numerator * here.denominator).sign();
-            earlier = order < 0 || (order == 0 && face < first->face);
+            // Faces that lie on each other: the lower number is on top, up being where the first component of the
+            // normal that is not 0 is positive.
+            const dvec3 n = normal(face);
+            const bool forward = n.x != 0 ? n.x > 0 : n.y != 0 ? n.y > 0 : n.z > 0;
+            const bool from_above = forward == (side > 0);
+            earlier = order < 0 || (order == 0 && (face < first->face) == from_above);
         }
         if (earlier) {
             best = place;

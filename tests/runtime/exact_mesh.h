@@ -16,8 +16,8 @@ class ExactMesh {
 public:
     explicit ExactMesh(const runtime::Surface& surface); // takes vertices and corners, nothing else
 
-    // The first face that the segment crosses if both ends are really moved by (e, e^2, e^3), e = 2^-640, and the side
-    // that faces its start. Equal places: the lower face.
+    // The first face that the segment crosses if both ends are really moved by (e, e^2, e^3), e = 2^-448, and the side
+    // that faces its start.
     struct Hit {
         uint32_t face = 0, side = 0;
         bool operator==(const Hit&) const = default;
