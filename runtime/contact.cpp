@@ -170,14 +170,16 @@ void PointContact::describe() noexcept
 
     const glm::dvec3 from_hand = proxy_.at - hand_;
     glm::dvec3 across = from_hand; // the part that no sliding along the feature changes
-    if (proxy_.on == Proxy::On::edge) {
+    if (proxy_.at_wall) {
+        across -= glm::dot(across, proxy_.crease) * proxy_.crease;
+    } else if (proxy_.on == Proxy::On::edge) {
         const auto& corners = surface_->faces[proxy_.face].vertex;
         const glm::dvec3 along = glm::normalize(surface_->vertices[corners[(proxy_.index + 1) % 3]] -
                                                 surface_->vertices[corners[proxy_.index]]);
         across -= glm::dot(across, along) * along;
     }
     double depth = glm::length(across);
-    if (proxy_.on != Proxy::On::face && depth > direction_needs)
+    if ((proxy_.on != Proxy::On::face || proxy_.at_wall) && depth > direction_needs)
         contact_.normal = across / depth;
     else
         depth = std::max(0.0, glm::dot(from_hand, contact_.normal));

@@ -39,7 +39,8 @@ struct Contact {
     glm::dvec3 hand_m{0};             // the tip as used: held, clamped, rounded to the lattice
     glm::dvec3 barycentric{1, 0, 0};  // of the proxy in its face, each >= 0, sum 1
     glm::dvec3 facet_normal{0, 0, 1}; // of the face, unit, toward the free side
-    // Unit, toward the free side: the facet's on a face, between those of the faces that meet on an edge or a vertex.
+    // Unit, toward the free side: the facet's on a face, between those of the faces that meet on an edge or a vertex or
+    // where they pierce each other.
     glm::dvec3 normal{0, 0, 1};
     double depth_m = 0;  // >= 0: how deep the hand is below the proxy along `normal`
     glm::dvec3 lag_m{0}; // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag

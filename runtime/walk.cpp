@@ -18,6 +18,7 @@ void Walk::run(uint32_t step_limit)
 {
     Step step = Step::again;
     for (count_.steps = 0; step == Step::again && count_.steps < step_limit; ++count_.steps) {
+        proxy_.at_wall = false;
         settle();
         switch (proxy_.on) {
         case Proxy::On::face: step = from_face(); break;

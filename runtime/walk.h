@@ -63,8 +63,9 @@ private:
     bool walls_at_edge(uint32_t face, uint32_t edge, uint32_t side, Cell& cell) const;
     Step from_edge_among_walls(const Cell& cell, uint32_t edge);
     Step descend(const Cell& cell, uint32_t owned, const Descent& descent, uint32_t from_edge);
+    void hold(const Cell& cell, uint32_t owned, const Descent& descent);
     Step slide_along_crease(const Sheet& face, const Sheet& wall, uint32_t from_edge);
-    Step change_over(const Cell& cell, uint32_t to_wall, uint32_t along);
+    Step change_over(const Cell& cell, uint32_t owned, const Descent& descent);
     Step went(const glm::dvec3& from);
     Step turn();
 

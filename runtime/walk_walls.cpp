@@ -1,5 +1,6 @@
 #include "runtime/walk.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace haptel::runtime {
@@ -75,6 +76,7 @@ Walk::Step Walk::from_edge_among_walls(const Cell& cell, uint32_t edge)
 // `from_edge`: of the first, or 3 if the proxy is on a face.
 Walk::Step Walk::descend(const Cell& cell, uint32_t owned, const Descent& descent, uint32_t from_edge)
 {
+    hold(cell, owned, descent);
     if (glm::length(descent.way) <= departure) return Step::stop;
     const Sheet& own = cell.sheet[0];
     uint32_t wall = 0;
@@ -85,11 +87,22 @@ Walk::Step Walk::descend(const Cell& cell, uint32_t owned, const Descent& descen
         const bool on_edge = owned > 1 && (descent.runs_on(1) || (owned > 2 && descent.runs_on(2)));
         return on_edge ? slide_along(own.face, from_edge, own.side) : slide(own.face, own.side, from_edge, 3);
     }
-    if (!descent.runs_on(0)) return change_over(cell, wall, descent.count > 1 ? descent.sheet[0] : wall);
+    if (!descent.runs_on(0)) return change_over(cell, owned, descent);
     // The wall may end before the way does: from there it may go on otherwise.
     const glm::dvec3 from = proxy_.at;
     const Step step = slide_along_crease(own, cell.sheet[wall], from_edge);
     return step == Step::stop ? went(from) : step;
+}
+
+// Notes what holds the proxy where it is, should it rest here.
+void Walk::hold(const Cell& cell, uint32_t owned, const Descent& descent)
+{
+    const bool pair = descent.count == 2, by_wall = pair && std::max(descent.sheet[0], descent.sheet[1]) >= owned;
+    proxy_.at_wall = by_wall || descent.count == 3;
+    proxy_.crease = glm::dvec3(0);
+    if (by_wall)
+        proxy_.crease =
+            glm::normalize(glm::cross(cell.sheet[descent.sheet[0]].normal, cell.sheet[descent.sheet[1]].normal));
 }
 
 // Along the crease of a face and its wall, within the face.
@@ -105,21 +118,28 @@ Walk::Step Walk::slide_along_crease(const Sheet& face, const Sheet& wall, uint32
     return go_within(face.face, face.side, proxy_.at + share * way, from_edge, 3);
 }
 
-// From the sheet that the proxy is on to a wall beside it: the few units between them are swept like any free way.
-Walk::Step Walk::change_over(const Cell& cell, uint32_t to_wall, uint32_t along)
+// From the sheet that the proxy is on to a wall that the way runs on: the few units between them are swept like any
+// free way. Of triangles in one plane it is the one that the place is on.
+Walk::Step Walk::change_over(const Cell& cell, uint32_t owned, const Descent& descent)
 {
-    const Sheet &own = cell.sheet[0], &wall = cell.sheet[to_wall];
-    glm::dvec3 place;
-    if (!onto_wall(surface_, cell, to_wall, along, proxy_.at, place)) return Step::stop;
-    const glm::dvec3 from = glm::round(proxy_.at + clear_above * own.normal),
-                     to = glm::round(place + clear_above * wall.normal);
-    Crossing crossing;
-    if (first_crossing(surface_, from, to, StartsOn::nothing(), crossing, count_.collision)) return Step::stop;
-    proxy_.on = Proxy::On::face;
-    proxy_.face = wall.face;
-    proxy_.side = wall.side;
-    proxy_.at = place;
-    return turn();
+    const double rounding = 1e-9 * glm::length(descent.way);
+    for (uint32_t k = owned; k < cell.count; ++k) {
+        const Sheet& wall = cell.sheet[k];
+        if (std::abs(glm::dot(wall.normal, descent.way)) > rounding) continue;
+        const uint32_t other = descent.sheet[descent.sheet[0] == k ? 1 : 0];
+        glm::dvec3 place;
+        if (!onto_wall(surface_, cell, k, descent.count > 1 ? other : k, proxy_.at, place)) continue;
+        const glm::dvec3 from = glm::round(proxy_.at + clear_above * cell.sheet[0].normal),
+                         to = glm::round(place + clear_above * wall.normal);
+        Crossing crossing;
+        if (first_crossing(surface_, from, to, StartsOn::nothing(), crossing, count_.collision)) continue;
+        proxy_.on = Proxy::On::face;
+        proxy_.face = wall.face;
+        proxy_.side = wall.side;
+        proxy_.at = place;
+        return turn();
+    }
+    return Step::stop;
 }
 
 } // namespace haptel::runtime

@@ -68,7 +68,10 @@ bool keep_off(const Surface& surface, uint32_t face, const Cell& sheets, uint32_
             if (away >= distance - slack && (k != along || away <= distance + slack)) continue;
             const glm::dvec3 within = sheet.normal - glm::dot(sheet.normal, front) * front;
             const double square = glm::dot(within, within);
-            if (square < least_square_of_sine) return false;
+            if (square < least_square_of_sine) {
+                if (away > -slack) continue; // another triangle of the same plane
+                return false;
+            }
             place += (distance - away) / square * within;
             moved = true;
         }
