@@ -52,7 +52,9 @@ TEST_CASE("bench tick: what a tick looks at does not grow with the mesh or the s
         CHECK(row["tree_ns"]["median"].get<double>() > 0);
         CHECK(row["contact"].get<double>() == (row["scene"] == "free" ? 0 : 1));
         if (row["scene"] != "fbm4") continue;
-        CHECK(row["queries"]["p99"].get<double>() == 0); // in contact a proxy walks, and asks no tree
+        // In contact a proxy walks, and asks no tree; of other objects one wakes now and then.
+        CHECK(row["queries"]["p99"].get<double>() <= (row["objects"] == 1 ? 0 : 3));
+        CHECK(row["queries"]["median"].get<double>() == 0);
         CHECK(row["triangles_touched"]["p99"].get<double>() <= 6);
     }
     REQUIRE(json["growth"].size() == 6);
