@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace haptel::runtime {
 
@@ -87,6 +88,7 @@ bool PointContact::take(const glm::dvec3& hand_m) noexcept
     }
     const Lattice& lattice = surface_->lattice;
     hand_ = lattice.snap(hand_m);
+    before_ = std::exchange(true_hand_, lattice.units(hand_m));
     contact_.hand_clamped = glm::any(glm::greaterThan(glm::abs(lattice.metres(hand_) - hand_m),
                                                       glm::dvec3(lattice.unit_m * Lattice::vertex_spacing)));
     return true;
@@ -100,9 +102,13 @@ void PointContact::move_freely(const glm::dvec3& hand) noexcept
         proxy_.at = hand;
         return;
     }
+    // Beyond the workspace the hand is clamped, and its way between two such places is another than the straight one.
+    glm::dvec3 from = proxy_.at, to = hand;
+    const bool outside = hand != glm::round(true_hand_) || from != glm::round(before_);
+    if (outside) from = before_, to = true_hand_;
     Crossing crossing;
-    if (sweep(proxy_.at, hand, crossing)) {
-        land(*surface_, proxy_, crossing, proxy_.at, hand);
+    if ((!outside || Lattice::clip_to_workspace(from, to)) && sweep(from, to, crossing)) {
+        land(*surface_, proxy_, crossing, from, to);
         clear_.radius = 0;
         return;
     }
@@ -194,15 +200,23 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
 {
     has_tail_ = finite(tail_m);
     if (!has_tail_) return tip_.update(tip_m, friction);
-    tail_ = tip_.surface().lattice.snap(tail_m);
+    take_tail(tip_m, tail_m);
     return tip_.update(tip_m, &tail_, friction);
 }
 
 void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
 {
     has_tail_ = finite(tail_m);
-    if (has_tail_) tail_ = tip_.surface().lattice.snap(tail_m);
+    if (has_tail_) take_tail(tip_m, tail_m);
     tip_.follow(tip_m);
+}
+
+// A tail beyond the workspace is drawn in along the shaft.
+void StylusContact::take_tail(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
+{
+    const Lattice& lattice = tip_.surface().lattice;
+    glm::dvec3 from = lattice.units(tail_m), to = lattice.units(tip_m);
+    tail_ = finite(tip_m) && Lattice::clip_to_workspace(from, to) ? from : lattice.snap(tail_m);
 }
 
 double StylusContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept

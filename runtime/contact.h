@@ -101,7 +101,8 @@ private:
     Contact contact_;
     ContactCounters counters_;
     Proxy proxy_;
-    glm::dvec3 hand_{0}; // lattice units
+    glm::dvec3 hand_{0};                  // lattice units, and below: a lattice point of the workspace
+    glm::dvec3 true_hand_{0}, before_{0}; // neither rounded nor clamped: the hand in this tick and in the last
     bool placed_ = false;
     Clearance clear_;
 };
@@ -128,6 +129,8 @@ public:
     const Surface& surface() const noexcept { return tip_.surface(); }
 
 private:
+    void take_tail(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
+
     PointContact tip_;
     glm::dvec3 tail_{0};    // lattice units
     bool has_tail_ = false; // of the last tick

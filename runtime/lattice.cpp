@@ -22,6 +22,34 @@ glm::dvec3 Lattice::snap(const glm::dvec3& point_m) const noexcept
     return glm::clamp(glm::round((point_m - centre_m) / unit_m), -workspace, workspace);
 }
 
+glm::dvec3 Lattice::units(const glm::dvec3& point_m) const noexcept
+{
+    return glm::clamp((point_m - centre_m) / unit_m, -0x1p100, 0x1p100);
+}
+
+bool Lattice::clip_to_workspace(glm::dvec3& from, glm::dvec3& to) noexcept
+{
+    const glm::dvec3 start = from, along = to - from;
+    double enter = 0, leave = 1;
+    for (int k = 0; k < 3; ++k) {
+        const double low = -workspace - start[k], high = workspace - start[k];
+        if (along[k] == 0) {
+            if (low > 0 || high < 0) return false;
+            continue;
+        }
+        enter = std::max(enter, std::min(low / along[k], high / along[k]));
+        leave = std::min(leave, std::max(low / along[k], high / along[k]));
+    }
+    if (!(enter <= leave)) return false;
+    const auto at = [&](double share) {
+        return glm::clamp(glm::round(share == 1 ? to : start + share * along), -workspace, workspace);
+    };
+    const glm::dvec3 end = at(leave);
+    from = at(enter);
+    to = end;
+    return true;
+}
+
 glm::dvec3 Lattice::snap_vertex(const glm::dvec3& point_m) const noexcept
 {
     return glm::round((point_m - centre_m) / (unit_m * vertex_spacing)) * vertex_spacing;

@@ -18,7 +18,7 @@ dvec3 on_grid(const dvec3& p)
 // A hand that lies on a face, an edge or a vertex is taken to be moved by (e, e^2, e^3).
 dvec3 beside(const dvec3& hand, double e)
 {
-    return on_grid(hand + e * dvec3(1, 1.0 / 64, 1.0 / 4096));
+    return on_grid(hand + e * dvec3(1, 0x1p-9, 0x1p-18));
 }
 
 } // namespace
@@ -34,7 +34,7 @@ dvec3 Accomplice::in_ball()
 void Accomplice::put(const dvec3& hand)
 {
     before_ = hand;
-    at_ = mesh_.holds(hand) ? beside(hand, 4) : hand;
+    at_ = mesh_.holds(hand) ? beside(hand, 0.5 * reach) : hand;
     placed_ = true;
 }
 
@@ -42,7 +42,7 @@ void Accomplice::put(const dvec3& hand)
 dvec3 Accomplice::witness(const Proxy& proxy, int attempt)
 {
     if (proxy.on == Proxy::On::nothing)
-        return mesh_.holds(proxy.at) ? beside(proxy.at, reach * std::exp2(-6 * uniform() - 0.1)) : proxy.at;
+        return mesh_.holds(proxy.at) ? beside(proxy.at, reach * std::exp2(-uniform() - 0.1)) : proxy.at;
     const dvec3 &a = mesh_.corner(proxy.face, 0), &b = mesh_.corner(proxy.face, 1), &c = mesh_.corner(proxy.face, 2);
     double u = std::sqrt(uniform()), v = uniform();
     if (attempt == 0) u = 2.0 / 3, v = 0.5; // the middle

@@ -7,7 +7,9 @@
 #include "tests/runtime/wild_hand.h"
 #include "tests/support/catch.h"
 
+#include <cmath>
 #include <iostream>
+#include <random>
 
 using namespace haptel::runtime;
 using namespace haptel::test;
@@ -22,23 +24,35 @@ public:
     explicit Stepped(const Surface& surface) : surface_(surface) {}
 
     const Proxy& proxy() const { return proxy_; }
-    void put(const dvec3& hand)
+    void put(const dvec3& hand_m)
     {
         proxy_ = {};
-        proxy_.at = hand;
+        proxy_.at = surface_.lattice.snap(hand_m);
+        before_ = surface_.lattice.units(hand_m);
     }
 
     template <class Followed>
-    bool tick(const dvec3& hand, const WalkFriction& friction, Followed&& followed)
+    bool tick(const dvec3& hand_m, const WalkFriction& friction, Followed&& followed)
     {
+        const dvec3 hand = surface_.lattice.snap(hand_m);
         WalkCount count;
+        dvec3 from = before_, to = before_ = surface_.lattice.units(hand_m);
         if (proxy_.on == Proxy::On::nothing) {
-            Crossing crossing;
-            if (first_crossing(surface_, proxy_.at, hand, StartsOn::nothing(), crossing, count.collision))
-                land(surface_, proxy_, crossing, proxy_.at, hand);
-            else
-                proxy_.at = hand;
-            if (!followed(proxy_)) return false;
+            // Outside of the workspace nothing is in the way, but the straight way within it counts.
+            const bool inside = Lattice::clip_to_workspace(from, to);
+            for (const dvec3& at : {from, to, hand}) {
+                if (inside && at == to) {
+                    Crossing crossing;
+                    if (first_crossing(surface_, from, to, StartsOn::nothing(), crossing, count.collision)) {
+                        land(surface_, proxy_, crossing, from, to);
+                        if (!followed(proxy_)) return false;
+                        break;
+                    }
+                }
+                if (!inside && at != hand) continue;
+                proxy_.at = at;
+                if (!followed(proxy_)) return false;
+            }
             if (proxy_.on == Proxy::On::nothing) return true;
         }
         const bool slid_before = proxy_.sliding;
@@ -56,6 +70,7 @@ public:
 private:
     const Surface& surface_;
     Proxy proxy_;
+    dvec3 before_{0}; // the hand, neither rounded nor clamped
 };
 
 struct Verdict {
@@ -98,7 +113,7 @@ Verdict judge(const std::shared_ptr<const Surface>& shared, uint64_t ticks, uint
     const auto start = [&](const dvec3& at_m) {
         contact.reset();
         contact.update(at_m);
-        stepped.put(surface.lattice.snap(at_m));
+        stepped.put(at_m);
         accomplice.put(surface.lattice.snap(at_m));
     };
     start(hand.outside());
@@ -107,12 +122,11 @@ Verdict judge(const std::shared_ptr<const Surface>& shared, uint64_t ticks, uint
         const dvec3 at_m = hand.next();
         const Contact& touch = contact.update(at_m, friction);
         const bool possible =
-            stepped.tick(surface.lattice.snap(at_m), {friction.static_coefficient, friction.dynamic_coefficient},
-                         [&](const Proxy& proxy) {
-                             ++verdict.steps;
-                             verdict.off_surface = std::max(verdict.off_surface, off_surface(surface, exact, proxy));
-                             return accomplice.follow(proxy);
-                         });
+            stepped.tick(at_m, {friction.static_coefficient, friction.dynamic_coefficient}, [&](const Proxy& proxy) {
+                ++verdict.steps;
+                verdict.off_surface = std::max(verdict.off_surface, off_surface(surface, exact, proxy));
+                return accomplice.follow(proxy);
+            });
         const Proxy& proxy = stepped.proxy();
         const bool differs = touch.touching != (proxy.on != Proxy::On::nothing) ||
                              touch.proxy_m != surface.lattice.metres(proxy.at) ||
@@ -180,4 +194,43 @@ TEST_CASE("every step of the proxy is possible, on any mesh: long run", "[.long]
     CHECK(sum.cut == 0);
     CHECK(sum.stuck < sum.touching / 1000);
     CHECK(sum.off_surface < 1e-9);
+}
+
+TEST_CASE("of a hand far outside it is the straight way that counts, not the way between clamped places")
+{
+    // A plate of side 1: its workspace ends 4 m from the middle.
+    const auto surface = surface_of(make_plane(3));
+    std::mt19937_64 random(4);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    int through_the_plate = 0, past_it = 0;
+    for (int i = 0; i < 3000; ++i) {
+        const dvec3 to(0.45 * uniform(random), 0.45 * uniform(random), -std::pow(10, 0.5 + uniform(random)));
+        const double far = std::pow(10, 2 + 2 * uniform(random));
+        const dvec3 from(far * uniform(random), far * uniform(random), std::pow(10, 1 + 2 * uniform(random)));
+        const dvec3 on_plane = to + to.z / (to.z - from.z) * (from - to);
+        const double outside = std::max(std::abs(on_plane.x), std::abs(on_plane.y)) - 0.5;
+        if (std::abs(outside) < 1e-6) continue;
+        PointContact point(surface);
+        point.update(from);
+        const Contact& touch = point.update(to);
+        CAPTURE(i, from.x, from.y, from.z, to.x, to.y, to.z);
+        REQUIRE(touch.touching == (outside < 0));
+        (outside < 0 ? through_the_plate : past_it) += 1;
+        if (outside > 0) continue;
+        REQUIRE(touch.side == 0);
+        REQUIRE(glm::length(touch.proxy_m - dvec3(to.x, to.y, 0)) < 1e-9);
+        // It stays in contact however far the hand goes down, and is let go above.
+        REQUIRE(point.update({to.x, to.y, -1e9}).touching);
+        REQUIRE(point.contact().hand_clamped);
+        REQUIRE(point.contact().depth_m < 4.1);
+        REQUIRE_FALSE(point.update({to.x, to.y, 1e9}).touching);
+
+        // A stylus put down with its tail far away touches where its shaft enters.
+        StylusContact stylus(surface);
+        REQUIRE(stylus.update({to.x, to.y, -0.1}, from).touching ==
+                (std::max(std::abs(to.x + 0.1 / (0.1 + from.z) * (from.x - to.x)),
+                          std::abs(to.y + 0.1 / (0.1 + from.z) * (from.y - to.y))) < 0.5));
+    }
+    CHECK(through_the_plate > 300);
+    CHECK(past_it > 300);
 }

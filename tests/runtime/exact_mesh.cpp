@@ -275,8 +275,7 @@ dvec3 ExactMesh::nearest(uint32_t face, const dvec3& p) const
     bool inside = true;
     for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, c}, std::pair{c, a}}) {
         const dvec3 e = to - from;
-        if (glm::dot(glm::cross(n, e), foot - from) >= 0) continue;
-        inside = false;
+        inside = inside && glm::dot(glm::cross(n, e), foot - from) >= 0;
         const dvec3 q = from + glm::clamp(glm::dot(p - from, e) / glm::dot(e, e), 0.0, 1.0) * e;
         if (glm::length(p - q) >= distance) continue;
         distance = glm::length(p - q);
