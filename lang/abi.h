@@ -47,14 +47,15 @@ enum {
         4 /* const haptel_image*, aligned to 8; null: flat, 0 everywhere. The binding keeps what it points to */
 };
 
-/* What an image is outside of its edges: the texel at the edge, or the image once more. */
-enum { HAPTEL_EDGE_CLAMPED = 0, HAPTEL_EDGE_TILED = 1 };
+/* What an image is outside of its edges: the texel at the edge, or the image once more, or once more and turned round.
+ */
+enum { HAPTEL_EDGE_CLAMPED = 0, HAPTEL_EDGE_TILED = 1, HAPTEL_EDGE_MIRRORED = 2 };
 
 /* A picture as textures read it: the cubic B-spline that goes through its texels. Texel (0, 0) is the lower left one,
  * rows follow each other upwards. `minimum` and `maximum` bound all coefficients, and so the spline.
  */
 typedef struct {
-    const double* coefficients[2]; /* by HAPTEL_EDGE_*; width * height each, finite */
+    const double* coefficients[2]; /* clamped or mirrored, tiled; width * height each, finite */
     int32_t width, height;         /* in texels, at least 1 */
     double minimum, maximum;
 } haptel_image;

@@ -49,6 +49,7 @@ public:
     }
     Value spline(Parts x) { return spline_of(x[0], x[1], x[2], HAPTEL_EDGE_CLAMPED); }
     Value spline_tiled(Parts x) { return spline_of(x[0], x[1], x[2], HAPTEL_EDGE_TILED); }
+    Value spline_mirrored(Parts x) { return spline_of(x[0], x[1], x[2], HAPTEL_EDGE_MIRRORED); }
 
     Values length(Whole x) { return {length_of(x[0])}; }
     Values stretch(Whole x)
@@ -151,9 +152,9 @@ public:
     }
 
 private:
-    Value spline_of(Value image, Value x, Value y, int edge)
+    Value spline_of(Value image, Value x, Value y, uint32_t edge)
     {
-        const uint32_t orders = ir::spline_order(0, 0, edge == HAPTEL_EDGE_TILED);
+        const uint32_t orders = ir::spline_order(0, 0, edge);
         return builder.operation(Op::spline, {image, x, y, builder.i32(static_cast<int32_t>(orders))});
     }
 

@@ -2,7 +2,7 @@
 //
 // Places are in texels: texel (i, j) is at (i, j). Each operation asks for one derivative, `orders`: so often by x, so
 // often by y, and what is outside of the edges. A cubic has three derivatives: a fourth is 0. Far outside a clamped
-// image is flat; a tiled one has no value at an infinite place.
+// image is flat; a tiled or mirrored one has no value at an infinite place.
 #pragma once
 
 #include "lang/abi.h"
@@ -15,17 +15,19 @@ namespace haptel::ir {
 // Coefficients that matter along each axis.
 constexpr uint32_t spline_support = 4;
 
-constexpr uint32_t spline_order(uint32_t by_x, uint32_t by_y, bool is_tiled = false)
+constexpr uint32_t spline_order(uint32_t by_x, uint32_t by_y, uint32_t edge = HAPTEL_EDGE_CLAMPED)
 {
-    return by_x | by_y << 8 | uint32_t{is_tiled} << 16;
+    return by_x | by_y << 8 | edge << 16;
 }
 constexpr uint32_t spline_order_along(uint32_t orders, uint32_t axis)
 {
     return orders >> 8 * axis & 255;
 }
-constexpr bool spline_is_tiled(uint32_t orders)
+constexpr uint32_t spline_edges = 3;
+constexpr uint32_t spline_edge(uint32_t orders)
 {
-    return (orders >> 16 & 1) != 0;
+    const uint32_t edge = orders >> 16 & 3;
+    return edge < spline_edges ? edge : uint32_t{HAPTEL_EDGE_MIRRORED};
 }
 
 inline int32_t image_width(const haptel_image* image)
@@ -73,10 +75,13 @@ void spline_weights(const T& fraction, uint32_t order, T (&weights)[spline_suppo
 }
 
 // One of `count` texels, for any index not too far outside.
-inline int64_t spline_texel(int64_t index, int64_t count, bool is_tiled)
+inline int64_t spline_texel(int64_t index, int64_t count, uint32_t edge)
 {
-    if (is_tiled) return (index % count + count) % count;
-    return index < 0 ? 0 : index < count ? index : count - 1;
+    const auto within = [index](int64_t period) { return (index % period + period) % period; };
+    if (edge == HAPTEL_EDGE_TILED) return within(count);
+    if (edge == HAPTEL_EDGE_CLAMPED) return index < 0 ? 0 : index < count ? index : count - 1;
+    const int64_t folded = within(2 * count);
+    return folded < count ? folded : 2 * count - 1 - folded;
 }
 
 // Where along one axis: four texels and how much each counts.
@@ -86,18 +91,20 @@ struct SplineSpan {
     T weight[spline_support];
 
     // False where `at` is no place.
-    bool set(T at, int64_t count, uint32_t order, bool is_tiled)
+    bool set(T at, int64_t count, uint32_t order, uint32_t edge)
     {
         using std::floor;
         const T size = T(static_cast<double>(count));
-        if (is_tiled)
-            at = at - size * T(floor(T(at / size)));
-        else
+        if (edge == HAPTEL_EDGE_CLAMPED) {
             at = at < T(-3) ? T(-3) : at > size + T(2) ? size + T(2) : at; // flat from there on
+        } else {
+            const T period = edge == HAPTEL_EDGE_TILED ? size : size + size;
+            at = at - period * T(floor(T(at / period)));
+        }
         if (!(at - at == T(0))) return false;
         const T cell = floor(at);
         const auto first = static_cast<int64_t>(static_cast<double>(cell)) - 1;
-        for (uint32_t i = 0; i < spline_support; ++i) texel[i] = spline_texel(first + i, count, is_tiled);
+        for (uint32_t i = 0; i < spline_support; ++i) texel[i] = spline_texel(first + i, count, edge);
         spline_weights(T(at - cell), order, weight);
         return true;
     }
@@ -107,12 +114,13 @@ template <typename T>
 T spline(const haptel_image* image, const T& x, const T& y, uint32_t orders)
 {
     if (!image) return T(0);
-    const bool is_tiled = spline_is_tiled(orders);
+    const uint32_t edge = spline_edge(orders);
     SplineSpan<T> column, row;
-    const bool is_place = column.set(x, image->width, spline_order_along(orders, 0), is_tiled) &&
-                          row.set(y, image->height, spline_order_along(orders, 1), is_tiled);
+    const bool is_place = column.set(x, image->width, spline_order_along(orders, 0), edge) &&
+                          row.set(y, image->height, spline_order_along(orders, 1), edge);
     if (!is_place) return x - x + (y - y);
-    const double* coefficients = image->coefficients[is_tiled ? HAPTEL_EDGE_TILED : HAPTEL_EDGE_CLAMPED];
+    // An image that is level where it ends goes on either way: the coefficients of the clamped one.
+    const double* coefficients = image->coefficients[edge == HAPTEL_EDGE_TILED];
     T sum(0);
     for (uint32_t j = 0; j < spline_support; ++j) {
         const double* line = coefficients + row.texel[j] * image->width;

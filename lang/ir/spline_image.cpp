@@ -61,13 +61,13 @@ std::vector<double> solved(std::span<const double> texels, int64_t width, int64_
 }
 
 // Cells that places between these lie in.
-std::pair<int64_t, int64_t> cells(const Interval& at, int64_t count, bool is_tiled)
+std::pair<int64_t, int64_t> cells(const Interval& at, int64_t count, bool repeats)
 {
-    const double low = is_tiled ? at.minimum : std::clamp(at.minimum, -3.0, static_cast<double>(count) + 2.0);
-    const double high = is_tiled ? at.maximum : std::clamp(at.maximum, -3.0, static_cast<double>(count) + 2.0);
+    const double low = repeats ? at.minimum : std::clamp(at.minimum, -3.0, static_cast<double>(count) + 2.0);
+    const double high = repeats ? at.maximum : std::clamp(at.maximum, -3.0, static_cast<double>(count) + 2.0);
     if (!(std::fabs(low) < 1e9 && std::fabs(high) < 1e9)) return {0, std::numeric_limits<int32_t>::max()};
-    // one more on each side, for the rounding of a tiled place
-    return {static_cast<int64_t>(std::floor(low)) - is_tiled, static_cast<int64_t>(std::floor(high)) + is_tiled};
+    // one more on each side, for the rounding of a place that is brought back into the image
+    return {static_cast<int64_t>(std::floor(low)) - repeats, static_cast<int64_t>(std::floor(high)) + repeats};
 }
 
 } // namespace
@@ -99,9 +99,13 @@ std::shared_ptr<const SplineImage> SplineImage::make(std::span<const double> tex
         {made->clamped.data(), made->tiled.data()}, static_cast<int32_t>(width), static_cast<int32_t>(height), 0, 0};
     for (uint32_t by_x = 0; by_x <= known_order; ++by_x)
         for (uint32_t by_y = 0; by_x + by_y <= known_order; ++by_y)
-            for (bool is_tiled : {false, true})
-                made->known[is_tiled][by_x][by_y] =
-                    made->differences(spline_order(by_x, by_y, is_tiled), -3, width + 6, -3, height + 6);
+            for (uint32_t edge = 0; edge < spline_edges; ++edge) {
+                Interval& found = made->known[edge][by_x][by_y];
+                found = made->differences(spline_order(by_x, by_y, edge), -3, width + 6, -3, height + 6);
+                if (edge != HAPTEL_EDGE_MIRRORED || (by_x % 2 == 0 && by_y % 2 == 0)) continue;
+                const double size = std::max(std::fabs(found.minimum), std::fabs(found.maximum));
+                found = {-size, size}; // in the copies that are turned round
+            }
     image.minimum = std::min(made->known[0][0][0].minimum, made->known[1][0][0].minimum);
     image.maximum = std::max(made->known[0][0][0].maximum, made->known[1][0][0].maximum);
     return made;
@@ -112,18 +116,18 @@ std::shared_ptr<const SplineImage> SplineImage::make(std::span<const double> tex
 Interval SplineImage::differences(uint32_t orders, int64_t first_column, int64_t columns, int64_t first_row,
                                   int64_t rows) const
 {
-    const bool is_tiled = spline_is_tiled(orders);
+    const uint32_t edge = spline_edge(orders);
     const uint32_t by_x = spline_order_along(orders, 0), by_y = spline_order_along(orders, 1);
-    const std::vector<double>& coefficients = is_tiled ? tiled : clamped;
+    const std::vector<double>& coefficients = edge == HAPTEL_EDGE_TILED ? tiled : clamped;
     constexpr double binomial[4][4] = {{1}, {-1, 1}, {1, -2, 1}, {-1, 3, -3, 1}};
     double low = infinity, high = -infinity, size = 0;
     for (int64_t j = first_row; j < first_row + rows; ++j)
         for (int64_t i = first_column; i < first_column + columns; ++i) {
             double difference = 0;
             for (uint32_t b = 0; b <= by_y; ++b) {
-                const int64_t row = spline_texel(j + b, image.height, is_tiled) * image.width;
+                const int64_t row = spline_texel(j + b, image.height, edge) * image.width;
                 for (uint32_t a = 0; a <= by_x; ++a) {
-                    const int64_t column = spline_texel(i + a, image.width, is_tiled);
+                    const int64_t column = spline_texel(i + a, image.width, edge);
                     const double coefficient = coefficients[static_cast<size_t>(row + column)];
                     difference += binomial[by_x][a] * binomial[by_y][b] * coefficient;
                     size = std::max(size, std::fabs(coefficient));
@@ -141,7 +145,7 @@ Interval SplineImage::over_all(uint32_t orders) const
 {
     uint32_t by_x = spline_order_along(orders, 0), by_y = spline_order_along(orders, 1), more = 0;
     for (; by_x + by_y > known_order; ++more) --(by_x > by_y ? by_x : by_y);
-    const Interval& found = known[spline_is_tiled(orders)][by_x][by_y];
+    const Interval& found = known[spline_edge(orders)][by_x][by_y];
     if (more == 0) return found;
     const double size =
         std::ldexp(std::max(std::fabs(found.minimum), std::fabs(found.maximum)), static_cast<int>(more));
@@ -151,15 +155,15 @@ Interval SplineImage::over_all(uint32_t orders) const
 Interval SplineImage::bounds(const Interval& x, const Interval& y, uint32_t orders) const
 {
     if (x.is_empty() || y.is_empty()) return {infinity, -infinity, true};
-    const bool is_tiled = spline_is_tiled(orders);
+    const bool repeats = spline_edge(orders) != HAPTEL_EDGE_CLAMPED;
     const bool may_be_nan =
         x.may_be_nan || y.may_be_nan ||
-        (is_tiled && !(std::isfinite(x.maximum - x.minimum) && std::isfinite(y.maximum - y.minimum)));
+        (repeats && !(std::isfinite(x.maximum - x.minimum) && std::isfinite(y.maximum - y.minimum)));
     const uint32_t by_x = spline_order_along(orders, 0), by_y = spline_order_along(orders, 1);
     if (by_x > 3 || by_y > 3) return {0, 0, may_be_nan};
 
-    const auto [left, right] = cells(x, image.width, is_tiled);
-    const auto [bottom, top] = cells(y, image.height, is_tiled);
+    const auto [left, right] = cells(x, image.width, repeats);
+    const auto [bottom, top] = cells(y, image.height, repeats);
     // cell c is made of the coefficients c - 1 .. c + 2
     const int64_t columns = right - left + 4 - by_x, rows = top - bottom + 4 - by_y;
     Interval found = over_all(orders);

@@ -35,8 +35,8 @@ private:
 
     std::vector<double> clamped, tiled;
     haptel_image image{};
-    static constexpr uint32_t known_order = 2; // by x and y together
-    Interval known[2][known_order + 1][known_order + 1]{};
+    static constexpr uint32_t known_order = 2;             // by x and y together
+    Interval known[3][known_order + 1][known_order + 1]{}; // by HAPTEL_EDGE_*
 };
 
 } // namespace haptel::ir

@@ -97,7 +97,7 @@ TEST_CASE("image: heights are those of the file at its texels, v upwards, clampe
 TEST_CASE("image: code, interpreter and oracle agree, and the gradient is that of the height", "[code]")
 {
     const Pictures pictures;
-    for (const char* name : {"pressed", "tiled", "passed"}) {
+    for (const char* name : {"pressed", "tiled", "mirrored", "passed"}) {
         CAPTURE(name);
         const bool of_two = std::string(name) == "passed";
         const TextureBinding binding = of_two ? pictures.bound(name, {{"first", "a.pgm"}, {"second", "a.pgm"}})
@@ -160,14 +160,14 @@ TEST_CASE("image: sample_central has the spline's height and the gradient of equ
     CHECK(central.facts.height_max_m < 1.5);              // while the height is bounded as ever
 }
 
-TEST_CASE("image: mirrored copies go on where the last one ends, the other way round")
+TEST_CASE("image: mirrored copies go on where the last one ends, the other way round, and are level there")
 {
     const Pictures pictures;
     const TextureBinding mirrored = pictures.bound("mirrored", {{"picture", "a.pgm"}}),
                          pressed = pictures.bound("pressed", {{"picture", "a.pgm"}});
-    for (int i = 1; i < 300; ++i) {
+    for (int i = 0; i < 300; ++i) {
         const double u = std::fmod(0.618 * i, 1.0), v = std::fmod(0.7553 * i, 1.0);
-        const haptel_sample once = sample_at(pressed, {u, v, 0}), turned = sample_at(mirrored, {-u, 2 - v, 0}),
+        const haptel_sample once = sample_at(mirrored, {u, v, 0}), turned = sample_at(mirrored, {-u, 2 - v, 0}),
                             again = sample_at(mirrored, {u + 2, v - 4, 0});
         for (const haptel_sample* copy : {&turned, &again}) {
             const int sign = copy == &turned ? -1 : 1;
@@ -175,10 +175,13 @@ TEST_CASE("image: mirrored copies go on where the last one ends, the other way r
             CHECK(std::fabs(copy->gradient[0] - sign * once.gradient[0]) < 1e-14);
             CHECK(std::fabs(copy->gradient[1] - sign * once.gradient[1]) < 1e-14);
         }
+        // A texel and a half from the edge it is the picture as ever.
+        if (std::fabs(u - 0.5) < 0.5 - 1.5 / width && std::fabs(v - 0.5) < 0.5 - 1.5 / height)
+            CHECK(std::fabs(once.height_m - at(pressed, u, v)) < 1e-16);
         for (const double seam : {-1.0, 0.0, 1.0, 2.0})
-            CHECK(std::fabs(at(mirrored, seam - 1e-9, v) - at(mirrored, seam + 1e-9, v)) < 1e-10);
+            CHECK(std::fabs(sample_at(mirrored, {seam, v, 0}).gradient[0]) < 1e-14);
     }
-    CHECK(mirrored.facts.continuity == HAPTEL_CONTINUITY_C0);
+    CHECK(mirrored.facts.continuity == HAPTEL_CONTINUITY_C1);
 }
 
 TEST_CASE("image: without a picture a texture is flat, and that is said")

@@ -48,15 +48,21 @@ Quad bump(Quad x, int order)
 }
 
 // Sum over all coefficients, edges by index.
-Quad closed_form(const haptel_image& image, double x, double y, int by_x, int by_y, bool is_tiled)
+Quad closed_form(const haptel_image& image, double x, double y, int by_x, int by_y, uint32_t edge)
 {
-    const auto inside = [&](int i, int n) { return is_tiled ? ((i % n) + n) % n : std::min(std::max(i, 0), n - 1); };
+    const auto inside = [&](int i, int n) {
+        if (edge == HAPTEL_EDGE_CLAMPED) return std::min(std::max(i, 0), n - 1);
+        while (i < 0 || i >= n) // from copy to copy
+            i = edge == HAPTEL_EDGE_TILED ? i + (i < 0 ? n : -n) : i < 0 ? -1 - i : 2 * n - 1 - i;
+        return i;
+    };
     const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(std::floor(y));
     Quad sum = 0;
     for (int j = row - 2; j <= row + 3; ++j)
         for (int i = column - 2; i <= column + 3; ++i) {
             const int at = inside(j, image.height) * image.width + inside(i, image.width);
-            sum += Quad(image.coefficients[is_tiled][at]) * bump(Quad(x) - i, by_x) * bump(Quad(y) - j, by_y);
+            sum += Quad(image.coefficients[edge == HAPTEL_EDGE_TILED][at]) * bump(Quad(x) - i, by_x) *
+                   bump(Quad(y) - j, by_y);
         }
     return sum;
 }
@@ -80,11 +86,11 @@ TEST_CASE("spline: goes through the texels, whatever the size and the edges")
     for (auto [width, height] : {std::pair{1, 1}, {2, 1}, {1, 3}, {2, 2}, {3, 5}, {17, 9}, {64, 64}}) {
         const auto texels = random_texels(static_cast<size_t>(width * height), 5);
         const auto image = image_of(texels, width, height);
-        for (bool is_tiled : {false, true})
+        for (uint32_t edge = 0; edge < spline_edges; ++edge)
             for (int y = 0; y < height; ++y)
                 for (int x = 0; x < width; ++x) {
-                    CAPTURE(width, height, is_tiled, x, y);
-                    const double found = spline(&image->view(), double(x), double(y), spline_order(0, 0, is_tiled));
+                    CAPTURE(width, height, edge, x, y);
+                    const double found = spline(&image->view(), double(x), double(y), spline_order(0, 0, edge));
                     CHECK(std::fabs(found - texels[static_cast<size_t>(y * width + x)]) < 1e-13);
                 }
     }
@@ -94,17 +100,17 @@ TEST_CASE("spline: values and derivatives are those of the closed form at 113 bi
 {
     const auto image = image_of(random_texels(7 * 5, 6), 7, 5);
     std::mt19937 random(1);
-    for (bool is_tiled : {false, true})
+    for (uint32_t edge = 0; edge < spline_edges; ++edge)
         for (auto [by_x, by_y] : {std::pair{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}, {2, 2}}) {
-            const uint32_t orders = spline_order(static_cast<uint32_t>(by_x), static_cast<uint32_t>(by_y), is_tiled);
+            const uint32_t orders = spline_order(static_cast<uint32_t>(by_x), static_cast<uint32_t>(by_y), edge);
             const Module module = spline_module(orders);
             REQUIRE(verify(module).empty());
             Interpreter<Quad> oracle(module);
             for (int i = 0; i < 300; ++i) {
                 const double x = std::uniform_real_distribution<double>(-6, 13)(random);
                 const double y = std::uniform_real_distribution<double>(-6, 13)(random);
-                const Quad expected = closed_form(image->view(), x, y, by_x, by_y, is_tiled);
-                CAPTURE(x, y, by_x, by_y, is_tiled);
+                const Quad expected = closed_form(image->view(), x, y, by_x, by_y, edge);
+                CAPTURE(x, y, by_x, by_y, edge);
                 CHECK(std::fabs(double(spline(&image->view(), x, y, orders) - expected)) < 1e-13);
                 const Slot<Quad> arguments[] = {{0, 0, &image->view()}, {x, 0}, {y, 0}};
                 CHECK(std::fabs(double(oracle.run(0, arguments, nullptr)[0].real - expected)) < 1e-30);
@@ -132,10 +138,10 @@ TEST_CASE("spline: the derivative is the operation's own, the fourth is 0, and i
 TEST_CASE("spline: C2 and no smoother, also where a clamped image ends")
 {
     const auto image = image_of(random_texels(5 * 4, 8), 5, 4);
-    for (bool is_tiled : {false, true})
+    for (uint32_t edge = 0; edge < spline_edges; ++edge)
         for (int knot = -4; knot <= 7; ++knot)
             for (uint32_t order = 0; order < 3; ++order) {
-                const uint32_t orders = spline_order(order, 0, is_tiled);
+                const uint32_t orders = spline_order(order, 0, edge);
                 const double left = spline(&image->view(), std::nextafter(double(knot), -infinity), 1.3, orders);
                 CHECK(std::fabs(left - spline(&image->view(), double(knot), 1.3, orders)) < 1e-12);
             }
@@ -177,11 +183,11 @@ TEST_CASE("spline: nothing found by sampling is outside of the bounds, which are
     const auto image = image_of(random_texels(40 * 30, 9), 40, 30);
     std::mt19937 random(2);
     for (int round = 0; round < 400; ++round) {
-        const bool is_tiled = round % 2;
-        const double wide = round % 3 == 0 ? 60 : 3;
+        const auto edge = uint32_t(round) % spline_edges;
+        const double wide = round % 4 == 0 ? 60 : 3;
         const double x = std::uniform_real_distribution<double>(-20, 50)(random);
         const double y = std::uniform_real_distribution<double>(-20, 50)(random);
-        const uint32_t orders = spline_order(random() % 4, random() % 4, is_tiled);
+        const uint32_t orders = spline_order(random() % 4, random() % 4, edge);
         const Interval bounds = image->bounds({x, x + wide}, {y, y + wide}, orders);
         double low = infinity, high = -infinity;
         for (int sample = 0; sample < 300; ++sample) {
@@ -198,7 +204,8 @@ TEST_CASE("spline: nothing found by sampling is outside of the bounds, which are
     }
     const Interval anywhere = image->bounds({-infinity, infinity}, {-infinity, infinity}, 0);
     CHECK(anywhere.is_finite());
-    CHECK(image->bounds({-infinity, infinity}, {0, 1}, spline_order(0, 0, true)).may_be_nan);
+    for (const uint32_t edge : {HAPTEL_EDGE_TILED, HAPTEL_EDGE_MIRRORED})
+        CHECK(image->bounds({-infinity, infinity}, {0, 1}, spline_order(0, 0, edge)).may_be_nan);
 }
 
 TEST_CASE("images: text form, verifier and bounds of a texture that samples one")
