@@ -54,11 +54,10 @@ std::string LivePlacement::publish(const Placement& placement)
 void LivePlacement::store(const Placement& placement) noexcept
 {
     const uint64_t version = version_.load(std::memory_order_relaxed);
-    version_.store(version + 1, std::memory_order_relaxed);
-    std::atomic_thread_fence(std::memory_order_release);
+    version_.store(version + 1, std::memory_order_relaxed); // who reads a new value sees this, too
     for (int i = 0; i < 3; ++i) {
-        values_[9 + i].store(placement.position_m[i], std::memory_order_relaxed);
-        for (int j = 0; j < 3; ++j) values_[3 * i + j].store(placement.rotation[i][j], std::memory_order_relaxed);
+        values_[9 + i].store(placement.position_m[i], std::memory_order_release);
+        for (int j = 0; j < 3; ++j) values_[3 * i + j].store(placement.rotation[i][j], std::memory_order_release);
     }
     version_.store(version + 2, std::memory_order_release);
 }
@@ -69,10 +68,9 @@ std::optional<Placement> LivePlacement::at(double) const noexcept
         const uint64_t before = version_.load(std::memory_order_acquire);
         Placement now;
         for (int i = 0; i < 3; ++i) {
-            now.position_m[i] = values_[9 + i].load(std::memory_order_relaxed);
-            for (int j = 0; j < 3; ++j) now.rotation[i][j] = values_[3 * i + j].load(std::memory_order_relaxed);
+            now.position_m[i] = values_[9 + i].load(std::memory_order_acquire);
+            for (int j = 0; j < 3; ++j) now.rotation[i][j] = values_[3 * i + j].load(std::memory_order_acquire);
         }
-        std::atomic_thread_fence(std::memory_order_acquire);
         if (before % 2 == 0 && version_.load(std::memory_order_relaxed) == before) return now;
     }
     return std::nullopt;

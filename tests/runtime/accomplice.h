@@ -38,8 +38,8 @@ public:
     bool follow(const runtime::Proxy& proxy);
 
     // Whether the proxy rests although the accomplice could go straight on and come nearer to the hand, along a face, a
-    // crease or right toward it, by at least 5 % of a way of 1e-6 half extents: from where it is, and from others of the
-    // points that bear the proxy out, down to 0.2 units from it.
+    // crease or right toward it, by at least 5 % of a way of 1e-6 half extents: from where it is, and from others of
+    // the points that bear the proxy out, down to 0.2 units from it.
     bool could_go_nearer(const runtime::Proxy& proxy, const glm::dvec3& hand);
 
     uint64_t detours = 0; // steps that took more than a straight segment
