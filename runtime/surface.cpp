@@ -35,6 +35,19 @@ std::string MeshReport::note() const
     return "open mesh: " + std::to_string(border_edges) + " border edges, past which a hand gets behind the surface";
 }
 
+// Links, fans, tree and walls of the faces as they are.
+static void connect(Surface& surface, SurfaceResult& result)
+{
+    surface.fans.clear();
+    surface.pierced_by.clear();
+    for (Face& face : surface.faces) face.pierced_begin = face.pierced_end = 0;
+    result.report.border_edges = result.report.nonmanifold_edges = result.report.pierced = 0;
+    link_faces(surface, result.report);
+    make_fans(surface);
+    surface.tree = BoxTree::build(surface.vertices, surface.faces, result.error);
+    if (surface.tree) find_piercing(surface, result.report);
+}
+
 SurfaceResult build_surface(const Mesh& mesh, double crease_deg)
 {
     SurfaceResult result;
@@ -45,12 +58,12 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg)
         return result;
     }
     close_cracks(*surface, result.report);
-    link_faces(*surface, result.report);
-    make_fans(*surface);
+    int rounds = 0;
+    do {
+        connect(*surface, result);
+        if (!surface->tree) return result;
+    } while (++rounds < 3 && part_crossing_sheets(*surface));
     make_shading_normals(*surface, crease_deg);
-    surface->tree = BoxTree::build(surface->vertices, surface->faces, result.error);
-    if (!surface->tree) return result;
-    find_piercing(*surface, result.report);
     result.surface = std::move(surface);
     return result;
 }

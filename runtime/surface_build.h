@@ -23,4 +23,8 @@ void make_shading_normals(Surface& surface, double crease_deg);
 // For each face those that cut or touch it without sharing a corner there. Needs the tree.
 void find_piercing(Surface& surface, MeshReport& report);
 
+// Gives sheets that cross each other in a vertex corners of their own. True: then what was built since repair is to be
+// built anew.
+bool part_crossing_sheets(Surface& surface);
+
 } // namespace haptel::runtime

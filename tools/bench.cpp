@@ -52,6 +52,7 @@ Figures compile_figures(const BenchOptions& options)
     figures.more.emplace_back("growth", bench::growth(rows, &bench::CompileRow::front_end));
     figures.more.emplace_back("growth_to_code", bench::growth(rows, &bench::CompileRow::warm));
     figures.table = to_table(rows);
+    figures.csv = to_csv(rows);
     return figures;
 }
 

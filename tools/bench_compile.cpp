@@ -49,6 +49,18 @@ std::vector<bench::CompileRow> compile_rows(bool quick)
     return rows;
 }
 
+std::string to_csv(const std::vector<bench::CompileRow>& rows)
+{
+    std::string text = "texture,lines,front_end_ms,front_end_ms_p99,warm_ms,warm_ms_p99,binding_ms,binding_ms_p99,"
+                       "first_ms,primed_ms,cached_ms\n";
+    const auto cell = [](double milliseconds) { return milliseconds > 0 ? fmt::format("{}", milliseconds) : ""; };
+    for (const bench::CompileRow& row : rows)
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},{}\n", row.texture, row.lines, row.front_end.median,
+                            row.front_end.p99, row.warm.median, row.warm.p99, row.binding.median, row.binding.p99,
+                            cell(row.first_ms), cell(row.primed_ms), cell(row.cached_ms));
+    return text;
+}
+
 Json to_json(const bench::CompileRow& row)
 {
     return {{"texture", row.texture},

@@ -31,6 +31,17 @@ std::vector<std::string_view> cells_of(std::string_view line)
     }
 }
 
+// A foreign text as a message can show it, whatever it is.
+std::string shown(std::string_view text)
+{
+    constexpr size_t most = 60;
+    std::string result(text.substr(0, most));
+    for (char& letter : result)
+        if (static_cast<unsigned char>(letter) < ' ' || letter == 127) letter = '?';
+    while (text.size() > most && !result.empty() && (result.back() & 0x80)) result.pop_back(); // no half of a letter
+    return text.size() > most ? result + "..." : result;
+}
+
 } // namespace
 
 PointTable read_points(const std::string& file)
@@ -41,19 +52,25 @@ PointTable read_points(const std::string& file)
         table.error = fmt::format("cannot read {}: {}", file, std::strerror(errno));
         return table;
     }
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf"; // spreadsheets begin with it
     std::array<size_t, 3> columns = {0, 1, 2};
+    size_t width = 0; // cells of the first line, and of every other
     std::string line;
+    errno = 0;
     for (size_t number = 1; std::getline(in, line); ++number) {
+        if (number == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
         const std::string_view text = trimmed(line);
         if (text.empty()) continue;
         const std::vector<std::string_view> cells = cells_of(text);
         if (table.header.empty()) {
+            width = cells.size();
             const bool is_header = !parse_number(cells[0]);
             table.header = is_header ? std::string(text) : "x,y,z";
             for (size_t axis = 0; is_header && axis < 3; ++axis) {
                 const auto found = std::find(cells.begin(), cells.end(), std::string_view("xyz").substr(axis, 1));
                 if (found == cells.end()) {
-                    table.error = fmt::format("{}:{}: expected the columns x,y,z, found '{}'", file, number, text);
+                    table.error =
+                        fmt::format("{}:{}: expected the columns x,y,z, found '{}'", file, number, shown(text));
                     return table;
                 }
                 columns[axis] = static_cast<size_t>(found - cells.begin());
@@ -70,9 +87,17 @@ PointTable read_points(const std::string& file)
             }
             row.p_m[axis] = value.value;
         }
+        if (cells.size() != width) {
+            table.error = fmt::format("{}:{}: expected {} columns as in the first line, found {}", file, number, width,
+                                      cells.size());
+            return table;
+        }
         table.rows.push_back(std::move(row));
     }
-    if (table.header.empty()) table.error = fmt::format("{}: there are no points in it", file);
+    if (in.bad())
+        table.error = fmt::format("cannot read {}: {}", file, std::strerror(errno != 0 ? errno : EIO));
+    else if (table.header.empty())
+        table.error = fmt::format("{}: there are no points in it", file);
     return table;
 }
 

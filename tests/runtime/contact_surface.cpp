@@ -275,3 +275,30 @@ TEST_CASE("cracks between borders are closed, and only cracks")
     for (const Mesh& mesh : {make_plane(4), make_bumpy_sphere(2), make_star(3), make_stairs()})
         CHECK(build_surface(mesh).report.cracks_closed == 0);
 }
+
+TEST_CASE("sheets that cross in a vertex get one each, those that only touch there keep it")
+{
+    for (const NamedMesh& hard : make_hard_meshes()) {
+        if (hard.name != "balls that cross in a vertex") continue;
+        const SurfaceResult built = build_surface(hard.mesh);
+        CHECK(built.report.pierced > 0);
+        // What was welded was parted again, a little away.
+        CHECK(built.report.vertices_welded >= 1);
+        CHECK(built.surface->vertices.size() == hard.mesh.positions_m.size());
+        for (const auto& triangle : hard.mesh.triangles)
+            for (uint32_t i : triangle) {
+                double nearest = 1;
+                for (const dvec3& v : built.surface->vertices)
+                    nearest =
+                        std::min(nearest, glm::length(built.surface->lattice.metres(v) - hard.mesh.positions_m[i]));
+                CHECK(nearest < 1e-8);
+            }
+        std::set<uint32_t> used;
+        for (const Face& face : built.surface->faces) used.insert(face.vertex.begin(), face.vertex.end());
+        CHECK(used.size() == hard.mesh.positions_m.size());
+        CHECK(built.report.border_edges == 0);
+    }
+    const SurfaceResult cubes = build_surface(make_touching_cubes(Touching::corners));
+    CHECK(cubes.surface->vertices.size() + cubes.report.vertices_welded ==
+          make_touching_cubes(Touching::corners).positions_m.size());
+}

@@ -132,6 +132,15 @@ Mesh make_soup(uint32_t seed, int triangles, double size)
     return mesh;
 }
 
+// Two balls that share a vertex and cross each other there.
+Mesh make_crossing_in_a_vertex()
+{
+    Mesh pair = runtime::make_icosphere(1);
+    const Mesh other = runtime::make_icosphere(1);
+    add(pair, other, pair.positions_m[0] - other.positions_m[20]);
+    return pair;
+}
+
 // A strip with half a twist.
 Mesh make_moebius_strip()
 {
@@ -163,6 +172,8 @@ std::vector<NamedMesh> make_hard_meshes()
     Mesh stars = make_star(1);
     add(stars, make_star(1), {0.21, 0.13, 0.17});
     meshes.push_back({"stars that pierce each other", stars});
+
+    meshes.push_back({"balls that cross in a vertex", make_crossing_in_a_vertex()});
 
     Mesh bowls = runtime::make_icosphere(2);
     add(bowls, runtime::make_torus(0.4, 16, 8), {0.1, 0.05, 0.2});

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fmt/format.h>
 #include <map>
 #include <thread>
 
@@ -37,6 +38,12 @@ TEST_CASE("bench compile: rows by length, with machine, commit and flags")
     CHECK(json["growth"].get<double>() < 6);
     CHECK(json["growth_to_code"].get<double>() < 6);
     CHECK(Json::parse(read_file(folder.path / "figures/compile.json")) == json);
+    const std::string csv = read_file(folder.path / "figures/compile.csv");
+    CHECK(static_cast<size_t>(std::count(csv.begin(), csv.end(), '\n')) == 1 + json["rows"].size());
+    for (const Json& row : json["rows"])
+        CHECK(contains(csv, fmt::format("\n{},{},{},", row["texture"].get<std::string>(), row["lines"].get<int>(),
+                                        row["front_end_ms"]["median"].get<double>())));
+    CHECK(contains(csv.substr(0, csv.find('\n')), ",cached_ms,commit,isa,cpu"));
     CHECK(run_command("bench nothing").code == 2);
     CHECK(run_command("bench --quick --out /proc/none").code == 1);
 }

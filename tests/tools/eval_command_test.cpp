@@ -85,13 +85,25 @@ TEST_CASE("eval adds columns to a table of points")
              {"x,y\n1,2\n", "points.csv:1: expected the columns x,y,z"},
              {"x,y,z\n1,2,3\n1,2\n", "points.csv:3: column 3: expected a number"},
              {"x,y,z\n1,2,many\n", "found 'many'"},
+             {"x,y,z\n1,2,3\n1,2,3,4\n", "points.csv:3: expected 3 columns as in the first line, found 4"},
+             {"name,x,y,z\na,1,2,3\n1,2,3\n", "points.csv:3: column 4: expected a number"},
+             {"x,y,z,name\n1,2,3\n", "points.csv:2: expected 4 columns as in the first line, found 3"},
+             {"1,2,3,4\n1,2,3\n", "points.csv:2: expected 4 columns"},
+             {"\x1b[2J\x01" + std::string(5000, 'w') + "\n", "found '?[2J?wwwwwwwww"},
+             {std::string(59, 'w') + "\u00e9\n", "found '" + std::string(59, 'w') + "...'"},
              {"", "there are no points"}}) {
         const Ran ran = table(csv);
         INFO(ran.err);
         CHECK(ran.code == 1);
         CHECK(ran.out.empty());
         CHECK(contains(ran.err, message));
+        CHECK(ran.err.size() < 1000);
     }
+    CHECK(table("\xef\xbb\xbfx,y,z\n0.004,0,0\n").out == "x,y,z,height_m,gx,gy,gz\n0.004,0,0,0.002,0.5,0.5,0\n");
+    const Ran folder_as_table = run_command("eval '" + file + ":tilt' --points '" + folder.file(".") + "'");
+    CHECK(folder_as_table.code == 1);
+    CHECK(contains(folder_as_table.err, "cannot read"));
+    CHECK(contains(folder_as_table.err, "directory"));
 }
 
 TEST_CASE("eval gives many points the numbers of single ones, in each precision")
