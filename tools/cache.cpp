@@ -8,6 +8,7 @@
 #include "tools/quantity.h"
 #include "tools/terminal.h"
 
+#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 
@@ -60,7 +61,9 @@ ExitCode run(const CacheOptions& options)
     else
         fmt::print("{}: {} objects, {:.1f} MB of at most {:.0f} MB\n", lang::printable(status.folder), status.objects,
                    static_cast<double>(status.bytes) * 1e-6, static_cast<double>(status.limit_bytes) * 1e-6);
-    if (!status.folder.empty() && !status.fault.empty() && (options.prime || status.objects > 0))
+    std::error_code ignored; // a folder that is not there yet will be made
+    if (!status.folder.empty() && !status.fault.empty() &&
+        (options.prime || std::filesystem::exists(status.folder, ignored)))
         say_warning(fmt::format("the folder is not used: {}", status.fault));
     return ExitCode::fine;
 }

@@ -237,19 +237,16 @@ Command check_command(CLI::App& app)
     command->add_option("files", options->files, "Texture files")->type_name("FILE");
     add_length(*command, "--box", options->box_m, "Side of the cube round the origin that bounds are for [0.2m]");
     add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
-               LengthRange::not_negative);
-    command
-        ->add_option("--normal-turn", options->normal_turn_per_m,
-                     "How fast the object's normals turn at most, radians per metre [2 / box: a ball that fills it]")
-        ->type_name("PER_M")
-        ->check(CLI::NonNegativeNumber);
+               NumberRange::not_negative);
+    add_number(*command, "--normal-turn", options->normal_turn_per_m,
+               "How fast the object's normals turn at most, radians per metre [2 / box: a ball that fills it]",
+               NumberRange::not_negative)
+        ->type_name("PER_M");
     add_parameters(*command, options->parameters);
-    command
-        ->add_option("--max-error", options->error_max,
-                     "Pick the fastest precision whose gradient is off by at most this share of its largest, by "
-                     "measurement")
-        ->type_name("SHARE")
-        ->check(CLI::PositiveNumber);
+    add_number(*command, "--max-error", options->error_max,
+               "Pick the fastest precision whose gradient is off by at most this share of its largest, by measurement",
+               NumberRange::positive)
+        ->type_name("SHARE");
     command->add_flag("--strict", options->strict, "Warnings are errors");
     command->add_flag("--fix", options->fix, "Write what the compiler proposes into the files");
     options->explain = command->add_option("--explain", options->code, "What a code means; without CODE all are listed")

@@ -221,7 +221,7 @@ Command eval_command(CLI::App& app)
         *command, "--uv", "U,V", parse_vector2, [options](const glm::dvec2& uv) { options->uv = uv; },
         "The input uv [0,0]");
     add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
-               LengthRange::not_negative);
+               NumberRange::not_negative);
     add_length(*command, "--box", options->box_m, "Side of the cube that center and extent describe [0.2m]");
     command
         ->add_option("--engine", options->engine,

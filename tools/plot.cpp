@@ -123,7 +123,7 @@ Command plot_command(CLI::App& app)
             "Centre of the square, which lies in the plane z = const [0,0,0]")
         ->type_name("X,Y,Z");
     add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
-               LengthRange::not_negative);
+               NumberRange::not_negative);
     add_parameters(*command, options->parameters);
     set_examples(*command, "  haptel plot examples/textures/rock.haptel:rock --out rock.png\n"
                            "  haptel plot dimples.haptel:dimples --kind section --window 5mm --out section.png\n"

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cairo.h>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fmt/format.h>
 #include <numbers>
 
@@ -124,9 +126,12 @@ void Picture::end_clip()
 std::string Picture::write_png(const std::string& file)
 {
     cairo_status_t status = cairo_status(cairo_.get());
+    errno = 0; // cairo does not tell what the system said
     if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_write_to_png(surface_.get(), file.c_str());
     if (status == CAIRO_STATUS_SUCCESS) return {};
-    return fmt::format("cannot write the picture '{}': {}", file, cairo_status_to_string(status));
+    const bool is_of_system = status == CAIRO_STATUS_WRITE_ERROR && errno != 0;
+    return fmt::format("cannot write the picture '{}': {}", file,
+                       is_of_system ? std::strerror(errno) : cairo_status_to_string(status));
 }
 
 } // namespace haptel::tools::plot

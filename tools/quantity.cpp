@@ -112,7 +112,7 @@ Parsed<glm::dvec2> parse_vector2(std::string_view text)
 }
 
 CLI::Option* add_length(CLI::App& app, const std::string& names, double& metres, const std::string& description,
-                        LengthRange range)
+                        NumberRange range)
 {
     return app
         .add_option_function<std::string>(
@@ -120,12 +120,29 @@ CLI::Option* add_length(CLI::App& app, const std::string& names, double& metres,
             [&metres, range](const std::string& text) {
                 const Parsed<double> length = parse_length(text);
                 if (!length) throw CLI::ValidationError(length.error);
-                if (length.value < 0 || (length.value == 0 && range == LengthRange::positive))
+                if (length.value < 0 || (length.value == 0 && range == NumberRange::positive))
                     throw CLI::ValidationError(fmt::format("a length of '{}' makes no sense here", text));
                 metres = length.value;
             },
             description)
         ->type_name("LENGTH");
+}
+
+CLI::Option* add_number(CLI::App& app, const std::string& name, std::optional<double>& number,
+                        const std::string& description, NumberRange range)
+{
+    return app.add_option_function<std::string>(
+        name,
+        [&number, name, range](const std::string& text) {
+            const Parsed<double> found = parse_number(text);
+            if (!found) throw CLI::ValidationError(name, found.error);
+            if (range == NumberRange::positive && found.value <= 0)
+                throw CLI::ValidationError(name, fmt::format("expected a number above 0, found '{}'", text));
+            if (range == NumberRange::not_negative && found.value < 0)
+                throw CLI::ValidationError(name, fmt::format("expected a number of 0 or more, found '{}'", text));
+            number = found.value;
+        },
+        description);
 }
 
 } // namespace haptel::tools

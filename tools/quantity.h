@@ -8,6 +8,7 @@
 #include <glm/glm.hpp>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -27,10 +28,14 @@ Parsed<glm::dvec3> parse_point(std::string_view text);   // "x,y,z", three lengt
 Parsed<glm::dvec3> parse_vector(std::string_view text);  // "x,y,z", three plain numbers
 Parsed<glm::dvec2> parse_vector2(std::string_view text); // "u,v"
 
-enum class LengthRange : uint8_t { positive, not_negative };
+enum class NumberRange : uint8_t { positive, not_negative };
 
 // An option that takes a length; text that is none, or out of range, is misuse.
 CLI::Option* add_length(CLI::App& app, const std::string& names, double& metres, const std::string& description,
-                        LengthRange range = LengthRange::positive);
+                        NumberRange range = NumberRange::positive);
+
+// The same for a plain number, finite; nothing where it is not given.
+CLI::Option* add_number(CLI::App& app, const std::string& name, std::optional<double>& number,
+                        const std::string& description, NumberRange range);
 
 } // namespace haptel::tools

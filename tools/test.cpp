@@ -125,7 +125,7 @@ Command test_command(CLI::App& app)
     add_parameters(*command, options->parameters);
     add_length(*command, "--box", options->box_m, "Side of the cube of test points round the origin [50mm]");
     add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
-               LengthRange::not_negative);
+               NumberRange::not_negative);
     command->add_option("--points", options->points, "Points per texture")
         ->check(CLI::Range(1, 10'000'000))
         ->capture_default_str();

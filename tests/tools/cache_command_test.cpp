@@ -51,6 +51,9 @@ TEST_CASE("cache: shows, primes and empties; switched off or not to be used it s
     CHECK(contains(run_command("cache", "HAPTEL_CACHE=off").out, "switched off"));
     fs::permissions(cache, fs::perms::all);
     CHECK(status_of(cache)["fault"] == "others can write there");
+    CHECK(contains(run_command("cache", use).err, "others can write there"));
+    CHECK(contains(run_command("cache", "HAPTEL_CACHE='" + folder.write("file", "") + "'").err, "not a folder"));
+    CHECK(run_command("cache", "HAPTEL_CACHE='" + folder.file("none") + "'").err.empty()); // made when it is needed
     CHECK(run_command("cache --empty", use).code == 2);
 }
 

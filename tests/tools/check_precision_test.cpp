@@ -97,3 +97,23 @@ TEST_CASE("check --max-error: values are those that --set gives, and where nothi
     const std::string broken = folder.write("broken.haptel", "texture t() { return x; }\n");
     CHECK(run_command("check '" + broken + "' --max-error 1e-3").code == 1);
 }
+
+TEST_CASE("check --max-error: what is no share is misuse, and said in words")
+{
+    const Folder folder;
+    const std::string file = folder.write("t.haptel", "texture t() { return 1mm * noise(p / 3mm); }");
+    for (const auto& [text, message] :
+         std::vector<std::pair<std::string, std::string>>{{"0", "--max-error: expected a number above 0, found '0'"},
+                                                          {"-1", "found '-1'"},
+                                                          {"nan", "'nan' is not a number that can be computed with"},
+                                                          {"inf", "'inf' is not a number"},
+                                                          {"small", "expected a number, found 'small'"}}) {
+        const Ran ran = run_command("check '" + file + "' --max-error=" + text);
+        INFO(ran.err);
+        CHECK(ran.code == 2);
+        CHECK(contains(ran.err, message));
+    }
+    CHECK(run_command("check '" + file + "' --normal-turn 0").code == 0);
+    CHECK(run_command("check '" + file + "' --normal-turn=-1").code == 2);
+    CHECK(run_command("check '" + file + "' --normal-turn nan").code == 2);
+}

@@ -54,6 +54,9 @@ TEST_CASE("plot says what is wrong: 1 for findings, 2 for misuse")
     CHECK(run_command("plot /no/such.haptel:bumps" + to).code == 1);
     CHECK(run_command("plot " + file + ":bumps --set depht=1um" + to).code == 1);
     CHECK(run_command("plot " + file + ":bumps --out /no/such/folder/x.png").code == 1);
+    const Ran nowhere = run_command("plot '" + file + ":bumps' --size 64 --out '" + folder.file("none/p.png") + "'");
+    CHECK(nowhere.code == 1);
+    CHECK(contains(nowhere.err, "none/p.png': No such file or directory"));
     const std::string broken = folder.write("broken.haptel", "texture t() { return");
     CHECK(contains(run_command("plot " + broken + ":t" + to).err, "broken.haptel:1:"));
 
