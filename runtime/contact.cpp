@@ -86,11 +86,10 @@ bool PointContact::take(const glm::dvec3& hand_m) noexcept
         ++counters_.hands_held;
         return placed_;
     }
-    const Lattice& lattice = surface_->lattice;
-    hand_ = lattice.snap(hand_m);
-    before_ = std::exchange(true_hand_, lattice.units(hand_m));
-    contact_.hand_clamped = glm::any(glm::greaterThan(glm::abs(lattice.metres(hand_) - hand_m),
-                                                      glm::dvec3(lattice.unit_m * Lattice::vertex_spacing)));
+    before_ = std::exchange(true_hand_, surface_->lattice.units(hand_m));
+    hand_ = Lattice::snap_units(true_hand_);
+    contact_.hand_clamped =
+        glm::any(glm::greaterThan(glm::abs(hand_ - true_hand_), glm::dvec3(Lattice::vertex_spacing)));
     return true;
 }
 
@@ -215,8 +214,12 @@ void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) no
 void StylusContact::take_tail(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
 {
     const Lattice& lattice = tip_.surface().lattice;
-    glm::dvec3 from = lattice.units(tail_m), to = lattice.units(tip_m);
-    tail_ = finite(tip_m) && Lattice::clip_to_workspace(from, to) ? from : lattice.snap(tail_m);
+    glm::dvec3 from = lattice.units(tail_m);
+    tail_ = Lattice::snap_units(from);
+    const bool beyond = glm::any(glm::greaterThanEqual(glm::abs(tail_), glm::dvec3(Lattice::workspace)));
+    if (!beyond || !finite(tip_m)) return;
+    glm::dvec3 to = lattice.units(tip_m);
+    if (Lattice::clip_to_workspace(from, to)) tail_ = from;
 }
 
 double StylusContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept

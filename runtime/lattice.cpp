@@ -19,7 +19,12 @@ Lattice Lattice::around(const glm::dvec3& minimum_m, const glm::dvec3& maximum_m
 
 glm::dvec3 Lattice::snap(const glm::dvec3& point_m) const noexcept
 {
-    return glm::clamp(glm::round((point_m - centre_m) / unit_m), -workspace, workspace);
+    return snap_units((point_m - centre_m) / unit_m);
+}
+
+glm::dvec3 Lattice::snap_units(const glm::dvec3& units) noexcept
+{
+    return glm::clamp(glm::round(units), -workspace, workspace);
 }
 
 glm::dvec3 Lattice::units(const glm::dvec3& point_m) const noexcept

@@ -25,7 +25,7 @@ std::string MeshReport::warning() const
     if (!text.empty()) text = "dropped triangles: " + text + " (of " + std::to_string(triangles_given) + ")";
     if (pierced > 0)
         text += (text.empty() ? "" : "; ") + std::to_string(pierced) +
-                " triangles cut or touch others without sharing edges: contact there is less exact";
+                " triangles cut or touch others without sharing edges: contact there takes longer";
     return text;
 }
 
