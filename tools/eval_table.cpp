@@ -42,6 +42,9 @@ std::string shown(std::string_view text)
     return text.size() > most ? result + "..." : result;
 }
 
+// A stream without lines may have no end either.
+constexpr size_t longest_line = 1 << 20;
+
 } // namespace
 
 PointTable read_points(const std::string& file)
@@ -57,7 +60,9 @@ PointTable read_points(const std::string& file)
     size_t width = 0; // cells of the first line, and of every other
     std::string line;
     errno = 0;
-    for (size_t number = 1; std::getline(in, line); ++number) {
+    std::vector<char> buffer(longest_line);
+    for (size_t number = 1; in.getline(buffer.data(), static_cast<std::streamsize>(buffer.size())); ++number) {
+        line = buffer.data();
         if (number == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
         const std::string_view text = trimmed(line);
         if (text.empty()) continue;
@@ -94,7 +99,9 @@ PointTable read_points(const std::string& file)
         }
         table.rows.push_back(std::move(row));
     }
-    if (in.bad())
+    if (static_cast<size_t>(in.gcount()) + 1 == longest_line)
+        table.error = fmt::format("{}: a line in it is longer than any of a table of points", file);
+    else if (in.bad())
         table.error = fmt::format("cannot read {}: {}", file, std::strerror(errno != 0 ? errno : EIO));
     else if (table.header.empty())
         table.error = fmt::format("{}: there are no points in it", file);

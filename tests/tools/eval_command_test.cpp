@@ -100,6 +100,9 @@ TEST_CASE("eval adds columns to a table of points")
         CHECK(ran.err.size() < 1000);
     }
     CHECK(table("\xef\xbb\xbfx,y,z\n0.004,0,0\n").out == "x,y,z,height_m,gx,gy,gz\n0.004,0,0,0.002,0.5,0.5,0\n");
+    const Ran endless = run_command("eval '" + file + ":tilt' --points /dev/zero");
+    CHECK(endless.code == 1);
+    CHECK(contains(endless.err, "longer than any of a table"));
     const Ran folder_as_table = run_command("eval '" + file + ":tilt' --points '" + folder.file(".") + "'");
     CHECK(folder_as_table.code == 1);
     CHECK(contains(folder_as_table.err, "cannot read"));
