@@ -1,5 +1,6 @@
 #include "jit/engine.h"
 
+#include "jit/code_generator_tables.h"
 #include "jit/code_version.h"
 #include "jit/compilers.h"
 #include "jit/isa.h"
@@ -101,6 +102,7 @@ std::string Engine::start()
 
     if (std::string error = compilers.start(*host); !error.empty()) return error;
     compilers.with_machine([&](const llvm::TargetMachine& machine) {
+        make_code_generator_tables(machine);
         processor = processor_of(machine);
         isa_text = isa_of(machine);
         target = std::string(code_version) + ";" + machine_name + ";" + machine.getTargetFeatureString().str() + ";" +
