@@ -29,11 +29,13 @@ glm::dvec3 Lattice::snap_units(const glm::dvec3& units) noexcept
 
 glm::dvec3 Lattice::units(const glm::dvec3& point_m) const noexcept
 {
-    return glm::clamp((point_m - centre_m) / unit_m, -0x1p100, 0x1p100);
+    return (point_m - centre_m) / unit_m;
 }
 
 bool Lattice::clip_to_workspace(glm::dvec3& from, glm::dvec3& to) noexcept
 {
+    from = glm::clamp(from, -0x1p100, 0x1p100); // of places farther away the way would not be finite
+    to = glm::clamp(to, -0x1p100, 0x1p100);
     const glm::dvec3 start = from, along = to - from;
     double enter = 0, leave = 1;
     for (int k = 0; k < 3; ++k) {

@@ -25,8 +25,7 @@ struct Lattice {
     glm::dvec3 snap(const glm::dvec3& point_m) const noexcept;        // nearest point, clamped to the workspace
     glm::dvec3 snap_vertex(const glm::dvec3& point_m) const noexcept; // nearest point of the coarse lattice
     static glm::dvec3 snap_units(const glm::dvec3& units) noexcept;   // the same of a place in lattice units
-    // In lattice units, not rounded, not clamped but to what a double can do with; finite for a finite point.
-    glm::dvec3 units(const glm::dvec3& point_m) const noexcept;
+    glm::dvec3 units(const glm::dvec3& point_m) const noexcept;       // neither rounded nor clamped
     // Leaves of the straight way between two places in lattice units what lies in the workspace, its ends lattice
     // points. False: nothing does.
     static bool clip_to_workspace(glm::dvec3& from, glm::dvec3& to) noexcept;

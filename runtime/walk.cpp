@@ -55,36 +55,33 @@ void Walk::settle()
 // way the proxy stays: false.
 bool Walk::step_onto_edge(uint32_t face, uint32_t side, uint32_t edge)
 {
-    for (const double ends : {feature, 0.0}) {
-        const Proxy lower = on_edge(face, side, edge, proxy_.at, ends);
-        if (!may_step(surface_, face, proxy_.at, lower.at)) continue;
-        proxy_ = lower;
-        return true;
-    }
-    return false;
-}
-
-// The proxy at the point of the edge nearest to `at`, or at an end of the edge that is nearer than `ends`.
-Proxy Walk::on_edge(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& at, double ends) const
-{
     const glm::dvec3 along = edge_vector(face, edge);
     const double length = glm::length(along);
-    const double way = glm::dot(at - vertex(face, edge), along) / length;
-    const bool near_begin = way < ends;
-    const bool near_end = length - way < ends;
-    Proxy proxy = proxy_;
-    proxy.face = face;
-    proxy.side = side;
+    const double way = glm::dot(proxy_.at - vertex(face, edge), along) / length;
+    const bool near_begin = way < feature, near_end = length - way < feature;
     if (near_begin || near_end) {
-        proxy.on = Proxy::On::vertex;
-        proxy.index = near_begin && (!near_end || 2 * way < length) ? edge : next(edge);
-        proxy.at = vertex(face, proxy.index);
-    } else {
-        proxy.on = Proxy::On::edge;
-        proxy.index = edge;
-        proxy.at = vertex(face, edge) + way / length * along;
+        const uint32_t corner = near_begin && (!near_end || 2 * way < length) ? edge : next(edge);
+        if (step(face, side, edge, vertex(face, corner))) {
+            proxy_.on = Proxy::On::vertex;
+            proxy_.index = corner;
+            return true;
+        }
     }
-    return proxy;
+    if (!step(face, side, edge, vertex(face, edge) + way / length * along)) return false;
+    proxy_.on = Proxy::On::edge;
+    proxy_.index = edge;
+    return true;
+}
+
+// To a place on the edge, unless a wall of one of its faces is in the way.
+bool Walk::step(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& place)
+{
+    const uint32_t other = surface_.faces[face].link[edge][side].face();
+    if (!may_step(surface_, face, proxy_.at, place) || !may_step(surface_, other, proxy_.at, place)) return false;
+    proxy_.face = face;
+    proxy_.side = side;
+    proxy_.at = place;
+    return true;
 }
 
 // --- what to do on a face, an edge, a vertex
@@ -304,10 +301,7 @@ Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
         return went(from);
     }
     proxy_.at = end;
-    const Proxy at_end = on_edge(face, side, edge, end, feature);
-    if (!may_step(surface_, face, proxy_.at, at_end.at) || !may_step(surface_, other, proxy_.at, at_end.at))
-        return went(from);
-    proxy_ = at_end;
+    if (!step_onto_edge(face, side, edge)) return went(from);
     return proxy_.on == Proxy::On::vertex && proxy_.at != from ? Step::again : Step::stop;
 }
 

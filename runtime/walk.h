@@ -42,8 +42,8 @@ private:
     }
 
     void settle();
-    Proxy on_edge(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& at, double ends) const;
     bool step_onto_edge(uint32_t face, uint32_t side, uint32_t edge);
+    bool step(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& place);
 
     Step from_face();
     bool touches_across(const SideEdge& link, uint32_t face, uint32_t edge) const;

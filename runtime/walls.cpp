@@ -134,10 +134,9 @@ Descent steepest(const Cell& cell, const glm::dvec3& way) noexcept
     return best;
 }
 
-double open_share(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept
+double share_before_walls(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept
 {
     const Face& data = surface.faces[face];
-    if (data.pierced_begin == data.pierced_end) return 1;
     double share = 1;
     for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {
         const uint32_t wall = surface.pierced_by[k];
@@ -161,7 +160,7 @@ double open_share(const Surface& surface, uint32_t face, const glm::dvec3& from,
     return share > 0 && blocked(surface, face, from, from + share * (to - from)) ? 0 : share;
 }
 
-bool may_step(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept
+bool stays_before_walls(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept
 {
     const Face& data = surface.faces[face];
     for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {

@@ -51,10 +51,18 @@ struct Descent {
 Descent steepest(const Cell& cell, const glm::dvec3& way) noexcept;
 
 // How much of the straight way within the face may be gone: all, or up to where it comes too near to a wall.
-double open_share(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept;
+double share_before_walls(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept;
+inline double open_share(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to)
+{
+    return has_walls(surface, face) ? share_before_walls(surface, face, from, to) : 1.0;
+}
 
 // Whether a step of few units, onto an edge or a vertex of the face, stays on this side of all its walls.
-bool may_step(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept;
+bool stays_before_walls(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept;
+inline bool may_step(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to)
+{
+    return !has_walls(surface, face) || stays_before_walls(surface, face, from, to);
+}
 
 // The place, moved within the face off the walls that it is too near to; the place itself if that cannot be done.
 glm::dvec3 off_walls(const Surface& surface, uint32_t face, const glm::dvec3& at) noexcept;
