@@ -49,9 +49,10 @@ dvec3 Accomplice::witness(const Proxy& proxy, int attempt)
     const dvec3 inside = (1 - u) * a + u * (1 - v) * b + u * v * c;
     const dvec3 start = mesh_.nearest(proxy.face, proxy.at);
     const double length = glm::length(inside - start);
-    const double way = attempt == 0 ? 32.0 : 0.9 * reach * std::exp2(-10 * uniform());
+    const double nearest = attempt < 60 ? 1.0 / 32 : 0.9; // so near first that walls beside the proxy are farther
+    const double way = attempt == 0 ? 8.0 : nearest * reach * std::exp2(-8 * uniform());
     const dvec3 foot = length > way ? start + way / length * (inside - start) : inside;
-    const double height = attempt == 0 ? 4.0 : way * std::exp2(-10 * uniform());
+    const double height = attempt == 0 ? 2.0 : way * std::exp2(-10 * uniform());
     return on_grid(foot + (proxy.side ? -height : height) * mesh_.normal(proxy.face));
 }
 
@@ -99,7 +100,10 @@ bool Accomplice::search(const Proxy& proxy, const Points& goals)
             return true;
         }
         if (from != here.rend()) {
-            if (bears_out(proxy, p)) {
+            // Of a free proxy only the goals are good: beside a vertex other points are in other wedges.
+            const bool good = goals.empty() ? glm::length(p - proxy.at) <= reach
+                                            : proxy.on != Proxy::On::nothing && bears_out(proxy, p);
+            if (good) {
                 at_ = p;
                 return true;
             }
@@ -163,17 +167,14 @@ bool Accomplice::follow(const Proxy& proxy)
         }
         goals.push_back(goal);
     }
-    Proxy claim = proxy;
     if (goals.empty()) {
-        if (glm::length(proxy.at - mesh_.nearest(proxy.face, proxy.at)) > reach) return placed_ = false;
+        const bool there =
+            proxy.on != Proxy::On::nothing && glm::length(proxy.at - mesh_.nearest(proxy.face, proxy.at)) <= reach;
+        if (!there) return placed_ = false;
         ++sideless;
-        claim.on = Proxy::On::nothing;
     }
     ++detours;
-    if (!search(claim, goals)) {
-        placed_ = false;
-        return false;
-    }
+    if (!search(proxy, goals)) return placed_ = false;
     before_ = proxy.at;
     return true;
 }
