@@ -24,7 +24,8 @@ ModelForce model_force(const ForceRule& rule, const TouchedSurface& surface, con
     case ForceModel::displaced: {
         const double depth = std::max(0.0, surface.depth_m + texture.envelope_m);
         if (depth == 0) break;
-        return {stiffness * depth * (normal - gradient_at_depth(gradient, surface.normal_dp, surface.depth_m)), depth};
+        const double below_m = surface.depth_m - surface.held_above_m;
+        return {stiffness * depth * (normal - gradient_at_depth(gradient, surface.normal_dp, below_m)), depth};
     }
     case ForceModel::paper: return {stiffness * pressed * (normal - gradient), pressed};
     case ForceModel::paper_unit: return {stiffness * pressed * glm::normalize(normal - gradient), pressed};
@@ -38,12 +39,17 @@ ModelForce model_force(const ForceRule& rule, const TouchedSurface& surface, con
 
 glm::dvec3 gradient_at_depth(const glm::dvec3& gradient, const glm::dmat3& normal_dp, double depth_m) noexcept
 {
-    constexpr double turn_max = 0.5; // the inverse exists for every norm below 1
+    constexpr double turn_max = 0.5;
     glm::dmat3 turn = depth_m * normal_dp;
-    const double size = std::sqrt(glm::dot(turn[0], turn[0]) + glm::dot(turn[1], turn[1]) + glm::dot(turn[2], turn[2]));
-    if (size == 0 || !std::isfinite(size)) return gradient;
-    if (size > turn_max) turn *= turn_max / size;
-    return glm::inverse(glm::transpose(glm::dmat3(1) - turn)) * gradient;
+    // It has no part across the surface: two eigenvalues from trace and principal minors, the third is 0.
+    const double half_trace = 0.5 * (turn[0][0] + turn[1][1] + turn[2][2]);
+    const auto minor = [&](int i, int j) { return turn[i][i] * turn[j][j] - turn[i][j] * turn[j][i]; };
+    const double minors = minor(0, 1) + minor(0, 2) + minor(1, 2);
+    const double largest = half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - minors));
+    if (turn == glm::dmat3(0) || !std::isfinite(largest)) return gradient;
+    if (largest > turn_max) turn *= turn_max / largest;
+    const glm::dvec3 felt = glm::inverse(glm::transpose(glm::dmat3(1) - turn)) * gradient;
+    return std::isfinite(felt.x + felt.y + felt.z) ? felt : gradient;
 }
 
 glm::dvec3 limited(const glm::dvec3& force_n, double limit_n) noexcept

@@ -59,6 +59,7 @@ struct TouchedSurface {
     glm::dvec3 normal{0, 0, 1};         // unit, shaded: the direction of the force on a smooth surface
     glm::dmat3 normal_dp{0};            // 1/m: how the shaded normal turns (W); 0: flat, or not asked for
     double stiffness_n_per_m = 0;
+    double held_above_m = 0; // where the hand holds the probe, above the point that touches: the radius of a ball
 };
 
 struct ModelForce {
@@ -69,9 +70,10 @@ struct ModelForce {
 // Static force of the surface with its texture, before friction, damping and limits.
 ModelForce model_force(const ForceRule& rule, const TouchedSurface& surface, const TextureSample& texture) noexcept;
 
-// (I - d W)^-T g: the gradient that a tip at the depth d below the base feels of heights on it, where going round it
-// sweeps the surface faster or slower than the tip (on a ball of radius R: R / (R - d) times). Where d is no longer
-// small against the radius of curvature, more than half of it, the turning counts as half.
+// (I - d W)^-T g: the gradient that a hand at the depth d below the base (negative: above it, as the centre of a ball
+// that touches) feels of heights on it, where going round it sweeps the surface faster or slower than the hand (on a
+// ball of radius R: R / (R - d) times). Where the hand comes nearer to a centre of curvature than half of the radius,
+// it counts as half.
 glm::dvec3 gradient_at_depth(const glm::dvec3& gradient, const glm::dmat3& normal_dp, double depth_m) noexcept;
 
 // `force` no longer than limit_n, direction kept.

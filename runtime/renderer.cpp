@@ -185,8 +185,12 @@ Renderer::ObjectForce Renderer::force_of(const Touched& touched, const Contact& 
     }
 
     const TextureSample texture = sample_texture(touched.texture, at);
-    const TouchedSurface felt{contact.depth_m, contact.normal, at.shading.normal, at.shading.normal_dp,
-                              object.material.stiffness_n_per_m};
+    const TouchedSurface felt{contact.depth_m,
+                              contact.normal,
+                              at.shading.normal,
+                              at.shading.normal_dp,
+                              object.material.stiffness_n_per_m,
+                              scene_->probe.radius_m};
     const ModelForce elastic = model_force(scene_->servo.force, felt, texture);
     const double stiffness = felt.stiffness_n_per_m * texture.stiffness_scale;
 

@@ -282,16 +282,17 @@ TEST_CASE("on a textured ball made of triangles displaced gives away the less th
         return arc_loop_work_j(radius_m, i, 500,
                                [&](const dvec3& p) { return force_on(ball(radius_m), p, {}, false); });
     });
-    const auto on_mesh_j = [&](uint32_t subdivisions, ForceModel model) {
+    const auto on_mesh_j = [&](uint32_t subdivisions, ForceModel model, double probe_radius_m = 0) {
         Mesh mesh = make_icosphere(subdivisions);
         scale_to_size(mesh, 2 * radius_m);
         Scene scene = bare_scene(mesh, solid_texture());
         scene.servo.force.model = model;
+        if (probe_radius_m > 0) scene.probe = {ProbeKind::sphere, 0.15, probe_radius_m};
         const auto touched = shared(std::move(scene));
         return rms_of_loops([&](int i) {
             Renderer renderer(touched);
             bool placed = false;
-            return arc_loop_work_j(radius_m, i, 4000, [&](const dvec3& p) {
+            return arc_loop_work_j(radius_m + probe_radius_m, i, probe_radius_m > 0 ? 1000 : 4000, [&](const dvec3& p) {
                 if (!std::exchange(placed, true)) renderer.tick({1.1 * p, 1.1 * p});
                 return renderer.tick({p, p}).force_n;
             });
@@ -304,6 +305,21 @@ TEST_CASE("on a textured ball made of triangles displaced gives away the less th
     CHECK(fine_j < 0.5 * middle_j);
     CHECK(fine_j < 0.2 * without_j);
     CHECK(fine_j < 0.02 * paper_j);
+    // A ball as probe is held by its centre, above the surface.
+    constexpr double probe_m = 0.01;
+    const double ball_without_j = rms_of_loops([&](int i) {
+        return arc_loop_work_j(radius_m + probe_m, i, 500, [&](const dvec3& p) {
+            const dvec3 n = glm::normalize(p), foot = radius_m * n;
+            TextureSample texture;
+            texture.envelope_m = solid_height(foot) - amplitude_m;
+            texture.surface_gradient = tangential(solid_gradient(foot), n);
+            return model_force({}, {radius_m + probe_m - glm::length(p), n, n, glm::dmat3(0), stiffness}, texture)
+                .force_n;
+        });
+    });
+    const double by_ball_j = on_mesh_j(6, ForceModel::displaced, probe_m);
+    CAPTURE(by_ball_j, ball_without_j);
+    CHECK(by_ball_j < 0.3 * ball_without_j);
 }
 
 TEST_CASE("the gradient at depth is bounded, however deep and however curved")
@@ -313,6 +329,7 @@ TEST_CASE("the gradient at depth is bounded, however deep and however curved")
     turn[0][0] = turn[1][1] = 1 / 0.02; // a ball's, 20 mm
     CHECK(glm::length(gradient_at_depth(g, turn, 1e-3) - g * 20.0 / 19.0) < 1e-15);
     CHECK(glm::length(gradient_at_depth(g, -turn, 1e-3) - g * 20.0 / 21.0) < 1e-15);
+    CHECK(glm::length(gradient_at_depth(g, turn, -0.06) - g / 4.0) < 1e-15); // a ball of three times the radius
     CHECK(gradient_at_depth(g, turn, 0) == g);
     CHECK(gradient_at_depth(g, glm::dmat3(0), 1e-3) == g);
     for (const double depth_m : {0.019, 0.02, 0.021, 1.0, 1e300})
