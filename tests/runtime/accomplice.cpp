@@ -18,7 +18,7 @@ dvec3 on_grid(const dvec3& p)
 // A hand that lies on a face, an edge or a vertex is taken to be moved by (e, e^2, e^3).
 dvec3 beside(const dvec3& hand, double e)
 {
-    return on_grid(hand + e * dvec3(1, 0x1p-9, 0x1p-18));
+    return on_grid(hand + e * dvec3(1, 1.0 / 64, 1.0 / 4096));
 }
 
 } // namespace
