@@ -15,10 +15,11 @@ dvec3 on_grid(const dvec3& p)
     return glm::round(p * 1024.0) / 1024.0;
 }
 
-// A hand that lies on a face, an edge or a vertex is taken to be moved by (e, e^2, e^3).
-dvec3 beside(const dvec3& hand, double e)
+// A hand that lies on a face, an edge or a vertex is taken to be moved by (e, e^2, e^3): as near to that as the grid
+// has.
+dvec3 beside(const dvec3& hand)
 {
-    return on_grid(hand + e * dvec3(1, 1.0 / 64, 1.0 / 4096));
+    return hand + dvec3(192, 0.375, 1.0 / 1024);
 }
 
 } // namespace
@@ -34,15 +35,14 @@ dvec3 Accomplice::in_ball()
 void Accomplice::put(const dvec3& hand)
 {
     before_ = hand;
-    at_ = mesh_.holds(hand) ? beside(hand, 0.5 * reach) : hand;
+    at_ = mesh_.holds(hand) ? beside(hand) : hand;
     placed_ = true;
 }
 
 // Points near the proxy, on the claimed side, the likeliest first.
 dvec3 Accomplice::witness(const Proxy& proxy, int attempt)
 {
-    if (proxy.on == Proxy::On::nothing)
-        return mesh_.holds(proxy.at) ? beside(proxy.at, reach * std::exp2(-uniform() - 0.1)) : proxy.at;
+    if (proxy.on == Proxy::On::nothing) return mesh_.holds(proxy.at) ? beside(proxy.at) : proxy.at;
     const dvec3 &a = mesh_.corner(proxy.face, 0), &b = mesh_.corner(proxy.face, 1), &c = mesh_.corner(proxy.face, 2);
     double u = std::sqrt(uniform()), v = uniform();
     if (attempt == 0) u = 2.0 / 3, v = 0.5; // the middle
@@ -100,9 +100,10 @@ bool Accomplice::search(const Proxy& proxy, const Points& goals)
             return true;
         }
         if (from != here.rend()) {
-            // Of a free proxy only the goals are good: beside a vertex other points are in other wedges.
-            const bool good = goals.empty() ? glm::length(p - proxy.at) <= reach
-                                            : proxy.on != Proxy::On::nothing && bears_out(proxy, p);
+            // A free proxy has one place only. If that is on a triangle, a point within reach must do: beside a plane
+            // that is nearly level the grid cannot tell the sides that ties are decided by.
+            const bool anywhere = proxy.on != Proxy::On::nothing || mesh_.holds(proxy.at);
+            const bool good = goals.empty() ? glm::length(p - proxy.at) <= reach : anywhere && bears_out(proxy, p);
             if (good) {
                 at_ = p;
                 return true;

@@ -2,8 +2,8 @@
 //
 // The accomplice is a point that never touches a triangle: it moves along straight segments each of which is open by
 // ExactMesh. For every single step of a proxy it must come to a point that bears the proxy's claim out:
-//   - the proxy is on nothing: that very point, or, if it lies on a triangle, one beside it in the direction in which
-//     all decide ties;
+//   - the proxy is on nothing: that very point; if it lies on a triangle, one within `reach`, best of all in the
+//     direction in which all decide ties;
 //   - the proxy is on side s of face f: a point within `reach` of it, on side s of f's plane, from which a short
 //     straight line to f, where it is within `reach` of the proxy, meets nothing before f.
 // On the way it may look for detours, but only within `reach` of the proxy's place before or after the step. So all its
