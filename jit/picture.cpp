@@ -1,5 +1,6 @@
 #include "jit/picture.h"
 
+#include "jit/picture_damage.h"
 #include "lang/ir/spline_image.h"
 
 #define STBI_ONLY_PNG
@@ -49,6 +50,8 @@ Picture read_common_picture(std::string_view bytes)
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     const int size = static_cast<int>(bytes.size()); // image_bytes_max fits
     constexpr const char* formats = "a picture is a PNG, JPEG, TIFF, EXR, BMP, TGA or PGM file";
+    if (const std::string damage = picture_damage(bytes); !damage.empty())
+        return no_picture("is damaged: " + damage, formats);
     int width = 0, height = 0, channels = 0;
     if (!stbi_info_from_memory(data, size, &width, &height, &channels))
         return no_picture("is no picture that can be read", formats);

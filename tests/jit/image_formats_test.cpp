@@ -218,6 +218,19 @@ TEST_CASE("picture: damaged files end in a picture or in words, and never in mor
     }
 }
 
+TEST_CASE("picture: tables and numbers that some readers take without a look are refused")
+{
+    std::string bytes = jpeg(90);
+    CHECK(decoded(bytes).error.empty());
+    const size_t table = bytes.find("\xff\xc4");
+    REQUIRE(table != bytes.npos);
+    bytes[table + 5 + 15] = '\xff'; // of 16 bits: 255 codes, beside those of other lengths
+    CHECK(decoded(bytes).error == "is damaged: a Huffman table has too many codes");
+
+    CHECK(decoded("P5\n# 12345678901 of them\n2 1\n255\nab").error.empty());
+    CHECK(decoded("P5 4294967298 1 255\nab").error == "is damaged: a number in its header is too large");
+}
+
 TEST_CASE("picture: what claims to be huge is refused before memory is taken")
 {
     for (const Sample& sample : {Sample{"tiff", tiff(2, 2, {8, Numbers::unsigned_whole}, smooth)},

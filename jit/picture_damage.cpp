@@ -1,0 +1,78 @@
+#include "jit/picture_damage.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace haptel::jit {
+namespace {
+
+constexpr const char* fine = "";
+
+// As the reader has it: 0 beyond the end.
+size_t byte(std::string_view bytes, size_t at)
+{
+    return at < bytes.size() ? static_cast<uint8_t>(bytes[at]) : 0;
+}
+
+size_t word(std::string_view bytes, size_t at)
+{
+    return byte(bytes, at) << 8 | byte(bytes, at + 1);
+}
+
+// JPEG (ITU T.81, B.2.4.2): a Huffman table says how many codes there are of each of 16 lengths, 256 at most.
+bool huffman_tables_fit(std::string_view bytes, size_t from, size_t to)
+{
+    while (from < to && from < bytes.size()) {
+        size_t codes = 0;
+        for (size_t length = 1; length <= 16; ++length) codes += byte(bytes, from + length);
+        if (codes > 256) return false;
+        from += 17 + codes;
+    }
+    return true;
+}
+
+const char* jpeg_damage(std::string_view bytes)
+{
+    for (size_t at = 0; at + 1 < bytes.size();) {
+        const size_t marker = byte(bytes, at + 1);
+        if (byte(bytes, at) != 0xff || marker == 0 || marker == 0xff) { // coded data, filling
+            ++at;
+            continue;
+        }
+        at += 2;
+        const bool is_alone = marker == 0x01 || (marker >= 0xd0 && marker <= 0xd8);
+        if (is_alone) continue;
+        if (marker == 0xd9) return fine; // the end
+        const size_t length = word(bytes, at);
+        if (marker == 0xc4 && !huffman_tables_fit(bytes, at + 2, at + length))
+            return "a Huffman table has too many codes";
+        at += std::max<size_t>(length, 2);
+    }
+    return fine;
+}
+
+// PNM: width, height and greatest value, in digits, before the texels.
+const char* pnm_damage(std::string_view bytes)
+{
+    size_t at = 2;
+    for (int number = 0; number < 3; ++number) {
+        for (; at < bytes.size() && (bytes[at] < '0' || bytes[at] > '9'); ++at)
+            if (bytes[at] == '#') at = std::min(bytes.find_first_of("\r\n", at), bytes.size());
+        size_t digits = 0;
+        for (; at < bytes.size() && bytes[at] >= '0' && bytes[at] <= '9'; ++at) ++digits;
+        if (digits > 9) return "a number in its header is too large";
+    }
+    return fine;
+}
+
+} // namespace
+
+const char* picture_damage(std::string_view bytes)
+{
+    if (bytes.starts_with("\xff\xd8") || bytes.starts_with("\xff\xff")) return jpeg_damage(bytes);
+    if (bytes.starts_with("P5") || bytes.starts_with("P6")) return pnm_damage(bytes);
+    return fine;
+}
+
+} // namespace haptel::jit
