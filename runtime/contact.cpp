@@ -1,7 +1,7 @@
 #include "runtime/contact.h"
 
 #include "runtime/box_tree.h"
-#include "runtime/placement.h"
+#include "runtime/finite.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,28 +11,20 @@ namespace haptel::runtime {
 
 namespace {
 
-WalkFriction checked(const Friction& friction)
-{
-    const auto coefficient = [](double mu) { return mu > 0 && std::isfinite(mu) ? mu : 0.0; };
-    const double rest = coefficient(friction.static_coefficient);
-    return {rest, std::min(coefficient(friction.dynamic_coefficient), rest)};
-}
-
 // Below this many lattice units the direction from hand to proxy is rounding.
 constexpr double direction_needs = 64;
-
-// From the object's box to the box of a segment.
-double gap_to_box_m(const Surface& surface, const glm::dvec3& a_m, const glm::dvec3& b_m)
-{
-    const glm::dvec3 gap_m =
-        glm::max(surface.box_minimum_m - glm::max(a_m, b_m), glm::min(a_m, b_m) - surface.box_maximum_m);
-    return glm::length(glm::max(gap_m, glm::dvec3(0)));
-}
 
 // A ball is worth looking for if the hand needs several ticks to cross it.
 constexpr double ticks_per_ball = 4;
 
 } // namespace
+
+WalkFriction checked(const Friction& friction) noexcept
+{
+    const auto coefficient = [](double mu) { return mu > 0 && std::isfinite(mu) ? mu : 0.0; };
+    const double rest = coefficient(friction.static_coefficient);
+    return {rest, std::min(coefficient(friction.dynamic_coefficient), rest)};
+}
 
 PointContact::PointContact(std::shared_ptr<const Surface> surface) : surface_(std::move(surface)) {}
 
@@ -74,7 +66,7 @@ void PointContact::follow(const glm::dvec3& hand_m) noexcept
 double PointContact::gap_m(const glm::dvec3& hand_m) const noexcept
 {
     const double in_ball = clear_.radius - glm::distance(hand_, clear_.centre);
-    return std::max(gap_to_box_m(*surface_, hand_m, hand_m), in_ball * surface_->lattice.unit_m);
+    return std::max(surface_->gap_to_box_m(hand_m, hand_m), in_ball * surface_->lattice.unit_m);
 }
 
 // Takes the pose; false if there has never been a good one.
@@ -224,7 +216,7 @@ void StylusContact::take_tail(const glm::dvec3& tip_m, const glm::dvec3& tail_m)
 
 double StylusContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept
 {
-    return gap_to_box_m(tip_.surface(), tip_m, tail_m);
+    return tip_.surface().gap_to_box_m(tip_m, tail_m);
 }
 
 void StylusContact::reset() noexcept

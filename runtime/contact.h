@@ -27,6 +27,7 @@ namespace haptel::runtime {
 struct Friction {
     double static_coefficient = 0, dynamic_coefficient = 0;
 };
+WalkFriction checked(const Friction& friction) noexcept;
 
 // Where and how the probe touches after a tick. If !touching, proxy_m is the hand and the rest is meaningless.
 struct Contact {

@@ -103,6 +103,17 @@ bool take_in(std::span<const HalfSpace> spaces, uint32_t space, NearestInHalfSpa
 
 } // namespace
 
+double open_share(std::span<const HalfSpace> spaces, const glm::dvec3& from, const glm::dvec3& way,
+                  double tolerance) noexcept
+{
+    double share = 1;
+    for (const HalfSpace& space : spaces) {
+        const double before = glm::dot(space.normal, from) - space.offset, change = glm::dot(space.normal, way);
+        if (before + change < -tolerance && change < 0) share = std::min(share, std::max(0.0, before) / -change);
+    }
+    return share;
+}
+
 NearestInHalfSpaces nearest_in(std::span<const HalfSpace> spaces, const glm::dvec3& target, const glm::dvec3& inside,
                                double tolerance) noexcept
 {
@@ -112,13 +123,8 @@ NearestInHalfSpaces nearest_in(std::span<const HalfSpace> spaces, const glm::dve
         const uint32_t space = most_violated(spaces, now.at, tolerance);
         if (space == none || !take_in(spaces, space, now)) break;
     }
-    const glm::dvec3 way = now.at - inside;
-    double share = 1;
-    for (const HalfSpace& space : spaces) {
-        const double before = glm::dot(space.normal, inside) - space.offset, change = glm::dot(space.normal, way);
-        if (before + change < -tolerance && change < 0) share = std::min(share, std::max(0.0, before) / -change);
-    }
-    if (share < 1) now.at = inside + share * way;
+    const double share = open_share(spaces, inside, now.at - inside, tolerance);
+    if (share < 1) now.at = inside + share * (now.at - inside);
     return now;
 }
 

@@ -18,6 +18,10 @@ struct HalfSpace {
     double offset;
 };
 
+// How much of the way from a point in all of them stays in all, but for `tolerance`: 0 .. 1.
+double open_share(std::span<const HalfSpace> spaces, const glm::dvec3& from, const glm::dvec3& way,
+                  double tolerance) noexcept;
+
 struct NearestInHalfSpaces {
     glm::dvec3 at{0};
     // at - target = sum of push[i] * normal of spaces[active[i]], push > 0.

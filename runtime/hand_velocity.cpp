@@ -1,6 +1,6 @@
 #include "runtime/hand_velocity.h"
 
-#include "runtime/placement.h"
+#include "runtime/finite.h"
 
 #include <cmath>
 

@@ -1,9 +1,9 @@
 // Where an object is.
 #pragma once
 
-#include <glm/glm.hpp>
+#include "runtime/finite.h"
 
-#include <cmath>
+#include <glm/glm.hpp>
 
 namespace haptel::runtime {
 
@@ -17,11 +17,6 @@ struct Placement {
     glm::dvec3 to_object(const glm::dvec3& p) const { return (p - position_m) * rotation; }
     glm::dvec3 direction_to_object(const glm::dvec3& v) const { return v * rotation; }
 };
-
-inline bool finite(const glm::dvec3& v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 inline bool finite(const Placement& placement)
 {

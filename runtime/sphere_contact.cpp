@@ -1,8 +1,8 @@
 #include "runtime/sphere_contact.h"
 
 #include "runtime/box_tree.h"
+#include "runtime/finite.h"
 #include "runtime/nearest_point.h"
-#include "runtime/placement.h"
 
 #include <algorithm>
 #include <cmath>
@@ -40,22 +40,6 @@ public:
 private:
     std::vector<uint32_t>& faces_;
 };
-
-// How much of the way from `at` all half-spaces leave open.
-double open_share(std::span<const HalfSpace> spaces, const glm::dvec3& at, const glm::dvec3& way)
-{
-    double share = 1;
-    for (const HalfSpace& space : spaces) {
-        const double before = glm::dot(space.normal, at) - space.offset, change = glm::dot(space.normal, way);
-        if (before + change < 0 && change < 0) share = std::min(share, std::max(0.0, before) / -change);
-    }
-    return share;
-}
-
-double checked(double coefficient)
-{
-    return coefficient > 0 && std::isfinite(coefficient) ? coefficient : 0;
-}
 
 } // namespace
 
@@ -101,9 +85,7 @@ void SphereContact::follow(const glm::dvec3& centre_m) noexcept
 
 double SphereContact::gap_m(const glm::dvec3& centre_m) const noexcept
 {
-    const glm::dvec3 outside_m =
-        glm::max(glm::dvec3(0), glm::max(surface_->box_minimum_m - centre_m, centre_m - surface_->box_maximum_m));
-    return std::max(0.0, glm::length(outside_m) - radius_ * surface_->lattice.unit_m);
+    return std::max(0.0, surface_->gap_to_box_m(centre_m, centre_m) - radius_ * surface_->lattice.unit_m);
 }
 
 // As large as fits where the hand is.
@@ -173,7 +155,7 @@ NearestInHalfSpaces SphereContact::approach(double step_max) noexcept
     if (path_length_ == 0) { // in the air: first straight on, to where it touches
         const double length = glm::length(to_hand);
         const double within = length > step_max ? step_max / length : 1;
-        const double open = open_share(planes_, centre_, within * to_hand);
+        const double open = open_share(planes_, centre_, within * to_hand, 0);
         centre_ += open * within * to_hand;
         if (open == 1) return {centre_, 0, {}, {}};
         path_[path_length_++] = centre_;
@@ -235,8 +217,7 @@ void SphereContact::move(const Friction& friction) noexcept
 // Friction is a way that ends early, by coefficient times depth, or does not begin.
 void SphereContact::hold_by_friction(const Friction& friction) noexcept
 {
-    const double rest = checked(friction.static_coefficient);
-    const double slide = std::min(checked(friction.dynamic_coefficient), rest);
+    const auto [rest, slide] = checked(friction);
     const double depth = glm::distance(centre_, hand_);
     double way = 0;
     for (uint32_t i = 1; i < path_length_; ++i) way += glm::distance(path_[i - 1], path_[i]);

@@ -24,9 +24,7 @@ namespace haptel::runtime {
 
 class SphereContact {
 public:
-    // Largest radius, in half extents of the object's box: beyond, the ball would not fit beside it.
-    static constexpr double radius_max = 2;
-
+    // The radius is at most the largest side of the object's box: larger balls do not fit beside it.
     SphereContact(std::shared_ptr<const Surface> surface, double radius_m);
 
     // One tick: where it touches, at most three places, the one that presses most first. The proxy_m of each is the

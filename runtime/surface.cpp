@@ -68,6 +68,12 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg)
     return result;
 }
 
+double Surface::gap_to_box_m(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept
+{
+    const glm::dvec3 gap_m = glm::max(box_minimum_m - glm::max(from_m, to_m), glm::min(from_m, to_m) - box_maximum_m);
+    return glm::length(glm::max(gap_m, glm::dvec3(0)));
+}
+
 std::optional<SegmentHit> Surface::first_hit(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept
 {
     const auto finite = [](const glm::dvec3& v) {

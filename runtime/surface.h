@@ -117,6 +117,9 @@ struct Surface {
     }
     bool is_border(uint32_t face, uint32_t edge) const { return faces[face].link[edge][0].face() == face; }
 
+    // From the object's box to that of the segment; 0 where they meet.
+    double gap_to_box_m(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept;
+
     // First crossing of the segment, by exact predicates: never lost, whatever edge or vertex it passes through.
     // Allocates nothing. Not finite ends: nothing.
     std::optional<SegmentHit> first_hit(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept;

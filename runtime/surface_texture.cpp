@@ -1,5 +1,7 @@
 #include "runtime/surface_texture.h"
 
+#include "runtime/finite.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -9,11 +11,6 @@ namespace {
 
 // Heights may exceed their bound by rounding only.
 constexpr double bound_slack_m = 1e-12;
-
-bool finite(const glm::dvec3& v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 // The inputs that the entry reads; the others stay zero.
 haptel_point inputs(const SurfacePoint& at, uint32_t reads)
