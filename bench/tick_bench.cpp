@@ -96,19 +96,24 @@ public:
         const auto begin = std::chrono::steady_clock::now();
         const TickResult felt = renderer_->tick({hand, 1.5 * hand});
         const auto end = std::chrono::steady_clock::now();
+        renderer_->between_ticks();
+        const auto ahead = std::chrono::steady_clock::now();
         const auto hit = surface_->first_hit(before_, hand);
         const auto walked = std::chrono::steady_clock::now();
         found_ += hit.has_value();
         before_ = hand;
         const ContactWork after = renderer_->work();
+        const uint64_t touched = after.triangles - before.triangles + after.steps - before.steps;
         touching_ += felt.contacts > 0;
         const auto ns = [&](auto from, auto to) {
             return std::max(0.0, std::chrono::duration<double, std::nano>(to - from).count() - clock_ns);
         };
         tick_ns_.push_back(ns(begin, end));
-        tree_ns_.push_back(ns(end, walked));
+        ahead_ns_.push_back(ns(end, ahead));
+        tree_ns_.push_back(ns(ahead, walked));
         queries_.push_back(static_cast<double>(after.queries - before.queries));
-        touched_.push_back(static_cast<double>(after.triangles - before.triangles + after.steps - before.steps));
+        touched_.push_back(static_cast<double>(touched));
+        seen_.push_back(static_cast<double>(touched + after.read_ahead - before.read_ahead));
     }
 
     TickRow row() const
@@ -116,9 +121,11 @@ public:
         TickRow row = row_;
         row.contact = static_cast<double>(touching_) / static_cast<double>(tick_ns_.size());
         row.tick_ns = summary(tick_ns_);
+        row.ahead_ns = summary(ahead_ns_);
         row.tree_ns = summary(tree_ns_);
         row.queries = summary(queries_);
         row.triangles_touched = summary(touched_);
+        row.triangles_seen = summary(seen_);
         return row;
     }
 
@@ -134,7 +141,7 @@ private:
     TickRow row_;
     std::optional<Renderer> renderer_;
     glm::dvec3 before_{0};
-    std::vector<double> tick_ns_, tree_ns_, queries_, touched_;
+    std::vector<double> tick_ns_, ahead_ns_, tree_ns_, queries_, touched_, seen_;
     uint64_t touching_ = 0, found_ = 0;
 };
 
@@ -182,7 +189,8 @@ std::vector<TickRow> bench_tick(bool quick, const std::function<void(double)>& p
 Growth growth(const TickRow& first, const TickRow& last)
 {
     return {last.tick_ns.median / first.tick_ns.median, last.tick_ns.p99 / first.tick_ns.p99,
-            last.triangles_touched.p99 / first.triangles_touched.p99};
+            last.triangles_touched.p99 / first.triangles_touched.p99,
+            last.triangles_seen.p99 / first.triangles_seen.p99};
 }
 
 } // namespace haptel::bench

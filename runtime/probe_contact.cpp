@@ -1,5 +1,7 @@
 #include "runtime/probe_contact.h"
 
+#include "runtime/read_ahead.h"
+
 namespace haptel::runtime {
 
 namespace {
@@ -39,6 +41,18 @@ void ProbeContact::follow(const ProbePose& pose) noexcept
     if (auto* point = std::get_if<PointContact>(&contact_)) return point->follow(pose.tip_m);
     if (auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->follow(pose.tip_m);
     std::get_if<StylusContact>(&contact_)->follow(pose.tip_m, pose.tail_m);
+}
+
+// A ball keeps the faces around it by itself.
+uint32_t ProbeContact::read_ahead() const noexcept
+{
+    const auto around = [](const auto& tip) {
+        const Contact& at = tip.contact();
+        return at.touching ? runtime::read_ahead(tip.surface(), at.face, at.side) : 0;
+    };
+    if (const auto* point = std::get_if<PointContact>(&contact_)) return around(*point);
+    if (const auto* stylus = std::get_if<StylusContact>(&contact_)) return around(*stylus);
+    return 0;
 }
 
 double ProbeContact::gap_m(const ProbePose& pose) const noexcept

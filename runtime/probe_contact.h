@@ -32,6 +32,9 @@ public:
     // One tick of a probe that is free and known to have met nothing on its way.
     void follow(const ProbePose& pose) noexcept;
 
+    // Brings what the next tick may need into the cache. Returns how many faces it looked at.
+    uint32_t read_ahead() const noexcept;
+
     // At least so far is it from any point of the probe to the nearest triangle; 0: not known.
     double gap_m(const ProbePose& pose) const noexcept;
     const ContactCounters& counters() const noexcept;

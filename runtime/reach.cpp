@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <utility>
 
 namespace haptel::runtime {
 
@@ -14,13 +15,23 @@ constexpr double way_max_m = 100;
 
 } // namespace
 
-Reach::Reach(std::size_t objects)
+Reach::Reach(std::vector<Surroundings> objects) : objects_(std::move(objects))
 {
-    sleepers_.reserve(objects);
-    for (uint32_t object = 0; object < objects; ++object) awake_.push_back(object);
+    sleepers_.reserve(objects_.size());
+    for (uint32_t object = 0; object < objects_.size(); ++object) awake_.push_back(object);
 }
 
-void Reach::go(double way_m) noexcept
+// From the hand to the object's surroundings; not above 0 where that is not known.
+double Reach::gap_m(uint32_t object, const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept
+{
+    const Surroundings& around = objects_[object];
+    const glm::dvec3 shaft = tail_m - tip_m, to_centre = around.centre_m - tip_m;
+    const double square = glm::dot(shaft, shaft);
+    const double share = square > 0 ? glm::clamp(glm::dot(to_centre, shaft) / square, 0.0, 1.0) : 0.0;
+    return glm::length(to_centre - share * shaft) - around.radius_m;
+}
+
+void Reach::go(double way_m, const glm::dvec3& tip_m, const glm::dvec3& tail_m, double near_m) noexcept
 {
     way_m_ = (way_m_ + way_m) * up;
     if (!(way_m_ < way_max_m)) wake_all();
@@ -28,6 +39,11 @@ void Reach::go(double way_m) noexcept
         const uint32_t object = sleepers_.front().second;
         std::pop_heap(sleepers_.begin(), sleepers_.end(), std::greater<>());
         sleepers_.pop_back();
+        const double gap = gap_m(object, tip_m, tail_m);
+        if (gap > near_m) {
+            fall_asleep(object, gap);
+            continue;
+        }
         awake_.insert(std::lower_bound(awake_.begin(), awake_.end(), object), object); // room for all was made
     }
 }
@@ -35,6 +51,11 @@ void Reach::go(double way_m) noexcept
 void Reach::sleep(uint32_t object, double gap_m) noexcept
 {
     awake_.erase(std::lower_bound(awake_.begin(), awake_.end(), object));
+    fall_asleep(object, gap_m);
+}
+
+void Reach::fall_asleep(uint32_t object, double gap_m) noexcept
+{
     sleepers_.emplace_back(way_m_ + early * gap_m, object);
     std::push_heap(sleepers_.begin(), sleepers_.end(), std::greater<>());
 }

@@ -2,8 +2,11 @@
 // not looked at: neither its contact nor its texture costs anything, so that a tick does not grow with the scene.
 //
 // Known by the way that the hand has gone, added up: an object at least a gap away sleeps until the way has grown by
-// that gap. One heap, ordered by the way at which to wake.
+// that gap. One heap, ordered by the way at which to wake. Who is then still far away, by the ball around it, sleeps
+// on: the hand goes up and down more than away.
 #pragma once
+
+#include <glm/glm.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -12,13 +15,20 @@
 
 namespace haptel::runtime {
 
+// Around an object; a radius without end: it may be anywhere.
+struct Surroundings {
+    glm::dvec3 centre_m{0};
+    double radius_m = 0;
+};
+
 class Reach {
 public:
-    // Of so many objects, all awake.
-    explicit Reach(std::size_t objects);
+    // All awake.
+    explicit Reach(std::vector<Surroundings> objects);
 
-    // The hand has gone so far since the last call. Wakes whoever it may have reached.
-    void go(double way_m) noexcept;
+    // The hand, from tip to tail, has gone so far since the last call. Wakes whoever it may have come nearer to than
+    // `near_m`, and may wake others.
+    void go(double way_m, const glm::dvec3& tip_m, const glm::dvec3& tail_m, double near_m) noexcept;
 
     // The object, which is awake, is at least this far from the hand: more than a micrometre.
     void sleep(uint32_t object, double gap_m) noexcept;
@@ -28,10 +38,13 @@ public:
     std::size_t asleep() const noexcept { return sleepers_.size(); }
 
 private:
+    void fall_asleep(uint32_t object, double gap_m) noexcept;
     void wake_all() noexcept;
+    double gap_m(uint32_t object, const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept;
 
     using Sleeper = std::pair<double, uint32_t>; // the way at which it wakes; the object
 
+    std::vector<Surroundings> objects_;
     std::vector<Sleeper> sleepers_; // heap: the first to wake in front
     std::vector<uint32_t> awake_;
     double way_m_ = 0;

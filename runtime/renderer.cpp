@@ -5,14 +5,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace haptel::runtime {
 
 namespace {
 
-// An object is left alone if the hand needs several ticks to come near it.
-constexpr double ticks_per_sleep = 8;
+// An object is left alone if it is farther away than this: the hand needs several ticks to come near it, and what
+// rounding does to coordinates is nothing beside it.
+double far_enough_m(const DevicePose& pose, double way_m)
+{
+    const glm::dvec3 farthest = glm::max(glm::abs(pose.tip_m), glm::abs(pose.tail_m));
+    return std::max({1e-6, 8 * way_m, 1e-6 * std::max({farthest.x, farthest.y, farthest.z})});
+}
 
 } // namespace
 
@@ -21,7 +27,7 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, double device_force_max_n
     , period_s_(1 / scene_->servo.rate_hz)
     , force_limit_n_(device_force_max_n > 0 ? std::min(device_force_max_n, scene_->servo.force_limit_n)
                                             : scene_->servo.force_limit_n)
-    , reach_(scene_->objects.size())
+    , reach_(surroundings(*scene_))
     , velocity_(period_s_)
 {
     objects_.reserve(scene_->objects.size());
@@ -31,6 +37,19 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, double device_force_max_n
         objects_.push_back({&object, ProbeContact(scene_->probe, object.surface), std::move(reader), serial,
                             object.placement, HandVelocity(period_s_)});
     }
+}
+
+std::vector<Surroundings> Renderer::surroundings(const Scene& scene)
+{
+    std::vector<Surroundings> all;
+    for (const SceneObject& object : scene.objects) {
+        const Surface& surface = *object.surface;
+        const glm::dvec3 middle = 0.5 * surface.box_minimum_m + 0.5 * surface.box_maximum_m;
+        const double radius_m = glm::distance(surface.box_minimum_m, middle) + scene.probe.radius_m;
+        all.push_back({object.placement.to_world(middle),
+                       object.motion ? std::numeric_limits<double>::infinity() : radius_m * (1 + 1e-6)});
+    }
+    return all;
 }
 
 uint64_t Renderer::reloads() const noexcept
@@ -47,10 +66,8 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     if (std::exchange(started_, true)) period_ += periods;
     result.time_s = static_cast<double>(period_) * period_s_;
     texture_period_ += periods;
-    // Who is out of reach is looked at in turn, now and then, so that nobody keeps a texture that is to be freed.
     if (!objects_.empty()) {
         advance_texture(objects_.front());
-        if (texture_period_ % 8 == 0) advance_texture(objects_[texture_period_ / 8 % objects_.size()]);
         result.binding = objects_.front().texture.to().serial;
     }
     for (const uint32_t object : reach_.awake()) advance_texture(objects_[object]);
@@ -68,7 +85,8 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     double way_m = 0;
     if (last_pose_)
         way_m = std::max(glm::distance(pose.tip_m, last_pose_->tip_m), glm::distance(pose.tail_m, last_pose_->tail_m));
-    reach_.go(way_m);
+    const double near_m = far_enough_m(pose, way_m);
+    reach_.go(way_m, pose.tip_m, pose.tail_m, near_m);
     skipped_.objects += reach_.asleep();
     bool no_query = true;
     for (std::size_t i = 0; i < reach_.awake().size(); ++i) {
@@ -85,7 +103,7 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
         work_.steps += counters.walk_steps - steps;
         if (contacts.empty()) {
             touched.friction_share = 0;
-            if (const double gap_m = gap_to_sleep_m(touched, pose, way_m); gap_m > 0) {
+            if (const double gap_m = gap_to_sleep_m(touched, pose, near_m); gap_m > 0) {
                 touched.asleep = true;
                 reach_.sleep(number, gap_m);
                 --i;
@@ -120,6 +138,13 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     return result;
 }
 
+void Renderer::between_ticks() noexcept
+{
+    // Now and then, in turn: so that nobody keeps a texture that is to be freed.
+    if (!objects_.empty() && texture_period_ % 8 == 0) advance_texture(objects_[texture_period_ / 8 % objects_.size()]);
+    for (const uint32_t object : reach_.awake()) work_.read_ahead += objects_[object].contact.read_ahead();
+}
+
 ProbePose Renderer::in_object(const Touched& touched, const DevicePose& pose) noexcept
 {
     return {touched.placement.to_object(pose.tip_m), touched.placement.to_object(pose.tail_m)};
@@ -140,15 +165,13 @@ void Renderer::wake(Touched& touched) noexcept
 }
 
 // How far the hand must go before an object that it does not touch is looked at again; 0: look at it every tick.
-double Renderer::gap_to_sleep_m(const Touched& touched, const DevicePose& pose, double way_m) const noexcept
+double Renderer::gap_to_sleep_m(const Touched& touched, const DevicePose& pose, double near_m) const noexcept
 {
     if (touched.object->motion) return 0;
     const ProbePose probe = in_object(touched, pose);
     const double gap_m = touched.contact.gap_m(probe);
-    // Well above what rounding does to coordinates, and worth it.
-    const double coordinate_m =
-        std::max({std::fabs(probe.tip_m.x), std::fabs(probe.tip_m.y), std::fabs(probe.tip_m.z)});
-    return gap_m > std::max(ticks_per_sleep * way_m, 1e-6 * coordinate_m) ? gap_m : 0;
+    const glm::dvec3 farthest = glm::abs(probe.tip_m); // in its space, where coordinates may be larger
+    return gap_m > std::max({near_m, 1e-6 * farthest.x, 1e-6 * farthest.y, 1e-6 * farthest.z}) ? gap_m : 0;
 }
 
 std::span<const Contact> Renderer::update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept

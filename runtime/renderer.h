@@ -48,10 +48,10 @@ struct TickResult {
     uint32_t faults = 0;
 };
 
-// Of all objects since the renderer was made: walks through trees of boxes, triangles that these delivered, and steps
-// of proxies over surfaces.
+// Of all objects since the renderer was made: walks through trees of boxes, triangles that these delivered, steps of
+// proxies over surfaces, and triangles that were read ahead.
 struct ContactWork {
-    uint64_t queries = 0, triangles = 0, steps = 0;
+    uint64_t queries = 0, triangles = 0, steps = 0, read_ahead = 0;
 };
 
 class Renderer {
@@ -64,6 +64,10 @@ public:
     // device had no pose, or one that is not finite, or the force was not finite - the force grows linearly from 0 over
     // the scene's force_rise_s.
     TickResult tick(const DevicePose& pose) noexcept;
+
+    // Between two ticks, when the force is with the device: brings what the next one may need into the cache, and lets
+    // go of textures replaced on objects out of reach. Changes no force.
+    void between_ticks() noexcept;
 
     double force_limit_n() const noexcept { return force_limit_n_; }
     const SkippedStages& skipped() const noexcept { return skipped_; }
@@ -93,10 +97,11 @@ private:
         uint32_t faults = 0;
     };
 
+    static std::vector<Surroundings> surroundings(const Scene& scene);
     static ProbePose in_object(const Touched& touched, const DevicePose& pose) noexcept;
     void advance_texture(Touched& touched) noexcept;
     void wake(Touched& touched) noexcept;
-    double gap_to_sleep_m(const Touched& touched, const DevicePose& pose, double way_m) const noexcept;
+    double gap_to_sleep_m(const Touched& touched, const DevicePose& pose, double near_m) const noexcept;
     std::span<const Contact> update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept;
     ObjectForce force_of(const Touched& touched, const Contact& contact) const noexcept;
 

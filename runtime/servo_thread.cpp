@@ -143,6 +143,7 @@ bool ServoThread::tick()
 
     const DeviceStatus written = device_->write(result.force_n, result.torque_n_m);
     record(pose, result, static_cast<uint64_t>(compute_ns));
+    renderer_.between_ticks();
     if (options_.allocation_count) *report_.allocations_in_tick += options_.allocation_count() - allocations_before;
     if (written != DeviceStatus::ok && written != DeviceStatus::not_ready)
         end(written == DeviceStatus::finished ? ServoState::finished : ServoState::faulted, reason_of(written));

@@ -39,7 +39,9 @@ void Walk::settle()
         uint32_t edge = 3;
         for (uint32_t i = 0; i < 3; ++i) {
             const glm::dvec3 in = inward(proxy_.face, i);
-            const double distance = glm::dot(in, proxy_.at - vertex(proxy_.face, i)) / glm::length(in);
+            const double away = glm::dot(in, proxy_.at - vertex(proxy_.face, i)), square = glm::dot(in, in);
+            if (away > 0 && away * away > feature * feature * square) continue; // nearly always
+            const double distance = away / std::sqrt(square);
             if (distance >= nearest) continue;
             nearest = distance;
             edge = i;

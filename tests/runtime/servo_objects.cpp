@@ -232,14 +232,14 @@ TEST_CASE("a texture published to an object out of reach is there when the hand 
     Scene scene = field_of_balls(9);
     const auto slot = scene.objects[8].texture;
     Renderer renderer(shared(std::move(scene)));
-    for (int i = 0; i < 100; ++i) renderer.tick(at(0, 0, 0.02));
+    for (int i = 0; i < 100; ++i) renderer.tick(at(0, 0, 0.02)), renderer.between_ticks();
     for (int i = 0; i < 20; ++i) {
         const auto flat = [](const haptel_point&, glm::dvec3& gradient) {
             gradient = glm::dvec3(0);
             return -1e-4;
         };
         CHECK(slot->publish(lambda_texture(flat, -1e-4, 0)).empty());
-        for (int tick = 0; tick < 100; ++tick) renderer.tick(at(0, 0, 0.02));
+        for (int tick = 0; tick < 100; ++tick) renderer.tick(at(0, 0, 0.02)), renderer.between_ticks();
     }
     slot->collect();
     CHECK(slot->kept() <= 2);
@@ -252,19 +252,41 @@ TEST_CASE("a texture published to an object out of reach is there when the hand 
 
 TEST_CASE("whoever the hand may have reached is awake")
 {
-    Reach reach(3);
+    constexpr double anywhere = std::numeric_limits<double>::infinity();
+    Reach reach({{{}, anywhere}, {{}, anywhere}, {{}, anywhere}});
+    const auto go = [&](double way_m) { reach.go(way_m, {}, {}, 1e-6); };
     CHECK(reach.awake() == std::vector<uint32_t>{0, 1, 2});
     reach.sleep(1, 0.5);
     reach.sleep(0, 0.2);
     CHECK(reach.awake() == std::vector<uint32_t>{2});
-    reach.go(0.1);
-    reach.go(0.05);
+    go(0.1);
+    go(0.05);
     CHECK(reach.asleep() == 2);
-    reach.go(0.05);
+    go(0.05);
     CHECK(reach.awake() == std::vector<uint32_t>{0, 2});
-    reach.go(0.3);
+    go(0.3);
     CHECK(reach.awake() == std::vector<uint32_t>{0, 1, 2});
     reach.sleep(2, 10);
-    reach.go(std::numeric_limits<double>::infinity());
+    go(anywhere);
     CHECK(reach.asleep() == 0);
+}
+
+TEST_CASE("who is still far away when the hand has gone far sleeps on, and wakes before the hand is there")
+{
+    Reach reach({{{1, 0, 0}, 0.1}});
+    reach.sleep(0, 0.9);
+    double x = 0;
+    for (int i = 0; i < 1000; ++i) { // to and fro: 10 m of way
+        x = i % 2 * 0.01;
+        reach.go(0.01, {x, 0, 0}, {x, 1, 0}, 1e-3);
+        REQUIRE(reach.asleep() == 1);
+    }
+    for (; reach.asleep() == 1 && x < 1; x += 0.01) reach.go(0.01, {x, 0, 0}, {x, 1, 0}, 1e-3);
+    CHECK(x < 0.9 + 0.02);
+    CHECK(x > 0.8);
+    // A tail that reaches farther than the tip counts, and so does the shaft between.
+    Reach beside({{{0, 0.5, 0}, 0.1}});
+    beside.sleep(0, 0.05);
+    beside.go(0.06, {-0.06, 0, 0}, {0.06, 1, 0}, 1e-3);
+    CHECK(beside.asleep() == 0);
 }
