@@ -71,7 +71,7 @@ double slope_of(const TextureBinding& binding, const SurfacePoint& point)
 
 } // namespace
 
-TEST_CASE("a flat map of 0 to 4 tiles has its exact slope, turned, mirrored, sheared or not")
+TEST_CASE("anchors row 3: a flat map of 0 to 4 tiles has its exact slope, turned, mirrored, sheared or not")
 {
     const auto program = compiled(source);
     const double side_m = 0.04, c = std::cos(0.7), s = std::sin(0.7);

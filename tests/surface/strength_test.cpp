@@ -56,7 +56,7 @@ double furthest(const Felt& a, const Felt& b)
 
 } // namespace
 
-TEST_CASE("texture strength is the same from 2 to 131072 triangles and at every size")
+TEST_CASE("anchors row 2: texture strength is the same from 2 to 131072 triangles and at every size")
 {
     const auto program = compiled(source);
     for (const char* texture : {"ripples", "rock", "printed"}) {
