@@ -24,7 +24,8 @@ glm::dvec3 Lattice::snap(const glm::dvec3& point_m) const noexcept
 
 glm::dvec3 Lattice::snap_units(const glm::dvec3& units) noexcept
 {
-    return glm::clamp(glm::round(units), -workspace, workspace);
+    constexpr double round = 0x1.8p52; // adding it leaves no digit after the point; ties go to even
+    return (glm::clamp(units, -workspace, workspace) + round) - round;
 }
 
 glm::dvec3 Lattice::units(const glm::dvec3& point_m) const noexcept
