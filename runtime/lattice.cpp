@@ -49,9 +49,7 @@ bool Lattice::clip_to_workspace(glm::dvec3& from, glm::dvec3& to) noexcept
         leave = std::min(leave, std::max(low / along[k], high / along[k]));
     }
     if (!(enter <= leave)) return false;
-    const auto at = [&](double share) {
-        return glm::clamp(glm::round(share == 1 ? to : start + share * along), -workspace, workspace);
-    };
+    const auto at = [&](double share) { return snap_units(share == 1 ? to : start + share * along); };
     const glm::dvec3 end = at(leave);
     from = at(enter);
     to = end;

@@ -26,6 +26,10 @@ struct Lattice {
     glm::dvec3 snap_vertex(const glm::dvec3& point_m) const noexcept; // nearest point of the coarse lattice
     static glm::dvec3 snap_units(const glm::dvec3& units) noexcept;   // the same of a place in lattice units
     glm::dvec3 units(const glm::dvec3& point_m) const noexcept;       // neither rounded nor clamped
+    static bool beyond_workspace(const glm::dvec3& units) noexcept
+    {
+        return glm::any(glm::greaterThan(glm::abs(units), glm::dvec3(workspace)));
+    }
     // Leaves of the straight way between two places in lattice units what lies in the workspace, its ends lattice
     // points. False: nothing does.
     static bool clip_to_workspace(glm::dvec3& from, glm::dvec3& to) noexcept;

@@ -156,6 +156,8 @@ TEST_CASE("every step of the proxy is possible, on any mesh")
     meshes.push_back({"plate 2e-6", make_box({1, 1, 2e-6})});
     meshes.push_back({"plate 2e-10", make_box({1, 1, 2e-10})});
     meshes.push_back({"stairs", make_stairs()});
+    // Where hands often lie just between two points of the lattice.
+    meshes.push_back({"stairs, far away", far_away(make_stairs())});
     meshes.push_back({"cubes sharing corners", make_touching_cubes(Touching::corners)});
     for (const auto& [name, mesh] : meshes)
         for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}}) {
