@@ -105,9 +105,19 @@ struct BallQuery {
 
 class IsEmpty final : public BallVisitor {
 public:
-    bool visit(uint32_t) noexcept override { return empty = false; }
+    double visit(uint32_t) noexcept override
+    {
+        empty = false;
+        return 0;
+    }
     bool empty = true;
 };
+
+// As Embree may compare it: past any rounding of its own.
+float query_radius(double radius)
+{
+    return float(radius * scale) * (1.0f + 1e-6f) + widening;
+}
 
 bool visit_box(RTCPointQueryFunctionArguments* arguments)
 {
@@ -116,8 +126,10 @@ bool visit_box(RTCPointQueryFunctionArguments* arguments)
     query.boxes.of(arguments->primID, minimum, maximum);
     const glm::dvec3 away = query.centre - glm::clamp(query.centre, minimum, maximum);
     if (glm::dot(away, away) > query.radius * query.radius) return false;
-    if (query.visitor.visit(arguments->primID)) return false;
-    arguments->query->radius = 0; // seen enough
+    const double upto = query.visitor.visit(arguments->primID);
+    if (!(upto < query.radius)) return false;
+    query.radius = upto;
+    arguments->query->radius = upto > 0 ? query_radius(upto) : 0;
     return true;
 }
 
@@ -197,7 +209,7 @@ void BoxTree::ball(const glm::dvec3& centre, double radius, BallVisitor& visitor
     const glm::vec3 at = embree_point(centre);
     RTCPointQuery query = {};
     query.x = at.x, query.y = at.y, query.z = at.z;
-    query.radius = float(radius * scale) * (1.0f + 1e-6f) + widening;
+    query.radius = query_radius(radius);
     rtcPointQuery(handles_->scene, &query, &context, visit_box, &ball);
 }
 

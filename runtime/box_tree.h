@@ -25,10 +25,11 @@ protected:
     ~SegmentVisitor() = default;
 };
 
-// Told of each candidate within a ball; false: enough is known.
+// Told of each candidate within a ball. Returns how far from its centre is still of interest: the distance of the
+// nearest thing so far to see only what may be nearer, 0: enough is known.
 class BallVisitor {
 public:
-    virtual bool visit(uint32_t face) noexcept = 0;
+    virtual double visit(uint32_t face) noexcept = 0;
 
 protected:
     ~BallVisitor() = default;
@@ -45,7 +46,7 @@ public:
 
     void segment(const glm::dvec3& from, const glm::dvec3& to, SegmentVisitor& visitor) const noexcept;
 
-    // Every face whose box comes within `radius` of the centre.
+    // Every face whose box comes within `radius` of the centre, roughly the near ones first.
     void ball(const glm::dvec3& centre, double radius, BallVisitor& visitor) const noexcept;
 
     // Whether no triangle's box comes within `radius` of the centre.

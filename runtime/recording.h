@@ -15,7 +15,7 @@ namespace haptel::runtime {
 // The columns, in the order that is written. Readers go by name: columns may be reordered, and others added.
 inline constexpr std::string_view trace_columns =
     "tick,time_s,x_m,y_m,z_m,tail_x_m,tail_y_m,tail_z_m,fx_n,fy_n,fz_n,"
-    "contact,depth_m,height_m,compute_ns,binding,interrupted,device_force_max_n";
+    "contact,depth_m,height_m,compute_ns,binding,interrupted,device_force_max_n,waiting";
 
 void write_trace_header(std::ostream& out);
 void write_trace_row(std::ostream& out, const TickRecord& record);

@@ -27,7 +27,9 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, double device_force_max_n
     , period_s_(1 / scene_->servo.rate_hz)
     , force_limit_n_(device_force_max_n > 0 ? std::min(device_force_max_n, scene_->servo.force_limit_n)
                                             : scene_->servo.force_limit_n)
+    , effects_(*scene_)
     , reach_(surroundings(*scene_))
+    , waiting_(scene_->servo.wait_for_small_force_n > 0)
     , velocity_(period_s_)
 {
     objects_.reserve(scene_->objects.size());
@@ -45,7 +47,8 @@ std::vector<Surroundings> Renderer::surroundings(const Scene& scene)
     for (const SceneObject& object : scene.objects) {
         const Surface& surface = *object.surface;
         const glm::dvec3 middle = 0.5 * surface.box_minimum_m + 0.5 * surface.box_maximum_m;
-        const double radius_m = glm::distance(surface.box_minimum_m, middle) + scene.probe.radius_m;
+        const double radius_m =
+            glm::distance(surface.box_minimum_m, middle) + scene.probe.radius_m + object.effects.reach_m();
         all.push_back({object.placement.to_world(middle),
                        object.motion ? std::numeric_limits<double>::infinity() : radius_m * (1 + 1e-6)});
     }
@@ -73,6 +76,7 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     for (const uint32_t object : reach_.awake()) advance_texture(objects_[object]);
     if (!finite(pose.tip_m) || !finite(pose.tail_m)) {
         velocity_.lose_hand();
+        effects_.lose_hand();
         for (Touched& touched : objects_) touched.velocity.lose_hand();
         interrupted_ = true;
         result.faults = fault_pose_not_finite;
@@ -80,7 +84,12 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     }
     velocity_.update(pose.tip_m, periods);
     result.interrupted = std::exchange(interrupted_, false) || pose.interrupted;
-    if (result.interrupted) rise_period_ = period_;
+    if (result.interrupted) {
+        rise_period_ = period_;
+        waiting_ = scene_->servo.wait_for_small_force_n > 0;
+        effects_.lose_hand();
+    }
+    if (effects_.act()) effects_.begin(pose.tip_m, result.time_s, periods);
 
     double way_m = 0;
     if (last_pose_)
@@ -101,9 +110,10 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
         work_.queries += counters.sweeps - queries;
         work_.triangles += counters.triangles_tested - triangles;
         work_.steps += counters.walk_steps - steps;
+        if (effects_.of(number)) effects_.update(number, touched.placement, !contacts.empty());
         if (contacts.empty()) {
             touched.friction_share = 0;
-            if (const double gap_m = gap_to_sleep_m(touched, pose, near_m); gap_m > 0) {
+            if (const double gap_m = gap_to_sleep_m(number, pose, near_m); gap_m > 0) {
                 touched.asleep = true;
                 reach_.sleep(number, gap_m);
                 --i;
@@ -125,17 +135,37 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     }
     last_pose_ = pose;
     skipped_.free_space += no_query;
+    if (effects_.act()) result.unlimited_force_n += effects_.force_n();
+    send(result);
+    return result;
+}
 
+// What of the force goes to the hand.
+void Renderer::send(TickResult& result) noexcept
+{
     if (!finite(result.unlimited_force_n)) {
         result.unlimited_force_n = glm::dvec3(0);
         result.faults |= fault_force_not_finite;
         interrupted_ = true;
     }
+    if (waiting_) {
+        waiting_ = !(glm::length(result.unlimited_force_n) <= scene_->servo.wait_for_small_force_n) || interrupted_;
+        rise_period_ = period_;
+        result.waiting = waiting_;
+        if (waiting_) return;
+    }
     const double rise_s = scene_->servo.force_rise_s;
     const double rising_s = static_cast<double>(period_ - rise_period_) * period_s_;
     const double risen = rising_s < rise_s ? rising_s / rise_s : 1.0;
     result.force_n = limited(risen * result.unlimited_force_n, force_limit_n_);
-    return result;
+}
+
+ContactWork Renderer::work() const noexcept
+{
+    ContactWork all = work_;
+    all.queries += effects_.queries();
+    all.triangles += effects_.triangles();
+    return all;
 }
 
 void Renderer::between_ticks() noexcept
@@ -165,11 +195,12 @@ void Renderer::wake(Touched& touched) noexcept
 }
 
 // How far the hand must go before an object that it does not touch is looked at again; 0: look at it every tick.
-double Renderer::gap_to_sleep_m(const Touched& touched, const DevicePose& pose, double near_m) const noexcept
+double Renderer::gap_to_sleep_m(uint32_t number, const DevicePose& pose, double near_m) const noexcept
 {
+    const Touched& touched = objects_[number];
     if (touched.object->motion) return 0;
     const ProbePose probe = in_object(touched, pose);
-    const double gap_m = touched.contact.gap_m(probe);
+    const double gap_m = touched.contact.gap_m(probe) - effects_.awake_within_m(number);
     const glm::dvec3 farthest = glm::abs(probe.tip_m); // in its space, where coordinates may be larger
     return gap_m > std::max({near_m, 1e-6 * farthest.x, 1e-6 * farthest.y, 1e-6 * farthest.z}) ? gap_m : 0;
 }

@@ -3,9 +3,10 @@
 // A function of its state and the pose (with the periods that have passed) alone - no clock, no thread, no device - so
 // that a run can be repeated bit for bit and tested without any of them. The stages, each skipped when the one before
 // says so: pose check, contact (free-space skip, collision, proxy, friction), force shading, texture, force model,
-// friction and damping, limits. tick() allocates nothing, locks nothing, throws nothing.
+// friction and damping, effects, limits. tick() allocates nothing, locks nothing, throws nothing.
 #pragma once
 
+#include "runtime/effects.h"
 #include "runtime/hand_velocity.h"
 #include "runtime/haptic_device.h"
 #include "runtime/probe_contact.h"
@@ -38,6 +39,7 @@ enum : uint32_t {
 struct TickResult {
     double time_s = 0;        // periods since the first pose, those without a pose included, times the period
     bool interrupted = false; // the force rises anew from here on
+    bool waiting = false;     // no force yet: the one computed is not small (ServoSettings::wait_for_small_force_n)
     glm::dvec3 force_n{0};    // on the hand, world frame, after rise and limits; finite and never above the limit
     glm::dvec3 torque_n_m{0}; // about the tip; 0 as long as only the tip presses
     glm::dvec3 unlimited_force_n{0};
@@ -48,8 +50,8 @@ struct TickResult {
     uint32_t faults = 0;
 };
 
-// Of all objects since the renderer was made: walks through trees of boxes, triangles that these delivered, steps of
-// proxies over surfaces, and triangles that were read ahead.
+// Of all objects since the renderer was made, effects included: walks through trees of boxes, triangles that these
+// delivered, steps of proxies over surfaces, and triangles that were read ahead.
 struct ContactWork {
     uint64_t queries = 0, triangles = 0, steps = 0, read_ahead = 0;
 };
@@ -62,7 +64,7 @@ public:
     // Once per period with the pose of the hand (once for several where the servo was late: DevicePose::periods, 0 is
     // taken for 1). The first pose puts the probe down where it is. After the start and after every interruption - the
     // device had no pose, or one that is not finite, or the force was not finite - the force grows linearly from 0 over
-    // the scene's force_rise_s.
+    // the scene's force_rise_s, from when it is small if the scene says to wait for that.
     TickResult tick(const DevicePose& pose) noexcept;
 
     // Between two ticks, when the force is with the device: brings what the next one may need into the cache, and lets
@@ -71,7 +73,7 @@ public:
 
     double force_limit_n() const noexcept { return force_limit_n_; }
     const SkippedStages& skipped() const noexcept { return skipped_; }
-    const ContactWork& work() const noexcept { return work_; }
+    ContactWork work() const noexcept;
     // Bindings published to the scene's slots since this renderer was made.
     uint64_t reloads() const noexcept;
 
@@ -101,20 +103,23 @@ private:
     static ProbePose in_object(const Touched& touched, const DevicePose& pose) noexcept;
     void advance_texture(Touched& touched) noexcept;
     void wake(Touched& touched) noexcept;
-    double gap_to_sleep_m(const Touched& touched, const DevicePose& pose, double near_m) const noexcept;
+    double gap_to_sleep_m(uint32_t number, const DevicePose& pose, double near_m) const noexcept;
     std::span<const Contact> update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept;
     ObjectForce force_of(const Touched& touched, const Contact& contact) const noexcept;
+    void send(TickResult& result) noexcept;
 
     std::shared_ptr<const Scene> scene_;
     double period_s_;
     double force_limit_n_;
     std::vector<Touched> objects_;
+    Effects effects_;
     Reach reach_;
     bool started_ = false;
     uint64_t period_ = 0;         // number of this tick's period, 0 at the first pose
     uint64_t texture_period_ = 0; // the same, those before a pose included
     uint64_t rise_period_ = 0;    // the force rises from this one on
     bool interrupted_ = false;    // the tick before sent no force, for a fault
+    bool waiting_;                // for a small force
     SkippedStages skipped_;
     ContactWork work_;
     std::optional<DevicePose> last_pose_; // that was finite

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "lang/texture_binding.h"
+#include "runtime/effects.h"
 #include "runtime/force_model.h"
 #include "runtime/haptic_device.h"
 #include "runtime/motion.h"
@@ -34,6 +35,7 @@ struct SceneObject {
     Placement placement;                  // at the start
     std::shared_ptr<const Motion> motion; // null: it stays there
     Material material;
+    ObjectEffects effects;
     std::shared_ptr<TextureSlot> texture = std::make_shared<TextureSlot>();
     std::optional<TextureRequest> request; // what the texture was resolved from, for live reload
 };
@@ -44,10 +46,14 @@ struct ServoSettings {
     double force_limit_n = 7;   // > 0; the device's own limit applies too
     double v_max_m_per_s = 0.3; // hand speed that textures are band-limited for
     double force_rise_s = 0.1;  // forces grow linearly from 0 over this time after start or interruption
+    // > 0: after start or interruption no force is sent before the force computed is at most this; then it rises. 0:
+    // off
+    double wait_for_small_force_n = 0;
 };
 
 struct Scene {
     std::vector<SceneObject> objects; // the first is the one that a simulated hand explores
+    std::vector<Region> regions;
     ProbeSettings probe;
     ServoSettings servo;
 };

@@ -35,6 +35,7 @@ struct ServoReport {
     uint64_t ticks = 0;
     uint64_t missed_deadlines = 0; // periods in which no force was sent because the tick before was late
     uint64_t contact_ticks = 0;
+    uint64_t waiting_ticks = 0;              // without a force because the one computed was not small yet
     Histogram tick_ns;                       // pose in hand to force computed
     Histogram wake_late_ns;                  // after the deadline; empty on the virtual clock
     double force_rms_n = 0, force_max_n = 0; // as sent, over all ticks

@@ -165,6 +165,7 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
     force_squared_sum_ += force_n * force_n;
     report_.force_max_n = std::max(report_.force_max_n, force_n);
     report_.contact_ticks += result.contacts > 0;
+    report_.waiting_ticks += result.waiting;
     report_.faults += result.faults != 0;
     report_.fault_bits |= result.faults;
     report_.tick_ns.add(compute_ns);
@@ -174,6 +175,7 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
     row.time_s = result.time_s;
     row.device_force_max_n = device_->info().force_max_n;
     row.interrupted = result.interrupted;
+    row.waiting = result.waiting;
     row.tip_m = pose.tip_m;
     row.tail_m = pose.tail_m;
     row.force_n = result.force_n;

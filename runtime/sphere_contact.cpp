@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace haptel::runtime {
@@ -29,11 +30,11 @@ constexpr std::size_t faces_most = 1 << 14;
 class Collect final : public BallVisitor {
 public:
     explicit Collect(std::vector<uint32_t>& faces) : faces_(faces) { faces_.clear(); }
-    bool visit(uint32_t face) noexcept override
+    double visit(uint32_t face) noexcept override
     {
         full = faces_.size() == faces_.capacity();
         if (!full) faces_.push_back(face);
-        return !full;
+        return full ? 0 : std::numeric_limits<double>::infinity();
     }
     bool full = false;
 

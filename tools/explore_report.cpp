@@ -90,6 +90,7 @@ Json to_json(const ExploreOutcome& outcome)
     json["ticks"] = servo.ticks;
     json["missed_deadlines"] = servo.missed_deadlines;
     json["contact_ticks"] = servo.contact_ticks;
+    json["waiting_ticks"] = servo.waiting_ticks;
     json["tick_ns"]["median"] = percentile(servo.tick_ns, 0.5, 1);
     json["tick_ns"]["p99"] = percentile(servo.tick_ns, 0.99, 1);
     json["tick_ns"]["p999"] = percentile(servo.tick_ns, 0.999, 1);
@@ -127,6 +128,8 @@ std::string to_lines(const ExploreOutcome& outcome)
     line("time", fmt::format("{:.3f} s, {} ticks at {:g} Hz, {} missed deadlines", servo.seconds, servo.ticks,
                              servo.rate_hz, servo.missed_deadlines));
     line("contact", fmt::format("{} ticks ({:.1f} %)", servo.contact_ticks, percent(servo.contact_ticks, servo.ticks)));
+    if (servo.waiting_ticks > 0)
+        line("waited", fmt::format("{} ticks for a small force, with none on the hand", servo.waiting_ticks));
     line("force", fmt::format("rms {:.3f} N, largest {:.3f} N", servo.force_rms_n, servo.force_max_n));
     line("energy", fmt::format("{:.3g} J given to the hand", servo.energy_j));
     line("tick", percentiles_text(servo.tick_ns));

@@ -34,8 +34,11 @@ void ExploreStatus::show(const runtime::TickRecord& tick)
     const double force_n = glm::length(tick.force_n);
     const std::string text =
         fmt::format("{:7.1f} s  {}  force {:5.2f} N {} depth {:6.3f} mm  texture {:+7.1f} um #{}", tick.time_s,
-                    tick.contact ? "touch" : "free ", force_n, on_terminal_ ? "|" + force_bar(force_n) + "| " : "",
-                    tick.depth_m * 1e3, tick.height_m * 1e6, tick.binding);
+                    tick.waiting   ? "waits for a small force"
+                    : tick.contact ? "touch"
+                                   : "free ",
+                    force_n, on_terminal_ ? "|" + force_bar(force_n) + "| " : "", tick.depth_m * 1e3,
+                    tick.height_m * 1e6, tick.binding);
     if (on_terminal_)
         fmt::print(stderr, "\r\x1b[K{}", text);
     else

@@ -1,5 +1,6 @@
 #include "runtime/files/scene_file.h"
 
+#include "runtime/files/effects_reader.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/files/table_reader.h"
 #include "runtime/shading.h"
@@ -12,8 +13,6 @@
 #include <iterator>
 #include <limits>
 #include <utility>
-
-#include <glm/gtc/matrix_transform.hpp>
 
 namespace haptel::runtime {
 
@@ -37,6 +36,7 @@ struct ObjectText {
 struct SceneText {
     ProbeSettings probe;
     ServoSettings servo;
+    std::vector<Region> regions;
     DeviceRequest device;
     toml::source_region device_at;
     std::vector<ObjectText> objects;
@@ -83,6 +83,7 @@ ServoSettings read_servo(const toml::table& root, FileMessages& messages)
     table.number("force_limit_n", servo.force_limit_n, Quantity::force, {0, 100, true});
     table.number("v_max_m_per_s", servo.v_max_m_per_s, Quantity::speed, {0, 10, true});
     table.number("force_rise_s", servo.force_rise_s, Quantity::time, {0, 10});
+    table.number("wait_for_small_force_n", servo.wait_for_small_force_n, Quantity::force, {0, 100});
     table.report_unknown_keys();
     return servo;
 }
@@ -146,7 +147,7 @@ std::shared_ptr<const Motion> read_motion(TableReader& table, const Placement& s
     return std::make_shared<SteadyMotion>(start, figures);
 }
 
-ObjectText read_object(const toml::table& source, FileMessages& messages)
+ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& messages)
 {
     ObjectText text;
     TableReader table(source, "[[object]]", messages);
@@ -163,19 +164,10 @@ ObjectText read_object(const toml::table& source, FileMessages& messages)
 
     table.number("crease_deg", text.crease_deg, Quantity::angle_deg, {0, 180});
 
-    table.three_numbers("position_m", text.object.placement.position_m, Quantity::length, {-1000, 1000});
-    glm::dvec3 turn_deg(0);
-    table.three_numbers("rotation_deg", turn_deg, Quantity::angle_deg, {-3600, 3600});
-    glm::dmat4 rotation(1);
-    for (const int axis : {2, 1, 0}) { // about x first, then y, then z: the last factor turns first
-        glm::dvec3 direction(0);
-        direction[axis] = 1;
-        if (turn_deg[axis] != 0) rotation = glm::rotate(rotation, glm::radians(turn_deg[axis]), direction);
-    }
-    text.object.placement.rotation = glm::dmat3(rotation);
-
+    text.object.placement = read_placement(table);
     text.object.motion = read_motion(table, text.object.placement, messages);
     text.object.material = read_material(table, messages);
+    text.object.effects = read_object_effects(table, rate_hz, messages);
     table.text("texture", text.texture);
     text.texture_at = table.where("texture");
     text.parameters = table.values_as_written("parameters");
@@ -191,9 +183,10 @@ SceneText read_scene(const toml::table& root, const std::filesystem::path& folde
     text.probe = read_probe(root, messages);
     text.servo = read_servo(root, messages);
     text.device = read_device(root, folder, messages);
+    text.regions = read_regions(root, text.servo.rate_hz, messages);
 
     TableReader top(root, "", messages);
-    for (const char* name : {"probe", "servo", "device", "object"}) (void)top.has(name);
+    for (const char* name : {"probe", "servo", "device", "object", "region"}) (void)top.has(name);
     top.report_unknown_keys();
     text.device_at = top.where("device");
 
@@ -204,7 +197,8 @@ SceneText read_scene(const toml::table& root, const std::filesystem::path& folde
     else if (!list || !list->is_array_of_tables())
         messages.error(objects->source(), "expected `[[object]]` in double brackets: a scene may hold several objects");
     else
-        for (const toml::node& object : *list) text.objects.push_back(read_object(*object.as_table(), messages));
+        for (const toml::node& object : *list)
+            text.objects.push_back(read_object(*object.as_table(), text.servo.rate_hz, messages));
     return text;
 }
 
@@ -234,13 +228,18 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, FileMe
     text.object.surface = std::move(built.surface);
 }
 
-void check_radius(const ObjectText& text, double radius_m, FileMessages& messages)
+// What reaches farther than the object is large is not looked for.
+void check_reach(const ObjectText& text, const ProbeSettings& probe, FileMessages& messages)
 {
     const glm::dvec3 sides_m = text.object.surface->box_maximum_m - text.object.surface->box_minimum_m;
-    const double largest_m = std::max({sides_m.x, sides_m.y, sides_m.z});
-    if (radius_m > largest_m * (1 + 1e-9))
+    const double largest_m = std::max({sides_m.x, sides_m.y, sides_m.z}) * (1 + 1e-9);
+    if (probe.kind == ProbeKind::sphere && probe.radius_m > largest_m)
         messages.error(text.mesh_at, "the probe's `radius_m` is larger than `" + text.object.name +
                                          "`: at most the largest side of its box");
+    if (text.object.effects.reach_m() > largest_m)
+        messages.error(text.mesh_at, "the `reach_m` of an effect is larger than `" + text.object.name +
+                                         "`: at most the largest side of its box; what is felt farther away is a "
+                                         "`[[region]]`");
 }
 
 void load_texture(ObjectText& text, const SceneText& scene, const std::filesystem::path& folder,
@@ -349,8 +348,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
             object->object.name = same->object.name;
             object->object.surface = same->object.surface;
         }
-        if (object->object.surface && text.probe.kind == ProbeKind::sphere)
-            check_radius(*object, text.probe.radius_m, messages);
+        if (object->object.surface) check_reach(*object, text.probe, messages);
     }
     if (messages.any_error()) return loaded;
     for (ObjectText& object : text.objects) load_texture(object, text, folder, textures, messages);
@@ -359,6 +357,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
     auto scene = std::make_shared<Scene>();
     scene->probe = text.probe;
     scene->servo = text.servo;
+    scene->regions = std::move(text.regions);
     for (ObjectText& object : text.objects) scene->objects.push_back(std::move(object.object));
 
     if (devices) {

@@ -10,15 +10,6 @@ namespace haptel::runtime {
 
 namespace {
 
-std::string shortest(double value)
-{
-    const double size = std::abs(value);
-    const auto format =
-        size == 0 || (size >= 1e-5 && size < 1e15) ? std::chars_format::fixed : std::chars_format::general;
-    std::array<char, 64> text;
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, format).ptr};
-}
-
 std::string in_words(const Range& range)
 {
     if (std::isinf(range.maximum)) return (range.above_minimum ? "more than " : "at least ") + shortest(range.minimum);
@@ -65,6 +56,15 @@ std::size_t edit_distance(std::string_view a, std::string_view b)
 }
 
 } // namespace
+
+std::string shortest(double value)
+{
+    const double size = std::abs(value);
+    const auto format =
+        size == 0 || (size >= 1e-5 && size < 1e15) ? std::chars_format::fixed : std::chars_format::general;
+    std::array<char, 64> text;
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, format).ptr};
+}
 
 std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates)
 {
@@ -212,6 +212,15 @@ void TableReader::text(std::string_view key, std::string& value)
                         "expected text in quotes for `" + std::string(key) + "`, found " + kind_of(*node));
     else
         value = *text;
+}
+
+const toml::table* TableReader::table(std::string_view key, std::string_view example)
+{
+    const toml::node* node = find(key);
+    if (!node || node->is_table()) return node ? node->as_table() : nullptr;
+    messages_.error(node->source(), "expected a table, such as `" + std::string(key) + " = " + std::string(example) +
+                                        "`, found " + kind_of(*node));
+    return nullptr;
 }
 
 void TableReader::whole_number(std::string_view key, uint64_t& value)

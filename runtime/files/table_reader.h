@@ -63,6 +63,8 @@ public:
     void number(std::string_view key, double& value, Quantity quantity, const Range& range);
     void three_numbers(std::string_view key, glm::dvec3& value, Quantity quantity, const Range& range);
     void text(std::string_view key, std::string& value);
+    // The table there, or null if absent or something else, which is told by an example.
+    const toml::table* table(std::string_view key, std::string_view example);
     void whole_number(std::string_view key, uint64_t& value);
     // One of the words; returns its place in `words`, or nothing if absent or wrong.
     std::optional<std::size_t> word(std::string_view key, const std::vector<std::string_view>& words);
@@ -83,6 +85,9 @@ private:
 
 // The candidate that `word` was probably meant to be, or nothing.
 std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates);
+
+// As people write it: 0.1, 500, 1e+20.
+std::string shortest(double value);
 
 // "a", "a or b", "a, b or c"
 std::string either_of(const std::vector<std::string_view>& words);

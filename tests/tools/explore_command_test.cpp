@@ -94,6 +94,26 @@ TEST_CASE("explore feels a scene and reports it as promised")
     }
 }
 
+TEST_CASE("who waits for a small force is told so, in the report, the trace and for people")
+{
+    const Stage stage;
+    const std::string scene = stage.folder.write("wait.toml", "[servo]\nwait_for_small_force_n = 0.05\n[[object]]\n"
+                                                              "shape = \"icosphere\"\nmagnet = { force_n = 1, "
+                                                              "reach_m = 0.1 }\n");
+    const Ran ran =
+        run_command("explore " + scene + " --seconds 0.2 --clock virtual --json --out " + stage.out("wait"));
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+    const Json json = json_of(ran);
+    const auto waited = json["waiting_ticks"].get<uint64_t>();
+    CHECK(waited > 0);
+    uint64_t rows_waiting = 0;
+    for (const std::string& row : felt(stage.out("wait"))) rows_waiting += row.ends_with(",1,");
+    CHECK(rows_waiting == waited);
+    CHECK(contains(run_command("explore " + scene + " --seconds 0.2 --clock virtual").out,
+                   "waited       " + std::to_string(waited) + " ticks"));
+}
+
 TEST_CASE("the report for people names the same things")
 {
     const Stage stage;

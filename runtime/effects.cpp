@@ -1,0 +1,93 @@
+#include "runtime/effects.h"
+
+#include "runtime/scene.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace haptel::runtime {
+
+double ObjectEffects::reach_m() const
+{
+    return std::max({magnet.acts() ? magnet.reach_m : 0.0, damping_n_s_per_m > 0 ? damping_reach_m : 0.0,
+                     vibration.acts() ? vibration_reach_m : 0.0});
+}
+
+Effects::Effects(const Scene& scene)
+    : scene_(scene)
+    , period_s_(1 / scene.servo.rate_hz)
+    , probe_radius_m_(scene.probe.kind == ProbeKind::sphere ? scene.probe.radius_m : 0)
+    , act_(!scene.regions.empty())
+    , region_levels_(scene.regions.size())
+    , trail_(period_s_, trail_stiffness_n_per_m)
+{
+    for (const SceneObject& object : scene.objects) {
+        const bool has = object.effects.act();
+        act_ = act_ || has;
+        objects_.push_back(has ? std::make_unique<Near>(Near{object.effects, SurfaceDistance(object.surface), {}})
+                               : nullptr);
+    }
+}
+
+double Effects::awake_within_m(std::size_t object) const noexcept
+{
+    if (!of(object)) return 0;
+    const Near& near = *objects_[object];
+    return near.level.sounds() ? std::numeric_limits<double>::infinity() : near.effects.reach_m();
+}
+
+void Effects::begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) noexcept
+{
+    tip_m_ = tip_m;
+    time_s_ = time_s;
+    periods_ = periods;
+    sum_n_ = glm::dvec3(0);
+    damping_n_s_per_m_ = 0;
+    for (std::size_t i = 0; i < scene_.regions.size(); ++i) {
+        const Region& region = scene_.regions[i];
+        const double share = region.share_at(tip_m);
+        damping_n_s_per_m_ += share * region.damping_n_s_per_m;
+        vibrate(region.vibration, region_levels_[i], share, region.placement);
+    }
+}
+
+void Effects::update(std::size_t object, const Placement& placement, bool touched) noexcept
+{
+    Near& near = *objects_[object];
+    const ObjectEffects& effects = near.effects;
+    double distance_m = 0;
+    glm::dvec3 toward(0);
+    if (!touched) {
+        const glm::dvec3 tip_m = placement.to_object(tip_m_);
+        const double reach_m = effects.reach_m();
+        const uint64_t queries = near.distance.queries(), triangles = near.distance.triangles();
+        const auto nearest = reach_m > 0 ? near.distance.within(tip_m, reach_m + probe_radius_m_) : std::nullopt;
+        queries_ += near.distance.queries() - queries;
+        triangles_ += near.distance.triangles() - triangles;
+        distance_m =
+            nearest ? std::max(0.0, nearest->distance_m - probe_radius_m_) : std::numeric_limits<double>::infinity();
+        if (distance_m > 0 && nearest)
+            toward = placement.direction_to_world((nearest->point_m - tip_m) / nearest->distance_m);
+    }
+    if (effects.magnet.acts()) sum_n_ += effects.magnet.pull_n(distance_m) * toward;
+    const auto share = [&](double reach_m) {
+        return distance_m == 0 ? 1.0 : distance_m < reach_m ? 1 - distance_m / reach_m : 0.0;
+    };
+    damping_n_s_per_m_ += effects.damping_n_s_per_m * share(effects.damping_reach_m);
+    vibrate(effects.vibration, near.level, share(effects.vibration_reach_m), placement);
+}
+
+glm::dvec3 Effects::force_n() noexcept
+{
+    return sum_n_ + trail_.update(tip_m_, damping_n_s_per_m_, periods_);
+}
+
+void Effects::vibrate(const Vibration& vibration, VibrationLevel& level, double share,
+                      const Placement& placement) noexcept
+{
+    if (!vibration.acts()) return;
+    const double now = level.update(share, static_cast<double>(periods_) * period_s_);
+    if (now > 0) sum_n_ += now * vibration.swing_n(time_s_) * placement.direction_to_world(vibration.direction);
+}
+
+} // namespace haptel::runtime

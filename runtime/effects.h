@@ -1,0 +1,80 @@
+// What is felt beside contact: pull of surfaces, viscous media, vibrations. After contact and before the limits.
+//
+// A scene without effects pays one branch a tick; an object without them, one. What acts at a distance keeps its object
+// from falling asleep (reach.h) only within that distance. The file of each effect says what it does with energy.
+#pragma once
+
+#include "runtime/magnet.h"
+#include "runtime/placement.h"
+#include "runtime/region.h"
+#include "runtime/surface_distance.h"
+#include "runtime/vibration.h"
+#include "runtime/viscosity.h"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+namespace haptel::runtime {
+
+struct Scene;
+
+// Of one object. Viscosity and vibration are full while it is touched and fall off with the distance to it, to nothing
+// at their reach; without one a vibration is felt in contact alone.
+struct ObjectEffects {
+    Magnet magnet;
+    double damping_n_s_per_m = 0, damping_reach_m = 0; // >= 0; > 0 if it damps
+    Vibration vibration;                               // its direction turns with the object
+    double vibration_reach_m = 0;                      // >= 0
+
+    bool act() const { return magnet.acts() || damping_n_s_per_m > 0 || vibration.acts(); }
+    // From here on nothing of it is felt.
+    double reach_m() const;
+};
+
+class Effects {
+public:
+    explicit Effects(const Scene& scene); // which outlives it
+
+    bool act() const noexcept { return act_; }
+    bool of(std::size_t object) const noexcept { return objects_[object] != nullptr; }
+    // Nearer than this to the object something may be felt now, or still: 0 without effects.
+    double awake_within_m(std::size_t object) const noexcept;
+
+    // One tick, if they act at all: begin, then update of each object that has effects and may be near, then force.
+    void begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) noexcept;
+    void update(std::size_t object, const Placement& placement, bool touched) noexcept;
+    glm::dvec3 force_n() noexcept;
+
+    void lose_hand() noexcept { trail_.lose_hand(); }
+
+    // Queries of the objects' trees and triangles that these delivered, since the start.
+    uint64_t queries() const noexcept { return queries_; }
+    uint64_t triangles() const noexcept { return triangles_; }
+
+private:
+    void vibrate(const Vibration& vibration, VibrationLevel& level, double share, const Placement& placement) noexcept;
+
+    struct Near {
+        ObjectEffects effects;
+        SurfaceDistance distance;
+        VibrationLevel level;
+    };
+
+    const Scene& scene_;
+    double period_s_, probe_radius_m_;
+    bool act_;
+    std::vector<std::unique_ptr<Near>> objects_; // null: without effects
+    std::vector<VibrationLevel> region_levels_;
+    Trail trail_;
+    uint64_t queries_ = 0, triangles_ = 0;
+
+    // Of this tick.
+    glm::dvec3 tip_m_{0}, sum_n_{0};
+    double time_s_ = 0, damping_n_s_per_m_ = 0;
+    uint64_t periods_ = 1;
+};
+
+} // namespace haptel::runtime

@@ -1,0 +1,147 @@
+#include "runtime/files/effects_reader.h"
+
+#include <algorithm>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace haptel::runtime {
+
+namespace {
+
+constexpr Range forces_n{0, 100}, dampings_n_s_per_m{0, 1000}, reaches_m{0, 1000, true};
+
+// Of the smallest half side: where a region does not say how wide its edge is.
+constexpr double default_edge = 0.25;
+
+// An effect without one of its figures has no meaning.
+void need(TableReader& table, const char* key, const char* why, FileMessages& messages)
+{
+    if (!table.has(key)) messages.error(table.where(key), std::string(why));
+}
+
+Magnet read_magnet(TableReader& object, FileMessages& messages)
+{
+    Magnet magnet;
+    const toml::table* source = object.table("magnet", "{ force_n = 1, reach_m = \"5mm\" }");
+    if (!source) return magnet;
+    TableReader table(*source, "`magnet`", messages);
+    table.number("force_n", magnet.force_n, Quantity::force, forces_n);
+    table.number("reach_m", magnet.reach_m, Quantity::length, reaches_m);
+    need(table, "force_n", "a magnet needs its largest pull: write `force_n = 1`", messages);
+    need(table, "reach_m", "a magnet needs the distance from which on it pulls: write `reach_m = \"5mm\"`", messages);
+    table.report_unknown_keys();
+    return magnet;
+}
+
+// The rate is that of the servo: faster swings than half of it are slower ones to the hand.
+Vibration read_vibration(const toml::table& source, double rate_hz, double* reach_m, FileMessages& messages)
+{
+    Vibration vibration;
+    TableReader table(source, "`vibration`", messages);
+    table.number("force_n", vibration.force_n, Quantity::force, forces_n);
+    need(table, "force_n", "a vibration needs its amplitude: write `force_n = 0.5`", messages);
+    table.number("frequency_hz", vibration.frequency_hz, Quantity::frequency, {0, 100'000, true});
+    if (vibration.frequency_hz >= rate_hz / 2)
+        messages.error(table.where("frequency_hz"),
+                       "`frequency_hz` must be below half of the servo's `rate_hz`, so below " + shortest(rate_hz / 2) +
+                           ": at that rate faster swings are felt as slower ones. Lower it, or raise `rate_hz`");
+    table.three_numbers("direction", vibration.direction, Quantity::number, {-1e6, 1e6});
+    const double length = glm::length(vibration.direction);
+    if (length == 0)
+        messages.error(table.where("direction"), "a vibration needs a direction: write `direction = [0, 0, 1]`");
+    else
+        vibration.direction /= length;
+    if (reach_m) table.number("reach_m", *reach_m, Quantity::length, {0, 1000});
+    table.report_unknown_keys();
+    return vibration;
+}
+
+constexpr const char* vibration_example = "{ force_n = 0.5, frequency_hz = 80, direction = [0, 0, 1] }";
+
+Region read_region(const toml::table& source, double rate_hz, FileMessages& messages)
+{
+    Region region;
+    TableReader table(source, "[[region]]", messages);
+    const auto shape = table.word("shape", {"space", "ball", "box"});
+    if (shape)
+        region.shape = static_cast<RegionShape>(*shape);
+    else if (!table.has("shape"))
+        messages.error(source.source(), "a region needs a `shape`: \"space\" (everywhere), \"ball\" or \"box\"");
+    region.placement = read_placement(table);
+
+    double radius_m = 0;
+    table.number("radius_m", radius_m, Quantity::length, {0, 1000, true});
+    glm::dvec3 sides_m(0);
+    table.three_numbers("sides_m", sides_m, Quantity::length, {0, 1000, true});
+    const bool ball = shape && region.shape == RegionShape::ball, box = shape && region.shape == RegionShape::box;
+    if (ball != table.has("radius_m") && shape)
+        messages.error(table.where(ball ? "shape" : "radius_m"), ball ? "a ball needs a radius: write `radius_m = 0.02`"
+                                                                      : "`radius_m` is for `shape = \"ball\"` alone");
+    if (box != table.has("sides_m") && shape)
+        messages.error(table.where(box ? "shape" : "sides_m"),
+                       box ? "a box needs its sides: write `sides_m = [0.04, 0.04, 0.02]`"
+                           : "`sides_m` is for `shape = \"box\"` alone");
+    region.half_sides_m = ball ? glm::dvec3(radius_m) : 0.5 * sides_m;
+    const double smallest_m = std::min({region.half_sides_m.x, region.half_sides_m.y, region.half_sides_m.z});
+    region.edge_m = default_edge * smallest_m;
+    table.number("edge_m", region.edge_m, Quantity::length, {0, 1000, true});
+    if (table.has("edge_m") && shape && !ball && !box)
+        messages.error(table.where("edge_m"), "`edge_m` is for a `shape` with a border, \"ball\" or \"box\"");
+
+    table.number("damping_n_s_per_m", region.damping_n_s_per_m, Quantity::damping, dampings_n_s_per_m);
+    if (const toml::table* vibration = table.table("vibration", vibration_example))
+        region.vibration = read_vibration(*vibration, rate_hz, nullptr, messages);
+    table.report_unknown_keys();
+    return region;
+}
+
+} // namespace
+
+Placement read_placement(TableReader& table)
+{
+    Placement placement;
+    table.three_numbers("position_m", placement.position_m, Quantity::length, {-1000, 1000});
+    glm::dvec3 turn_deg(0);
+    table.three_numbers("rotation_deg", turn_deg, Quantity::angle_deg, {-3600, 3600});
+    glm::dmat4 rotation(1);
+    for (const int axis : {2, 1, 0}) { // about x first, then y, then z: the last factor turns first
+        glm::dvec3 direction(0);
+        direction[axis] = 1;
+        if (turn_deg[axis] != 0) rotation = glm::rotate(rotation, glm::radians(turn_deg[axis]), direction);
+    }
+    placement.rotation = glm::dmat3(rotation);
+    return placement;
+}
+
+ObjectEffects read_object_effects(TableReader& object, double rate_hz, FileMessages& messages)
+{
+    ObjectEffects effects;
+    effects.magnet = read_magnet(object, messages);
+    if (const toml::table* source = object.table("viscosity", "{ damping_n_s_per_m = 2, reach_m = \"5mm\" }")) {
+        TableReader table(*source, "`viscosity`", messages);
+        table.number("damping_n_s_per_m", effects.damping_n_s_per_m, Quantity::damping, dampings_n_s_per_m);
+        table.number("reach_m", effects.damping_reach_m, Quantity::length, reaches_m);
+        need(table, "damping_n_s_per_m", "a viscous medium needs its strength: write `damping_n_s_per_m = 2`",
+             messages);
+        need(table, "reach_m", "a viscous medium needs to end somewhere: write `reach_m = \"5mm\"`", messages);
+        table.report_unknown_keys();
+    }
+    if (const toml::table* source = object.table("vibration", vibration_example))
+        effects.vibration = read_vibration(*source, rate_hz, &effects.vibration_reach_m, messages);
+    return effects;
+}
+
+std::vector<Region> read_regions(const toml::table& root, double rate_hz, FileMessages& messages)
+{
+    std::vector<Region> regions;
+    const toml::node* node = root.get("region");
+    if (!node) return regions;
+    const toml::array* list = node->as_array();
+    if (!list || !list->is_array_of_tables())
+        messages.error(node->source(), "expected `[[region]]` in double brackets: a scene may hold several regions");
+    else
+        for (const toml::node& region : *list) regions.push_back(read_region(*region.as_table(), rate_hz, messages));
+    return regions;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,21 @@
+// The parts of a scene file that say what is felt beside contact.
+#pragma once
+
+#include "runtime/effects.h"
+#include "runtime/files/table_reader.h"
+#include "runtime/placement.h"
+
+#include <vector>
+
+namespace haptel::runtime {
+
+// `position_m` and `rotation_deg`, of objects and regions alike.
+Placement read_placement(TableReader& table);
+
+// Of one `[[object]]`: `magnet`, `viscosity`, `vibration`.
+ObjectEffects read_object_effects(TableReader& object, double rate_hz, FileMessages& messages);
+
+// All of `[[region]]`.
+std::vector<Region> read_regions(const toml::table& root, double rate_hz, FileMessages& messages);
+
+} // namespace haptel::runtime
