@@ -20,6 +20,7 @@ constexpr double slack = 0.25; // what moves along a wall may lose of the distan
 
 // Sheets are pushed apart by 1 / sine of their angle; beyond this they are taken as parallel.
 constexpr double least_square_of_sine = 1e-5;
+constexpr double least_sine = 1e-3; // of lines in a plane
 
 const glm::dvec3& corner(const Surface& surface, uint32_t face, uint32_t i)
 {
@@ -41,50 +42,103 @@ double within_outline(const Surface& surface, uint32_t face, const glm::dvec3& a
     return nearest;
 }
 
-// Whether a wall of the face stands in the straight way: exact but for the ends, which are rounded to the lattice.
-bool blocked(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to)
+bool is_wall_of(const Surface& surface, uint32_t face, uint32_t other)
 {
     const Face& data = surface.faces[face];
-    for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {
-        Crossing crossing;
-        const uint32_t wall = surface.pierced_by[k];
-        if (crosses(glm::round(from), glm::round(to), corner(surface, wall, 0), corner(surface, wall, 1),
-                    corner(surface, wall, 2), crossing))
-            return true;
-    }
+    for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k)
+        if (surface.pierced_by[k] == other) return true;
     return false;
 }
 
+// The edge of this wall, 3 if none, that the place lies past and over which another wall of the face falls away that it
+// is rather beside. Near such a ridge the planes of both are within reach, but there is more space than before both:
+// only the one that the place is beside holds it, else nothing could leave the ridge.
+uint32_t ridge_passed(const Surface& surface, uint32_t face, uint32_t wall, uint32_t side, const glm::dvec3& at)
+{
+    double inside[3];
+    for (uint32_t i = 0; i < 3; ++i) inside[i] = glm::dot(inward(surface, wall, i), at - corner(surface, wall, i));
+    const double own = std::min({inside[0], inside[1], inside[2]});
+    for (uint32_t i = 0; i < 3; ++i) {
+        const SideEdge link = surface.faces[wall].link[i][side];
+        if (inside[i] >= 0 || link.face() == wall) continue;
+        const glm::dvec3& tip = corner(surface, link.face(), previous(link.edge()));
+        const bool valley = glm::dot(tip - corner(surface, wall, i), surface.facet_normal(wall, side)) >= 0;
+        if (valley || !is_wall_of(surface, face, link.face())) continue;
+        const double other = within_outline(surface, link.face(), at);
+        if (other > own || (other == own && link.face() < wall)) return i;
+    }
+    return 3;
+}
+
+// In a plane, what lies at least `least` along a unit vector from a place.
+struct HalfPlane {
+    glm::dvec3 inward{0};
+    double least = 0, slack = 0;
+    bool exactly = false; // and no more
+
+    bool holds(const glm::dvec3& way) const
+    {
+        const double along = glm::dot(way, inward) - least;
+        return along >= -slack && (!exactly || along <= slack);
+    }
+};
+
+// The shortest way in the plane to where all of them hold: to none of their lines, to one, or to where two cross.
+// False: there is none.
+bool shortest_way(const std::array<HalfPlane, Cell::most + 3>& planes, uint32_t count, const glm::dvec3& normal,
+                  glm::dvec3& way)
+{
+    double shortest = INFINITY;
+    const auto offer = [&](const glm::dvec3& candidate) {
+        const double length = glm::length(candidate);
+        if (length < shortest &&
+            std::all_of(planes.begin(), planes.begin() + count, [&](const auto& p) { return p.holds(candidate); })) {
+            shortest = length;
+            way = candidate;
+        }
+    };
+    offer(glm::dvec3(0));
+    for (uint32_t j = 0; j < count; ++j) {
+        const HalfPlane& one = planes[j];
+        offer(one.least * one.inward);
+        for (uint32_t i = 0; i < j; ++i) {
+            const HalfPlane& other = planes[i];
+            const glm::dvec3 across = glm::cross(normal, other.inward);
+            const double sine = glm::dot(one.inward, across);
+            if (std::abs(sine) < least_sine) continue;
+            offer((one.least * across - other.least * glm::cross(normal, one.inward)) / sine);
+        }
+    }
+    return shortest < INFINITY;
+}
+
 // Moves the place, which is in the face's plane, off the sheets and into the face's outline, and beside the sheet
-// `along`, if any: by turns, since few are concerned. False: that does not end, they leave no room.
+// `along`, if any. False: they leave no room.
 bool keep_off(const Surface& surface, uint32_t face, const Cell& sheets, uint32_t along, glm::dvec3& place)
 {
     const glm::dvec3& front = surface.faces[face].normal;
-    for (int round = 0; round < 24; ++round) {
-        bool moved = false;
-        for (uint32_t k = 0; k < sheets.count; ++k) {
-            const Sheet& sheet = sheets.sheet[k];
-            const double away = glm::dot(place - corner(surface, sheet.face, 0), sheet.normal);
-            if (away >= distance - slack && (k != along || away <= distance + slack)) continue;
-            const glm::dvec3 within = sheet.normal - glm::dot(sheet.normal, front) * front;
-            const double square = glm::dot(within, within);
-            if (square < least_square_of_sine) {
-                if (away > -slack) continue; // another triangle of the same plane
-                return false;
-            }
-            place += (distance - away) / square * within;
-            moved = true;
+    std::array<HalfPlane, Cell::most + 3> planes;
+    uint32_t count = 0;
+    for (uint32_t k = 0; k < sheets.count; ++k) {
+        const Sheet& sheet = sheets.sheet[k];
+        const double away = glm::dot(place - corner(surface, sheet.face, 0), sheet.normal);
+        const glm::dvec3 within = sheet.normal - glm::dot(sheet.normal, front) * front;
+        const double square = glm::dot(within, within);
+        if (square >= least_square_of_sine) {
+            const double sine = std::sqrt(square);
+            planes[count++] = {within / sine, (distance - away) / sine, slack / sine, k == along};
+        } else if (away <= -slack) { // else another triangle of the same plane
+            return false;
         }
-        for (uint32_t i = 0; i < 3; ++i) {
-            const glm::dvec3 in = inward(surface, face, i);
-            const double inside = glm::dot(in, place - corner(surface, face, i));
-            if (inside >= -slack) continue;
-            place -= inside * in;
-            moved = true;
-        }
-        if (!moved) return true;
     }
-    return false;
+    for (uint32_t i = 0; i < 3; ++i) {
+        const glm::dvec3 in = inward(surface, face, i);
+        planes[count++] = {in, glm::dot(in, corner(surface, face, i) - place), slack, false};
+    }
+    glm::dvec3 way;
+    if (!shortest_way(planes, count, front, way)) return false;
+    place += way;
+    return true;
 }
 
 } // namespace
@@ -97,6 +151,7 @@ void add_walls(const Surface& surface, uint32_t face, const glm::dvec3& at, Cell
         const double height = glm::dot(at - corner(surface, wall, 0), surface.faces[wall].normal);
         if (std::abs(height) > beside || within_outline(surface, wall, at) < -margin - slack) continue;
         const uint32_t side = height >= 0 ? 0 : 1;
+        if (ridge_passed(surface, face, wall, side, at) < 3) continue;
         cell.add({wall, side, surface.facet_normal(wall, side), false});
     }
 }
@@ -142,8 +197,11 @@ double share_before_walls(const Surface& surface, uint32_t face, const glm::dvec
         const uint32_t wall = surface.pierced_by[k];
         const glm::dvec3 &a = corner(surface, wall, 0), &n = surface.faces[wall].normal;
         double begin = glm::dot(from - a, n), end = glm::dot(to - a, n);
+        const uint32_t side = begin >= 0 ? 0 : 1;
         if (begin < 0) begin = -begin, end = -end;
         if (end >= std::min(distance, begin - slack)) continue;
+        const uint32_t ridge = begin < beside ? ridge_passed(surface, face, wall, side, from) : 3;
+        if (ridge < 3 && glm::dot(inward(surface, wall, ridge), to - from) < 0) continue; // away over the ridge
         // The part of the way that is near the plane, and of that the part that is near the triangle.
         double enter = begin <= distance ? 0 : (begin - distance) / (begin - end);
         double leave = end >= -distance ? 1 : (begin + distance) / (begin - end);
