@@ -4,6 +4,7 @@
 #include "runtime/predicates.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace haptel::runtime {
@@ -68,6 +69,20 @@ uint32_t ridge_passed(const Surface& surface, uint32_t face, uint32_t wall, uint
         if (other > own || (other == own && link.face() < wall)) return i;
     }
     return 3;
+}
+
+// Whether a wall of the face stands in the straight way: exact but for the ends, which are rounded to the lattice.
+bool blocked(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to)
+{
+    const Face& data = surface.faces[face];
+    for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {
+        Crossing crossing;
+        const uint32_t wall = surface.pierced_by[k];
+        if (crosses(glm::round(from), glm::round(to), corner(surface, wall, 0), corner(surface, wall, 1),
+                    corner(surface, wall, 2), crossing))
+            return true;
+    }
+    return false;
 }
 
 // In a plane, what lies at least `least` along a unit vector from a place.
