@@ -103,16 +103,6 @@ struct BallQuery {
     BallVisitor& visitor;
 };
 
-class IsEmpty final : public BallVisitor {
-public:
-    double visit(uint32_t) noexcept override
-    {
-        empty = false;
-        return 0;
-    }
-    bool empty = true;
-};
-
 // As Embree may compare it: past any rounding of its own.
 float query_radius(double radius)
 {
@@ -211,13 +201,6 @@ void BoxTree::ball(const glm::dvec3& centre, double radius, BallVisitor& visitor
     query.x = at.x, query.y = at.y, query.z = at.z;
     query.radius = query_radius(radius);
     rtcPointQuery(handles_->scene, &query, &context, visit_box, &ball);
-}
-
-bool BoxTree::ball_is_empty(const glm::dvec3& centre, double radius) const noexcept
-{
-    IsEmpty is_empty;
-    ball(centre, radius, is_empty);
-    return is_empty.empty;
 }
 
 } // namespace haptel::runtime

@@ -49,9 +49,6 @@ public:
     // Every face whose box comes within `radius` of the centre, roughly the near ones first.
     void ball(const glm::dvec3& centre, double radius, BallVisitor& visitor) const noexcept;
 
-    // Whether no triangle's box comes within `radius` of the centre.
-    bool ball_is_empty(const glm::dvec3& centre, double radius) const noexcept;
-
 private:
     BoxTree() = default;
     struct Handles;

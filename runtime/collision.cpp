@@ -83,7 +83,50 @@ private:
     CollisionCount& count_;
 };
 
+// A ball that is somewhat smaller than it could be is found much sooner: of many triangles nearly equally far away few
+// are looked at.
+//
+// A triangle is at least as far away as its plane and, in the plane, as each of its edges' lines beyond which the
+// centre lies. Unlike the nearest point of a sliver this does not depend on which of its features is the nearest.
+class Clearance final : public BallVisitor {
+public:
+    Clearance(const Surface& surface, const glm::dvec3& centre, double radius)
+        : least(radius), surface_(surface), centre_(centre)
+    {
+    }
+
+    static constexpr double share = 0.6;
+    double least;
+
+    double visit(uint32_t face) noexcept override
+    {
+        const Face& data = surface_.faces[face];
+        const glm::dvec3& n = data.normal;
+        const double above = glm::dot(n, centre_ - surface_.vertices[data.vertex[0]]);
+        double beyond = 0;
+        for (uint32_t i = 0; i < 3; ++i) {
+            const glm::dvec3& a = surface_.vertices[data.vertex[i]];
+            const glm::dvec3 outward = glm::cross(surface_.vertices[data.vertex[(i + 1) % 3]] - a, n);
+            beyond = std::max(beyond, glm::dot(outward, centre_ - a) / glm::length(outward));
+        }
+        const double distance = std::sqrt(above * above + beyond * beyond) - 1; // one unit: rounding
+        least = std::min(least, std::max(0.0, share * distance));
+        return least;
+    }
+
+private:
+    const Surface& surface_;
+    const glm::dvec3& centre_;
+};
+
 } // namespace
+
+double clearance(const Surface& surface, const glm::dvec3& centre, double radius) noexcept
+{
+    Clearance clearance(surface, centre, radius);
+    surface.tree->ball(centre, radius, clearance);
+    return clearance.least;
+}
 
 bool first_crossing(const Surface& surface, const glm::dvec3& from, const glm::dvec3& to, const StartsOn& start,
                     Crossing& crossing, CollisionCount& count) noexcept

@@ -38,6 +38,9 @@ private:
 bool first_crossing(const Surface& surface, const glm::dvec3& from, const glm::dvec3& to, const StartsOn& start,
                     Crossing& crossing, CollisionCount& count) noexcept;
 
+// How far it is at least from the centre to the nearest triangle: at most `radius`, beyond which nothing is looked for.
+double clearance(const Surface& surface, const glm::dvec3& centre, double radius) noexcept;
+
 // Where on the segment the crossing lies, moved into its triangle: rounding must not put it outside.
 glm::dvec3 crossing_point(const Surface& surface, const Crossing& crossing, const glm::dvec3& from,
                           const glm::dvec3& to) noexcept;

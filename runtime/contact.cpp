@@ -117,20 +117,17 @@ bool PointContact::sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing&
     return hit;
 }
 
-// Tries larger balls after success and smaller ones after failure, and none while even a success would not pay.
+// Looks somewhat farther than the last ball was large, and not at all where the hand would leave a ball at once.
 void PointContact::refresh_clearance(double step) noexcept
 {
-    if (clear_.next_radius == 0) clear_.next_radius = 0.25 * Lattice::extent;
     clear_.radius = 0;
     if (clear_.next_radius < ticks_per_ball * step) {
-        clear_.next_radius *= 1.1;
-    } else if (surface_->tree->ball_is_empty(proxy_.at, clear_.next_radius)) {
-        clear_.centre = proxy_.at;
-        clear_.radius = clear_.next_radius;
-        clear_.next_radius = std::min(1.4 * clear_.next_radius, Lattice::extent);
-    } else {
-        clear_.next_radius *= 0.5;
+        clear_.next_radius = clear_.next_radius == 0 ? 0.25 * Lattice::extent : 1.1 * clear_.next_radius;
+        return;
     }
+    clear_.centre = proxy_.at;
+    clear_.radius = clearance(*surface_, proxy_.at, clear_.next_radius);
+    clear_.next_radius = glm::clamp(1.4 * clear_.radius, 1.0, Lattice::extent);
 }
 
 void PointContact::finish(const Friction& friction) noexcept
