@@ -1,3 +1,4 @@
+#include "jit/band_limit.h"
 #include "jit/facts.h"
 #include "jit/image_file.h"
 #include "jit/texture.h"
@@ -185,7 +186,9 @@ TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program
             write_image(storage->block, source.parameters[i], images[i].get());
     storage->images = std::move(images);
     const void* block = storage->block.data();
-    return {TextureBinding{std::move(storage), texture, block, facts}, std::move(complaints.warnings)};
+    TextureBinding binding{std::move(storage), texture, block, facts};
+    binding.band_limited = is_band_limited(binding, request);
+    return {std::move(binding), std::move(complaints.warnings)};
 }
 
 } // namespace haptel::jit

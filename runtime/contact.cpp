@@ -26,7 +26,10 @@ WalkFriction checked(const Friction& friction) noexcept
     return {rest, std::min(coefficient(friction.dynamic_coefficient), rest)};
 }
 
-PointContact::PointContact(std::shared_ptr<const Surface> surface) : surface_(std::move(surface)) {}
+PointContact::PointContact(std::shared_ptr<const Surface> surface, bool skips_free_space)
+    : surface_(std::move(surface)), skips_free_space_(skips_free_space)
+{
+}
 
 void PointContact::reset() noexcept
 {
@@ -88,7 +91,7 @@ bool PointContact::take(const glm::dvec3& hand_m) noexcept
 void PointContact::move_freely(const glm::dvec3& hand) noexcept
 {
     const double step = glm::distance(hand, proxy_.at);
-    if (step == 0 || glm::distance(hand, clear_.centre) < clear_.radius) {
+    if ((step == 0 && skips_free_space_) || glm::distance(hand, clear_.centre) < clear_.radius) {
         ++counters_.skipped;
         proxy_.at = hand;
         return;
@@ -104,7 +107,7 @@ void PointContact::move_freely(const glm::dvec3& hand) noexcept
         return;
     }
     proxy_.at = hand;
-    refresh_clearance(step);
+    if (skips_free_space_) refresh_clearance(step);
 }
 
 bool PointContact::sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept
@@ -181,7 +184,10 @@ void PointContact::describe() noexcept
     contact_.lag_m = (from_hand - depth * contact_.normal) * lattice.unit_m;
 }
 
-StylusContact::StylusContact(std::shared_ptr<const Surface> surface) : tip_(std::move(surface)) {}
+StylusContact::StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space)
+    : tip_(std::move(surface), skips_free_space)
+{
+}
 
 const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
                                      const Friction& friction) noexcept

@@ -68,7 +68,8 @@ struct Clearance {
 
 class PointContact {
 public:
-    explicit PointContact(std::shared_ptr<const Surface> surface);
+    // `skips_free_space`: a known clearance spares queries.
+    explicit PointContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true);
 
     // One tick. The first after construction or reset() puts the probe down where the hand is, wherever that is: a hand
     // that starts inside a closed object is inside it, free, and feels the wall from within.
@@ -99,6 +100,7 @@ private:
     void describe() noexcept;
 
     std::shared_ptr<const Surface> surface_;
+    bool skips_free_space_;
     Contact contact_;
     ContactCounters counters_;
     Proxy proxy_;
@@ -113,7 +115,7 @@ private:
 // A shaft that rests on the surface beside the tip is not yet held: shaft_crosses() sees it, and it gives no force.
 class StylusContact {
 public:
-    explicit StylusContact(std::shared_ptr<const Surface> surface);
+    explicit StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true);
 
     const Contact& update(const glm::dvec3& tip_m, const glm::dvec3& tail_m, const Friction& friction = {}) noexcept;
     void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;

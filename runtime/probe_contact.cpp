@@ -6,15 +6,15 @@ namespace haptel::runtime {
 
 namespace {
 
-std::variant<PointContact, SphereContact, StylusContact> make(const ProbeSettings& probe,
-                                                              const std::shared_ptr<const Surface>& surface)
+std::variant<PointContact, SphereContact, StylusContact>
+make(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, bool skips_free_space)
 {
     switch (probe.kind) {
-    case ProbeKind::point: return PointContact(surface);
+    case ProbeKind::point: return PointContact(surface, skips_free_space);
     case ProbeKind::sphere: return SphereContact(surface, probe.radius_m);
-    case ProbeKind::stylus: return StylusContact(surface);
+    case ProbeKind::stylus: return StylusContact(surface, skips_free_space);
     }
-    return PointContact(surface);
+    return PointContact(surface, skips_free_space);
 }
 
 std::span<const Contact> touched(const Contact& contact)
@@ -24,8 +24,9 @@ std::span<const Contact> touched(const Contact& contact)
 
 } // namespace
 
-ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface)
-    : contact_(make(probe, surface))
+ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
+                           bool skips_free_space)
+    : contact_(make(probe, surface, skips_free_space))
 {
 }
 

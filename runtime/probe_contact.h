@@ -25,7 +25,9 @@ struct ProbePose {
 
 class ProbeContact {
 public:
-    ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface);
+    // `skips_free_space`: a probe that knows its clearance is spared queries.
+    ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
+                 bool skips_free_space = true);
 
     // One tick: where it touches, none if it does not.
     std::span<const Contact> update(const ProbePose& pose, const Friction& friction) noexcept;

@@ -36,8 +36,8 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, double device_force_max_n
     for (const SceneObject& object : scene_->objects) {
         TextureReader reader(*object.texture);
         const uint64_t serial = reader.to().serial;
-        objects_.push_back({&object, ProbeContact(scene_->probe, object.surface), std::move(reader), serial,
-                            object.placement, HandVelocity(period_s_)});
+        objects_.push_back({&object, ProbeContact(scene_->probe, object.surface, scene_->servo.skips.free_space),
+                            std::move(reader), serial, object.placement, HandVelocity(period_s_)});
     }
 }
 
@@ -97,7 +97,7 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     const double near_m = far_enough_m(pose, way_m);
     reach_.go(way_m, pose.tip_m, pose.tail_m, near_m);
     skipped_.objects += reach_.asleep();
-    bool no_query = true;
+    bool no_query = true, textured = false, band_limited = false, unmapped = false;
     for (std::size_t i = 0; i < reach_.awake().size(); ++i) {
         const uint32_t number = reach_.awake()[i];
         Touched& touched = objects_[number];
@@ -113,6 +113,7 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
         if (effects_.of(number)) effects_.update(number, touched.placement, !contacts.empty());
         if (contacts.empty()) {
             touched.friction_share = 0;
+            textured = textured || (!scene_->servo.skips.texture && feels_in_air(touched, pose));
             if (const double gap_m = gap_to_sleep_m(number, pose, near_m); gap_m > 0) {
                 touched.asleep = true;
                 reach_.sleep(number, gap_m);
@@ -125,6 +126,9 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
             const ObjectForce force = force_of(touched, contact);
             result.unlimited_force_n += force.force_n;
             result.faults |= force.faults;
+            textured = textured || force.textured;
+            band_limited = band_limited || force.band_limited;
+            unmapped = unmapped || force.unmapped;
             if (&contact != contacts.data()) continue;
             touched.friction_share = force.friction_share;
             if (result.contacts > 1 && contact.depth_m <= result.depth_m) continue;
@@ -135,6 +139,9 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     }
     last_pose_ = pose;
     skipped_.free_space += no_query;
+    skipped_.texture += !textured;
+    skipped_.octaves += band_limited;
+    skipped_.mapping += unmapped;
     if (effects_.act()) result.unlimited_force_n += effects_.force_n();
     send(result);
     return result;
@@ -198,7 +205,7 @@ void Renderer::wake(Touched& touched) noexcept
 double Renderer::gap_to_sleep_m(uint32_t number, const DevicePose& pose, double near_m) const noexcept
 {
     const Touched& touched = objects_[number];
-    if (touched.object->motion) return 0;
+    if (touched.object->motion || !scene_->servo.skips.objects) return 0;
     const ProbePose probe = in_object(touched, pose);
     const double gap_m = touched.contact.gap_m(probe) - effects_.awake_within_m(number);
     const glm::dvec3 farthest = glm::abs(probe.tip_m); // in its space, where coordinates may be larger
@@ -218,27 +225,41 @@ std::span<const Contact> Renderer::update_contact(Touched& touched, const Device
     return touched.contact.update(in_object(touched, pose), friction);
 }
 
+// What a tick without contact is spared: the texture where the hand is, and whether there is one.
+bool Renderer::feels_in_air(const Touched& touched, const DevicePose& pose) const noexcept
+{
+    Contact here;
+    here.proxy_m = here.hand_m = in_object(touched, pose).tip_m;
+    return force_of(touched, here).textured;
+}
+
 Renderer::ObjectForce Renderer::force_of(const Touched& touched, const Contact& contact) const noexcept
 {
     const SceneObject& object = *touched.object;
     const Surface& surface = *object.surface;
+    const Skips& skips = scene_->servo.skips;
+    ObjectForce result;
+    if (contact.depth_m == 0 && skips.texture)
+        return result; // the highest texture reaches up to the base and no further
 
     SurfacePoint at;
     at.p_m = contact.proxy_m;
     at.time_s = static_cast<double>(period_) * period_s_;
-    // What nobody reads is not computed.
-    const bool turns = scene_->servo.force.model == ForceModel::displaced && touched.texture.textured() &&
-                       surface.normal_turn_max_per_m > 0;
-    if (turns || texture_reads(touched.texture) & (HAPTEL_READS_NORMAL | HAPTEL_READS_UV))
-        at.shading = shade(surface, contact.face, contact.side, contact.barycentric);
-    else
-        at.shading.normal = shading_normal(surface, contact.face, contact.side, contact.barycentric);
+    const uint32_t reads = texture_reads(touched.texture);
+    const bool curved = surface.normal_turn_max_per_m > 0, drawn = !surface.uv.empty();
+    const bool turns = scene_->servo.force.model == ForceModel::displaced && touched.texture.textured() && curved;
+    const Shaded read{!skips.mapping || turns || (reads & HAPTEL_READS_NORMAL),
+                      !skips.mapping || (reads & HAPTEL_READS_UV)};
+    result.unmapped = (curved && !read.normal_dp) || (drawn && !read.uv);
+    at.shading = shade(surface, contact.face, contact.side, contact.barycentric, read);
     if (contact.normal != contact.facet_normal && on_crease(surface, contact.face, contact.side, contact.barycentric)) {
         at.shading.normal = contact.normal;
         at.shading.normal_dp = glm::dmat3(0);
     }
 
     const TextureSample texture = sample_texture(touched.texture, at);
+    result.textured = touched.texture.textured();
+    result.band_limited = touched.texture.from().binding.band_limited || touched.texture.to().binding.band_limited;
     const TouchedSurface felt{contact.depth_m,
                               contact.normal,
                               at.shading.normal,
@@ -248,7 +269,6 @@ Renderer::ObjectForce Renderer::force_of(const Touched& touched, const Contact& 
     const ModelForce elastic = model_force(scene_->servo.force, felt, texture);
     const double stiffness = felt.stiffness_n_per_m * texture.stiffness_scale;
 
-    ObjectForce result;
     result.height_m = texture.height_m;
     result.faults = texture.faults;
     result.friction_share =

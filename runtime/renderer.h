@@ -97,6 +97,8 @@ private:
         double height_m = 0;
         double friction_share = 0; // as in Touched
         uint32_t faults = 0;
+        bool textured = false, band_limited = false; // a texture was evaluated, with less detail than it has
+        bool unmapped = false;                       // coordinates or the turning of normals were left out
     };
 
     static std::vector<Surroundings> surroundings(const Scene& scene);
@@ -105,6 +107,7 @@ private:
     void wake(Touched& touched) noexcept;
     double gap_to_sleep_m(uint32_t number, const DevicePose& pose, double near_m) const noexcept;
     std::span<const Contact> update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept;
+    bool feels_in_air(const Touched& touched, const DevicePose& pose) const noexcept;
     ObjectForce force_of(const Touched& touched, const Contact& contact) const noexcept;
     void send(TickResult& result) noexcept;
 

@@ -40,6 +40,15 @@ struct SceneObject {
     std::optional<TextureRequest> request; // what the texture was resolved from, for live reload
 };
 
+// What a tick leaves out because it cannot change the force (docs/realtime.md). Off only to measure what it saves and
+// to prove that nobody feels it.
+struct Skips {
+    bool free_space = true; // collision, while nothing can be within the hand's reach
+    bool objects = true;    // objects out of the hand's reach
+    bool texture = true;    // where nothing is touched, or not so deep as to feel it
+    bool mapping = true;    // mesh coordinates and the turning of normals that nobody reads
+};
+
 struct ServoSettings {
     double rate_hz = 1000;
     ForceRule force;
@@ -49,6 +58,7 @@ struct ServoSettings {
     // > 0: after start or interruption no force is sent before the force computed is at most this; then it rises. 0:
     // off
     double wait_for_small_force_n = 0;
+    Skips skips;
 };
 
 struct Scene {

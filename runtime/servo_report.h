@@ -17,11 +17,13 @@ enum class ServoState : uint8_t {
     faulted,  // the device failed: force is zero, see stop_reason
 };
 
-// Ticks in which a stage had nothing to do. Empty: the stage cannot be skipped by this program.
+// Ticks in which something was left out because it could not change the force (Skips in scene.h).
 struct SkippedStages {
     uint64_t free_space = 0; // no collision query was needed
     uint64_t objects = 0;    // summed over the ticks: objects out of the hand's reach, not looked at
-    std::optional<uint64_t> texture, octaves, mapping;
+    uint64_t texture = 0;    // no texture was evaluated: nothing was touched, or nothing that has one
+    uint64_t octaves = 0;    // a texture was, without or with less of the detail that is finer than its footprint
+    uint64_t mapping = 0;    // of what was touched coordinates of the mesh or the turning of its normals stayed unknown
 };
 
 struct ServoReport {

@@ -48,12 +48,15 @@ bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::
     return false;
 }
 
-Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept
+Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric, Shaded what) noexcept
 {
     Shading shading;
     const CornerNormals corners(surface, face, side);
     const glm::dvec3 sum = corners.at(barycentric);
     const double length = glm::length(sum);
+    shading.normal = length > Surface::least_normal ? sum / length : surface.facet_normal(face, side);
+    const bool turns = what.normal_dp && length > Surface::least_normal, drawn = what.uv && !surface.uv.empty();
+    if (!turns && !drawn) return shading;
 
     // The weight of corner i grows by 1 over the altitude from its opposite edge.
     glm::dvec3 weight_dp[3];
@@ -66,17 +69,16 @@ Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::d
         weight_dp[i] = inward / (twice_area * surface.lattice.unit_m);
     }
 
-    shading.normal = length > Surface::least_normal ? sum / length : surface.facet_normal(face, side);
     for (int j = 0; j < 3; ++j) {
-        if (length > Surface::least_normal) {
+        if (turns) {
             glm::dvec3 change{0};
             for (int i = 0; i < 3; ++i) change += corners.n[i] * weight_dp[i][j];
             shading.normal_dp[j] = (change - glm::dot(change, shading.normal) * shading.normal) / length;
         }
-        if (!surface.uv.empty())
+        if (drawn)
             for (int i = 0; i < 3; ++i) shading.uv_dp[j] += surface.uv[face][size_t(i)] * weight_dp[i][j];
     }
-    if (!surface.uv.empty())
+    if (drawn)
         for (int i = 0; i < 3; ++i) shading.uv += surface.uv[face][size_t(i)] * barycentric[i];
     return shading;
 }

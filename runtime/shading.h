@@ -23,8 +23,14 @@ struct Shading {
     glm::dmat3x2 uv_dp{0}; // 1/m, likewise; 0 without texture coordinates
 };
 
-// All of it at once. `normal` equals shading_normal bit for bit.
-Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept;
+// What of it beside the normal; what is not asked for stays 0.
+struct Shaded {
+    bool normal_dp = true, uv = true;
+};
+
+// `normal` equals shading_normal bit for bit.
+Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric,
+              Shaded what = {}) noexcept;
 
 // What the mesh's coordinates are bound by, over all faces; all 0 without any.
 UvFigures uv_figures(const Surface& surface);

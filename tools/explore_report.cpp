@@ -107,9 +107,9 @@ Json to_json(const ExploreOutcome& outcome)
     json["allocations_in_tick"] = value_or_null(servo.allocations_in_tick);
     json["skipped"]["free_space"] = servo.skipped.free_space;
     json["skipped"]["objects"] = servo.skipped.objects;
-    json["skipped"]["texture"] = value_or_null(servo.skipped.texture);
-    json["skipped"]["octaves"] = value_or_null(servo.skipped.octaves);
-    json["skipped"]["mapping"] = value_or_null(servo.skipped.mapping);
+    json["skipped"]["texture"] = servo.skipped.texture;
+    json["skipped"]["octaves"] = servo.skipped.octaves;
+    json["skipped"]["mapping"] = servo.skipped.mapping;
     json["state"] = name_of(servo.state);
     json["stop_reason"] = servo.stop_reason;
     json["real_time"] = servo.real_time;
@@ -135,8 +135,11 @@ std::string to_lines(const ExploreOutcome& outcome)
     line("tick", percentiles_text(servo.tick_ns));
     if (servo.wake_late_ns.count() > 0) line("woke late", percentiles_text(servo.wake_late_ns));
     line("textures", fmt::format("{} compiled, {} reloads", outcome.textures_compiled, servo.reloads));
-    line("skipped", fmt::format("collision in {} ticks, {} looks at objects out of reach", servo.skipped.free_space,
-                                servo.skipped.objects));
+    const runtime::SkippedStages& skipped = servo.skipped;
+    line("skipped",
+         fmt::format("collision in {} ticks, texture in {}, octaves in {}, mapping in {}; {} looks at objects "
+                     "out of reach",
+                     skipped.free_space, skipped.texture, skipped.octaves, skipped.mapping, skipped.objects));
     if (servo.allocations_in_tick) line("allocations", fmt::format("{} in ticks", *servo.allocations_in_tick));
     if (servo.faults > 0) line("faults", fmt::format("in {} ticks: {}", servo.faults, faults_text(servo.fault_bits)));
     if (servo.records_dropped > 0) line("telemetry", fmt::format("{} records were dropped", servo.records_dropped));
