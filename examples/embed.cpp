@@ -42,7 +42,8 @@ bool feel_a_scene(const char* file)
     fmt::print("{}", loaded.diagnostics);
     if (!loaded.scene) return false;
 
-    runtime::ServoThread servo(loaded.scene, std::move(loaded.device), {.seconds = 2});
+    runtime::LoadedHand& hand = loaded.hands.front();
+    runtime::ServoThread servo(loaded.scene, std::move(hand.device), {.hand = hand.settings, .seconds = 2});
     servo.start();
     const runtime::ServoReport& report = servo.wait();
     fmt::print("{} ticks, {} in contact, force at most {:.2f} N, {} deadlines missed\n", report.ticks,

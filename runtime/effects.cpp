@@ -1,5 +1,6 @@
 #include "runtime/effects.h"
 
+#include "runtime/hand.h"
 #include "runtime/scene.h"
 
 #include <algorithm>
@@ -13,13 +14,14 @@ double ObjectEffects::reach_m() const
                      vibration.acts() ? vibration_reach_m : 0.0});
 }
 
-Effects::Effects(const Scene& scene)
+Effects::Effects(const Scene& scene, const HandSettings& hand)
     : scene_(scene)
     , period_s_(1 / scene.servo.rate_hz)
-    , probe_radius_m_(scene.probe.kind == ProbeKind::sphere ? scene.probe.radius_m : 0)
+    , probe_radius_m_(hand.probe.value_or(scene.probe).radius_m)
+    , scale_(hand.workspace.scale)
     , act_(!scene.regions.empty())
     , region_levels_(scene.regions.size())
-    , trail_(period_s_, trail_stiffness_n_per_m)
+    , trail_(period_s_, trail_stiffness_n_per_m / scale_)
 {
     for (const SceneObject& object : scene.objects) {
         const bool has = object.effects.act();
@@ -79,7 +81,7 @@ void Effects::update(std::size_t object, const Placement& placement, bool touche
 
 glm::dvec3 Effects::force_n() noexcept
 {
-    return sum_n_ + trail_.update(tip_m_, damping_n_s_per_m_, periods_);
+    return sum_n_ + trail_.update(tip_m_, damping_n_s_per_m_ / scale_, periods_);
 }
 
 void Effects::vibrate(const Vibration& vibration, VibrationLevel& level, double share,

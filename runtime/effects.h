@@ -19,6 +19,7 @@
 
 namespace haptel::runtime {
 
+struct HandSettings;
 struct Scene;
 
 // Of one object. Viscosity and vibration are full while it is touched and fall off with the distance to it, to nothing
@@ -36,7 +37,7 @@ struct ObjectEffects {
 
 class Effects {
 public:
-    explicit Effects(const Scene& scene); // which outlives it
+    Effects(const Scene& scene, const HandSettings& hand); // the scene outlives it
 
     bool act() const noexcept { return act_; }
     bool of(std::size_t object) const noexcept { return objects_[object] != nullptr; }
@@ -64,7 +65,7 @@ private:
     };
 
     const Scene& scene_;
-    double period_s_, probe_radius_m_;
+    double period_s_, probe_radius_m_, scale_; // scale: of the hand's workspace
     bool act_;
     std::vector<std::unique_ptr<Near>> objects_; // null: without effects
     std::vector<VibrationLevel> region_levels_;

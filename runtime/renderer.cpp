@@ -22,13 +22,15 @@ double far_enough_m(const DevicePose& pose, double way_m)
 
 } // namespace
 
-Renderer::Renderer(std::shared_ptr<const Scene> scene, double device_force_max_n)
+Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
     : scene_(std::move(scene))
+    , hand_(hand)
+    , probe_(hand.probe.value_or(scene_->probe))
     , period_s_(1 / scene_->servo.rate_hz)
-    , force_limit_n_(device_force_max_n > 0 ? std::min(device_force_max_n, scene_->servo.force_limit_n)
-                                            : scene_->servo.force_limit_n)
-    , effects_(*scene_)
-    , reach_(surroundings(*scene_))
+    , force_limit_n_(hand.force_max_n > 0 ? std::min(hand.force_max_n, scene_->servo.force_limit_n)
+                                          : scene_->servo.force_limit_n)
+    , effects_(*scene_, hand_)
+    , reach_(surroundings(*scene_, probe_.radius_m))
     , waiting_(scene_->servo.wait_for_small_force_n > 0)
     , velocity_(period_s_)
 {
@@ -36,19 +38,19 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, double device_force_max_n
     for (const SceneObject& object : scene_->objects) {
         TextureReader reader(*object.texture);
         const uint64_t serial = reader.to().serial;
-        objects_.push_back({&object, ProbeContact(scene_->probe, object.surface, scene_->servo.skips.free_space),
+        objects_.push_back({&object, ProbeContact(probe_, object.surface, scene_->servo.skips.free_space),
                             std::move(reader), serial, object.placement, HandVelocity(period_s_)});
     }
 }
 
-std::vector<Surroundings> Renderer::surroundings(const Scene& scene)
+std::vector<Surroundings> Renderer::surroundings(const Scene& scene, double probe_radius_m)
 {
     std::vector<Surroundings> all;
     for (const SceneObject& object : scene.objects) {
         const Surface& surface = *object.surface;
         const glm::dvec3 middle = 0.5 * surface.box_minimum_m + 0.5 * surface.box_maximum_m;
         const double radius_m =
-            glm::distance(surface.box_minimum_m, middle) + scene.probe.radius_m + object.effects.reach_m();
+            glm::distance(surface.box_minimum_m, middle) + probe_radius_m + object.effects.reach_m();
         all.push_back({object.placement.to_world(middle),
                        object.motion ? std::numeric_limits<double>::infinity() : radius_m * (1 + 1e-6)});
     }
@@ -63,6 +65,18 @@ uint64_t Renderer::reloads() const noexcept
 }
 
 TickResult Renderer::tick(const DevicePose& pose) noexcept
+{
+    const Workspace& workspace = hand_.workspace;
+    if (!workspace.moves()) return feel(pose);
+    TickResult result = feel(workspace.to_scene(pose));
+    result.force_n = workspace.direction_to_hand(result.force_n);
+    result.unlimited_force_n = workspace.direction_to_hand(result.unlimited_force_n);
+    result.torque_n_m = workspace.torque_to_hand(result.torque_n_m);
+    return result;
+}
+
+// The same in the scene's space, with stiffness and damping stated for the hand.
+TickResult Renderer::feel(const DevicePose& pose) noexcept
 {
     TickResult result;
     const uint64_t periods = std::max(uint64_t{1}, pose.periods);
@@ -237,6 +251,7 @@ Renderer::ObjectForce Renderer::force_of(const Touched& touched, const Contact& 
 {
     const SceneObject& object = *touched.object;
     const Surface& surface = *object.surface;
+    const double scale = hand_.workspace.scale;
     const Skips& skips = scene_->servo.skips;
     ObjectForce result;
     if (contact.depth_m == 0 && skips.texture)
@@ -264,8 +279,8 @@ Renderer::ObjectForce Renderer::force_of(const Touched& touched, const Contact& 
                               contact.normal,
                               at.shading.normal,
                               at.shading.normal_dp,
-                              object.material.stiffness_n_per_m,
-                              scene_->probe.radius_m};
+                              object.material.stiffness_n_per_m / scale,
+                              probe_.radius_m};
     const ModelForce elastic = model_force(scene_->servo.force, felt, texture);
     const double stiffness = felt.stiffness_n_per_m * texture.stiffness_scale;
 
@@ -278,8 +293,8 @@ Renderer::ObjectForce Renderer::force_of(const Touched& touched, const Contact& 
     const glm::dvec3 velocity =
         object.motion ? touched.velocity.m_per_s() : touched.placement.direction_to_object(velocity_.m_per_s());
     const double approach = -glm::dot(velocity, at.shading.normal);
-    const double damping =
-        object.material.damping_n_s_per_m * approach * std::min(1.0, elastic.depth_m / full_damping_depth_m);
+    const double damping = object.material.damping_n_s_per_m / scale * approach *
+                           std::min(1.0, elastic.depth_m / (scale * full_damping_depth_m));
     const double not_sticky = std::max(damping, -stiffness * elastic.depth_m);
 
     const glm::dvec3 force = elastic.force_n + stiffness * contact.lag_m + not_sticky * at.shading.normal;

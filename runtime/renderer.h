@@ -7,6 +7,7 @@
 #pragma once
 
 #include "runtime/effects.h"
+#include "runtime/hand.h"
 #include "runtime/hand_velocity.h"
 #include "runtime/haptic_device.h"
 #include "runtime/probe_contact.h"
@@ -58,13 +59,13 @@ struct ContactWork {
 
 class Renderer {
 public:
-    // device_force_max_n: what the motors can do; 0: unknown, the scene's limit alone holds.
-    explicit Renderer(std::shared_ptr<const Scene> scene, double device_force_max_n = 0);
+    explicit Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand = {});
 
-    // Once per period with the pose of the hand (once for several where the servo was late: DevicePose::periods, 0 is
-    // taken for 1). The first pose puts the probe down where it is. After the start and after every interruption - the
-    // device had no pose, or one that is not finite, or the force was not finite - the force grows linearly from 0 over
-    // the scene's force_rise_s, from when it is small if the scene says to wait for that.
+    // Once per period with the pose of the hand, in the space of its device, as are the forces (once for several where
+    // the servo was late: DevicePose::periods, 0 is taken for 1). The first pose puts the probe down where it is. After
+    // the start and after every interruption - the device had no pose, or one that is not finite, or the force was not
+    // finite - the force grows linearly from 0 over the scene's force_rise_s, from when it is small if the scene says
+    // to wait for that.
     TickResult tick(const DevicePose& pose) noexcept;
 
     // Between two ticks, when the force is with the device: brings what the next one may need into the cache, and lets
@@ -101,7 +102,8 @@ private:
         bool unmapped = false;                       // coordinates or the turning of normals were left out
     };
 
-    static std::vector<Surroundings> surroundings(const Scene& scene);
+    static std::vector<Surroundings> surroundings(const Scene& scene, double probe_radius_m);
+    TickResult feel(const DevicePose& pose) noexcept;
     static ProbePose in_object(const Touched& touched, const DevicePose& pose) noexcept;
     void advance_texture(Touched& touched) noexcept;
     void wake(Touched& touched) noexcept;
@@ -112,6 +114,8 @@ private:
     void send(TickResult& result) noexcept;
 
     std::shared_ptr<const Scene> scene_;
+    HandSettings hand_;
+    ProbeSettings probe_;
     double period_s_;
     double force_limit_n_;
     std::vector<Touched> objects_;

@@ -22,14 +22,20 @@ const char* reason_of(DeviceStatus status)
     return "";
 }
 
+ServoOptions with_limits_of(const HapticDevice& device, ServoOptions options)
+{
+    options.hand.force_max_n = device.info().force_max_n;
+    return options;
+}
+
 } // namespace
 
 ServoThread::ServoThread(std::shared_ptr<const Scene> scene, std::unique_ptr<HapticDevice> device,
                          const ServoOptions& options)
     : scene_(std::move(scene))
     , device_(std::move(device))
-    , options_(options)
-    , renderer_(scene_, device_->info().force_max_n)
+    , options_(with_limits_of(*device_, options))
+    , renderer_(scene_, options_.hand)
     , telemetry_(options.telemetry_capacity)
 {
     report_.rate_hz = scene_->servo.rate_hz;

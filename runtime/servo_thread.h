@@ -24,6 +24,7 @@ namespace haptel::runtime {
 enum class ServoClock : uint8_t { wall, virtual_time };
 
 struct ServoOptions {
+    HandSettings hand; // its force_max_n is the device's
     ServoClock clock = ServoClock::wall;
     double seconds = std::numeric_limits<double>::infinity(); // then it finishes
     bool ask_for_real_time = true;                            // wall clock only

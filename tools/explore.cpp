@@ -45,7 +45,7 @@ extern "C" void on_interrupt(int signal)
 // A scene ready to run, and what the pictures and the report want to know of it.
 struct Exploration {
     std::shared_ptr<const runtime::Scene> scene;
-    std::unique_ptr<runtime::HapticDevice> device;
+    runtime::LoadedHand hand;
     plot::SurfaceBelow surface;
 };
 
@@ -65,15 +65,16 @@ std::optional<Exploration> load(const ExploreOptions& options, ExploreTextures& 
     };
     runtime::LoadedScene loaded = runtime::load_scene(options.scene, textures.resolver(), devices);
     fmt::print(stderr, "{}", loaded.diagnostics);
-    if (!loaded.scene || !loaded.device) return std::nullopt;
+    if (!loaded.scene || loaded.hands.empty()) return std::nullopt;
     exploration.scene = std::move(loaded.scene);
-    exploration.device = std::move(loaded.device);
+    exploration.hand = std::move(loaded.hands.front());
     return exploration;
 }
 
-runtime::ServoOptions servo_options(const ExploreOptions& options)
+runtime::ServoOptions servo_options(const ExploreOptions& options, const runtime::HandSettings& hand)
 {
     runtime::ServoOptions servo;
+    servo.hand = hand;
     const bool wall = options.clock == "wall";
     servo.clock = wall ? runtime::ServoClock::wall : runtime::ServoClock::virtual_time;
     servo.seconds = options.seconds;
@@ -103,12 +104,13 @@ ExitCode explore(const ExploreOptions& options)
 
     ExploreOutcome outcome;
     outcome.scene = std::filesystem::path(options.scene).filename().string();
-    outcome.device = exploration->device->info().name;
+    outcome.device = exploration->hand.device->info().name;
     outcome.clock = options.clock;
 
     ExploreStatus status(stderr_is_terminal());
     textures.watch(*exploration->scene);
-    runtime::ServoThread servo(exploration->scene, std::move(exploration->device), servo_options(options));
+    runtime::ServoThread servo(exploration->scene, std::move(exploration->hand.device),
+                               servo_options(options, exploration->hand.settings));
     // At most one ring: a servo that is faster than its reader must not keep it from hearing Ctrl-C.
     const auto drain = [&] {
         runtime::TickRecord record;

@@ -1,5 +1,6 @@
 #include "runtime/files/scene_file.h"
 
+#include "runtime/files/device_reader.h"
 #include "runtime/files/effects_reader.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/files/table_reader.h"
@@ -37,38 +38,9 @@ struct SceneText {
     ProbeSettings probe;
     ServoSettings servo;
     std::vector<Region> regions;
-    DeviceRequest device;
-    toml::source_region device_at;
+    std::vector<DeviceText> devices;
     std::vector<ObjectText> objects;
 };
-
-// A table of the scene, or an empty one where it is absent or something else.
-const toml::table& table_named(const toml::table& root, std::string_view name, FileMessages& messages)
-{
-    static const toml::table none;
-    const toml::node* node = root.get(name);
-    if (!node) return none;
-    if (const toml::table* table = node->as_table()) return *table;
-    messages.error(node->source(),
-                   "expected a table: write `[" + std::string(name) + "]` on a line of its own, its keys below");
-    return none;
-}
-
-ProbeSettings read_probe(const toml::table& root, FileMessages& messages)
-{
-    ProbeSettings probe;
-    TableReader table(table_named(root, "probe", messages), "[probe]", messages);
-    if (const auto kind = table.word("kind", {"point", "sphere", "stylus"})) probe.kind = static_cast<ProbeKind>(*kind);
-    table.number("length_m", probe.length_m, Quantity::length, {0, 10, true});
-    table.number("radius_m", probe.radius_m, Quantity::length, {0, 10});
-    if (probe.kind == ProbeKind::sphere && probe.radius_m == 0)
-        messages.error(table.where(table.has("radius_m") ? "radius_m" : "kind"),
-                       "a sphere needs a radius: write `radius_m = 0.005`, or `kind = \"point\"`");
-    if (probe.kind != ProbeKind::sphere && probe.radius_m > 0)
-        messages.error(table.where("radius_m"), "`radius_m` is for `kind = \"sphere\"` alone: write 0");
-    table.report_unknown_keys();
-    return probe;
-}
 
 ServoSettings read_servo(const toml::table& root, FileMessages& messages)
 {
@@ -86,26 +58,6 @@ ServoSettings read_servo(const toml::table& root, FileMessages& messages)
     table.number("wait_for_small_force_n", servo.wait_for_small_force_n, Quantity::force, {0, 100});
     table.report_unknown_keys();
     return servo;
-}
-
-DeviceRequest read_device(const toml::table& root, const std::filesystem::path& folder, FileMessages& messages)
-{
-    DeviceRequest device;
-    device.name = "simulated:premium";
-    device.stroke = "circles";
-    TableReader table(table_named(root, "device", messages), "[device]", messages);
-    table.text("name", device.name);
-    static const std::vector<std::string_view> strokes = {"circles", "scan", "press", "random"};
-    if (const auto stroke = table.word("stroke", strokes)) device.stroke = strokes[*stroke];
-    table.number("speed_m_per_s", device.speed_m_per_s, Quantity::speed, {0, 10, true});
-    table.number("press_n", device.press_n, Quantity::force, {0, 100});
-    table.whole_number("seed", device.seed);
-    table.report_unknown_keys();
-
-    constexpr std::string_view replay = "replay:";
-    if (device.name.starts_with(replay))
-        device.name = std::string(replay) + (folder / device.name.substr(replay.size())).lexically_normal().string();
-    return device;
 }
 
 Material read_material(TableReader& table, FileMessages& messages)
@@ -180,15 +132,14 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
 SceneText read_scene(const toml::table& root, const std::filesystem::path& folder, FileMessages& messages)
 {
     SceneText text;
-    text.probe = read_probe(root, messages);
+    text.probe = read_probe(table_named(root, "probe", messages), "[probe]", messages);
     text.servo = read_servo(root, messages);
-    text.device = read_device(root, folder, messages);
+    text.devices = read_devices(root, text.probe, folder, messages);
     text.regions = read_regions(root, text.servo.rate_hz, messages);
 
     TableReader top(root, "", messages);
-    for (const char* name : {"probe", "servo", "device", "object", "region"}) (void)top.has(name);
+    for (const char* name : {"probe", "servo", "workspace", "device", "object", "region"}) (void)top.has(name);
     top.report_unknown_keys();
-    text.device_at = top.where("device");
 
     const toml::node* objects = root.get("object");
     const toml::array* list = objects ? objects->as_array() : nullptr;
@@ -229,17 +180,28 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, FileMe
 }
 
 // What reaches farther than the object is large is not looked for.
-void check_reach(const ObjectText& text, const ProbeSettings& probe, FileMessages& messages)
+void check_reach(const ObjectText& text, const std::vector<DeviceText>& devices, FileMessages& messages)
 {
     const glm::dvec3 sides_m = text.object.surface->box_maximum_m - text.object.surface->box_minimum_m;
     const double largest_m = std::max({sides_m.x, sides_m.y, sides_m.z}) * (1 + 1e-9);
-    if (probe.kind == ProbeKind::sphere && probe.radius_m > largest_m)
-        messages.error(text.mesh_at, "the probe's `radius_m` is larger than `" + text.object.name +
-                                         "`: at most the largest side of its box");
+    for (const DeviceText& device : devices)
+        if (device.probe.kind == ProbeKind::sphere && device.probe.radius_m > largest_m) {
+            messages.error(text.mesh_at, "the probe's `radius_m` is larger than `" + text.object.name +
+                                             "`: at most the largest side of its box");
+            break;
+        }
     if (text.object.effects.reach_m() > largest_m)
         messages.error(text.mesh_at, "the `reach_m` of an effect is larger than `" + text.object.name +
                                          "`: at most the largest side of its box; what is felt farther away is a "
                                          "`[[region]]`");
+}
+
+// The scene's speeds are those of the hand times this.
+double largest_scale(const SceneText& scene)
+{
+    double scale = 0;
+    for (const DeviceText& device : scene.devices) scale = std::max(scale, device.hand.workspace.scale);
+    return scale;
 }
 
 void load_texture(ObjectText& text, const SceneText& scene, const std::filesystem::path& folder,
@@ -263,7 +225,7 @@ void load_texture(ObjectText& text, const SceneText& scene, const std::filesyste
         request.box_minimum_m[i] = text.object.surface->box_minimum_m[i];
         request.box_maximum_m[i] = text.object.surface->box_maximum_m[i];
     }
-    request.footprint_m = 2 * scene.servo.v_max_m_per_s / scene.servo.rate_hz;
+    request.footprint_m = 2 * largest_scale(scene) * scene.servo.v_max_m_per_s / scene.servo.rate_hz;
     request.normal_turn_max_per_m = text.object.surface->normal_turn_max_per_m;
     request.uv = uv_figures(*text.object.surface);
     request.servo_period_s = 1 / scene.servo.rate_hz;
@@ -279,35 +241,40 @@ void load_texture(ObjectText& text, const SceneText& scene, const std::filesyste
     text.object.request = std::move(request);
 }
 
-// First hit of the vertical line at (x, y) from above, world frame; raised by the radius of a probe that lies there.
-std::optional<SurfaceHit> surface_below(const SceneObject& object, double x_m, double y_m, double above_m,
-                                        double below_m, double radius_m)
+// First hit of a line along the hand's -z, raised by the radius of a probe that lies there. The hand's space.
+std::optional<SurfaceHit> surface_below(const SceneObject& object, const Workspace& workspace,
+                                        const glm::dvec3& above_m, const glm::dvec3& below_m, double radius_m)
 {
     const Placement& placement = object.placement;
-    const auto hit =
-        object.surface->first_hit(placement.to_object({x_m, y_m, above_m}), placement.to_object({x_m, y_m, below_m}));
+    const auto hit = object.surface->first_hit(placement.to_object(workspace.to_scene(above_m)),
+                                               placement.to_object(workspace.to_scene(below_m)));
     if (!hit) return std::nullopt;
     const glm::dvec3 normal = placement.direction_to_world(hit->facet_normal);
-    return SurfaceHit{placement.to_world(hit->point_m) + radius_m * normal, normal};
+    return SurfaceHit{workspace.to_hand(placement.to_world(hit->point_m) + radius_m * normal),
+                      workspace.direction_to_hand(normal)};
 }
 
-// What the driver needs to know of the object that is explored, the first one.
-void describe_object(DeviceRequest& request, const std::shared_ptr<const Scene>& scene)
+// What the driver needs to know of the object that is explored, the first one, as its hand sees it.
+void describe_object(DeviceText& device, const std::shared_ptr<const Scene>& scene)
 {
     const SceneObject& object = scene->objects.front();
+    const Workspace& workspace = device.hand.workspace;
+    DeviceRequest& request = device.request;
+    request.rate_hz = scene->servo.rate_hz;
+    request.stylus_length_m = device.probe.kind == ProbeKind::stylus ? device.probe.length_m / workspace.scale : 0;
     request.box_minimum_m = glm::dvec3(infinity);
     request.box_maximum_m = glm::dvec3(-infinity);
     for (const glm::dvec3& vertex : object.surface->vertices) {
-        const glm::dvec3 p = object.placement.to_world(object.surface->lattice.metres(vertex));
+        const glm::dvec3 p = workspace.to_hand(object.placement.to_world(object.surface->lattice.metres(vertex)));
         request.box_minimum_m = glm::min(request.box_minimum_m, p);
         request.box_maximum_m = glm::max(request.box_maximum_m, p);
     }
     const glm::dvec3 sides = request.box_maximum_m - request.box_minimum_m;
     const double margin_m = 0.01 * std::max({sides.x, sides.y, sides.z});
-    const double radius_m = scene->probe.kind == ProbeKind::sphere ? scene->probe.radius_m : 0;
-    request.surface_below = [scene, radius_m, above_m = request.box_maximum_m.z + margin_m,
+    const double radius_m = device.probe.kind == ProbeKind::sphere ? device.probe.radius_m : 0;
+    request.surface_below = [scene, workspace, radius_m, above_m = request.box_maximum_m.z + margin_m,
                              below_m = request.box_minimum_m.z - margin_m](double x_m, double y_m) {
-        return surface_below(scene->objects.front(), x_m, y_m, above_m, below_m, radius_m);
+        return surface_below(scene->objects.front(), workspace, {x_m, y_m, above_m}, {x_m, y_m, below_m}, radius_m);
     };
 }
 
@@ -348,7 +315,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
             object->object.name = same->object.name;
             object->object.surface = same->object.surface;
         }
-        if (object->object.surface) check_reach(*object, text.probe, messages);
+        if (object->object.surface) check_reach(*object, text.devices, messages);
     }
     if (messages.any_error()) return loaded;
     for (ObjectText& object : text.objects) load_texture(object, text, folder, textures, messages);
@@ -360,18 +327,22 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
     scene->regions = std::move(text.regions);
     for (ObjectText& object : text.objects) scene->objects.push_back(std::move(object.object));
 
-    if (devices) {
-        text.device.rate_hz = scene->servo.rate_hz;
-        text.device.stylus_length_m = scene->probe.kind == ProbeKind::stylus ? scene->probe.length_m : 0;
-        describe_object(text.device, scene);
-        DeviceResult opened = devices(text.device);
+    for (DeviceText& device : text.devices) {
+        if (!devices) break;
+        describe_object(device, scene);
+        DeviceResult opened = devices(device.request);
+        const std::string name = "device `" + device.request.name + "`: ";
         if (!opened.device) {
-            messages.error(text.device_at, "device `" + text.device.name + "`: " + opened.error);
-            return loaded;
+            messages.error(device.at, name + opened.error);
+            continue;
         }
-        if (!opened.warning.empty())
-            messages.warning(text.device_at, "device `" + text.device.name + "`: " + opened.warning);
-        loaded.device = std::move(opened.device);
+        if (!opened.warning.empty()) messages.warning(device.at, name + opened.warning);
+        device.hand.force_max_n = opened.device->info().force_max_n;
+        loaded.hands.push_back({std::move(opened.device), std::move(device.hand)});
+    }
+    if (messages.any_error()) {
+        loaded.hands.clear();
+        return loaded;
     }
     loaded.scene = std::move(scene);
     return loaded;

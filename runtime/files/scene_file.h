@@ -3,25 +3,32 @@
 #pragma once
 
 #include "lang/texture_binding.h"
+#include "runtime/hand.h"
 #include "runtime/haptic_device.h"
 #include "runtime/scene.h"
 
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace haptel::runtime {
 
+struct LoadedHand {
+    std::unique_ptr<HapticDevice> device;
+    HandSettings settings;
+};
+
 struct LoadedScene {
-    std::shared_ptr<const Scene> scene;   // null: see diagnostics
-    std::unique_ptr<HapticDevice> device; // null without a scene, or where no factory was given
+    std::shared_ptr<const Scene> scene; // null: see diagnostics
+    std::vector<LoadedHand> hands; // one per device of the file; none without a scene or where no factory was given
     // Errors (then there is no scene), warnings and notes, ready to print: "FILE:LINE:COLUMN: error: ...", a line each,
     // several at once.
     std::string diagnostics;
 };
 
-// Reads, checks, loads the meshes, asks `textures` for every texture and `devices` for the device. Either may be empty:
-// objects are then smooth, and no device is opened. Never throws.
+// Reads, checks, loads the meshes, asks `textures` for every texture and `devices` for each device. Either may be
+// empty: objects are then smooth, and no device is opened. Never throws.
 LoadedScene load_scene(const std::filesystem::path& file, const TextureResolver& textures,
                        const DeviceFactory& devices);
 

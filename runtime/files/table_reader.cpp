@@ -66,6 +66,17 @@ std::string shortest(double value)
     return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, format).ptr};
 }
 
+const toml::table& table_named(const toml::table& root, std::string_view name, FileMessages& messages)
+{
+    static const toml::table none;
+    const toml::node* node = root.get(name);
+    if (!node) return none;
+    if (const toml::table* table = node->as_table()) return *table;
+    messages.error(node->source(),
+                   "expected a table: write `[" + std::string(name) + "]` on a line of its own, its keys below");
+    return none;
+}
+
 std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates)
 {
     std::optional<std::string> nearest;

@@ -83,6 +83,9 @@ private:
     std::vector<std::string> known_;
 };
 
+// A table of the scene, or an empty one where it is absent or something else.
+const toml::table& table_named(const toml::table& root, std::string_view name, FileMessages& messages);
+
 // The candidate that `word` was probably meant to be, or nothing.
 std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates);
 

@@ -71,7 +71,7 @@ TEST_CASE("the force never exceeds the limit and keeps its direction")
     const auto touched = shared(std::move(scene));
     for (const double device_max_n : {0.0, 3.3, 50.0}) {
         const double limit_n = device_max_n == 3.3 ? 3.3 : 7.0;
-        Renderer renderer(touched, device_max_n);
+        Renderer renderer(touched, {.force_max_n = device_max_n});
         CHECK(renderer.force_limit_n() == limit_n);
         renderer.tick(at(0.001, 0.002, 1e-3));
         const TickResult deep = renderer.tick(at(0.001, 0.002, -0.1));

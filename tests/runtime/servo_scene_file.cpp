@@ -80,7 +80,7 @@ std::string diagnostics_of(std::string_view toml, const TextureResolver& texture
     const std::string name = folder.path().string() + "/";
     for (std::size_t at; (at = text.find(name)) != std::string::npos;) text.erase(at, name.size());
     CHECK((loaded.scene == nullptr) == (text.find(": error: ") != std::string::npos));
-    CHECK((loaded.device == nullptr) == (loaded.scene == nullptr));
+    CHECK(loaded.hands.empty() == (loaded.scene == nullptr));
     return text;
 }
 
@@ -247,7 +247,7 @@ TEST_CASE("the scene of the documentation is one, and has every key")
     CHECK(loaded.servo.force.model == ForceModel::lateral);
 
     // What a wrong key in each table is told of, is there.
-    for (const char* table : {"[probe]", "[servo]", "[device]", "[[object]]\nshape = \"plane\"",
+    for (const char* table : {"[probe]", "[servo]", "[workspace]", "[device]", "[[object]]\nshape = \"plane\"",
                               "[[region]]\nshape = \"box\"\nsides_m = [1, 1, 1]"}) {
         folder.write("wrong.toml", std::string(table) + "\nqqqqqqqqqqqqq = 1\n");
         const std::string said = load_scene(folder.path() / "wrong.toml", resolve_flat, open_scripted).diagnostics;
@@ -456,6 +456,84 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
         else
             CHECK(said.find("scene.toml:") == 0);
     }
+}
+
+TEST_CASE("every device of a scene has its probe and its workspace, and is told of the scene as its hand sees it")
+{
+    const Folder folder;
+    std::vector<DeviceRequest> requests;
+    std::optional<TextureRequest> texture;
+    const LoadedScene loaded = load(
+        folder, R"(
+[probe]
+kind = "stylus"
+length_m = 0.3
+[workspace]
+scale = 2
+position_m = [0.1, 0, 0]
+[[device]]
+seed = 4
+[[device]]
+stroke = "press"
+workspace = { scale = 4, rotation_deg = [0, 0, 90] }
+[device.probe]
+kind = "sphere"
+radius_m = 0.02
+[[object]]
+shape = "box"
+size_m = 0.4
+position_m = [0.3, 0, 0]
+texture = "a.haptel:a"
+)",
+        [&](const TextureRequest& request) {
+            texture = request;
+            return resolve_flat(request);
+        },
+        [&](const DeviceRequest& request) {
+            requests.push_back(request);
+            return open_scripted(request);
+        });
+    REQUIRE(loaded.hands.size() == 2);
+    const HandSettings &first = loaded.hands[0].settings, &second = loaded.hands[1].settings;
+    CHECK_FALSE(first.probe);
+    CHECK(first.workspace.scale == 2);
+    CHECK(second.probe->kind == ProbeKind::sphere);
+    CHECK(second.probe->radius_m == 0.02);
+    CHECK(second.workspace.scale == 4);
+    CHECK(second.workspace.placement.position_m == glm::dvec3(0));
+    CHECK(texture->footprint_m == 2 * 4 * 0.3 / 1000); // of the hand that goes fastest
+
+    REQUIRE(requests.size() == 2);
+    CHECK(requests[0].seed == 4);
+    CHECK(requests[1].stroke == "press");
+    CHECK(requests[0].stylus_length_m == 0.15);
+    CHECK(requests[1].stylus_length_m == 0);
+    CHECK(glm::distance(requests[0].box_minimum_m, glm::dvec3(0, -0.1, -0.1)) < 1e-9);
+    CHECK(glm::distance(requests[0].box_maximum_m, glm::dvec3(0.2, 0.1, 0.1)) < 1e-9);
+    // x of the scene is -y of the second hand
+    CHECK(glm::distance(requests[1].box_minimum_m, glm::dvec3(-0.05, -0.125, -0.05)) < 1e-9);
+    CHECK(glm::distance(requests[1].box_maximum_m, glm::dvec3(0.05, -0.025, 0.05)) < 1e-9);
+    CHECK(glm::distance(requests[0].surface_below(0.1, 0.02)->point_m, glm::dvec3(0.1, 0.02, 0.1)) < 1e-9);
+    const auto hit = requests[1].surface_below(0.01, -0.1);
+    CHECK(glm::distance(hit->point_m, glm::dvec3(0.01, -0.1, 0.055)) < 1e-9); // its ball lies there
+    CHECK(glm::distance(hit->facet_normal, glm::dvec3(0, 0, 1)) < 1e-9);
+    CHECK_FALSE(requests[1].surface_below(0.01, 0));
+
+    const std::string object = "[[object]]\nshape = \"plane\"\n";
+    CHECK(diagnostics_of("[workspace]\nscale = 0\nscal = 1\n" + object) ==
+          "scene.toml:2:9: error: `scale` must be from 0.001 to 1000, found 0\n"
+          "scene.toml:3:1: error: unknown key `scal` in [workspace]: did you mean `scale`?\n");
+    CHECK(diagnostics_of("[[device]]\n[[device]]\nworkspace = 3\nprobe = { kin = \"point\" }\n" + object) ==
+          "scene.toml:3:13: error: expected a table, such as `workspace = { scale = 2 }`, found 3\n"
+          "scene.toml:4:11: error: unknown key `kin` in `probe`: did you mean `kind`?\n");
+    CHECK(diagnostics_of("device = [1]\n" + object) ==
+          "scene.toml:1:10: error: expected a table: write `[device]` on a line of its own, its keys below\n");
+    int opened = 0;
+    CHECK(diagnostics_of("[[device]]\n[[device]]\nname = \"other\"\n" + object, resolve_flat,
+                         [&](const DeviceRequest& request) {
+                             if (++opened == 2) return DeviceResult{nullptr, "is not there"};
+                             return open_scripted(request);
+                         }) == "scene.toml:2:1: error: device `other`: is not there\n");
 }
 
 TEST_CASE("effects are read, and what is wrong with them is said")

@@ -94,6 +94,24 @@ TEST_CASE("explore feels a scene and reports it as promised")
     }
 }
 
+TEST_CASE("through a workspace twin runs and a replay feel the same, bit for bit, and energy is the hand's")
+{
+    const Stage stage("[workspace]\nscale = 0.3\nposition_m = [0.01, 0, 0]\nrotation_deg = [10, 20, 30]\n");
+    const auto explore = [&](const std::string& name, const std::string& device) {
+        const Ran ran = run_command("explore " + stage.scene + " --seconds 1 --clock virtual --json --out " +
+                                    stage.out(name) + device);
+        INFO(ran.err);
+        REQUIRE(ran.code == 0);
+        return json_of(ran);
+    };
+    const Json json = explore("a", "");
+    CHECK(json["contact_ticks"] > 300);
+    explore("b", "");
+    explore("c", " --device replay:" + stage.out("a") + "/trace.csv");
+    CHECK(felt(stage.out("a")) == felt(stage.out("b")));
+    CHECK(felt(stage.out("a")) == felt(stage.out("c")));
+}
+
 TEST_CASE("who waits for a small force is told so, in the report, the trace and for people")
 {
     const Stage stage;

@@ -1,0 +1,82 @@
+#include "runtime/files/device_reader.h"
+
+#include "runtime/files/effects_reader.h"
+
+#include <string_view>
+
+namespace haptel::runtime {
+
+namespace {
+
+Workspace read_workspace(const toml::table& source, const std::string& name, FileMessages& messages)
+{
+    Workspace workspace;
+    TableReader table(source, name, messages);
+    table.number("scale", workspace.scale, Quantity::number, {1e-3, 1e3});
+    workspace.placement = read_placement(table);
+    table.report_unknown_keys();
+    return workspace;
+}
+
+DeviceText read_device(const toml::table& source, const std::string& name, DeviceText device,
+                       const std::filesystem::path& folder, FileMessages& messages)
+{
+    TableReader table(source, name, messages);
+    device.at = source.source();
+    table.text("name", device.request.name);
+    static const std::vector<std::string_view> strokes = {"circles", "scan", "press", "random"};
+    if (const auto stroke = table.word("stroke", strokes)) device.request.stroke = strokes[*stroke];
+    table.number("speed_m_per_s", device.request.speed_m_per_s, Quantity::speed, {0, 10, true});
+    table.number("press_n", device.request.press_n, Quantity::force, {0, 100});
+    table.whole_number("seed", device.request.seed);
+    if (const toml::table* probe = table.table("probe", "{ kind = \"point\" }"))
+        device.hand.probe = device.probe = read_probe(*probe, "`probe`", messages);
+    if (const toml::table* workspace = table.table("workspace", "{ scale = 2 }"))
+        device.hand.workspace = read_workspace(*workspace, "`workspace`", messages);
+    table.report_unknown_keys();
+
+    constexpr std::string_view replay = "replay:";
+    std::string& driver = device.request.name;
+    if (driver.starts_with(replay))
+        driver = std::string(replay) + (folder / driver.substr(replay.size())).lexically_normal().string();
+    return device;
+}
+
+} // namespace
+
+ProbeSettings read_probe(const toml::table& source, const std::string& name, FileMessages& messages)
+{
+    ProbeSettings probe;
+    TableReader table(source, name, messages);
+    if (const auto kind = table.word("kind", {"point", "sphere", "stylus"})) probe.kind = static_cast<ProbeKind>(*kind);
+    table.number("length_m", probe.length_m, Quantity::length, {0, 10, true});
+    table.number("radius_m", probe.radius_m, Quantity::length, {0, 10});
+    if (probe.kind == ProbeKind::sphere && probe.radius_m == 0)
+        messages.error(table.where(table.has("radius_m") ? "radius_m" : "kind"),
+                       "a sphere needs a radius: write `radius_m = 0.005`, or `kind = \"point\"`");
+    if (probe.kind != ProbeKind::sphere && probe.radius_m > 0)
+        messages.error(table.where("radius_m"), "`radius_m` is for `kind = \"sphere\"` alone: write 0");
+    table.report_unknown_keys();
+    return probe;
+}
+
+std::vector<DeviceText> read_devices(const toml::table& root, const ProbeSettings& probe,
+                                     const std::filesystem::path& folder, FileMessages& messages)
+{
+    DeviceText common;
+    common.request.name = "simulated:premium";
+    common.request.stroke = "circles";
+    common.probe = probe;
+    common.hand.workspace = read_workspace(table_named(root, "workspace", messages), "[workspace]", messages);
+
+    const toml::node* node = root.get("device");
+    const toml::array* list = node ? node->as_array() : nullptr;
+    if (!list || !list->is_array_of_tables())
+        return {read_device(table_named(root, "device", messages), "[device]", common, folder, messages)};
+    std::vector<DeviceText> devices;
+    for (const toml::node& device : *list)
+        devices.push_back(read_device(*device.as_table(), "[[device]]", common, folder, messages));
+    return devices;
+}
+
+} // namespace haptel::runtime

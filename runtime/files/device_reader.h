@@ -1,0 +1,27 @@
+// The parts of a scene file that say which hands reach into the scene, and how.
+#pragma once
+
+#include "runtime/files/table_reader.h"
+#include "runtime/hand.h"
+#include "runtime/haptic_device.h"
+
+#include <filesystem>
+#include <vector>
+
+namespace haptel::runtime {
+
+struct DeviceText {
+    DeviceRequest request; // without what the scene's geometry says
+    HandSettings hand;
+    ProbeSettings probe; // of this hand
+    toml::source_region at;
+};
+
+ProbeSettings read_probe(const toml::table& source, const std::string& name, FileMessages& messages);
+
+// `[device]` or each `[[device]]`, with the scene's `[workspace]` and probe where one has none of its own; one device
+// by default where there is no table.
+std::vector<DeviceText> read_devices(const toml::table& root, const ProbeSettings& probe,
+                                     const std::filesystem::path& folder, FileMessages& messages);
+
+} // namespace haptel::runtime
