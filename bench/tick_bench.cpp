@@ -1,63 +1,23 @@
 #include "bench/tick_bench.h"
 
-#include "jit/texture.h"
+#include "bench/bumpy_ball.h"
 #include "runtime/renderer.h"
-#include "runtime/shapes.h"
-#include "stdlib/stdlib.h"
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 
 namespace haptel::bench {
 namespace {
 
 using namespace haptel::runtime;
 
-constexpr double radius_m = 0.05, bump_m = 1e-3, depth_m = 1e-3, way_per_tick_m = 1e-4;
-
-// Small waves all round, smooth: facets nearly in one plane, shallow creases.
-double bumpy_radius_m(const glm::dvec3& d)
-{
-    return radius_m + bump_m * std::sin(9 * d.x) * std::sin(9 * d.y) * std::sin(9 * d.z);
-}
-
-std::shared_ptr<const Surface> bumpy_ball(uint32_t subdivisions)
-{
-    Mesh mesh = make_icosphere(subdivisions);
-    for (glm::dvec3& p : mesh.positions_m) p = glm::normalize(p) * bumpy_radius_m(glm::normalize(p));
-    return build_surface(mesh).surface;
-}
-
-// `height_m` above the surface, below it where negative, over the whole ball.
-glm::dvec3 place_on_stroke(int tick, double height_m)
-{
-    const double angle = way_per_tick_m / radius_m * tick, z = 0.7 * std::sin(0.37 * angle);
-    const double across = std::sqrt(1 - z * z);
-    const glm::dvec3 d(across * std::cos(angle), across * std::sin(angle), z);
-    return d * (bumpy_radius_m(d) + height_m);
-}
-
-TextureBinding stone()
-{
-    const char* const text = "texture stone() { return 60um * fbm(p / 2mm, 4); }";
-    const jit::CompiledTextures compiled = jit::compile_texture(text);
-    if (!compiled.program) throw std::runtime_error(compiled.rendered());
-    TextureRequest request;
-    for (int i = 0; i < 3; ++i) request.box_minimum_m[i] = -0.06, request.box_maximum_m[i] = 0.06;
-    const TextureResult bound = jit::make_binding(compiled.program, "stone", request);
-    if (!bound.binding) throw std::runtime_error(bound.diagnostics);
-    return *bound.binding;
-}
-
 struct Kind {
     std::string scene;
     ProbeSettings probe;
     bool textured = true;
-    double height_m = -depth_m; // of the hand
+    double height_m = -1e-3; // of the hand
 };
 
 // One row in the making.
@@ -67,19 +27,7 @@ public:
              const TextureBinding& texture)
         : kind_(kind), surface_(surface)
     {
-        auto scene = std::make_shared<Scene>();
-        scene->probe = kind.probe;
-        scene->servo.force_rise_s = 0;
-        const auto side = static_cast<uint64_t>(std::ceil(std::cbrt(static_cast<double>(objects))));
-        for (uint64_t i = 0; i < objects; ++i) { // on a grid, so near that the hand passes between them
-            SceneObject object;
-            object.surface = surface;
-            object.texture = std::make_shared<TextureSlot>(kind.textured ? texture : TextureBinding{});
-            object.placement.position_m =
-                0.15 * glm::dvec3(static_cast<double>(i % side), static_cast<double>(i / side % side),
-                                  static_cast<double>(i / (side * side)));
-            scene->objects.push_back(std::move(object));
-        }
+        auto scene = balls_on_a_grid(surface, objects, kind.textured ? texture : TextureBinding{}, kind.probe);
         row_.scene = kind.scene;
         row_.objects = objects;
         row_.triangles = surface->faces.size();
@@ -145,35 +93,25 @@ private:
     uint64_t touching_ = 0, found_ = 0;
 };
 
-double clock_ns()
-{
-    std::vector<double> times;
-    for (int i = 0; i < 10000; ++i) {
-        const auto begin = std::chrono::steady_clock::now();
-        times.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count());
-    }
-    return summary(times).median;
-}
-
 } // namespace
 
 std::vector<TickRow> bench_tick(bool quick, const std::function<void(double)>& progress)
 {
-    const TextureBinding texture = stone();
+    const TextureBinding texture = bound_over_ball("texture stone() { return 60um * fbm(p / 2mm, 4); }", "stone");
     const Kind textured{"fbm4", {}}, bare{"no texture", {}, false}, free{"free", {}, true, 2e-3};
     const Kind stylus{"stylus, fbm4", {ProbeKind::stylus}},
         ball{"ball of 2.5 mm, fbm4", {ProbeKind::sphere, 0, 2.5e-3}};
     std::vector<Rendered> all;
     std::shared_ptr<const Surface> middle;
     for (const uint32_t subdivisions : {3u, 5u, 6u, 7u}) {
-        const auto surface = bumpy_ball(subdivisions);
+        const auto surface = build_surface(bumpy_ball(subdivisions)).surface;
         if (subdivisions == 5) middle = surface;
         for (const Kind& kind : {textured, bare, free, stylus, ball}) all.emplace_back(kind, surface, 1, texture);
     }
     for (const uint64_t objects : {uint64_t{30}, uint64_t{1000}}) all.emplace_back(textured, middle, objects, texture);
 
     const int ticks = quick ? 10'000 : 100'000;
-    const double clock = clock_ns();
+    const double clock = clock_reading_ns();
     constexpr int turn = 5000; // ticks of one row before the next: caches are warm, as in a servo
     for (int first = 0; first < ticks; first += turn) {
         progress(static_cast<double>(first) / ticks);

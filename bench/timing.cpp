@@ -37,4 +37,14 @@ Times summary(std::vector<double> times)
     return {rank(0.5), rank(0.99), rank(0.999)};
 }
 
+double clock_reading_ns()
+{
+    std::vector<double> times;
+    for (int i = 0; i < 10000; ++i) {
+        const auto begin = std::chrono::steady_clock::now();
+        times.push_back(std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count());
+    }
+    return summary(times).median;
+}
+
 } // namespace haptel::bench

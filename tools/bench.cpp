@@ -4,6 +4,8 @@
 #include "tools/bench_batch.h"
 #include "tools/bench_compile.h"
 #include "tools/bench_math.h"
+#include "tools/bench_scale.h"
+#include "tools/bench_skip.h"
 #include "tools/bench_tick.h"
 #include "tools/bench_verdict.h"
 #include "tools/command.h"
@@ -125,6 +127,32 @@ Figures tick_figures(const BenchOptions& options)
     return figures;
 }
 
+Figures skip_figures(const BenchOptions& options)
+{
+    Progress progress;
+    const std::vector<bench::SkipRow> rows =
+        bench::bench_skip(options.quick, [&](double share) { progress.show(share); });
+    Figures figures;
+    for (const bench::SkipRow& row : rows) figures.rows.push_back(to_json(row));
+    figures.table = to_table(rows);
+    figures.csv = to_csv(rows);
+    return figures;
+}
+
+Figures scale_figures(const BenchOptions& options)
+{
+    Progress progress;
+    const bench::Scale scale = bench::bench_scale(options.quick, [&](double share) { progress.show(share); });
+    Figures figures;
+    for (const bench::ScaleRow& row : scale.rows) figures.rows.push_back(to_json(row));
+    Json builds = Json::array();
+    for (const bench::BuildRow& row : scale.builds) builds.push_back(to_json(row));
+    figures.more.emplace_back("builds", builds);
+    figures.table = to_table(scale);
+    figures.csv = to_csv(scale);
+    return figures;
+}
+
 // Every line of a table tells where it was taken.
 std::string stamped(const std::string& csv, const bench::Machine& machine)
 {
@@ -175,6 +203,8 @@ ExitCode run(const BenchOptions& given)
                             : options.what == "batch" ? batch_figures(options)
                             : options.what == "math"  ? math_figures(options)
                             : options.what == "tick"  ? tick_figures(options)
+                            : options.what == "skip"  ? skip_figures(options)
+                            : options.what == "scale" ? scale_figures(options)
                                                       : accuracy_figures(options, name + ", commit " + machine.commit);
     if (!figures.error.empty()) {
         say_error(figures.error);
@@ -208,8 +238,8 @@ Command bench_command(CLI::App& app)
             "what", options->what,
             "compile: from text to code; accuracy: error of the gradient against time, ours and plain C++; "
             "batch: many points of every texture; math: elementary functions; tick: of the servo, by probe, mesh "
-            "and number of objects")
-        ->check(CLI::IsMember({"compile", "accuracy", "batch", "math", "tick"}))
+            "and number of objects; scale: how that grows, and what a surface costs; skip: what a tick leaves out")
+        ->check(CLI::IsMember({"compile", "accuracy", "batch", "math", "tick", "scale", "skip"}))
         ->capture_default_str();
     command->add_option("paths", options->paths, "batch: texture files, FILE:NAME, or folders [stdlib examples]")
         ->type_name("PATH");
@@ -231,6 +261,8 @@ Command bench_command(CLI::App& app)
                            "  haptel bench batch stdlib examples --set picture=examples/scenes/waves.png\n"
                            "  haptel bench math --out figures\n"
                            "  haptel bench tick --quick\n"
+                           "  haptel bench scale --out figures\n"
+                           "  haptel bench skip --quick --json\n"
                            "  haptel bench compile --quick --json --out figures");
     return {command, [options] { return run(*options); }};
 }

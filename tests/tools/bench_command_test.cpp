@@ -67,6 +67,81 @@ TEST_CASE("bench tick: what a tick looks at does not grow with the mesh or the s
     REQUIRE(json["growth"].size() == 6);
 }
 
+TEST_CASE("bench skip: what a tick leaves out nobody feels, and it is counted")
+{
+    const Folder folder;
+    const Ran ran = run_command("bench skip --quick --json --out '" + folder.file("figures") + "'");
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+    const Json json = Json::parse(ran.out);
+    std::map<std::string, int> seen;
+    for (const Json& row : json["rows"]) {
+        const std::string skip = row["skip"];
+        CAPTURE(row["scene"].get<std::string>(), skip);
+        ++seen[skip];
+        CHECK(row["force_difference_max_n"] == 0);
+        for (const std::string time : {"with_ns", "without_ns"}) {
+            CHECK(row[time].get<double>() > 0);
+            CHECK(row[time + "_p99"].get<double>() >= row[time].get<double>());
+        }
+        const double counted = row["counted_per_tick"];
+        if (skip == "objects")
+            CHECK((counted > 990 && counted <= 1000));
+        else
+            CHECK((counted > 0.9 && counted <= 1));
+        // A thousand objects looked at every tick cost more than one, by any clock.
+        if (skip == "objects" || skip == "all")
+            CHECK(row["without_ns"].get<double>() > 3 * row["with_ns"].get<double>());
+    }
+    for (const char* skip : {"free_space", "objects", "texture", "octaves", "mapping", "all"}) CHECK(seen[skip] > 0);
+    const std::string csv = read_file(folder.path / "figures/skip.csv");
+    CHECK(static_cast<size_t>(std::count(csv.begin(), csv.end(), '\n')) == 1 + json["rows"].size());
+    CHECK(csv.starts_with("scene,skip,with_ns"));
+    CHECK(Json::parse(read_file(folder.path / "figures/skip.json")) == json);
+}
+
+TEST_CASE("bench scale: every axis from its first row on, for every probe, and what a surface costs")
+{
+    const Folder folder;
+    const Ran ran = run_command("bench scale --quick --json --out '" + folder.file("figures") + "'");
+    INFO(ran.err);
+    REQUIRE(ran.code == 0);
+    const Json json = Json::parse(ran.out);
+    std::map<std::string, Json> first; // of an axis and a probe
+    std::map<std::string, size_t> seen;
+    for (const Json& row : json["rows"]) {
+        const std::string axis = row["axis"], key = axis + " " + row["probe"].get<std::string>();
+        CAPTURE(key, row["triangles"].get<int>(), row["objects"].get<int>());
+        ++seen[key];
+        const Json& base = first.try_emplace(key, row).first->second;
+        for (const char* figure : {"median", "p99"}) {
+            const double growth = row["growth"][figure],
+                         by = row["tick_ns"][figure].get<double>() / base["tick_ns"][figure].get<double>();
+            CHECK(std::fabs(growth / by - 1) < 1e-9);
+        }
+        // All touch one, but for those that lie in one place.
+        const double touched = axis == "contacts" ? row["objects"].get<double>() : 1;
+        CHECK(std::fabs(row["contacts"].get<double>() - touched) < 0.05);
+        if (touched == 8) CHECK(row["growth"]["median"].get<double>() > 2);
+    }
+    CHECK(seen.size() == 9);
+    for (const char* probe : {"point", "sphere", "stylus"}) {
+        CHECK(seen[std::string("triangles ") + probe] == 6);
+        CHECK(seen[std::string("objects ") + probe] == 4);
+        CHECK(seen[std::string("contacts ") + probe] == 4);
+    }
+    REQUIRE(json["builds"].size() == 6);
+    for (const Json& row : json["builds"]) {
+        CHECK(row["build_ms"].get<double>() > 0);
+        const double bytes = row["bytes_per_triangle"];
+        CHECK((bytes > 150 && bytes < 1500)); // a face, its links and half a vertex take 150
+    }
+    CHECK(json["builds"].back()["triangles"] == 1'310'720);
+    const std::string csv = read_file(folder.path / "figures/scale.csv");
+    CHECK(static_cast<size_t>(std::count(csv.begin(), csv.end(), '\n')) == 1 + json["rows"].size() + 6);
+    CHECK(Json::parse(read_file(folder.path / "figures/scale.json")) == json);
+}
+
 TEST_CASE("bench accuracy: every way computes the same texture, each as closely as it can")
 {
     const Folder folder;

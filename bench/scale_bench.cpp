@@ -1,0 +1,151 @@
+#include "bench/scale_bench.h"
+
+#include "bench/bumpy_ball.h"
+#include "runtime/renderer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <malloc.h>
+#include <map>
+#include <memory>
+#include <unistd.h>
+#include <utility>
+
+namespace haptel::bench {
+namespace {
+
+using namespace haptel::runtime;
+using SharedSurface = std::shared_ptr<const Surface>;
+
+constexpr double depth_m = 1e-3;
+
+const std::pair<const char*, ProbeSettings> probes[] = {{"point", {ProbeKind::point, 0, 0}},
+                                                        {"sphere", {ProbeKind::sphere, 0, 2.5e-3}},
+                                                        {"stylus", {ProbeKind::stylus, 0.15, 0}}};
+
+// One row in the making.
+class Rendered {
+public:
+    Rendered(std::string axis, const char* name, const ProbeSettings& probe, const std::shared_ptr<const Scene>& scene)
+        : offset_m_((probe.kind == ProbeKind::sphere ? probe.radius_m : 0) - depth_m), renderer_(scene)
+    {
+        row_.axis = std::move(axis);
+        row_.probe = name;
+        row_.triangles = scene->objects[0].surface->faces.size();
+        row_.objects = scene->objects.size();
+        const glm::dvec3 start = place_on_stroke(0, 0.02);
+        renderer_.tick({start, 1.5 * start});
+    }
+
+    void tick(int number, double clock_ns)
+    {
+        const glm::dvec3 hand = place_on_stroke(number, offset_m_);
+        const auto begin = std::chrono::steady_clock::now();
+        const TickResult felt = renderer_.tick({hand, 1.5 * hand});
+        const double ns = std::chrono::duration<double, std::nano>(std::chrono::steady_clock::now() - begin).count();
+        renderer_.between_ticks();
+        tick_ns_.push_back(std::max(0.0, ns - clock_ns));
+        contacts_ += felt.contacts;
+    }
+
+    ScaleRow row() const
+    {
+        ScaleRow row = row_;
+        row.contacts = static_cast<double>(contacts_) / static_cast<double>(tick_ns_.size());
+        row.tick_ns = summary(tick_ns_);
+        return row;
+    }
+
+private:
+    double offset_m_;
+    ScaleRow row_;
+    Renderer renderer_;
+    std::vector<double> tick_ns_;
+    uint64_t contacts_ = 0;
+};
+
+void stroke(std::vector<std::unique_ptr<Rendered>>& rows, int ticks, const std::function<void(double)>& progress)
+{
+    const double clock = clock_reading_ns();
+    constexpr int turn = 5000; // ticks of one row before the next: caches are warm, as in a servo
+    for (int first = 0; first < ticks; first += turn)
+        for (std::size_t i = 0; i < rows.size(); ++i) {
+            for (int tick = first; tick < first + turn; ++tick) rows[i]->tick(tick, clock);
+            progress((first + turn * static_cast<double>(i + 1) / static_cast<double>(rows.size())) / ticks);
+        }
+}
+
+// Memory of the process that lies in physical pages; 0 where the system does not say.
+double resident_bytes()
+{
+#if defined(__GLIBC__)
+    malloc_trim(0); // what was freed is not counted
+#endif
+    std::ifstream statm("/proc/self/statm");
+    double all = 0, resident = 0;
+    return statm >> all >> resident ? resident * static_cast<double>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+// So many copies at once that pages do not count, of which the last is given back.
+std::pair<BuildRow, SharedSurface> build(uint32_t subdivisions)
+{
+    const Mesh mesh = bumpy_ball(subdivisions);
+    const std::size_t copies = 1 + 200'000 / mesh.triangles.size();
+    std::vector<SharedSurface> surfaces;
+    surfaces.reserve(copies);
+    const double before = resident_bytes();
+    const double ms = milliseconds([&] {
+        while (surfaces.size() < copies) surfaces.push_back(build_surface(mesh).surface);
+    });
+    const auto triangles = static_cast<double>(mesh.triangles.size() * copies);
+    const double bytes = std::max(0.0, resident_bytes() - before);
+    return {{mesh.triangles.size(), ms / static_cast<double>(copies), 1e6 * ms / triangles, bytes / triangles, 1},
+            surfaces.back()};
+}
+
+} // namespace
+
+Scale bench_scale(bool quick, const std::function<void(double)>& progress)
+{
+    const int ticks = quick ? 10'000 : 100'000;
+    const TextureBinding texture = bound_over_ball("texture stone() { return 60um * fbm(p / 2mm, 4); }", "stone");
+    Scale scale;
+    std::map<uint32_t, SharedSurface> balls; // by subdivisions
+    for (const uint32_t subdivisions : {3u, 4u, 5u, 6u, 7u, 8u}) {
+        auto [row, surface] = build(subdivisions);
+        row.growth = scale.builds.empty() ? 1 : row.ns_per_triangle / scale.builds.front().ns_per_triangle;
+        scale.builds.push_back(row);
+        balls[subdivisions] = std::move(surface);
+        progress(0.05 * subdivisions);
+    }
+    const SharedSurface& middle = balls[5];
+    std::vector<std::unique_ptr<Rendered>> all;
+    for (const auto& [name, probe] : probes) {
+        const auto add = [&, name = name, probe = probe](const char* axis, const std::shared_ptr<Scene>& scene) {
+            all.push_back(std::make_unique<Rendered>(axis, name, probe, scene));
+        };
+        for (const auto& [subdivisions, surface] : balls) add("triangles", balls_on_a_grid(surface, 1, texture, probe));
+        for (const uint64_t objects : {1, 10, 100, 1000})
+            add("objects", balls_on_a_grid(middle, objects, texture, probe));
+        for (const uint64_t objects : {1, 2, 4, 8}) { // all of them in one place
+            const auto scene = balls_on_a_grid(middle, objects, texture, probe);
+            for (SceneObject& object : scene->objects) object.placement = {};
+            add("contacts", scene);
+        }
+    }
+    stroke(all, ticks, [&](double share) { progress(0.4 + 0.6 * share); });
+
+    std::map<std::pair<std::string, std::string>, Times> first;
+    for (const auto& rendered : all) {
+        ScaleRow row = rendered->row();
+        const Times& base = first.try_emplace({row.axis, row.probe}, row.tick_ns).first->second;
+        row.growth_median = row.tick_ns.median / base.median;
+        row.growth_p99 = row.tick_ns.p99 / base.p99;
+        scale.rows.push_back(row);
+    }
+    return scale;
+}
+
+} // namespace haptel::bench

@@ -1,0 +1,58 @@
+#include "tools/bench_scale.h"
+
+#include <fmt/format.h>
+
+namespace haptel::tools {
+
+std::string to_table(const bench::Scale& scale)
+{
+    std::string text = fmt::format("{:<10} {:<7} {:>9} {:>8} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "grows", "probe",
+                                   "triangles", "objects", "contacts", "tick ns", "p99", "p99.9", "x median", "x p99");
+    for (const bench::ScaleRow& row : scale.rows)
+        text += fmt::format("{:<10} {:<7} {:>9} {:>8} {:>9.2f} {:>9.0f} {:>9.0f} {:>9.0f} {:>9.2f} {:>9.2f}\n",
+                            row.axis, row.probe, row.triangles, row.objects, row.contacts, row.tick_ns.median,
+                            row.tick_ns.p99, row.tick_ns.p999, row.growth_median, row.growth_p99);
+    text += fmt::format("{:<18} {:>9} {:>8} {:>13} {:>9} {:>15}\n", "surface", "triangles", "build ms", "ns a triangle",
+                        "x", "bytes a triangle");
+    for (const bench::BuildRow& row : scale.builds)
+        text += fmt::format("{:<18} {:>9} {:>8.1f} {:>13.0f} {:>9.2f} {:>15.0f}\n", "", row.triangles, row.build_ms,
+                            row.ns_per_triangle, row.growth, row.bytes_per_triangle);
+    return text +
+           "contacts: objects touched, mean over the ticks; x: over the first row of what grows and that probe\n";
+}
+
+std::string to_csv(const bench::Scale& scale)
+{
+    std::string text = "axis,probe,triangles,objects,contacts,tick_ns,tick_ns_p99,tick_ns_p999,growth,growth_p99,"
+                       "build_ms,ns_per_triangle,bytes_per_triangle\n";
+    for (const bench::ScaleRow& row : scale.rows)
+        text += fmt::format("{},{},{},{},{},{},{},{},{},{},,,\n", row.axis, row.probe, row.triangles, row.objects,
+                            row.contacts, row.tick_ns.median, row.tick_ns.p99, row.tick_ns.p999, row.growth_median,
+                            row.growth_p99);
+    for (const bench::BuildRow& row : scale.builds)
+        text += fmt::format("build,,{},1,,,,,{},,{},{},{}\n", row.triangles, row.growth, row.build_ms,
+                            row.ns_per_triangle, row.bytes_per_triangle);
+    return text;
+}
+
+Json to_json(const bench::ScaleRow& row)
+{
+    return {{"axis", row.axis},
+            {"probe", row.probe},
+            {"triangles", row.triangles},
+            {"objects", row.objects},
+            {"contacts", row.contacts},
+            {"tick_ns", {{"median", row.tick_ns.median}, {"p99", row.tick_ns.p99}, {"p999", row.tick_ns.p999}}},
+            {"growth", {{"median", row.growth_median}, {"p99", row.growth_p99}}}};
+}
+
+Json to_json(const bench::BuildRow& row)
+{
+    return {{"triangles", row.triangles},
+            {"build_ms", row.build_ms},
+            {"ns_per_triangle", row.ns_per_triangle},
+            {"bytes_per_triangle", row.bytes_per_triangle > 0 ? Json(row.bytes_per_triangle) : Json()},
+            {"growth", row.growth}};
+}
+
+} // namespace haptel::tools
