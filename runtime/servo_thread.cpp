@@ -35,6 +35,7 @@ ServoThread::ServoThread(std::shared_ptr<const Scene> scene, std::unique_ptr<Hap
     : scene_(std::move(scene))
     , device_(std::move(device))
     , options_(with_limits_of(*device_, options))
+    , periods_wanted_(std::ceil(options.seconds * scene_->servo.rate_hz - 1e-6))
     , renderer_(scene_, options_.hand)
     , telemetry_(options.telemetry_capacity)
 {
@@ -62,6 +63,17 @@ const ServoReport& ServoThread::wait()
 
 void ServoThread::run()
 {
+    begin();
+    if (options_.clock == ServoClock::wall)
+        keep_deadlines();
+    else
+        while (turn()) {
+        }
+    finish();
+}
+
+void ServoThread::begin()
+{
     set_exact_floating_point();
     if (options_.clock == ServoClock::wall && options_.ask_for_real_time) {
         RealTime real_time = ask_for_real_time();
@@ -70,10 +82,12 @@ void ServoThread::run()
     }
     report_.state = ServoState::running;
     if (options_.allocation_count) report_.allocations_in_tick = 0;
+}
 
-    loop();
-
+void ServoThread::finish()
+{
     device_->stop();
+    report_.seconds = static_cast<double>(periods_) / scene_->servo.rate_hz;
     report_.force_rms_n = report_.ticks == 0 ? 0 : std::sqrt(force_squared_sum_ / static_cast<double>(report_.ticks));
     report_.skipped = renderer_.skipped();
     report_.reloads = renderer_.reloads();
@@ -81,46 +95,51 @@ void ServoThread::run()
     running_.store(false, std::memory_order_release);
 }
 
-void ServoThread::loop()
+bool ServoThread::over()
 {
-    const double rate_hz = scene_->servo.rate_hz;
-    const bool wall = options_.clock == ServoClock::wall;
-    const auto period_ns = std::max(int64_t{1}, static_cast<int64_t>(std::llround(1e9 / rate_hz)));
-    const int64_t spin_ns = report_.real_time ? std::min(int64_t{200'000}, period_ns / 5) : 0;
-    const double periods_wanted = std::ceil(options_.seconds * rate_hz - 1e-6);
+    if (report_.state != ServoState::running) return true;
+    if (static_cast<double>(periods_) >= periods_wanted_)
+        end(ServoState::finished, "the time asked for is over");
+    else if (stop_requested_.load(std::memory_order_relaxed))
+        end(ServoState::stopped, "stopped on request");
+    return report_.state != ServoState::running;
+}
 
-    int64_t deadline_ns = monotonic_ns() + period_ns;
-    uint64_t periods = 0;
-    while (report_.state == ServoState::running) {
-        if (static_cast<double>(periods) >= periods_wanted)
-            end(ServoState::finished, "the time asked for is over");
-        else if (stop_requested_.load(std::memory_order_relaxed))
-            end(ServoState::stopped, "stopped on request");
-        else {
-            if (wall) {
-                const int64_t now_ns = wait_until(deadline_ns, spin_ns);
-                report_.wake_late_ns.add(static_cast<uint64_t>(now_ns - deadline_ns));
-            } else if (options_.wait_for_reader && telemetry_.full()) {
-                std::this_thread::yield();
-                continue;
-            }
-            ++periods_since_pose_;
-            if (!tick()) break;
-            ++periods;
-            deadline_ns += period_ns;
-            if (wall) {
-                const int64_t late_ns = monotonic_ns() - deadline_ns;
-                if (late_ns >= 0) {
-                    const int64_t missed = late_ns / period_ns + 1;
-                    report_.missed_deadlines += static_cast<uint64_t>(missed);
-                    periods += static_cast<uint64_t>(missed);
-                    periods_since_pose_ += static_cast<uint64_t>(missed);
-                    deadline_ns += missed * period_ns;
-                }
-            }
+bool ServoThread::turn()
+{
+    while (!over()) {
+        if (options_.wait_for_reader && telemetry_.full()) {
+            std::this_thread::yield();
+            continue;
         }
+        ++periods_since_pose_;
+        if (!tick()) return false;
+        ++periods_;
+        return true;
     }
-    report_.seconds = static_cast<double>(periods) / rate_hz;
+    return false;
+}
+
+void ServoThread::keep_deadlines()
+{
+    const auto period_ns = std::max(int64_t{1}, static_cast<int64_t>(std::llround(1e9 / scene_->servo.rate_hz)));
+    const int64_t spin_ns = report_.real_time ? std::min(int64_t{200'000}, period_ns / 5) : 0;
+    int64_t deadline_ns = monotonic_ns() + period_ns;
+    while (!over()) {
+        const int64_t now_ns = wait_until(deadline_ns, spin_ns);
+        report_.wake_late_ns.add(static_cast<uint64_t>(now_ns - deadline_ns));
+        ++periods_since_pose_;
+        if (!tick()) return;
+        ++periods_;
+        deadline_ns += period_ns;
+        const int64_t late_ns = monotonic_ns() - deadline_ns;
+        if (late_ns < 0) continue;
+        const int64_t missed = late_ns / period_ns + 1;
+        report_.missed_deadlines += static_cast<uint64_t>(missed);
+        periods_ += static_cast<uint64_t>(missed);
+        periods_since_pose_ += static_cast<uint64_t>(missed);
+        deadline_ns += missed * period_ns;
+    }
 }
 
 bool ServoThread::tick()

@@ -53,8 +53,14 @@ public:
     Telemetry& telemetry() noexcept { return telemetry_; }
 
 private:
+    friend class ServoTurns;
+
     void run();
-    void loop();
+    void begin();
+    bool turn(); // a tick of the virtual clock; false: the run is over
+    void keep_deadlines();
+    void finish();
+    bool over(); // its time is, or it was asked to stop
     bool tick(); // false: there was nothing left to live through, as after the end of a recording
     void record(const DevicePose& pose, const TickResult& result, uint64_t compute_ns);
     void end(ServoState state, const char* reason);
@@ -62,6 +68,7 @@ private:
     std::shared_ptr<const Scene> scene_;
     std::unique_ptr<HapticDevice> device_;
     ServoOptions options_;
+    double periods_wanted_;
     Renderer renderer_;
     Telemetry telemetry_;
     ServoReport report_;
@@ -72,6 +79,7 @@ private:
     // Of the servo thread only.
     glm::dvec3 last_tip_m_{0}, last_force_n_{0};
     bool has_last_tip_ = false;
+    uint64_t periods_ = 0;            // gone by, missed deadlines included
     uint64_t periods_since_pose_ = 0; // of the device; missed deadlines included
     bool interrupted_ = false;        // the device was not ready since
     double force_squared_sum_ = 0;

@@ -2,15 +2,14 @@
 #include "device/device_factory.h"
 #include "runtime/allocation_count.h"
 #include "runtime/files/scene_file.h"
-#include "runtime/servo_thread.h"
 #include "tools/command.h"
-#include "tools/explore_files.h"
-#include "tools/explore_report.h"
+#include "tools/explore_hands.h"
 #include "tools/explore_status.h"
 #include "tools/explore_textures.h"
 #include "tools/quantity.h"
 #include "tools/terminal.h"
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstddef>
@@ -21,13 +20,15 @@
 #include <memory>
 #include <optional>
 #include <thread>
+#include <vector>
 
 namespace haptel::tools {
 
 namespace {
 
 struct ExploreOptions {
-    std::string scene, device, out;
+    std::string scene, out;
+    std::vector<std::string> devices; // in place of the scene's, from the first on
     std::string clock = "wall";
     double seconds = std::numeric_limits<double>::infinity();
     bool json = false;
@@ -42,39 +43,41 @@ extern "C" void on_interrupt(int signal)
     std::signal(signal, SIG_DFL);
 }
 
-// A scene ready to run, and what the pictures and the report want to know of it.
+// A scene ready to run, and what the pictures want to know of it.
 struct Exploration {
     std::shared_ptr<const runtime::Scene> scene;
-    runtime::LoadedHand hand;
-    plot::SurfaceBelow surface;
+    std::vector<runtime::LoadedHand> hands;
+    std::vector<plot::SurfaceBelow> surfaces; // as each hand sees them
 };
-
-// The scene's device, or another one in its place.
-runtime::DeviceResult open_device(runtime::DeviceRequest request, const std::string& instead)
-{
-    if (!instead.empty()) request.name = instead;
-    return device::open_device(request);
-}
 
 std::optional<Exploration> load(const ExploreOptions& options, ExploreTextures& textures)
 {
     Exploration exploration;
-    const auto devices = [&](const runtime::DeviceRequest& request) {
-        exploration.surface = request.surface_below;
-        return open_device(request, options.device);
+    const auto devices = [&](runtime::DeviceRequest request) {
+        const std::size_t hand = exploration.surfaces.size();
+        exploration.surfaces.push_back(request.surface_below);
+        if (hand < options.devices.size()) request.name = options.devices[hand];
+        return device::open_device(request);
     };
     runtime::LoadedScene loaded = runtime::load_scene(options.scene, textures.resolver(), devices);
     fmt::print(stderr, "{}", loaded.diagnostics);
     if (!loaded.scene || loaded.hands.empty()) return std::nullopt;
+    if (options.devices.size() > loaded.hands.size()) {
+        say_error(
+            fmt::format("--device is given {} times, but the scene has {}: it takes the place of the scene's, in "
+                        "their order",
+                        options.devices.size(),
+                        loaded.hands.size() == 1 ? "one device" : fmt::format("{} devices", loaded.hands.size())));
+        return std::nullopt;
+    }
     exploration.scene = std::move(loaded.scene);
-    exploration.hand = std::move(loaded.hands.front());
+    exploration.hands = std::move(loaded.hands);
     return exploration;
 }
 
-runtime::ServoOptions servo_options(const ExploreOptions& options, const runtime::HandSettings& hand)
+runtime::ServoOptions servo_options(const ExploreOptions& options)
 {
     runtime::ServoOptions servo;
-    servo.hand = hand;
     const bool wall = options.clock == "wall";
     servo.clock = wall ? runtime::ServoClock::wall : runtime::ServoClock::virtual_time;
     servo.seconds = options.seconds;
@@ -93,57 +96,38 @@ ExitCode explore(const ExploreOptions& options)
     ExploreTextures textures;
     std::optional<Exploration> exploration = load(options, textures);
     if (!exploration) return ExitCode::findings;
-    std::optional<ExploreFiles> files;
-    if (!options.out.empty()) {
-        files.emplace(options.out);
-        if (!files->error().empty()) {
-            say_error(files->error());
-            return ExitCode::findings;
-        }
+    textures.watch(*exploration->scene);
+    ExploreHands hands(exploration->scene, std::move(exploration->hands), std::move(exploration->surfaces),
+                       servo_options(options), options.out);
+    if (!hands.error().empty()) {
+        say_error(hands.error());
+        return ExitCode::findings;
     }
-
-    ExploreOutcome outcome;
-    outcome.scene = std::filesystem::path(options.scene).filename().string();
-    outcome.device = exploration->hand.device->info().name;
-    outcome.clock = options.clock;
 
     ExploreStatus status(stderr_is_terminal());
-    textures.watch(*exploration->scene);
-    runtime::ServoThread servo(exploration->scene, std::move(exploration->hand.device),
-                               servo_options(options, exploration->hand.settings));
-    // At most one ring: a servo that is faster than its reader must not keep it from hearing Ctrl-C.
-    const auto drain = [&] {
-        runtime::TickRecord record;
-        bool any = false;
-        for (std::size_t left = servo.telemetry().capacity(); left > 0 && servo.telemetry().pop(record); --left) {
-            any = true;
-            if (files) files->add(record);
-        }
-        if (any) status.show(record);
-        return any;
-    };
-
-    servo.start();
-    while (servo.running()) {
-        if (interrupted) servo.request_stop();
+    hands.start();
+    while (hands.running()) {
+        if (interrupted) hands.request_stop();
         if (const std::string messages = textures.take_messages(); !messages.empty()) status.say(messages);
-        if (!drain()) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        if (!hands.drain(status)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
-    outcome.servo = servo.wait();
-    drain();
+    ExploreOutcome outcome;
+    outcome.scene = std::filesystem::path(options.scene).filename().string();
+    outcome.clock = options.clock;
+    outcome.hands = hands.wait(status);
     status.say(textures.take_messages());
     outcome.textures_compiled = textures.compiled();
 
-    if (files) {
-        files->finish(outcome, exploration->scene->servo.force_limit_n, exploration->surface);
-        if (!files->error().empty()) say_error(files->error());
-    }
+    hands.finish(outcome);
+    if (!hands.error().empty()) say_error(hands.error());
     if (options.json)
         print_json(to_json(outcome));
     else
         fmt::print("{}", to_lines(outcome));
-    const bool well = outcome.servo.state != runtime::ServoState::faulted && (!files || files->error().empty());
-    return well ? ExitCode::fine : ExitCode::findings;
+    const bool faulted = std::any_of(outcome.hands.begin(), outcome.hands.end(), [](const HandOutcome& hand) {
+        return hand.servo.state == runtime::ServoState::faulted;
+    });
+    return faulted || !hands.error().empty() ? ExitCode::findings : ExitCode::fine;
 }
 
 void add_seconds(CLI::App& command, double& seconds)
@@ -170,12 +154,19 @@ Command explore_command(CLI::App& app)
         app.add_subcommand("explore", "Feel a scene: servo, device and textures that follow their files");
     command->add_option("scene", options->scene, "Scene file (TOML)")->required()->type_name("SCENE.toml");
     add_seconds(*command, options->seconds);
-    command->add_option("--device", options->device,
-                        fmt::format("Instead of the scene's: {}", fmt::join(device::device_names(), ", ")));
+    command
+        ->add_option(
+            "--device", options->devices,
+            fmt::format("Instead of the scene's, once for each of them: {}", fmt::join(device::device_names(), ", ")))
+        ->type_name("TEXT")
+        ->allow_extra_args(false);
     command->add_option("--clock", options->clock, "virtual: as fast as possible, the same forces on every run")
         ->check(CLI::IsMember({"wall", "virtual"}))
         ->capture_default_str();
-    command->add_option("--out", options->out, "Folder for trace.csv, report.json and pictures")->type_name("DIR");
+    command
+        ->add_option("--out", options->out,
+                     "Folder for trace.csv (trace_2.csv ... of further devices), report.json and pictures")
+        ->type_name("DIR");
     command->add_flag("--json", options->json, "Report as JSON on standard output");
     set_examples(*command, "  haptel explore examples/scenes/rock.toml\n"
                            "  haptel explore scene.toml --seconds 10 --out run --json\n"

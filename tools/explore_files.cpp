@@ -16,14 +16,20 @@ double squared_force(const runtime::TickRecord& tick)
     return glm::dot(tick.force_n, tick.force_n);
 }
 
+std::string cannot_write(const std::filesystem::path& file)
+{
+    return fmt::format("cannot write '{}'", file.string());
+}
+
 } // namespace
 
-ExploreFiles::ExploreFiles(const std::filesystem::path& folder) : folder_(folder)
+ExploreFiles::ExploreFiles(const std::filesystem::path& folder, std::size_t hand)
+    : folder_(folder), suffix_(hand == 0 ? "" : fmt::format("_{}", hand + 1))
 {
     std::error_code failed;
     std::filesystem::create_directories(folder, failed);
-    trace_.open(folder / "trace.csv");
-    if (!trace_) error_ = fmt::format("cannot write '{}'", (folder / "trace.csv").string());
+    trace_.open(path("trace", "csv"));
+    if (!trace_) error_ = cannot_write(path("trace", "csv"));
     runtime::write_trace_header(trace_);
 }
 
@@ -41,24 +47,31 @@ void ExploreFiles::add(const runtime::TickRecord& record)
     stride_ *= 2;
 }
 
-void ExploreFiles::finish(const ExploreOutcome& outcome, double force_limit_n, const plot::SurfaceBelow& surface)
+std::filesystem::path ExploreFiles::path(const char* name, const char* extension) const
+{
+    return folder_ / fmt::format("{}{}.{}", name, suffix_, extension);
+}
+
+void ExploreFiles::finish(const std::string& scene, const runtime::ServoReport& servo, double force_limit_n,
+                          const plot::SurfaceBelow& surface)
 {
     const auto note = [&](const std::string& problem) {
         if (error_.empty()) error_ = problem;
     };
     trace_.close();
-    if (!trace_) note(fmt::format("cannot write '{}'", (folder_ / "trace.csv").string()));
+    if (!trace_) note(cannot_write(path("trace", "csv")));
+    note(plot::draw_force(ticks_, scene, force_limit_n).write_png(path("force", "png").string()));
+    note(plot::draw_path(ticks_, scene, surface).write_png(path("path", "png").string()));
+    note(plot::draw_tick_histogram(servo.tick_ns, scene, 1 / servo.rate_hz)
+             .write_png(path("tick_time", "png").string()));
+}
 
-    std::ofstream report(folder_ / "report.json");
+std::string write_report(const std::filesystem::path& folder, const ExploreOutcome& outcome)
+{
+    std::ofstream report(folder / "report.json");
     report << to_text(to_json(outcome)) << '\n';
     report.close();
-    if (!report) note(fmt::format("cannot write '{}'", (folder_ / "report.json").string()));
-
-    const double period_s = 1 / outcome.servo.rate_hz;
-    note(plot::draw_force(ticks_, outcome.scene, force_limit_n).write_png((folder_ / "force.png").string()));
-    note(plot::draw_path(ticks_, outcome.scene, surface).write_png((folder_ / "path.png").string()));
-    note(plot::draw_tick_histogram(outcome.servo.tick_ns, outcome.scene, period_s)
-             .write_png((folder_ / "tick_time.png").string()));
+    return report ? "" : cannot_write(folder / "report.json");
 }
 
 } // namespace haptel::tools

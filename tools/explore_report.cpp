@@ -76,15 +76,10 @@ double percent(uint64_t part, uint64_t whole)
     return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
-} // namespace
-
-Json to_json(const ExploreOutcome& outcome)
+void add(Json& json, const HandOutcome& hand)
 {
-    const runtime::ServoReport& servo = outcome.servo;
-    Json json;
-    json["scene"] = outcome.scene;
-    json["device"] = outcome.device;
-    json["clock"] = outcome.clock;
+    const runtime::ServoReport& servo = hand.servo;
+    json["device"] = hand.device;
     json["seconds"] = servo.seconds;
     json["rate_hz"] = servo.rate_hz;
     json["ticks"] = servo.ticks;
@@ -102,7 +97,6 @@ Json to_json(const ExploreOutcome& outcome)
     json["force_n"]["max"] = finite_or_null(servo.force_max_n);
     json["energy_j"] = finite_or_null(servo.energy_j);
     json["faults"] = servo.faults;
-    json["textures_compiled"] = outcome.textures_compiled;
     json["reloads"] = servo.reloads;
     json["allocations_in_tick"] = value_or_null(servo.allocations_in_tick);
     json["skipped"]["free_space"] = servo.skipped.free_space;
@@ -114,17 +108,16 @@ Json to_json(const ExploreOutcome& outcome)
     json["stop_reason"] = servo.stop_reason;
     json["real_time"] = servo.real_time;
     json["records_dropped"] = servo.records_dropped;
-    return json;
 }
 
-std::string to_lines(const ExploreOutcome& outcome)
+std::string lines_of(const HandOutcome& hand, const ExploreOutcome& outcome)
 {
-    const runtime::ServoReport& servo = outcome.servo;
+    const runtime::ServoReport& servo = hand.servo;
     std::string text;
     const auto line = [&](const char* name, const std::string& value) {
         text += fmt::format("  {:<12} {}\n", name, value);
     };
-    text += fmt::format("{} with {}: {}\n", outcome.scene, outcome.device, servo.stop_reason);
+    text += fmt::format("{} with {}: {}\n", outcome.scene, hand.device, servo.stop_reason);
     line("time", fmt::format("{:.3f} s, {} ticks at {:g} Hz, {} missed deadlines", servo.seconds, servo.ticks,
                              servo.rate_hz, servo.missed_deadlines));
     line("contact", fmt::format("{} ticks ({:.1f} %)", servo.contact_ticks, percent(servo.contact_ticks, servo.ticks)));
@@ -144,6 +137,31 @@ std::string to_lines(const ExploreOutcome& outcome)
     if (servo.faults > 0) line("faults", fmt::format("in {} ticks: {}", servo.faults, faults_text(servo.fault_bits)));
     if (servo.records_dropped > 0) line("telemetry", fmt::format("{} records were dropped", servo.records_dropped));
     if (!servo.real_time_note.empty()) line("note", servo.real_time_note);
+    return text;
+}
+
+} // namespace
+
+Json to_json(const ExploreOutcome& outcome)
+{
+    Json json;
+    json["scene"] = outcome.scene;
+    json["clock"] = outcome.clock;
+    add(json, outcome.hands.front());
+    json["textures_compiled"] = outcome.textures_compiled;
+    json["devices"] = Json::array();
+    for (const HandOutcome& hand : outcome.hands) {
+        Json device;
+        add(device, hand);
+        json["devices"].push_back(std::move(device));
+    }
+    return json;
+}
+
+std::string to_lines(const ExploreOutcome& outcome)
+{
+    std::string text;
+    for (const HandOutcome& hand : outcome.hands) text += lines_of(hand, outcome);
     return text;
 }
 

@@ -6,17 +6,24 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace haptel::tools {
 
-struct ExploreOutcome {
-    std::string scene, device; // as given on the command line or in the scene
-    std::string clock;         // "wall" | "virtual"
+// One hand of the exploration.
+struct HandOutcome {
+    std::string device; // as given on the command line or in the scene
     runtime::ServoReport servo;
+};
+
+struct ExploreOutcome {
+    std::string scene;
+    std::string clock;              // "wall" | "virtual"
+    std::vector<HandOutcome> hands; // at least one, in the order of the scene
     uint64_t textures_compiled = 0; // at the start and on reloads
 };
 
-// The fields that the command promises to scripts, and a few more.
+// The fields that the command promises to scripts, those of the first device, and a few more; `devices` has all.
 Json to_json(const ExploreOutcome& outcome);
 
 // A dozen lines for a person, the important first.

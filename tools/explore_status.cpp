@@ -24,21 +24,30 @@ std::string force_bar(double force_n)
     return bar;
 }
 
+const char* state_of(const runtime::TickRecord& tick)
+{
+    return tick.waiting ? "waits for a small force" : tick.contact ? "touch" : "free ";
+}
+
 } // namespace
 
-void ExploreStatus::show(const runtime::TickRecord& tick)
+void ExploreStatus::show(std::span<const runtime::TickRecord> hands)
 {
     const Clock::time_point now = Clock::now();
     if (now - last_ < (on_terminal_ ? Clock::duration(terminal_interval) : Clock::duration(log_interval))) return;
     last_ = now;
-    const double force_n = glm::length(tick.force_n);
-    const std::string text =
-        fmt::format("{:7.1f} s  {}  force {:5.2f} N {} depth {:6.3f} mm  texture {:+7.1f} um #{}", tick.time_s,
-                    tick.waiting   ? "waits for a small force"
-                    : tick.contact ? "touch"
-                                   : "free ",
-                    force_n, on_terminal_ ? "|" + force_bar(force_n) + "| " : "", tick.depth_m * 1e3,
-                    tick.height_m * 1e6, tick.binding);
+    std::string text;
+    if (hands.size() == 1) {
+        const runtime::TickRecord& tick = hands.front();
+        const double force_n = glm::length(tick.force_n);
+        text = fmt::format("{:7.1f} s  {}  force {:5.2f} N {} depth {:6.3f} mm  texture {:+7.1f} um #{}", tick.time_s,
+                           state_of(tick), force_n, on_terminal_ ? "|" + force_bar(force_n) + "| " : "",
+                           tick.depth_m * 1e3, tick.height_m * 1e6, tick.binding);
+    } else { // a line has room for their forces
+        text = fmt::format("{:7.1f} s", hands.front().time_s);
+        for (std::size_t i = 0; i < hands.size(); ++i)
+            text += fmt::format("  hand {}: {} {:5.2f} N", i + 1, state_of(hands[i]), glm::length(hands[i].force_n));
+    }
     if (on_terminal_)
         fmt::print(stderr, "\r\x1b[K{}", text);
     else

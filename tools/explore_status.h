@@ -4,6 +4,7 @@
 #include "runtime/telemetry.h"
 
 #include <chrono>
+#include <span>
 #include <string_view>
 
 namespace haptel::tools {
@@ -13,8 +14,8 @@ public:
     explicit ExploreStatus(bool on_terminal) : on_terminal_(on_terminal) {}
     ~ExploreStatus() { clear(); }
 
-    // Often; shows the newest tick when it is time to.
-    void show(const runtime::TickRecord& tick);
+    // Often; shows the newest tick of each hand when it is time to.
+    void show(std::span<const runtime::TickRecord> hands);
 
     // Prints a message of several lines without the status in its way.
     void say(std::string_view text);

@@ -37,9 +37,9 @@ struct Stage {
 };
 
 // The rows of a trace without the one column that is about time and not about touch.
-std::vector<std::string> felt(const std::string& folder)
+std::vector<std::string> felt(const std::string& folder, const std::string& trace = "trace.csv")
 {
-    std::istringstream in(read_file(folder + "/trace.csv"));
+    std::istringstream in(read_file(folder + "/" + trace));
     std::vector<std::string> rows;
     for (std::string line; std::getline(in, line);) {
         std::string row, cell;
@@ -110,6 +110,63 @@ TEST_CASE("through a workspace twin runs and a replay feel the same, bit for bit
     explore("c", " --device replay:" + stage.out("a") + "/trace.csv");
     CHECK(felt(stage.out("a")) == felt(stage.out("b")));
     CHECK(felt(stage.out("a")) == felt(stage.out("c")));
+}
+
+TEST_CASE("two devices on one scene feel what each feels alone, and are reported each")
+{
+    const Folder folder;
+    folder.write("grooves.haptel", grooves);
+    const std::string first = "name = \"simulated:touch\"\nseed = 3\nstroke = \"random\"\n",
+                      second =
+                          "stroke = \"press\"\nprobe = { kind = \"sphere\", radius_m = 0.004 }\nworkspace = { scale "
+                          "= 0.5 }\n",
+                      object = "[[object]]\nshape = \"icosphere\"\nsize_m = 0.1\ntexture = \"grooves.haptel:grooves\"\n"
+                               "magnet = { force_n = 0.5, reach_m = 0.01 }\n";
+    const auto explore = [&](const std::string& name, const std::string& text, const std::string& more = "") {
+        const std::string scene = folder.write(name + ".toml", text + object);
+        const Ran ran =
+            run_command("explore " + scene + " --seconds 2 --clock virtual --json --out " + folder.file(name) + more);
+        INFO(ran.err);
+        REQUIRE(ran.code == 0);
+        return json_of(ran);
+    };
+    const Json both = explore("both", "[[device]]\n" + first + "[[device]]\n" + second);
+    const Json one = explore("one", "[device]\n" + first), two = explore("two", "[device]\n" + second);
+    explore("again", "[[device]]\n" + first + "[[device]]\n" + second);
+    const auto rows = [&](const std::string& name, const std::string& trace) { return felt(folder.file(name), trace); };
+    CHECK(rows("both", "trace.csv").size() == 2001);
+    CHECK(rows("both", "trace.csv") == rows("one", "trace.csv"));
+    CHECK(rows("both", "trace_2.csv") == rows("two", "trace.csv"));
+    CHECK(rows("again", "trace_2.csv") == rows("both", "trace_2.csv"));
+    CHECK(rows("both", "trace.csv") != rows("both", "trace_2.csv"));
+    for (const char* picture : {"force_2.png", "path_2.png", "tick_time_2.png"})
+        CHECK(png_size(folder.file("both") + "/" + picture).first > 500);
+
+    REQUIRE(both["devices"].size() == 2);
+    CHECK(one["devices"].size() == 1);
+    CHECK(both["device"] == "simulated:touch");
+    CHECK(both["devices"][0]["device"] == "simulated:touch");
+    CHECK(both["devices"][1]["device"] == "simulated:premium");
+    for (const char* field : {"ticks", "seconds", "contact_ticks", "force_n", "energy_j", "faults", "skipped"}) {
+        CAPTURE(field);
+        CHECK(both[field] == one[field]);
+        CHECK(both["devices"][0][field] == one[field]);
+        CHECK(both["devices"][1][field] == two[field]);
+    }
+    CHECK(both["devices"][1]["tick_ns"]["median"] > 0);
+
+    // A replay in the place of each.
+    const Json replayed = explore("replayed", "[[device]]\n" + first + "[[device]]\n" + second,
+                                  " --device replay:" + folder.file("both") +
+                                      "/trace.csv --device replay:" + folder.file("both") + "/trace_2.csv");
+    CHECK(rows("replayed", "trace.csv") == rows("both", "trace.csv"));
+    CHECK(rows("replayed", "trace_2.csv") == rows("both", "trace_2.csv"));
+    const Ran many = run_command("explore " + folder.file("one.toml") + " --device simulated --device simulated");
+    CHECK(many.code == 1);
+    CHECK(contains(many.err, "--device is given 2 times, but the scene has one device"));
+    const Ran people = run_command("explore " + folder.file("both.toml") + " --seconds 0.1 --clock virtual");
+    CHECK(contains(people.out, "both.toml with simulated:touch"));
+    CHECK(contains(people.out, "both.toml with simulated:premium"));
 }
 
 TEST_CASE("who waits for a small force is told so, in the report, the trace and for people")
