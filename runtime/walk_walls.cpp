@@ -62,7 +62,7 @@ Walk::Step Walk::from_edge_among_walls(const Cell& cell, uint32_t edge)
         cells[i].add({faces[i].face(), faces[i].side(), beyond ? -in : in, true});
         if (valley) cells[i].add(cell.sheet[1 - i]);
         owned[i] = cells[i].count;
-        for (uint32_t k = 2; k < cell.count; ++k) cells[i].add(cell.sheet[k]);
+        for (uint32_t k = 2; k < cell.count; ++k) cells[i].add(cell.sheet[k], Cell::most + cell.body[k]);
         descents[i] = steepest(cells[i], hand_ - proxy_.at);
     }
     if (border && descents[1].runs_on(0)) descents[1].way = glm::dvec3(0); // under the border: the proxy holds on to it

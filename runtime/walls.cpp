@@ -17,6 +17,7 @@ constexpr double beside = 64;   // nearer than this is beside it: less is not wo
 constexpr double equal = 1;     // lengths of ways that differ by less are
 constexpr uint32_t none = ~0u;
 constexpr double margin = 8; // so far a wall reaches beyond its outline; less than where the wall behind a ridge begins
+constexpr double notice = 2; // and is known so much farther, before it is in the way
 constexpr double slack = 0.25; // what moves along a wall may lose of the distance by rounding
 
 // Sheets are pushed apart by 1 / sine of their angle; beyond this they are taken as parallel.
@@ -51,24 +52,40 @@ bool is_wall_of(const Surface& surface, uint32_t face, uint32_t other)
     return false;
 }
 
-// The edge of this wall, 3 if none, that the place lies past and over which another wall of the face falls away that it
-// is rather beside. Near such a ridge the planes of both are within reach, but there is more space than before both:
-// only the one that the place is beside holds it, else nothing could leave the ridge.
-uint32_t ridge_passed(const Surface& surface, uint32_t face, uint32_t wall, uint32_t side, const glm::dvec3& at)
+// Whether another wall of the face falls away over this edge of the wall.
+bool is_ridge(const Surface& surface, uint32_t face, uint32_t wall, uint32_t side, uint32_t edge)
 {
-    double inside[3];
-    for (uint32_t i = 0; i < 3; ++i) inside[i] = glm::dot(inward(surface, wall, i), at - corner(surface, wall, i));
-    const double own = std::min({inside[0], inside[1], inside[2]});
+    const SideEdge link = surface.faces[wall].link[edge][side];
+    if (link.face() == wall) return false; // a border
+    const glm::dvec3& tip = corner(surface, link.face(), previous(link.edge()));
+    return glm::dot(tip - corner(surface, wall, edge), surface.facet_normal(wall, side)) < 0 &&
+           is_wall_of(surface, face, link.face());
+}
+
+// Whether the place lies past a ridge of this side of the wall, before the wall there.
+bool is_past_ridge(const Surface& surface, uint32_t face, uint32_t wall, uint32_t side, const glm::dvec3& at)
+{
     for (uint32_t i = 0; i < 3; ++i) {
+        if (glm::dot(inward(surface, wall, i), at - corner(surface, wall, i)) >= 0) continue;
         const SideEdge link = surface.faces[wall].link[i][side];
-        if (inside[i] >= 0 || link.face() == wall) continue;
-        const glm::dvec3& tip = corner(surface, link.face(), previous(link.edge()));
-        const bool valley = glm::dot(tip - corner(surface, wall, i), surface.facet_normal(wall, side)) >= 0;
-        if (valley || !is_wall_of(surface, face, link.face())) continue;
-        const double other = within_outline(surface, link.face(), at);
-        if (other > own || (other == own && link.face() < wall)) return i;
+        if (glm::dot(at - corner(surface, wall, i), surface.facet_normal(link.face(), link.side())) >= 0 &&
+            is_ridge(surface, face, wall, side, i))
+            return true;
     }
-    return 3;
+    return false;
+}
+
+// Whether the way leads from beside a ridge of the wall away over it, to where the other wall of the ridge holds.
+bool leaves_over_ridge(const Surface& surface, uint32_t face, uint32_t wall, uint32_t side, const glm::dvec3& from,
+                       const glm::dvec3& to)
+{
+    for (uint32_t i = 0; i < 3; ++i) {
+        const glm::dvec3 in = inward(surface, wall, i);
+        if (glm::dot(in, from - corner(surface, wall, i)) < beside && glm::dot(in, to - from) < 0 &&
+            is_ridge(surface, face, wall, side, i))
+            return true;
+    }
+    return false;
 }
 
 // Whether a wall of the face stands in the straight way: exact but for the ends, which are rounded to the lattice.
@@ -134,9 +151,16 @@ bool keep_off(const Surface& surface, uint32_t face, const Cell& sheets, uint32_
     const glm::dvec3& front = surface.faces[face].normal;
     std::array<HalfPlane, Cell::most + 3> planes;
     uint32_t count = 0;
+    const auto away_from = [&](uint32_t k) {
+        return glm::dot(place - corner(surface, sheets.sheet[k].face, 0), sheets.sheet[k].normal);
+    };
     for (uint32_t k = 0; k < sheets.count; ++k) {
+        bool kept_off = false; // by another sheet of the same body
+        for (uint32_t other = 0; other < sheets.count && !kept_off; ++other)
+            kept_off = other != k && sheets.body[other] == sheets.body[k] && away_from(other) >= distance - slack;
+        if (kept_off && k != along) continue;
         const Sheet& sheet = sheets.sheet[k];
-        const double away = glm::dot(place - corner(surface, sheet.face, 0), sheet.normal);
+        const double away = away_from(k);
         const glm::dvec3 within = sheet.normal - glm::dot(sheet.normal, front) * front;
         const double square = glm::dot(within, within);
         if (square >= least_square_of_sine) {
@@ -161,22 +185,39 @@ bool keep_off(const Surface& surface, uint32_t face, const Cell& sheets, uint32_
 void add_walls(const Surface& surface, uint32_t face, const glm::dvec3& at, Cell& cell) noexcept
 {
     const Face& data = surface.faces[face];
+    const uint32_t first = cell.count;
     for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {
         const uint32_t wall = surface.pierced_by[k];
         const double height = glm::dot(at - corner(surface, wall, 0), surface.faces[wall].normal);
-        if (std::abs(height) > beside || within_outline(surface, wall, at) < -margin - slack) continue;
+        if (std::abs(height) > beside || within_outline(surface, wall, at) < -margin - notice) continue;
         const uint32_t side = height >= 0 ? 0 : 1;
-        if (ridge_passed(surface, face, wall, side, at) < 3) continue;
+        if (is_past_ridge(surface, face, wall, 1 - side, at)) continue; // it only seems to be behind the wall
         cell.add({wall, side, surface.facet_normal(wall, side), false});
+    }
+    for (uint32_t k = first; k < cell.count; ++k) {
+        const Sheet& wall = cell.sheet[k];
+        for (uint32_t i = 0; i < 3; ++i) {
+            if (!is_ridge(surface, face, wall.face, wall.side, i)) continue;
+            const SideEdge link = surface.faces[wall.face].link[i][wall.side];
+            for (uint32_t other = first; other < cell.count; ++other)
+                if (cell.sheet[other].face == link.face() && cell.sheet[other].side == link.side()) cell.join(k, other);
+        }
     }
 }
 
 Descent steepest(const Cell& cell, const glm::dvec3& way) noexcept
 {
     const double tolerance = 1e-15 * glm::length(way); // rounding: below 0.01 units
+    const auto before = [&](uint32_t k, const glm::dvec3& candidate) {
+        return glm::dot(cell.sheet[k].normal, candidate) >= -tolerance;
+    };
     const auto feasible = [&](const glm::dvec3& candidate) {
-        for (uint32_t k = 0; k < cell.count; ++k)
-            if (glm::dot(cell.sheet[k].normal, candidate) < -tolerance) return false;
+        for (uint32_t k = 0; k < cell.count; ++k) {
+            bool free = before(k, candidate);
+            for (uint32_t other = 0; other < cell.count && !free; ++other)
+                free = cell.body[other] == cell.body[k] && before(other, candidate);
+            if (!free) return false;
+        }
         return true;
     };
     // The projection onto a cone is the longest of the feasible projections onto the planes and lines that bound it.
@@ -215,8 +256,7 @@ double share_before_walls(const Surface& surface, uint32_t face, const glm::dvec
         const uint32_t side = begin >= 0 ? 0 : 1;
         if (begin < 0) begin = -begin, end = -end;
         if (end >= std::min(distance, begin - slack)) continue;
-        const uint32_t ridge = begin < beside ? ridge_passed(surface, face, wall, side, from) : 3;
-        if (ridge < 3 && glm::dot(inward(surface, wall, ridge), to - from) < 0) continue; // away over the ridge
+        if (begin < beside && leaves_over_ridge(surface, face, wall, side, from, to)) continue;
         // The part of the way that is near the plane, and of that the part that is near the triangle.
         double enter = begin <= distance ? 0 : (begin - distance) / (begin - end);
         double leave = end >= -distance ? 1 : (begin + distance) / (begin - end);
@@ -260,9 +300,9 @@ bool onto_wall(const Surface& surface, const Cell& cell, uint32_t wall, uint32_t
     Cell others;
     uint32_t beside_it = none;
     for (uint32_t k = 0; k < cell.count; ++k) {
-        if (cell.sheet[k].face == onto.face || cell.sheet[k].is_ridge) continue;
+        if (cell.sheet[k].face == onto.face || cell.sheet[k].is_ridge || cell.body[k] == cell.body[wall]) continue;
         if (k == along) beside_it = others.count;
-        others.add(cell.sheet[k]);
+        others.add(cell.sheet[k], Cell::most + cell.body[k]);
     }
     place = at - glm::dot(at - corner(surface, onto.face, 0), onto.normal) * onto.normal;
     return keep_off(surface, onto.face, others, beside_it, place);

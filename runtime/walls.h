@@ -26,11 +26,22 @@ struct Sheet {
 struct Cell {
     static constexpr uint32_t most = 8;
     Sheet sheet[most];
+    // Walls that meet in ridges are one body, by the same number: to be before one of them is to be out of it.
+    uint32_t body[most];
     uint32_t count = 0;
 
-    void add(const Sheet& another)
+    void add(const Sheet& another) { add(another, count); }
+    void add(const Sheet& another, uint32_t of_body)
     {
-        if (count < most) sheet[count++] = another;
+        if (count == most) return;
+        body[count] = of_body;
+        sheet[count++] = another;
+    }
+    void join(uint32_t one, uint32_t other)
+    {
+        const uint32_t from = body[other], to = body[one];
+        for (uint32_t k = 0; k < count; ++k)
+            if (body[k] == from) body[k] = to;
     }
 };
 
