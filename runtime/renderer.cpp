@@ -59,7 +59,7 @@ std::vector<Surroundings> Renderer::surroundings(const Scene& scene, double prob
 
 uint64_t Renderer::reloads() const noexcept
 {
-    uint64_t sum = 0;
+    uint64_t sum = reloads_before_;
     for (const Touched& touched : objects_) sum += touched.object->texture->newest_serial() - touched.serial_at_start;
     return sum;
 }
@@ -91,6 +91,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     if (!finite(pose.tip_m) || !finite(pose.tail_m)) {
         velocity_.lose_hand();
         effects_.lose_hand();
+        sent_n_ = left_n_ = glm::dvec3(0);
         for (Touched& touched : objects_) touched.velocity.lose_hand();
         interrupted_ = true;
         result.faults = fault_pose_not_finite;
@@ -101,10 +102,13 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     if (result.interrupted) {
         rise_period_ = period_;
         waiting_ = scene_->servo.wait_for_small_force_n > 0;
+        swapped_ = false;
+        left_n_ = glm::dvec3(0);
         effects_.lose_hand();
     }
     if (effects_.act()) effects_.begin(pose.tip_m, result.time_s, periods);
 
+    felt_.reset();
     double way_m = 0;
     if (last_pose_)
         way_m = std::max(glm::distance(pose.tip_m, last_pose_->tip_m), glm::distance(pose.tail_m, last_pose_->tail_m));
@@ -146,6 +150,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
             if (&contact != contacts.data()) continue;
             touched.friction_share = force.friction_share;
             if (result.contacts > 1 && contact.depth_m <= result.depth_m) continue;
+            felt_ = {touched.placement.to_world(contact.proxy_m), touched.placement.direction_to_world(contact.normal)};
             result.depth_m = contact.depth_m;
             result.height_m = force.height_m;
             result.binding = touched.texture.to().serial;
@@ -169,16 +174,30 @@ void Renderer::send(TickResult& result) noexcept
         result.faults |= fault_force_not_finite;
         interrupted_ = true;
     }
+    const double small_n = scene_->servo.wait_for_small_force_n;
+    if (std::exchange(swapped_, false)) {
+        rise_period_ = left_period_ = period_;
+        left_n_ = interrupted_ ? glm::dvec3(0) : sent_n_;
+        waiting_ = waiting_ || (small_n > 0 && !(glm::distance(result.unlimited_force_n, computed_n_) <= small_n));
+    }
+    computed_n_ = result.unlimited_force_n;
     if (waiting_) {
-        waiting_ = !(glm::length(result.unlimited_force_n) <= scene_->servo.wait_for_small_force_n) || interrupted_;
+        waiting_ = !(glm::length(result.unlimited_force_n) <= small_n) || interrupted_;
         rise_period_ = period_;
         result.waiting = waiting_;
-        if (waiting_) return;
     }
     const double rise_s = scene_->servo.force_rise_s;
-    const double rising_s = static_cast<double>(period_ - rise_period_) * period_s_;
-    const double risen = rising_s < rise_s ? rising_s / rise_s : 1.0;
-    result.force_n = limited(risen * result.unlimited_force_n, force_limit_n_);
+    const auto risen_since = [&](uint64_t period) {
+        const double rising_s = static_cast<double>(period_ - period) * period_s_;
+        return rising_s < rise_s ? rising_s / rise_s : 1.0;
+    };
+    glm::dvec3 force_n = (waiting_ ? 0.0 : risen_since(rise_period_)) * result.unlimited_force_n;
+    if (left_n_ != glm::dvec3(0)) {
+        const double gone = risen_since(left_period_);
+        force_n += (1 - gone) * left_n_;
+        if (gone == 1) left_n_ = glm::dvec3(0);
+    }
+    result.force_n = sent_n_ = limited(force_n, force_limit_n_);
 }
 
 ContactWork Renderer::work() const noexcept
@@ -226,11 +245,18 @@ double Renderer::gap_to_sleep_m(uint32_t number, const DevicePose& pose, double 
     return gap_m > std::max({near_m, 1e-6 * farthest.x, 1e-6 * farthest.y, 1e-6 * farthest.z}) ? gap_m : 0;
 }
 
+// To where the object is now.
+void Renderer::move(Touched& touched) const noexcept
+{
+    const double time_s = static_cast<double>(period_) * period_s_;
+    const auto placement = touched.object->motion->at(time_s);
+    if (placement && finite(*placement)) touched.placement = *placement;
+}
+
 std::span<const Contact> Renderer::update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept
 {
-    if (const Motion* motion = touched.object->motion.get()) {
-        const double time_s = static_cast<double>(period_) * period_s_;
-        if (const auto placement = motion->at(time_s); placement && finite(*placement)) touched.placement = *placement;
+    if (touched.object->motion) {
+        move(touched);
         touched.velocity.update(touched.placement.to_object(pose.tip_m), periods);
     }
     const Material& material = touched.object->material;

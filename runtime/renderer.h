@@ -61,6 +61,15 @@ class Renderer {
 public:
     explicit Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand = {});
 
+    // Of a scene that takes the place of `before`, at the same rate, while the hand is in it.
+    Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand, const Scene& before);
+    // Between two ticks: goes on where the renderer of `before` is, which is worth nothing afterwards. What is the same
+    // surface at the same place goes on touching the hand; on everything else the hand is put down from where it
+    // touched. The force that was on the hand fades out and the new one rises over force_rise_s, so without a step; if
+    // the scene waits for small forces and the new one differs by more from the old, it waits first. Allocates and
+    // frees nothing, and costs as much as the first tick of a scene.
+    void take_over(Renderer& before) noexcept;
+
     // Once per period with the pose of the hand, in the space of its device, as are the forces (once for several where
     // the servo was late: DevicePose::periods, 0 is taken for 1). The first pose puts the probe down where it is. After
     // the start and after every interruption - the device had no pose, or one that is not finite, or the force was not
@@ -93,6 +102,9 @@ private:
         // base surface that is also below the texture. Of the tick before: contact comes before texture.
         double friction_share = 0;
     };
+    struct Felt { // world frame
+        glm::dvec3 point_m{0}, normal{0, 0, 1};
+    };
     struct ObjectForce {
         glm::dvec3 force_n{0}; // world frame
         double height_m = 0;
@@ -112,6 +124,7 @@ private:
     bool feels_in_air(const Touched& touched, const DevicePose& pose) const noexcept;
     ObjectForce force_of(const Touched& touched, const Contact& contact) const noexcept;
     void send(TickResult& result) noexcept;
+    void move(Touched& touched) const noexcept;
 
     std::shared_ptr<const Scene> scene_;
     HandSettings hand_;
@@ -131,6 +144,15 @@ private:
     ContactWork work_;
     std::optional<DevicePose> last_pose_; // that was finite
     HandVelocity velocity_;               // world frame
+
+    // For who takes over, and after having taken over.
+    glm::dvec3 sent_n_{0}, computed_n_{0}; // in the tick before, the scene's space
+    std::optional<Felt> felt_;             // what pressed most in the tick before
+    std::vector<uint32_t> was_;            // of each object: its number in the scene before
+    bool swapped_ = false;                 // no tick since
+    glm::dvec3 left_n_{0};                 // was on the hand then, and fades out
+    uint64_t left_period_ = 0;             // from this one on
+    uint64_t reloads_before_ = 0;
 };
 
 } // namespace haptel::runtime

@@ -41,10 +41,11 @@ struct ServoReport {
     Histogram tick_ns;                       // pose in hand to force computed
     Histogram wake_late_ns;                  // after the deadline; empty on the virtual clock
     double force_rms_n = 0, force_max_n = 0; // as sent, over all ticks
-    double energy_j = 0;     // that the forces gave to the hand; negative where they took more than they gave
-    uint64_t faults = 0;     // ticks with a fault of texture, pose or force
-    uint32_t fault_bits = 0; // bits of TickResult::faults seen
-    uint64_t reloads = 0;    // bindings published after start
+    double energy_j = 0;         // that the forces gave to the hand; negative where they took more than they gave
+    uint64_t faults = 0;         // ticks with a fault of texture, pose or force
+    uint32_t fault_bits = 0;     // bits of TickResult::faults seen
+    uint64_t reloads = 0;        // bindings published after start
+    uint64_t scenes_swapped = 0; // scenes that took the place of another one after start
     std::optional<uint64_t> allocations_in_tick; // empty: not counted in this program
     SkippedStages skipped;
     uint64_t records_dropped = 0; // telemetry that nobody read in time

@@ -32,14 +32,15 @@ ServoOptions with_limits_of(const HapticDevice& device, ServoOptions options)
 
 ServoThread::ServoThread(std::shared_ptr<const Scene> scene, std::unique_ptr<HapticDevice> device,
                          const ServoOptions& options)
-    : scene_(std::move(scene))
-    , device_(std::move(device))
+    : device_(std::move(device))
     , options_(with_limits_of(*device_, options))
-    , periods_wanted_(std::ceil(options.seconds * scene_->servo.rate_hz - 1e-6))
-    , renderer_(scene_, options_.hand)
+    , periods_wanted_(std::ceil(options.seconds * scene->servo.rate_hz - 1e-6))
+    , rate_hz_(scene->servo.rate_hz)
+    , scenes_(scene, options_.hand)
+    , renderer_(std::make_unique<Renderer>(scene, options_.hand))
     , telemetry_(options.telemetry_capacity)
 {
-    report_.rate_hz = scene_->servo.rate_hz;
+    report_.rate_hz = scene->servo.rate_hz;
 }
 
 ServoThread::~ServoThread()
@@ -53,6 +54,14 @@ void ServoThread::start()
 {
     running_.store(true, std::memory_order_release);
     thread_ = std::thread([this] { run(); });
+}
+
+std::string ServoThread::publish(std::shared_ptr<const Scene> scene)
+{
+    if (scene->servo.rate_hz != rate_hz_)
+        return "the rate of a servo cannot change while it runs: stop it and start anew";
+    scenes_.publish(std::move(scene));
+    return {};
 }
 
 const ServoReport& ServoThread::wait()
@@ -87,10 +96,10 @@ void ServoThread::begin()
 void ServoThread::finish()
 {
     device_->stop();
-    report_.seconds = static_cast<double>(periods_) / scene_->servo.rate_hz;
+    report_.seconds = static_cast<double>(periods_) / rate_hz_;
     report_.force_rms_n = report_.ticks == 0 ? 0 : std::sqrt(force_squared_sum_ / static_cast<double>(report_.ticks));
-    report_.skipped = renderer_.skipped();
-    report_.reloads = renderer_.reloads();
+    report_.skipped = renderer_->skipped();
+    report_.reloads = renderer_->reloads();
     report_.records_dropped = telemetry_.dropped();
     running_.store(false, std::memory_order_release);
 }
@@ -122,7 +131,7 @@ bool ServoThread::turn()
 
 void ServoThread::keep_deadlines()
 {
-    const auto period_ns = std::max(int64_t{1}, static_cast<int64_t>(std::llround(1e9 / scene_->servo.rate_hz)));
+    const auto period_ns = std::max(int64_t{1}, static_cast<int64_t>(std::llround(1e9 / rate_hz_)));
     const int64_t spin_ns = report_.real_time ? std::min(int64_t{200'000}, period_ns / 5) : 0;
     int64_t deadline_ns = monotonic_ns() + period_ns;
     while (!over()) {
@@ -146,6 +155,7 @@ bool ServoThread::tick()
 {
     const uint64_t allocations_before = options_.allocation_count ? options_.allocation_count() : 0;
 
+    report_.scenes_swapped += scenes_.take(renderer_);
     DevicePose pose;
     const DeviceStatus read = device_->read(pose);
     if (read == DeviceStatus::not_ready) {
@@ -163,12 +173,12 @@ bool ServoThread::tick()
     interrupted_ = false;
 
     const int64_t start_ns = monotonic_ns();
-    const TickResult result = renderer_.tick(pose);
+    const TickResult result = renderer_->tick(pose);
     const int64_t compute_ns = monotonic_ns() - start_ns;
 
     const DeviceStatus written = device_->write(result.force_n, result.torque_n_m);
     record(pose, result, static_cast<uint64_t>(compute_ns));
-    renderer_.between_ticks();
+    renderer_->between_ticks();
     if (options_.allocation_count) *report_.allocations_in_tick += options_.allocation_count() - allocations_before;
     if (written != DeviceStatus::ok && written != DeviceStatus::not_ready)
         end(written == DeviceStatus::finished ? ServoState::finished : ServoState::faulted, reason_of(written));

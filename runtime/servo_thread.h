@@ -9,6 +9,7 @@
 
 #include "runtime/haptic_device.h"
 #include "runtime/renderer.h"
+#include "runtime/renderer_slot.h"
 #include "runtime/scene.h"
 #include "runtime/servo_report.h"
 #include "runtime/telemetry.h"
@@ -17,6 +18,7 @@
 #include <cstddef>
 #include <limits>
 #include <memory>
+#include <string>
 #include <thread>
 
 namespace haptel::runtime {
@@ -49,6 +51,12 @@ public:
     const ServoReport& wait();
     bool running() const noexcept { return running_.load(std::memory_order_acquire); }
 
+    // Any thread but the servo: another scene in the place of the one that is felt, from the next tick on
+    // (Renderer::take_over). Returns why it is refused, or nothing.
+    std::string publish(std::shared_ptr<const Scene> scene);
+    // Frees the scenes that were replaced; publish does so too.
+    void collect() { scenes_.collect(); }
+
     // For one reader.
     Telemetry& telemetry() noexcept { return telemetry_; }
 
@@ -65,11 +73,12 @@ private:
     void record(const DevicePose& pose, const TickResult& result, uint64_t compute_ns);
     void end(ServoState state, const char* reason);
 
-    std::shared_ptr<const Scene> scene_;
     std::unique_ptr<HapticDevice> device_;
     ServoOptions options_;
     double periods_wanted_;
-    Renderer renderer_;
+    double rate_hz_;
+    RendererSlot scenes_;
+    std::unique_ptr<Renderer> renderer_; // of the servo thread once it runs
     Telemetry telemetry_;
     ServoReport report_;
     std::atomic<bool> stop_requested_{false};

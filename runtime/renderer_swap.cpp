@@ -1,0 +1,95 @@
+// One scene in the place of another while a hand is in it.
+#include "runtime/renderer.h"
+
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+namespace haptel::runtime {
+
+namespace {
+
+constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
+
+// An object that lies elsewhere by at most this, where the hand is, was moved under the hand and goes on touching it;
+// one that lies farther away is another object.
+constexpr double nudge_m = 1e-3;
+
+// Above the place that was touched, from where the hand is put down on what is there now.
+constexpr double lifted_m = 1e-5;
+
+double distance_m(const Placement& a, const Placement& b)
+{
+    double sum = glm::distance(a.position_m, b.position_m);
+    for (int i = 0; i < 3; ++i) sum += glm::distance(a.rotation[i], b.rotation[i]); // lever arms of a metre
+    return sum;
+}
+
+} // namespace
+
+Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand, const Scene& before)
+    : Renderer(std::move(scene), hand)
+{
+    const ProbeSettings probe = hand.probe.value_or(before.probe);
+    was_.assign(objects_.size(), none);
+    if (probe.kind != probe_.kind || probe.radius_m != probe_.radius_m || probe.length_m != probe_.length_m) return;
+
+    // The same surface makes the same object, nearer ones first.
+    std::unordered_map<const Surface*, std::vector<uint32_t>> by_surface;
+    for (uint32_t i = 0; i < before.objects.size(); ++i) by_surface[before.objects[i].surface.get()].push_back(i);
+    for (uint32_t i = 0; i < objects_.size(); ++i) {
+        const auto candidates = by_surface.find(scene_->objects[i].surface.get());
+        if (candidates == by_surface.end()) continue;
+        auto nearest = candidates->second.end();
+        double least_m = std::numeric_limits<double>::infinity();
+        for (auto old = candidates->second.begin(); old != candidates->second.end(); ++old) {
+            const double away_m = distance_m(before.objects[*old].placement, scene_->objects[i].placement);
+            if (away_m < least_m) least_m = away_m, nearest = old;
+        }
+        if (nearest == candidates->second.end()) continue;
+        was_[i] = *nearest;
+        candidates->second.erase(nearest);
+    }
+}
+
+void Renderer::take_over(Renderer& before) noexcept
+{
+    started_ = before.started_;
+    period_ = before.period_;
+    texture_period_ = before.texture_period_;
+    interrupted_ = before.interrupted_;
+    waiting_ = waiting_ && before.waiting_;
+    skipped_ = before.skipped_;
+    work_ = before.work();
+    reloads_before_ = before.reloads();
+    last_pose_ = before.last_pose_;
+    velocity_ = before.velocity_;
+    sent_n_ = before.sent_n_;
+    computed_n_ = before.computed_n_;
+    swapped_ = true;
+    for (Touched& touched : objects_) touched.texture_period = texture_period_;
+    if (!last_pose_) return;
+
+    DevicePose lifted = *last_pose_;
+    if (before.felt_) { // where it was touched, a little above
+        const double lift_m = probe_.radius_m + lifted_m * hand_.workspace.scale;
+        lifted.tip_m = before.felt_->point_m + lift_m * before.felt_->normal;
+        lifted.tail_m += lifted.tip_m - last_pose_->tip_m;
+    }
+    for (std::size_t i = 0; i < objects_.size(); ++i) {
+        Touched& touched = objects_[i];
+        if (touched.object->motion) move(touched);
+        Touched* old = i < was_.size() && was_[i] != none ? &before.objects_[was_[i]] : nullptr;
+        if (old && old->asleep) before.wake(*old);
+        const ProbePose here = in_object(touched, *last_pose_);
+        if (old && glm::distance(here.tip_m, in_object(*old, *last_pose_).tip_m) <= nudge_m * hand_.workspace.scale) {
+            std::swap(touched.contact, old->contact);
+            std::swap(touched.velocity, old->velocity);
+            touched.friction_share = old->friction_share;
+        } else {
+            touched.contact.update(in_object(touched, lifted), {});
+        }
+    }
+}
+
+} // namespace haptel::runtime

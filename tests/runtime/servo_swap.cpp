@@ -1,0 +1,290 @@
+// A scene in the place of another one while a hand is in it.
+#include "runtime/allocation_count.h"
+#include "runtime/servo_thread.h"
+#include "tests/support/catch.h"
+#include "tests/support/lambda_texture.h"
+#include "tests/support/touch_scenes.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <thread>
+#include <vector>
+
+using namespace haptel;
+using namespace haptel::runtime;
+using namespace haptel::tests;
+
+namespace {
+
+constexpr double rise_s = 0.1;
+
+Scene plane_scene(double stiffness_n_per_m = 1000)
+{
+    Scene scene = bare_scene(plane_mesh());
+    scene.objects[0].material.stiffness_n_per_m = stiffness_n_per_m;
+    scene.servo.force_rise_s = rise_s;
+    return scene;
+}
+
+// The same objects, their surfaces included.
+Scene same_as(const Scene& scene)
+{
+    Scene copy = scene;
+    for (SceneObject& object : copy.objects) object.texture = std::make_shared<TextureSlot>();
+    return copy;
+}
+
+// A servo's renderer and its slot, ticked by the test.
+struct Stage {
+    RendererSlot slot;
+    std::unique_ptr<Renderer> renderer;
+
+    explicit Stage(const std::shared_ptr<const Scene>& scene, const HandSettings& hand = {})
+        : slot(scene, hand), renderer(std::make_unique<Renderer>(scene, hand))
+    {
+    }
+    TickResult tick(const DevicePose& pose)
+    {
+        slot.take(renderer);
+        return renderer->tick(pose);
+    }
+    TickResult press(double z, int ticks)
+    {
+        TickResult result;
+        for (int i = 0; i < ticks; ++i) result = tick(at(0.01, 0.02, z));
+        return result;
+    }
+};
+
+} // namespace
+
+TEST_CASE("a scene that changes nothing is not felt")
+{
+    for (const ProbeKind probe : {ProbeKind::point, ProbeKind::sphere, ProbeKind::stylus}) {
+        Scene first = plane_scene();
+        first.probe = {probe, 0.1, probe == ProbeKind::sphere ? 2e-3 : 0};
+        const double radius_m = first.probe.radius_m;
+        const auto scene = shared(std::move(first));
+        Stage stage(scene);
+        const auto hand = [&](double z) {
+            return DevicePose{{0.01, 0.02, z + radius_m}, {0.01, 0.02, z + radius_m + 0.1}};
+        };
+        stage.tick(hand(1e-3));
+        for (int i = 0; i < 200; ++i) stage.tick(hand(-1e-3));
+        stage.slot.publish(shared(same_as(*scene)));
+        for (int i = 0; i < 300; ++i) {
+            const TickResult result = stage.tick(hand(-1e-3));
+            CHECK(std::abs(result.force_n.z - 1) < 1e-8);
+            CHECK(result.contacts == 1);
+            CHECK_FALSE(result.interrupted);
+        }
+    }
+}
+
+TEST_CASE("another stiffness comes by a ramp, and time goes on")
+{
+    const auto scene = shared(plane_scene());
+    Stage stage(scene);
+    stage.press(1e-3, 1);
+    stage.press(-1e-3, 200);
+    Scene stiffer = same_as(*scene);
+    stiffer.objects[0].material.stiffness_n_per_m = 3000;
+    stage.slot.publish(shared(std::move(stiffer)));
+    for (int i = 0; i < 200; ++i) {
+        const TickResult result = stage.press(-1e-3, 1);
+        CHECK(std::abs(result.time_s - (201 + i) * 1e-3) < 1e-12);
+        CHECK(std::abs(result.force_n.z - (1 + 2 * std::min(1.0, i / 100.0))) < 1e-8);
+    }
+}
+
+TEST_CASE("whatever a new scene holds, the force changes no faster than by the ramp")
+{
+    const auto scene = shared(plane_scene());
+    Scene without = plane_scene(), higher = same_as(*scene), finer = plane_scene(), other = same_as(*scene);
+    without.objects[0].placement.position_m = {0, 0, -0.5};  // another plane, far away
+    higher.objects[0].placement.position_m = {0, 0, 0.9e-3}; // the same one, nudged
+    finer.objects[0].surface = build_surface(plane_mesh(0.1, 7)).surface;
+    other.probe = {ProbeKind::sphere, 0.1, 1e-3};
+    const struct {
+        const Scene* next;
+        double force_n;
+    } cases[] = {{&without, 0}, {&higher, 1.9}, {&finer, 1}, {&other, 2}};
+    for (const auto& swap : cases) {
+        Stage stage(scene);
+        stage.press(1e-3, 1);
+        double last_n = stage.press(-1e-3, 200).force_n.z;
+        stage.slot.publish(shared(*swap.next));
+        for (int i = 0; i < 300; ++i) {
+            const double force_n = stage.press(-1e-3, 1).force_n.z;
+            CHECK(std::abs(force_n - last_n) <= std::abs(swap.force_n - 1) * 1e-3 / rise_s + 1e-6);
+            last_n = force_n;
+        }
+        CAPTURE(swap.force_n);
+        CHECK(std::abs(last_n - swap.force_n) < 2e-2); // put down from 10 um above where it was, then the same
+    }
+}
+
+TEST_CASE("friction holds where it held, and a moving object moves on")
+{
+    Scene first = plane_scene();
+    first.objects[0].material = {1000, 0, 0.5, 0.3};
+    const auto scene = shared(std::move(first));
+    Stage stage(scene);
+    stage.tick(at(0, 0, 1e-3));
+    for (int i = 0; i < 200; ++i) stage.tick(at(0, 0, -1e-3));
+    for (int i = 0; i < 200; ++i) stage.tick(at(0.3e-3, 0, -1e-3));
+    stage.slot.publish(shared(same_as(*scene)));
+    for (int i = 0; i < 200; ++i) CHECK(std::abs(stage.tick(at(0.3e-3, 0, -1e-3)).force_n.x + 0.3) < 1e-8);
+
+    Scene turning = plane_scene();
+    SteadyMotion::Figures figures;
+    figures.swing_m = {0, 0, 5e-3};
+    figures.swing_hz = 1;
+    turning.objects[0].motion = std::make_shared<SteadyMotion>(turning.objects[0].placement, figures);
+    const auto swinging = shared(std::move(turning));
+    Stage moved(swinging), plain(swinging);
+    for (int i = 0; i < 1000; ++i) {
+        if (i == 150) moved.slot.publish(shared(same_as(*swinging)));
+        const TickResult a = moved.press(4.5e-3, 1), b = plain.press(4.5e-3, 1);
+        CHECK(a.contacts == b.contacts);
+        if (i > 260) CHECK(a.force_n == b.force_n);
+        CHECK(a.depth_m == b.depth_m);
+    }
+}
+
+TEST_CASE("a scene that jumps waits for a small force where it says so, and one that does not jump does not")
+{
+    Scene first = plane_scene();
+    first.servo.wait_for_small_force_n = 0.5;
+    const auto scene = shared(std::move(first));
+    Stage stage(scene);
+    stage.press(1e-3, 300);
+    stage.press(-1e-3, 300);
+    Scene little = same_as(*scene), much = same_as(*scene);
+    little.objects[0].material.stiffness_n_per_m = 1300;
+    much.objects[0].material.stiffness_n_per_m = 4000;
+    stage.slot.publish(shared(std::move(little)));
+    CHECK_FALSE(stage.press(-1e-3, 1).waiting);
+    CHECK(std::abs(stage.press(-1e-3, 200).force_n.z - 1.3) < 1e-8);
+    stage.slot.publish(shared(std::move(much)));
+    for (int i = 0; i < 300; ++i) { // what was on the hand fades out
+        const TickResult result = stage.press(-1e-3, 1);
+        CHECK(result.waiting);
+        CHECK(std::abs(result.force_n.z - 1.3 * std::max(0.0, 1 - i / 100.0)) < 1e-8);
+    }
+    CHECK_FALSE(stage.press(-0.1e-3, 1).waiting);
+    stage.press(-0.1e-3, 100);
+    CHECK(std::abs(stage.press(-1e-3, 1).force_n.z - 4) < 1e-8);
+}
+
+TEST_CASE("a hand without a force on it is left alone by the fade")
+{
+    const auto scene = shared(plane_scene());
+    Stage stage(scene);
+    stage.press(1e-3, 1);
+    stage.press(-1e-3, 200);
+    stage.tick(at(std::numeric_limits<double>::quiet_NaN(), 0, 0));
+    stage.slot.publish(shared(same_as(*scene)));
+    for (int i = 0; i < 150; ++i) // rises as after any interruption; on the surface as before
+        CHECK(std::abs(stage.press(-1e-3, 1).force_n.z - std::min(1.0, i / 100.0)) < 1e-8);
+}
+
+TEST_CASE("of scenes published between two ticks the newest is felt, and what is replaced is freed by who publishes")
+{
+    const auto scene = shared(plane_scene());
+    Stage stage(scene);
+    stage.press(1e-3, 1);
+    stage.press(-1e-3, 200);
+    std::vector<std::weak_ptr<const Scene>> published;
+    for (int i = 1; i <= 5; ++i) {
+        Scene next = same_as(*scene);
+        next.objects[0].material.stiffness_n_per_m = 1000 + 100 * i;
+        const auto held = shared(std::move(next));
+        published.push_back(held);
+        stage.slot.publish(held);
+    }
+    for (int i = 0; i < 4; ++i) CHECK(published[static_cast<std::size_t>(i)].expired());
+    CHECK(std::abs(stage.press(-1e-3, 200).force_n.z - 1.5) < 1e-8);
+    // The servo has given back one renderer that nobody collects: it goes on, and does not free it.
+    const uint64_t before = allocations_of_this_thread();
+    stage.press(-1e-3, 10);
+    CHECK(allocations_of_this_thread() == before);
+    Scene last = same_as(*scene);
+    stage.slot.publish(shared(std::move(last)));
+    CHECK_FALSE(published.back().expired()); // felt until the next tick
+    stage.press(-1e-3, 1);
+    stage.slot.collect();
+    CHECK(published.back().expired());
+}
+
+TEST_CASE(
+    "scenes are swapped hundreds of times while a servo runs: nothing is allocated in a tick, nothing falls through")
+{
+    Mesh mesh = make_icosphere(3);
+    scale_to_size(mesh, 0.1);
+    const auto coarse = build_surface(mesh).surface;
+    const auto make = [&](int i) {
+        Scene scene = bare_scene(plane_mesh(), sine_texture(20e-6, 2e-3));
+        scene.objects[0].surface = coarse;
+        scene.objects[0].material = {600.0 + 10 * (i % 40), 0.5, 0.3, 0.2};
+        for (int k = 0; k < i % 5; ++k) { // others come and go before it
+            SceneObject other = scene.objects.back();
+            other.placement.position_m = {1.0 + k, 0, 0};
+            other.texture = std::make_shared<TextureSlot>();
+            scene.objects.insert(scene.objects.begin(), other);
+        }
+        scene.servo.force_rise_s = 0.02;
+        return shared(std::move(scene));
+    };
+    const auto hand = [](uint64_t tick, DevicePose& pose) { // 1 mm deep round the ball
+        const double t = static_cast<double>(tick) * 1e-3;
+        const double r = tick < 20 ? 0.06 : 0.049;
+        const glm::dvec3 tip(r * std::cos(t), r * std::sin(t) * std::cos(0.3), r * std::sin(t) * std::sin(0.3));
+        pose = {tip, tip};
+        std::this_thread::sleep_for(std::chrono::microseconds(20));
+        return DeviceStatus::ok;
+    };
+    ServoOptions options;
+    options.clock = ServoClock::virtual_time;
+    options.seconds = 20;
+    options.telemetry_capacity = 1 << 15;
+    options.allocation_count = allocations_of_this_thread;
+    ServoThread servo(make(0), std::make_unique<ScriptedDevice>(hand), options);
+    Scene slower = *make(1);
+    slower.servo.rate_hz = 500;
+    CHECK(servo.publish(shared(std::move(slower))) ==
+          "the rate of a servo cannot change while it runs: stop it and start anew");
+    servo.start();
+    std::vector<std::weak_ptr<const Scene>> published;
+    for (int i = 1; servo.running() && i <= 400; ++i) {
+        const auto scene = make(i);
+        published.push_back(scene);
+        CHECK(servo.publish(scene).empty());
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    servo.request_stop();
+    const ServoReport& report = servo.wait();
+    servo.collect();
+    CHECK(report.allocations_in_tick == 0);
+    CHECK(report.scenes_swapped > 50);
+    CHECK(report.faults == 0);
+    uint64_t alive = 0;
+    for (const auto& scene : published) alive += !scene.expired();
+    CHECK(alive <= 2); // what is felt, and one that came too late
+    uint64_t free_ticks = 0, ticks = 0;
+    double largest_step_n = 0, last_n = 0;
+    for (TickRecord record; servo.telemetry().pop(record);) {
+        const double force_n = glm::length(record.force_n);
+        if (record.tick > 100) {
+            ++ticks;
+            free_ticks += record.contact == 0;
+            largest_step_n = std::max(largest_step_n, std::abs(force_n - last_n));
+        }
+        last_n = force_n;
+    }
+    CAPTURE(ticks, report.scenes_swapped);
+    CHECK(ticks > 500);
+    CHECK(free_ticks == 0);
+    CHECK(largest_step_n < 0.1);
+}
