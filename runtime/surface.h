@@ -90,6 +90,7 @@ struct Surface {
     std::vector<Face> faces;
     std::vector<Fan> fans;
     std::vector<std::array<glm::dvec2, 3>> uv; // per face and corner; empty without texture coordinates
+    std::vector<uint32_t> smoothing_groups;    // per face, as in Mesh; or empty
     std::vector<uint32_t> pierced_by;
     // Force shading: the normals at corners, and which of them a face has [corner][side].
     std::vector<ShadingNormal> shading_normals;
@@ -132,7 +133,7 @@ struct SurfaceResult {
 };
 
 // Faces that meet at more than this angle do so in a crease, which force shading keeps: 0 leaves every facet flat, 180
-// rounds everything.
+// rounds everything but what the mesh's smoothing groups part.
 inline constexpr double default_crease_deg = 40;
 
 // Never throws on bad geometry; memory is all that it can run out of.

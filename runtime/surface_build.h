@@ -17,7 +17,7 @@ void link_faces(Surface& surface, MeshReport& report);
 // Fans with their angle-weighted normals, and which of them meet in a vertex.
 void make_fans(Surface& surface);
 
-// Normals of force shading, parted where faces meet at more than crease_deg.
+// Normals of force shading, parted where faces meet at more than crease_deg or are of different smoothing groups.
 void make_shading_normals(Surface& surface, double crease_deg);
 
 // For each face those that cut or touch it without sharing a corner there. Needs the tree.

@@ -74,6 +74,8 @@ public:
 private:
     bool is_crease(const Sector& a, const Sector& b) const
     {
+        if (const std::vector<uint32_t>& groups = surface_.smoothing_groups; !groups.empty())
+            if (groups[a.face] == 0 || groups[a.face] != groups[b.face]) return true;
         const glm::dvec3 m = normal_of(surface_, a), n = normal_of(surface_, b);
         return std::atan2(glm::length(glm::cross(m, n)), glm::dot(m, n)) > crease_rad_;
     }

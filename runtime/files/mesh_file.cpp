@@ -10,8 +10,12 @@
 #include <array>
 #include <cctype>
 #include <exception>
+#include <fstream>
 #include <limits>
+#include <map>
 #include <mutex>
+#include <optional>
+#include <sstream>
 #include <system_error>
 
 namespace haptel::runtime {
@@ -85,6 +89,53 @@ private:
     std::string heard_;
 };
 
+// What assimp does not tell of an OBJ file. A file with smoothing groups is read with each of them as a material of its
+// own, which it keeps apart; objects, groups and materials of the file do not matter here.
+class ObjGroups {
+public:
+    static constexpr std::string_view prefix = "smoothing ";
+
+    explicit ObjGroups(const std::filesystem::path& file)
+    {
+        std::ifstream in(file, std::ios::binary);
+        text_ = "usemtl " + std::string(prefix) + "off\n";
+        for (std::string line; std::getline(in, line);) {
+            line += '\n';
+            if (line.find_first_of("sumog") != line.find_first_not_of(" \t")) { // most of a large file, as it is
+                text_ += line;
+                continue;
+            }
+            std::istringstream words(line);
+            std::string first, second;
+            words >> first >> second;
+            if (first == "s" && !second.empty()) {
+                found_ = true;
+                text_ += "usemtl " + std::string(prefix) + (second == "0" ? "off" : second) + "\n";
+            } else if (first != "usemtl" && first != "mtllib" && first != "o" && first != "g") {
+                text_ += line;
+            }
+        }
+    }
+
+    bool found() const { return found_; }
+    const std::string& text() const { return text_; }
+
+    // Of a part that was read from the text: 0 for `off`, else one number per name.
+    uint32_t group_of(const aiScene& scene, const aiMesh& part)
+    {
+        aiString name;
+        scene.mMaterials[part.mMaterialIndex]->Get(AI_MATKEY_NAME, name);
+        const std::string group = name.C_Str();
+        if (group == std::string(prefix) + "off") return 0;
+        return numbers_.try_emplace(group, static_cast<uint32_t>(numbers_.size() + 1)).first->second;
+    }
+
+private:
+    bool found_ = false;
+    std::string text_;
+    std::map<std::string, uint32_t> numbers_;
+};
+
 MeshFileResult failed(std::string why)
 {
     MeshFileResult result;
@@ -108,7 +159,13 @@ try {
 
     const IndexListener listener;
     Assimp::Importer importer;
-    const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_PreTransformVertices);
+    constexpr unsigned steps = aiProcess_Triangulate | aiProcess_PreTransformVertices;
+    std::optional<ObjGroups> groups;
+    if (extension == ".obj") groups.emplace(file);
+    const bool grouped = groups && groups->found();
+    const aiScene* scene = grouped
+                               ? importer.ReadFileFromMemory(groups->text().data(), groups->text().size(), steps, "obj")
+                               : importer.ReadFile(file.string(), steps);
     if (!scene) {
         const std::string why = importer.GetErrorString();
         // How assimp says that a file holds points only.
@@ -121,7 +178,12 @@ try {
     MeshFileResult result;
     bool with_uv = scene->mNumMeshes > 0;
     for (unsigned i = 0; i < scene->mNumMeshes; ++i) with_uv = with_uv && scene->mMeshes[i]->HasTextureCoords(0);
-    for (unsigned i = 0; i < scene->mNumMeshes; ++i) append(result.mesh, *scene->mMeshes[i], with_uv);
+    for (unsigned i = 0; i < scene->mNumMeshes; ++i) {
+        append(result.mesh, *scene->mMeshes[i], with_uv);
+        if (grouped)
+            result.mesh.smoothing_groups.resize(result.mesh.triangles.size(),
+                                                groups->group_of(*scene, *scene->mMeshes[i]));
+    }
     if (result.mesh.triangles.empty()) return failed("the file holds no triangle");
     return result;
 } catch (const std::exception& problem) {

@@ -14,6 +14,7 @@ struct MeshFileResult {
 };
 
 // Polygons are cut into triangles; points and lines are left out. Formats: OBJ, PLY, STL, OFF, 3DS, DAE, glTF.
+// Smoothing groups are those of an OBJ file with lines `s N` and `s off`; faces before the first of them are of none.
 MeshFileResult load_mesh(const std::filesystem::path& file);
 
 } // namespace haptel::runtime

@@ -29,6 +29,7 @@ struct ObjectText {
     std::string mesh, shape, texture;
     double size_m = 0; // 0: as it is
     double crease_deg = default_crease_deg;
+    bool own_crease = false; // it was written: the mesh's smoothing groups do not count
     SceneObject object;
     std::vector<std::pair<std::string, std::string>> parameters;
     toml::source_region mesh_at, texture_at;
@@ -115,6 +116,7 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
     table.number("size_m", text.size_m, Quantity::length, {0, 1000, true});
 
     table.number("crease_deg", text.crease_deg, Quantity::angle_deg, {0, 180});
+    text.own_crease = table.has("crease_deg");
 
     text.object.placement = read_placement(table);
     text.object.motion = read_motion(table, text.object.placement, messages);
@@ -168,6 +170,12 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, FileMe
         }
         mesh = std::move(read.mesh);
     }
+    if (text.own_crease) mesh.smoothing_groups.clear();
+    const std::vector<uint32_t>& groups = mesh.smoothing_groups;
+    if (!groups.empty() && std::all_of(groups.begin(), groups.end(), [](uint32_t group) { return group == 0; }))
+        messages.note(text.mesh_at, "mesh `" + text.mesh +
+                                        "`: all its faces are without a smoothing group (`s off`) and felt flat; write "
+                                        "`crease_deg = 40` to feel it round where it is not sharper than that");
     if (text.size_m > 0) scale_to_size(mesh, text.size_m);
     SurfaceResult built = build_surface(mesh, text.crease_deg);
     if (!built.surface)
@@ -307,7 +315,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
     for (auto object = text.objects.begin(); object != text.objects.end(); ++object) {
         const auto same = std::find_if(text.objects.begin(), object, [&](const ObjectText& other) {
             return other.mesh == object->mesh && other.shape == object->shape && other.size_m == object->size_m &&
-                   other.crease_deg == object->crease_deg;
+                   other.crease_deg == object->crease_deg && other.own_crease == object->own_crease;
         });
         if (same == object) {
             load_geometry(*object, folder, messages);

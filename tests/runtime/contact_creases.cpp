@@ -193,3 +193,36 @@ TEST_CASE("through a valley that is a crease the force turns without a jump")
     CHECK(largest_n < 3 * 1000 * step_m);
     CHECK(last.x < -0.1); // it has passed through
 }
+
+TEST_CASE("smoothing groups part what the crease angle would round, and never round what it parts")
+{
+    // The walls of a round prism, alternately of two groups, but for a run of three of one group and one of none.
+    Mesh mesh = make_prism(10);
+    const auto group_of_wall = [](uint32_t wall) { return wall == 9 ? 0 : wall < 3 ? 1 : 1 + wall % 2; };
+    for (uint32_t t = 0; t < mesh.triangles.size(); ++t)
+        mesh.smoothing_groups.push_back(t % 4 < 2 ? group_of_wall(t / 4) : 3);
+    const auto prism = surface_with(mesh, 40), angular = surface_with(mesh, 20);
+    REQUIRE(prism->faces.size() == 40);
+    for (uint32_t face = 0; face < 40; ++face)
+        for (const uint32_t corner : {0u, 1u, 2u})
+            for (const uint32_t side : {0u, 1u}) {
+                dvec3 w(0);
+                w[int(corner)] = 1;
+                const double sign = side ? -1 : 1;
+                const dvec3 facet = prism->facet_normal(face), found = sign * shading_normal(*prism, face, side, w);
+                CHECK(glm::distance(sign * shading_normal(*angular, face, side, w), facet) < 1e-12);
+                if (std::abs(facet.z) > 0.5) { // a lid
+                    CHECK(glm::distance(found, facet) < 1e-12);
+                    continue;
+                }
+                // The two walls that meet in the corner's line: round if they are of one group and that is not none.
+                const dvec3 at = prism->vertex_m(face, corner);
+                const auto wall = uint32_t(face / 4),
+                           line = uint32_t(std::lround(std::atan2(at.y, at.x) / (2 * pi / 10) + 10)) % 10,
+                           other = line == wall ? (wall + 9) % 10 : (wall + 1) % 10;
+                const bool round = group_of_wall(wall) != 0 && group_of_wall(wall) == group_of_wall(other);
+                CAPTURE(wall, line);
+                CHECK(glm::distance(found, round ? dvec3(at.x, at.y, 0) : facet) < 1e-9);
+                CHECK(on_crease(*prism, face, side, w)); // every corner is one of a lid
+            }
+}
