@@ -4,7 +4,10 @@
 #include "runtime/shapes.h"
 
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <stdexcept>
+#include <utility>
 
 namespace haptel::bench {
 

@@ -6,12 +6,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <fstream>
 #include <malloc.h>
 #include <map>
 #include <memory>
+#include <string>
 #include <unistd.h>
 #include <utility>
+#include <vector>
 
 namespace haptel::bench {
 namespace {

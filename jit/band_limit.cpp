@@ -1,6 +1,9 @@
 #include "jit/band_limit.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <random>
 #include <vector>
@@ -20,7 +23,9 @@ double between(double minimum, double maximum, double share, double otherwise)
 
 bool is_band_limited(const TextureBinding& binding, const TextureRequest& request)
 {
-    constexpr int places = 32;
+    // Textures that are too slow for a servo shall not be slow to refuse.
+    const uint64_t operations = std::max<uint64_t>(binding.facts.operations_max, 1);
+    const uint64_t places = std::clamp<uint64_t>(20'000'000 / operations, 1, 32);
     if (!(binding.texture->reads & HAPTEL_READS_FOOTPRINT) || request.footprint_m == 0 ||
         !binding.texture->height_gradient)
         return false;
@@ -33,7 +38,7 @@ bool is_band_limited(const TextureBinding& binding, const TextureRequest& reques
 
     std::mt19937_64 random(1);
     const auto share = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
-    for (int i = 0; i < places; ++i) {
+    for (uint64_t i = 0; i < places; ++i) {
         haptel_point point{};
         double length = 0;
         for (size_t k = 0; k < 3; ++k) {

@@ -4,6 +4,8 @@
 #include "tests/support/touch_scenes.h"
 
 #include <cmath>
+#include <memory>
+#include <utility>
 
 using namespace haptel;
 using namespace haptel::runtime;

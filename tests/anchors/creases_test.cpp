@@ -4,7 +4,10 @@
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <random>
 
 using namespace haptel;

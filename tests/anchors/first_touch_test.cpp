@@ -7,9 +7,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <optional>
 #include <random>
 #include <string>
+#include <utility>
 
 using namespace haptel;
 using namespace haptel::runtime;

@@ -6,7 +6,9 @@
 #include "tests/support/lambda_texture.h"
 #include "tests/support/touch_scenes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <thread>
@@ -150,7 +152,7 @@ TEST_CASE("anchors row 8: a scene is immutable and shared: four threads feel in 
         std::vector<std::thread> threads;
         for (std::vector<dvec3>& mine : found) threads.emplace_back([&] { mine = forces(scene, 20'000); });
         for (std::thread& thread : threads) thread.join();
-        for (const std::vector<dvec3>& theirs : found) CHECK(theirs == alone);
+        for (const std::vector<dvec3>& theirs : found) CHECK((theirs == alone));
         CHECK(scene.use_count() == 1); // no renderer keeps it longer than it lives
     }
 }

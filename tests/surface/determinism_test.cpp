@@ -7,9 +7,14 @@
 #include <bit>
 #include <cfloat>
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <memory>
+#include <optional>
 #include <random>
+#include <string>
 #include <unistd.h>
 #include <vector>
 

@@ -1,7 +1,10 @@
 // What a tick leaves out changes no force: with each skip off the hand feels the same.
 #include "tests/surface/textured.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -133,12 +136,12 @@ TEST_CASE("no skip changes a force: free space, objects, texture and mapping, on
         CHECK(all.skipped.mapping == (printed ? 0 : uint64_t(all.contacts)));
 
         // Without clearance the ways are swept, and nothing is hit: the same bits.
-        CHECK(run(scene, {.free_space = false}).forces_n == all.forces_n);
+        CHECK((run(scene, {.free_space = false}).forces_n == all.forces_n));
         // A ball goes in steps as long as it knows its surroundings, until it moves too little to be felt.
         const Run looked_at = run(scene, {.objects = false});
         CHECK(furthest_n(looked_at, all) <= (is_ball ? 1e-4 : 0));
         const Run evaluated = run(scene, {.texture = false});
-        CHECK(evaluated.forces_n == all.forces_n);
+        CHECK((evaluated.forces_n == all.forces_n));
         CHECK((evaluated.skipped.texture < all.skipped.texture) == (c.texture != nullptr));
         // On flat faces the turning of normals is 0 but for rounding, of which the texture's slope takes a share.
         const Run mapped = run(scene, {.mapping = false});
@@ -160,7 +163,7 @@ TEST_CASE("the turning of normals is left out where the force model does not ask
         scene.servo.force.model = model;
         const Run all = run(scene);
         CHECK(all.skipped.mapping == uint64_t(all.contacts));
-        CHECK(run(scene, {.mapping = false}).forces_n == all.forces_n);
+        CHECK((run(scene, {.mapping = false}).forces_n == all.forces_n));
     }
 }
 
@@ -174,12 +177,12 @@ TEST_CASE("octaves finer than the footprint are left out, are counted, and would
     for (const double footprint_m : {0.3e-3, 0.6e-3, 2e-3, 8e-3}) {
         CAPTURE(footprint_m);
         const Run limited = texture("rock", footprint_m);
-        CHECK(limited.forces_n == texture("rock_in_full", footprint_m).forces_n);
-        CHECK(limited.forces_n != full.forces_n);
+        CHECK((limited.forces_n == texture("rock_in_full", footprint_m).forces_n));
+        CHECK((limited.forces_n != full.forces_n));
         CHECK(limited.skipped.octaves == uint64_t(limited.contacts));
     }
     const Run fine = texture("rock", 0.01e-3); // less than half of the last octave's wavelength
-    CHECK(fine.forces_n == full.forces_n);
+    CHECK((fine.forces_n == full.forces_n));
     CHECK(fine.skipped.octaves == 0);
     CHECK(texture("by_normal", 2e-3).skipped.octaves == 0); // it has no octaves
 }
