@@ -15,7 +15,6 @@ struct Mesh {
     std::vector<glm::dvec2> uv;                     // empty, or one per position; no unit
     // Empty, or one per triangle: those of different smoothing groups meet in creases, those of group 0 with all.
     std::vector<uint32_t> smoothing_groups;
-    std::vector<uint32_t> part;                     // empty, or one per triangle: what it is a part of
 };
 
 } // namespace haptel::runtime

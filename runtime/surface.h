@@ -91,12 +91,10 @@ struct Surface {
     std::vector<Fan> fans;
     std::vector<std::array<glm::dvec2, 3>> uv; // per face and corner; empty without texture coordinates
     std::vector<uint32_t> smoothing_groups;    // per face, as in Mesh; or empty
-    std::vector<uint32_t> part;                // per face, as in the mesh; empty if it has none
     std::vector<uint32_t> pierced_by;
     // Force shading: the normals at corners, and which of them a face has [corner][side].
     std::vector<ShadingNormal> shading_normals;
     std::vector<std::array<std::array<uint32_t, 2>, 3>> shading_normal_of;
-    double crease_deg = 0;            // that parted them
     double normal_turn_max_per_m = 0; // no shading normal turns faster along its face (spectral norm); 0: flat facets
     std::unique_ptr<const BoxTree> tree;
     glm::dvec3 box_minimum{0}, box_maximum{0};     // of the vertices, lattice units

@@ -191,8 +191,7 @@ private:
         rest.vertex[first] = corner;
         surface_.faces[border.face].vertex[second] = corner;
         surface_.faces.push_back(rest);
-        for (std::vector<uint32_t>* of_face : {&surface_.part, &surface_.smoothing_groups})
-            if (!of_face->empty()) of_face->push_back(uint32_t{(*of_face)[border.face]});
+        if (auto& groups = surface_.smoothing_groups; !groups.empty()) groups.push_back(uint32_t{groups[border.face]});
         if (surface_.uv.empty()) return;
         std::array<glm::dvec2, 3> rest_uv = surface_.uv[border.face];
         const glm::dvec2 uv = glm::mix(rest_uv[first], rest_uv[second], share);
@@ -210,14 +209,12 @@ private:
             if (exact_normal(at(v[0]), at(v[1]), at(v[2])).is_zero()) continue;
             surface_.faces[kept] = surface_.faces[f];
             if (!surface_.uv.empty()) surface_.uv[kept] = surface_.uv[f];
-            for (std::vector<uint32_t>* of_face : {&surface_.part, &surface_.smoothing_groups})
-                if (!of_face->empty()) (*of_face)[kept] = (*of_face)[f];
+            if (auto& groups = surface_.smoothing_groups; !groups.empty()) groups[kept] = groups[f];
             ++kept;
         }
         surface_.faces.resize(kept);
         if (!surface_.uv.empty()) surface_.uv.resize(kept);
-        for (std::vector<uint32_t>* of_face : {&surface_.part, &surface_.smoothing_groups})
-            if (!of_face->empty()) of_face->resize(kept);
+        if (auto& groups = surface_.smoothing_groups; !groups.empty()) groups.resize(kept);
     }
 
     Surface& surface_;

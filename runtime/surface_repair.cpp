@@ -122,7 +122,6 @@ bool repair(const Mesh& mesh, Surface& surface, MeshReport& report)
     const std::vector<bool> repeated = repeats(triangles);
     const bool has_uv = mesh.uv.size() == mesh.positions_m.size();
     const bool has_groups = mesh.smoothing_groups.size() == mesh.triangles.size();
-    const bool has_part = mesh.part.size() == mesh.triangles.size();
     for (size_t k = 0; k < triangles.size(); ++k) {
         if (repeated[k]) {
             ++report.duplicate;
@@ -132,7 +131,6 @@ bool repair(const Mesh& mesh, Surface& surface, MeshReport& report)
         face.vertex = triangles[k];
         surface.faces.push_back(face);
         if (has_groups) surface.smoothing_groups.push_back(mesh.smoothing_groups[source[k]]);
-        if (has_part) surface.part.push_back(mesh.part[source[k]]);
         if (!has_uv) continue;
         std::array<glm::dvec2, 3> uv;
         for (size_t i = 0; i < 3; ++i) {

@@ -133,7 +133,6 @@ double turn_max(const Surface& surface, uint32_t face, uint32_t side)
 
 void make_shading_normals(Surface& surface, double crease_deg)
 {
-    surface.crease_deg = crease_deg;
     surface.shading_normal_of.assign(surface.faces.size(), {{{unset, unset}, {unset, unset}, {unset, unset}}});
     Smoothing smoothing(surface, crease_deg);
     for (uint32_t f = 0; f < surface.faces.size(); ++f)

@@ -204,7 +204,7 @@ TEST_CASE("every step of the proxy is possible, on any mesh: long run", "[.long]
     WARN("in all " << sum);
     CHECK(sum.impossible == 0);
     CHECK(sum.differing == 0);
-    CHECK(sum.cut < sum.touching / 10000); // see WalkCount::most_wall_turns
+    CHECK(sum.cut < sum.touching / 1000); // see WalkCount::most_wall_turns
     CHECK(sum.stuck < sum.touching / 1000);
     CHECK(sum.off_surface < 1e-9);
 }

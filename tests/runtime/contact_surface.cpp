@@ -303,26 +303,23 @@ TEST_CASE("sheets that cross in a vertex get one each, those that only touch the
           make_touching_cubes(Touching::corners).positions_m.size());
 }
 
-TEST_CASE("faces that are cut where cracks close keep what their triangle was a part of, and its smoothing group")
+TEST_CASE("faces that are cut where cracks close keep their smoothing group")
 {
     Mesh mesh; // rows of triangles between whole numbers of y, with T-junctions between them
     for (const NamedMesh& hard : make_hard_meshes())
         if (hard.name == "T-junctions") mesh = hard.mesh;
-    const auto row = [](double y) { return uint32_t(y); };
+    const auto row = [](double y) { return uint32_t(y) + 1; };
     for (const auto& [a, b, c] : mesh.triangles) {
         const auto& p = mesh.positions_m;
-        mesh.part.push_back(row((p[a].y + p[b].y + p[c].y) / 3));
-        mesh.smoothing_groups.push_back(mesh.part.back() + 1);
+        mesh.smoothing_groups.push_back(row((p[a].y + p[b].y + p[c].y) / 3));
     }
     const SurfaceResult result = build_surface(mesh);
     REQUIRE(result.surface);
     const Surface& surface = *result.surface;
     CHECK(surface.faces.size() > mesh.triangles.size());
-    REQUIRE(surface.part.size() == surface.faces.size());
     REQUIRE(surface.smoothing_groups.size() == surface.faces.size());
     for (uint32_t f = 0; f < surface.faces.size(); ++f) {
         const double y = (surface.vertex_m(f, 0).y + surface.vertex_m(f, 1).y + surface.vertex_m(f, 2).y) / 3;
-        CHECK(surface.part[f] == row(y));
-        CHECK(surface.smoothing_groups[f] == row(y) + 1);
+        CHECK(surface.smoothing_groups[f] == row(y));
     }
 }
