@@ -4,6 +4,7 @@
 #include "runtime/files/scene_file.h"
 #include "tools/command.h"
 #include "tools/explore_hands.h"
+#include "tools/explore_scene.h"
 #include "tools/explore_status.h"
 #include "tools/explore_textures.h"
 #include "tools/quantity.h"
@@ -45,12 +46,12 @@ extern "C" void on_interrupt(int signal)
 
 // A scene ready to run, and what the pictures want to know of it.
 struct Exploration {
-    std::shared_ptr<const runtime::Scene> scene;
-    std::vector<runtime::LoadedHand> hands;
+    runtime::LoadedScene loaded;
     std::vector<plot::SurfaceBelow> surfaces; // as each hand sees them
 };
 
-std::optional<Exploration> load(const ExploreOptions& options, ExploreTextures& textures)
+std::optional<Exploration> load(const ExploreOptions& options, ExploreTextures& textures,
+                                runtime::SurfaceCache& surfaces)
 {
     Exploration exploration;
     const auto devices = [&](runtime::DeviceRequest request) {
@@ -59,7 +60,8 @@ std::optional<Exploration> load(const ExploreOptions& options, ExploreTextures& 
         if (hand < options.devices.size()) request.name = options.devices[hand];
         return device::open_device(request);
     };
-    runtime::LoadedScene loaded = runtime::load_scene(options.scene, textures.resolver(), devices);
+    exploration.loaded = runtime::load_scene(options.scene, textures.resolver(), devices, &surfaces);
+    const runtime::LoadedScene& loaded = exploration.loaded;
     fmt::print(stderr, "{}", loaded.diagnostics);
     if (!loaded.scene || loaded.hands.empty()) return std::nullopt;
     if (options.devices.size() > loaded.hands.size()) {
@@ -70,8 +72,6 @@ std::optional<Exploration> load(const ExploreOptions& options, ExploreTextures& 
                         loaded.hands.size() == 1 ? "one device" : fmt::format("{} devices", loaded.hands.size())));
         return std::nullopt;
     }
-    exploration.scene = std::move(loaded.scene);
-    exploration.hands = std::move(loaded.hands);
     return exploration;
 }
 
@@ -94,10 +94,12 @@ ExitCode explore(const ExploreOptions& options)
     if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN); // nohup: the terminal may go
 
     ExploreTextures textures;
-    std::optional<Exploration> exploration = load(options, textures);
+    runtime::SurfaceCache surfaces;
+    std::optional<Exploration> exploration = load(options, textures, surfaces);
     if (!exploration) return ExitCode::findings;
-    textures.watch(*exploration->scene);
-    ExploreHands hands(exploration->scene, std::move(exploration->hands), std::move(exploration->surfaces),
+    runtime::LoadedScene& loaded = exploration->loaded;
+    textures.watch(*loaded.scene);
+    ExploreHands hands(std::move(loaded.scene), std::move(loaded.hands), std::move(exploration->surfaces),
                        servo_options(options), options.out);
     if (!hands.error().empty()) {
         say_error(hands.error());
@@ -105,12 +107,18 @@ ExitCode explore(const ExploreOptions& options)
     }
 
     ExploreStatus status(stderr_is_terminal());
+    std::optional<ExploreScene> scene(std::in_place, options.scene, std::move(loaded.meshes), surfaces, textures,
+                                      hands);
     hands.start();
     while (hands.running()) {
         if (interrupted) hands.request_stop();
-        if (const std::string messages = textures.take_messages(); !messages.empty()) status.say(messages);
+        if (const std::string messages = scene->take_messages() + textures.take_messages(); !messages.empty())
+            status.say(messages);
         if (!hands.drain(status)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
+    const std::string last_messages = scene->take_messages();
+    scene.reset();
+    status.say(last_messages);
     ExploreOutcome outcome;
     outcome.scene = std::filesystem::path(options.scene).filename().string();
     outcome.clock = options.clock;

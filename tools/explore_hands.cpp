@@ -40,6 +40,18 @@ void ExploreHands::request_stop()
     for (Hand& hand : hands_) hand.servo->request_stop();
 }
 
+std::string ExploreHands::publish(const std::shared_ptr<const runtime::Scene>& scene)
+{
+    std::string refused;
+    for (Hand& hand : hands_) refused = hand.servo->publish(scene); // of one rate: all say the same
+    return refused;
+}
+
+void ExploreHands::collect()
+{
+    for (Hand& hand : hands_) hand.servo->collect();
+}
+
 bool ExploreHands::drain(ExploreStatus& status)
 {
     bool any = false;

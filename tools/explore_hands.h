@@ -28,6 +28,10 @@ public:
     void start();
     bool running() const;
     void request_stop();
+    // Another scene for all of them, from their next tick on. Returns why it is refused, or nothing.
+    std::string publish(const std::shared_ptr<const runtime::Scene>& scene);
+    // Frees the scenes that they have left.
+    void collect();
     // Takes what the servos have told, at most a ring each. False: nothing.
     bool drain(ExploreStatus& status);
     // Waits for the end of all, and takes the rest.

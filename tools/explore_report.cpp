@@ -98,6 +98,7 @@ void add(Json& json, const HandOutcome& hand)
     json["energy_j"] = finite_or_null(servo.energy_j);
     json["faults"] = servo.faults;
     json["reloads"] = servo.reloads;
+    json["scenes_swapped"] = servo.scenes_swapped;
     json["allocations_in_tick"] = value_or_null(servo.allocations_in_tick);
     json["skipped"]["free_space"] = servo.skipped.free_space;
     json["skipped"]["objects"] = servo.skipped.objects;
@@ -128,6 +129,7 @@ std::string lines_of(const HandOutcome& hand, const ExploreOutcome& outcome)
     line("tick", percentiles_text(servo.tick_ns));
     if (servo.wake_late_ns.count() > 0) line("woke late", percentiles_text(servo.wake_late_ns));
     line("textures", fmt::format("{} compiled, {} reloads", outcome.textures_compiled, servo.reloads));
+    if (servo.scenes_swapped > 0) line("scenes", fmt::format("{} took the place of the first", servo.scenes_swapped));
     const runtime::SkippedStages& skipped = servo.skipped;
     line("skipped",
          fmt::format("collision in {} ticks, texture in {}, octaves in {}, mapping in {}; {} looks at objects "

@@ -26,6 +26,7 @@ TextureResolver ExploreTextures::resolver()
 
 void ExploreTextures::watch(const runtime::Scene& scene)
 {
+    watchers_.clear();
     for (const runtime::SceneObject& object : scene.objects) {
         if (!object.request) continue;
         jit::LiveCallbacks callbacks;

@@ -21,7 +21,8 @@ public:
     // For load_scene: compiles, and counts.
     TextureResolver resolver();
 
-    // From now on every edit of a texture's file reaches its object's slot, or leaves a message why not.
+    // From now on every edit of a texture's file reaches its object's slot, or leaves a message why not. Of several
+    // scenes, one after the other, the last is watched; one thread may call this at a time.
     void watch(const runtime::Scene& scene);
 
     // What there is to say since the last call, ready to print; empty: nothing.

@@ -155,15 +155,20 @@ SceneText read_scene(const toml::table& root, const std::filesystem::path& folde
     return text;
 }
 
-void load_geometry(ObjectText& text, const std::filesystem::path& folder, FileMessages& messages)
+void load_geometry(ObjectText& text, const std::filesystem::path& folder, SurfaceCache* surfaces,
+                   FileMessages& messages)
 {
+    text.object.name = text.mesh.empty() ? text.shape : text.mesh;
+    const std::filesystem::path file = text.mesh.empty() ? "" : (folder / text.mesh).lexically_normal();
+    const std::string key = SurfaceCache::key(file, text.shape, text.size_m,
+                                              text.own_crease ? std::optional(text.crease_deg) : std::nullopt);
+    if (surfaces) text.object.surface = surfaces->find(key);
+    if (text.object.surface) return;
     Mesh mesh;
     if (text.mesh.empty()) {
-        text.object.name = text.shape;
         mesh = make_shape(text.shape).value_or(Mesh{});
     } else {
-        text.object.name = text.mesh;
-        MeshFileResult read = load_mesh((folder / text.mesh).lexically_normal());
+        MeshFileResult read = load_mesh(file);
         if (!read.error.empty()) {
             messages.error(text.mesh_at, "mesh `" + text.mesh + "`: " + read.error);
             return;
@@ -185,6 +190,7 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, FileMe
     if (const std::string note = built.report.note(); built.surface && !text.mesh.empty() && !note.empty())
         messages.note(text.mesh_at, "mesh `" + text.object.name + "`: " + note);
     text.object.surface = std::move(built.surface);
+    if (surfaces && text.object.surface) surfaces->keep(key, text.object.surface);
 }
 
 // What reaches farther than the object is large is not looked for.
@@ -287,7 +293,7 @@ void describe_object(DeviceText& device, const std::shared_ptr<const Scene>& sce
 }
 
 LoadedScene load(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
-                 FileMessages& messages)
+                 SurfaceCache* surfaces, FileMessages& messages)
 {
     LoadedScene loaded;
     std::error_code unknown;
@@ -318,7 +324,8 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
                    other.crease_deg == object->crease_deg && other.own_crease == object->own_crease;
         });
         if (same == object) {
-            load_geometry(*object, folder, messages);
+            if (!object->mesh.empty()) loaded.meshes.push_back((folder / object->mesh).lexically_normal());
+            load_geometry(*object, folder, surfaces, messages);
         } else { // what is there many times is held once
             object->object.name = same->object.name;
             object->object.surface = same->object.surface;
@@ -358,12 +365,13 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
 
 } // namespace
 
-LoadedScene load_scene(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices)
+LoadedScene load_scene(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
+                       SurfaceCache* surfaces)
 {
     FileMessages messages(file);
     LoadedScene loaded;
     try {
-        loaded = load(file, textures, devices, messages);
+        loaded = load(file, textures, devices, surfaces, messages);
     } catch (const std::exception& problem) {
         messages.error(std::string("the scene could not be loaded: ") + problem.what());
     }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "lang/texture_binding.h"
+#include "runtime/files/surface_cache.h"
 #include "runtime/hand.h"
 #include "runtime/haptic_device.h"
 #include "runtime/scene.h"
@@ -20,7 +21,8 @@ struct LoadedHand {
 };
 
 struct LoadedScene {
-    std::shared_ptr<const Scene> scene; // null: see diagnostics
+    std::shared_ptr<const Scene> scene;        // null: see diagnostics
+    std::vector<std::filesystem::path> meshes; // files that it is made of, as far as it could be read
     std::vector<LoadedHand> hands; // one per device of the file; none without a scene or where no factory was given
     // Errors (then there is no scene), warnings and notes, ready to print: "FILE:LINE:COLUMN: error: ...", a line each,
     // several at once.
@@ -28,8 +30,9 @@ struct LoadedScene {
 };
 
 // Reads, checks, loads the meshes, asks `textures` for every texture and `devices` for each device. Either may be
-// empty: objects are then smooth, and no device is opened. Never throws.
-LoadedScene load_scene(const std::filesystem::path& file, const TextureResolver& textures,
-                       const DeviceFactory& devices);
+// empty: objects are then smooth, and no device is opened. `surfaces`: what it holds is not built again, what is built
+// it keeps. Never throws.
+LoadedScene load_scene(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
+                       SurfaceCache* surfaces = nullptr);
 
 } // namespace haptel::runtime

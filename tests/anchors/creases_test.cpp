@@ -42,12 +42,14 @@ struct Forces {
     int above = 0, lost = 0;             // ticks above 1.5 times the ideal; without contact
 };
 
-std::shared_ptr<const Scene> scene_of(const std::shared_ptr<const Surface>& surface, bool friction)
+std::shared_ptr<const Scene> scene_of(const std::shared_ptr<const Surface>& surface, bool friction,
+                                      const ProbeSettings& probe = {})
 {
     Scene scene = tests::bare_scene(tests::plane_mesh());
     SceneObject& object = scene.objects[0];
     object.surface = surface;
     object.material = {stiffness_n_per_m, 0, friction ? static_friction : 0, friction ? dynamic_friction : 0};
+    scene.probe = probe;
     scene.servo.force_limit_n = 1e6; // what is too much must be seen
     return tests::shared(std::move(scene));
 }
@@ -118,6 +120,27 @@ TEST_CASE("anchors row 1: no tick above 1.5 times the ideal force on a bumpy sph
                     [&](const dvec3& d) { return d * (BumpySphere::radius_m(d) - depth_m); },
                     [](const dvec3& tip) { return glm::distance(tip, BumpySphere::nearest_m(tip)); });
                 CHECK(std::abs(forces.ideal_mean_n - 10) < 0.1); // the hand was where it was meant to be
+                check(forces, furthest_m);
+            }
+    }
+}
+
+TEST_CASE("anchors row 1: nor is a ball wedged, of a twentieth of the object's radius")
+{
+    constexpr double depth_m = 0.02, radius_m = 0.05;
+    for (const uint32_t parts : {59u, 187u}) {
+        const auto surface = build_surface(BumpySphere::mesh(parts)).surface;
+        const double furthest_m = furthest_facet_m(*surface, BumpySphere::nearest_m);
+        for (const bool friction : {false, true})
+            for (const double step : {2e-4, 1e-3}) {
+                CAPTURE(parts, friction, step);
+                const Forces forces = stroke(
+                    scene_of(surface, friction, {ProbeKind::sphere, 0, radius_m}), 1.2, step, 20'000,
+                    [&](const dvec3& d) { return d * (BumpySphere::radius_m(d) + radius_m - depth_m); },
+                    [&](const dvec3& centre) {
+                        return radius_m - glm::distance(centre, BumpySphere::nearest_m(centre));
+                    });
+                CHECK(std::abs(forces.ideal_mean_n - 10) < 0.1);
                 check(forces, furthest_m);
             }
     }

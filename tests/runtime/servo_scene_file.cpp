@@ -537,6 +537,41 @@ texture = "a.haptel:a"
                          }) == "scene.toml:2:1: error: device `other`: is not there\n");
 }
 
+TEST_CASE("a scene that is loaded again has the surfaces that did not change, and those alone")
+{
+    const Folder folder;
+    folder.write("triangle.obj", triangle_obj);
+    const auto file = folder.write("scene.toml", "[[object]]\nmesh = \"triangle.obj\"\nsize_m = 0.1\n"
+                                                 "[[object]]\nshape = \"box\"\n[[object]]\nshape = \"box\"\n");
+    SurfaceCache surfaces;
+    const auto load_again = [&] { return load_scene(file, resolve_flat, open_scripted, &surfaces); };
+    LoadedScene first = load_again();
+    CHECK(first.meshes == std::vector<std::filesystem::path>{folder.path() / "triangle.obj"});
+    const LoadedScene second = load_again();
+    REQUIRE(second.scene);
+    CHECK(second.scene != first.scene);
+    for (std::size_t i = 0; i < 3; ++i) CHECK(second.scene->objects[i].surface == first.scene->objects[i].surface);
+
+    folder.write("triangle.obj", std::string(triangle_obj) + "v 4 3 0\nf 2 3 4\n");
+    const LoadedScene third = load_again();
+    CHECK(third.scene->objects[0].surface != first.scene->objects[0].surface);
+    CHECK(third.scene->objects[0].surface->faces.size() == 2);
+    CHECK(third.scene->objects[1].surface == first.scene->objects[1].surface);
+    folder.write("scene.toml", "[[object]]\nmesh = \"triangle.obj\"\nsize_m = 0.2\n[[object]]\nshape = \"box\"\n"
+                               "crease_deg = 40\n"); // the default, but written: smoothing groups do not count
+    const LoadedScene fourth = load_again();
+    CHECK(fourth.scene->objects[0].surface != third.scene->objects[0].surface);
+    CHECK(fourth.scene->objects[1].surface != third.scene->objects[1].surface);
+
+    // It holds nothing: what nobody else holds is gone.
+    const std::weak_ptr<const Surface> gone = first.scene->objects[0].surface;
+    first = {};
+    CHECK_FALSE(gone.expired()); // `second` has it
+    folder.write("triangle.obj", "nothing");
+    CHECK_FALSE(load_again().scene);
+    CHECK(load_again().meshes.size() == 1);
+}
+
 TEST_CASE("effects are read, and what is wrong with them is said")
 {
     const Folder folder;
