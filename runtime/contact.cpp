@@ -54,8 +54,18 @@ const Contact& PointContact::update(const glm::dvec3& hand_m, const glm::dvec3* 
         if (tail && sweep(*tail, hand_, crossing) && crossing.side == 0)
             land(*surface_, proxy_, crossing, *tail, hand_);
     }
-    finish(friction);
+    finish(friction, nullptr);
+    counters_.touching_ticks += contact_.touching;
     return contact_;
+}
+
+// To where it aims; `path`: where it went, as far as it touched. A tick may have several goes.
+void PointContact::go(const Friction& friction, WalkPath* path) noexcept
+{
+    const bool free = proxy_.on == Proxy::On::nothing;
+    if (free) move_freely(hand_);
+    if (path && free && proxy_.on != Proxy::On::nothing) path->add(beside(*surface_, proxy_));
+    finish(friction, path);
 }
 
 void PointContact::follow(const glm::dvec3& hand_m) noexcept
@@ -81,11 +91,17 @@ bool PointContact::take(const glm::dvec3& hand_m) noexcept
         ++counters_.hands_held;
         return placed_;
     }
-    before_ = std::exchange(true_hand_, surface_->lattice.units(hand_m));
+    aim(surface_->lattice.units(hand_m));
+    return true;
+}
+
+// Lattice units.
+void PointContact::aim(const glm::dvec3& hand) noexcept
+{
+    before_ = std::exchange(true_hand_, hand);
     hand_ = Lattice::snap_units(true_hand_);
     contact_.hand_clamped =
         glm::any(glm::greaterThan(glm::abs(hand_ - true_hand_), glm::dvec3(Lattice::vertex_spacing)));
-    return true;
 }
 
 void PointContact::move_freely(const glm::dvec3& hand) noexcept
@@ -133,11 +149,11 @@ void PointContact::refresh_clearance(double step) noexcept
     clear_.next_radius = glm::clamp(1.4 * clear_.radius, 1.0, Lattice::extent);
 }
 
-void PointContact::finish(const Friction& friction) noexcept
+void PointContact::finish(const Friction& friction, WalkPath* path) noexcept
 {
     if (proxy_.on != Proxy::On::nothing) {
         WalkCount count;
-        walk(*surface_, proxy_, hand_, checked(friction), count);
+        walk(*surface_, proxy_, hand_, checked(friction), count, walk_steps_max, path);
         counters_.walk_steps += count.steps;
         counters_.walk_steps_max = std::max<uint64_t>(counters_.walk_steps_max, count.steps);
         counters_.walks_cut += count.cut;
@@ -146,7 +162,6 @@ void PointContact::finish(const Friction& friction) noexcept
         counters_.triangles_tested += count.collision.triangles_tested;
     }
     describe();
-    counters_.touching_ticks += contact_.touching;
 }
 
 void PointContact::describe() noexcept
@@ -182,58 +197,6 @@ void PointContact::describe() noexcept
         depth = std::max(0.0, glm::dot(from_hand, contact_.normal));
     contact_.depth_m = depth * lattice.unit_m;
     contact_.lag_m = (from_hand - depth * contact_.normal) * lattice.unit_m;
-}
-
-StylusContact::StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space)
-    : tip_(std::move(surface), skips_free_space)
-{
-}
-
-const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
-                                     const Friction& friction) noexcept
-{
-    has_tail_ = finite(tail_m);
-    if (!has_tail_) return tip_.update(tip_m, friction);
-    take_tail(tip_m, tail_m);
-    return tip_.update(tip_m, &tail_, friction);
-}
-
-void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
-{
-    has_tail_ = finite(tail_m);
-    if (has_tail_) take_tail(tip_m, tail_m);
-    tip_.follow(tip_m);
-}
-
-// A tail beyond the workspace is drawn in along the shaft.
-void StylusContact::take_tail(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
-{
-    const Lattice& lattice = tip_.surface().lattice;
-    glm::dvec3 from = lattice.units(tail_m);
-    tail_ = Lattice::snap_units(from);
-    const bool beyond = glm::any(glm::greaterThanEqual(glm::abs(tail_), glm::dvec3(Lattice::workspace)));
-    if (!beyond || !finite(tip_m)) return;
-    glm::dvec3 to = lattice.units(tip_m);
-    if (Lattice::clip_to_workspace(from, to)) tail_ = from;
-}
-
-double StylusContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept
-{
-    return tip_.surface().gap_to_box_m(tip_m, tail_m);
-}
-
-void StylusContact::reset() noexcept
-{
-    tip_.reset();
-    has_tail_ = false;
-}
-
-bool StylusContact::shaft_crosses() const noexcept
-{
-    if (!has_tail_ || !tip_.placed_ || tip_.contact_.touching) return false;
-    Crossing crossing;
-    CollisionCount count;
-    return first_crossing(tip_.surface(), tail_, tip_.hand_, StartsOn::nothing(), crossing, count);
 }
 
 } // namespace haptel::runtime

@@ -43,8 +43,10 @@ struct Contact {
     // Unit, toward the free side: the facet's on a face, between those of the faces that meet on an edge or a vertex or
     // where they pierce each other.
     glm::dvec3 normal{0, 0, 1};
-    double depth_m = 0;  // >= 0: how deep the hand is below the proxy along `normal`
-    glm::dvec3 lag_m{0}; // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
+    double depth_m = 0;    // >= 0: how deep the hand is below the proxy along `normal`
+    double along = 0;      // of a stylus: where it touches, 0 at its tip, 1 at its tail
+    bool by_shaft = false; // of a stylus: between its ends, on an edge
+    glm::dvec3 lag_m{0};   // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
 };
 
 // Since construction or reset().
@@ -93,10 +95,12 @@ private:
 
     const Contact& update(const glm::dvec3& hand_m, const glm::dvec3* tail, const Friction& friction) noexcept;
     bool take(const glm::dvec3& hand_m) noexcept;
+    void aim(const glm::dvec3& hand) noexcept;
+    void go(const Friction& friction, WalkPath* path) noexcept;
     void move_freely(const glm::dvec3& hand) noexcept;
     bool sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept;
     void refresh_clearance(double step) noexcept;
-    void finish(const Friction& friction) noexcept;
+    void finish(const Friction& friction, WalkPath* path) noexcept;
     void describe() noexcept;
 
     std::shared_ptr<const Surface> surface_;
@@ -108,35 +112,6 @@ private:
     glm::dvec3 true_hand_{0}, before_{0}; // neither rounded nor clamped: the hand in this tick and in the last
     bool placed_ = false;
     Clearance clear_;
-};
-
-// The stylus of the paper: a segment from tail to tip. Its tip is tracked like a point probe; the first tick also looks
-// along the segment, so that a stylus put down with its tip inside and its tail outside touches where it entered.
-// A shaft that rests on the surface beside the tip is not yet held: shaft_crosses() sees it, and it gives no force.
-class StylusContact {
-public:
-    explicit StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true);
-
-    const Contact& update(const glm::dvec3& tip_m, const glm::dvec3& tail_m, const Friction& friction = {}) noexcept;
-    void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
-    void reset() noexcept;
-
-    // At least so far is it from any point of the stylus to the nearest triangle.
-    double gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept;
-
-    // The shaft passes through the surface while the tip does not press. A query, made only for who asks.
-    bool shaft_crosses() const noexcept;
-
-    const Contact& contact() const noexcept { return tip_.contact(); }
-    const ContactCounters& counters() const noexcept { return tip_.counters(); }
-    const Surface& surface() const noexcept { return tip_.surface(); }
-
-private:
-    void take_tail(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
-
-    PointContact tip_;
-    glm::dvec3 tail_{0};    // lattice units
-    bool has_tail_ = false; // of the last tick
 };
 
 // Torque (N m) about the grip of a force (N) that acts at a point.

@@ -44,7 +44,8 @@ public:
     virtual ~HapticDevice() = default;
     virtual const DeviceInfo& info() const = 0;
     virtual DeviceStatus read(DevicePose& pose) noexcept = 0;
-    // Force (N) and torque about the tip (N m) on the hand, world frame, held until the next write.
+    // Force (N) and torque about the grip of a stylus (N m; ProbeSettings::grip_m) on the hand, world frame, held until
+    // the next write.
     virtual DeviceStatus write(const glm::dvec3& force_n, const glm::dvec3& torque_n_m) noexcept = 0;
     // Zero force, motors off. Safe to call at any time, from the destructor too.
     virtual void stop() noexcept = 0;

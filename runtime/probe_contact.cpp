@@ -24,6 +24,13 @@ std::span<const Contact> touched(const Contact& contact)
 
 } // namespace
 
+glm::dvec3 ProbeSettings::grip_of(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const
+{
+    const glm::dvec3 along = tail_m - tip_m;
+    const double length = glm::length(along);
+    return !grip_m ? tail_m : length > 0 ? tip_m + *grip_m / length * along : tip_m;
+}
+
 ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
                            bool skips_free_space)
     : contact_(make(probe, surface, skips_free_space))
@@ -34,7 +41,9 @@ std::span<const Contact> ProbeContact::update(const ProbePose& pose, const Frict
 {
     if (auto* point = std::get_if<PointContact>(&contact_)) return touched(point->update(pose.tip_m, friction));
     if (auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->update(pose.tip_m, friction);
-    return touched(std::get_if<StylusContact>(&contact_)->update(pose.tip_m, pose.tail_m, friction));
+    auto& stylus = *std::get_if<StylusContact>(&contact_);
+    stylus.update(pose.tip_m, pose.tail_m, friction);
+    return stylus.contacts();
 }
 
 void ProbeContact::follow(const ProbePose& pose) noexcept

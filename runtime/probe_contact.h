@@ -3,8 +3,10 @@
 
 #include "runtime/contact.h"
 #include "runtime/sphere_contact.h"
+#include "runtime/stylus_contact.h"
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <variant>
 
@@ -16,6 +18,10 @@ struct ProbeSettings {
     ProbeKind kind = ProbeKind::point;
     double length_m = 0.15; // of the stylus, tip to tail
     double radius_m = 0;    // of the sphere, > 0
+    // Of the stylus: from its tip to where the hand holds it, about which torque is told. Nothing: at the tail.
+    std::optional<double> grip_m = {};
+
+    glm::dvec3 grip_of(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const;
 };
 
 // Where the hand holds it: the centre of a sphere is its tip, only a stylus has a tail.

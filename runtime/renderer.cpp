@@ -33,13 +33,15 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
     , reach_(surroundings(*scene_, probe_.radius_m))
     , waiting_(scene_->servo.wait_for_small_force_n > 0)
     , velocity_(period_s_)
+    , tail_velocity_(period_s_)
 {
     objects_.reserve(scene_->objects.size());
     for (const SceneObject& object : scene_->objects) {
         TextureReader reader(*object.texture);
         const uint64_t serial = reader.to().serial;
         objects_.push_back({&object, ProbeContact(probe_, object.surface, scene_->servo.skips.free_space),
-                            std::move(reader), serial, object.placement, HandVelocity(period_s_)});
+                            std::move(reader), serial, object.placement, HandVelocity(period_s_),
+                            HandVelocity(period_s_)});
     }
 }
 
@@ -72,6 +74,8 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     result.force_n = workspace.direction_to_hand(result.force_n);
     result.unlimited_force_n = workspace.direction_to_hand(result.unlimited_force_n);
     result.torque_n_m = workspace.torque_to_hand(result.torque_n_m);
+    result.unlimited_torque_n_m = workspace.torque_to_hand(result.unlimited_torque_n_m);
+    result.grip_m = workspace.to_hand(result.grip_m);
     return result;
 }
 
@@ -90,14 +94,18 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     for (const uint32_t object : reach_.awake()) advance_texture(objects_[object]);
     if (!finite(pose.tip_m) || !finite(pose.tail_m)) {
         velocity_.lose_hand();
+        tail_velocity_.lose_hand();
         effects_.lose_hand();
-        sent_n_ = left_n_ = glm::dvec3(0);
-        for (Touched& touched : objects_) touched.velocity.lose_hand();
+        sent_n_ = left_n_ = sent_n_m_ = left_n_m_ = glm::dvec3(0);
+        for (Touched& touched : objects_) touched.velocity.lose_hand(), touched.tail_velocity.lose_hand();
         interrupted_ = true;
         result.faults = fault_pose_not_finite;
         return result;
     }
     velocity_.update(pose.tip_m, periods);
+    const bool has_shaft = probe_.kind == ProbeKind::stylus;
+    if (has_shaft) tail_velocity_.update(pose.tail_m, periods);
+    const glm::dvec3 grip_m = result.grip_m = has_shaft ? probe_.grip_of(pose.tip_m, pose.tail_m) : pose.tip_m;
     result.interrupted = std::exchange(interrupted_, false) || pose.interrupted;
     if (result.interrupted) {
         rise_period_ = period_;
@@ -143,6 +151,9 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         for (const Contact& contact : contacts) { // what presses most first
             const ObjectForce force = force_of(touched, contact);
             result.unlimited_force_n += force.force_n;
+            if (has_shaft)
+                result.unlimited_torque_n_m +=
+                    torque_about(grip_m, pose.tip_m + contact.along * (pose.tail_m - pose.tip_m), force.force_n);
             result.faults |= force.faults;
             textured = textured || force.textured;
             band_limited = band_limited || force.band_limited;
@@ -161,16 +172,20 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     skipped_.texture += !textured;
     skipped_.octaves += band_limited;
     skipped_.mapping += unmapped;
-    if (effects_.act()) result.unlimited_force_n += effects_.force_n();
-    send(result);
+    if (effects_.act()) {
+        result.unlimited_force_n += effects_.force_n();
+        if (has_shaft) result.unlimited_torque_n_m += torque_about(grip_m, pose.tip_m, effects_.force_n());
+    }
+    send(result, std::max(glm::distance(pose.tip_m, grip_m), glm::distance(pose.tail_m, grip_m)));
     return result;
 }
 
-// What of the force goes to the hand.
-void Renderer::send(TickResult& result) noexcept
+// What of the force and the torque goes to the hand. `lever_m`: of the end that is farther from the grip. Contacts that
+// push against each other may add up to a torque without a force: it is limited by what the largest force has there.
+void Renderer::send(TickResult& result, double lever_m) noexcept
 {
-    if (!finite(result.unlimited_force_n)) {
-        result.unlimited_force_n = glm::dvec3(0);
+    if (!finite(result.unlimited_force_n) || !finite(result.unlimited_torque_n_m)) {
+        result.unlimited_force_n = result.unlimited_torque_n_m = glm::dvec3(0);
         result.faults |= fault_force_not_finite;
         interrupted_ = true;
     }
@@ -178,6 +193,7 @@ void Renderer::send(TickResult& result) noexcept
     if (std::exchange(swapped_, false)) {
         rise_period_ = left_period_ = period_;
         left_n_ = interrupted_ ? glm::dvec3(0) : sent_n_;
+        left_n_m_ = interrupted_ ? glm::dvec3(0) : sent_n_m_;
         waiting_ = waiting_ || (small_n > 0 && !(glm::distance(result.unlimited_force_n, computed_n_) <= small_n));
     }
     computed_n_ = result.unlimited_force_n;
@@ -191,13 +207,23 @@ void Renderer::send(TickResult& result) noexcept
         const double rising_s = static_cast<double>(period_ - period) * period_s_;
         return rising_s < rise_s ? rising_s / rise_s : 1.0;
     };
-    glm::dvec3 force_n = (waiting_ ? 0.0 : risen_since(rise_period_)) * result.unlimited_force_n;
-    if (left_n_ != glm::dvec3(0)) {
+    const double risen = waiting_ ? 0.0 : risen_since(rise_period_);
+    glm::dvec3 force_n = risen * result.unlimited_force_n, torque_n_m = risen * result.unlimited_torque_n_m;
+    if (left_n_ != glm::dvec3(0) || left_n_m_ != glm::dvec3(0)) {
         const double gone = risen_since(left_period_);
         force_n += (1 - gone) * left_n_;
-        if (gone == 1) left_n_ = glm::dvec3(0);
+        torque_n_m += (1 - gone) * left_n_m_;
+        if (gone == 1) left_n_ = left_n_m_ = glm::dvec3(0);
     }
-    result.force_n = sent_n_ = limited(force_n, force_limit_n_);
+    result.force_n = limited(force_n, force_limit_n_);
+    if (torque_n_m != glm::dvec3(0)) {
+        const double length_n = glm::length(force_n);
+        result.torque_n_m = length_n > force_limit_n_ ? force_limit_n_ / length_n * torque_n_m : torque_n_m;
+        const double sent = glm::length(result.torque_n_m), most = force_limit_n_ * lever_m;
+        if (sent > most) result.force_n *= most / sent, result.torque_n_m *= most / sent;
+    }
+    sent_n_ = result.force_n;
+    sent_n_m_ = result.torque_n_m;
 }
 
 ContactWork Renderer::work() const noexcept
@@ -258,6 +284,8 @@ std::span<const Contact> Renderer::update_contact(Touched& touched, const Device
     if (touched.object->motion) {
         move(touched);
         touched.velocity.update(touched.placement.to_object(pose.tip_m), periods);
+        if (probe_.kind == ProbeKind::stylus)
+            touched.tail_velocity.update(touched.placement.to_object(pose.tail_m), periods);
     }
     const Material& material = touched.object->material;
     const Friction friction{material.static_friction * touched.friction_share,
@@ -273,6 +301,21 @@ bool Renderer::feels_in_air(const Touched& touched, const DevicePose& pose) cons
     return force_of(touched, here).textured;
 }
 
+// Along the normal, where the stylus touches; never more than the spring pulls back.
+double Renderer::damping_n(const Touched& touched, const Contact& contact, const glm::dvec3& normal, double depth_m,
+                           double stiffness_n_per_m) const noexcept
+{
+    const auto in_object = [&](const HandVelocity& own, const HandVelocity& world) {
+        return touched.object->motion ? own.m_per_s() : touched.placement.direction_to_object(world.m_per_s());
+    };
+    glm::dvec3 velocity = in_object(touched.velocity, velocity_);
+    if (contact.along > 0) velocity += contact.along * (in_object(touched.tail_velocity, tail_velocity_) - velocity);
+    const double scale = hand_.workspace.scale;
+    const double damping = touched.object->material.damping_n_s_per_m / scale * -glm::dot(velocity, normal) *
+                           std::min(1.0, depth_m / (scale * full_damping_depth_m));
+    return std::max(damping, -stiffness_n_per_m * depth_m);
+}
+
 Renderer::ObjectForce Renderer::force_of(const Touched& touched, const Contact& contact) const noexcept
 {
     const SceneObject& object = *touched.object;
@@ -282,6 +325,14 @@ Renderer::ObjectForce Renderer::force_of(const Touched& touched, const Contact& 
     ObjectForce result;
     if (contact.depth_m == 0 && skips.texture)
         return result; // the highest texture reaches up to the base and no further
+    if (contact.by_shaft) {
+        const double stiffness = object.material.stiffness_n_per_m / scale;
+        const glm::dvec3 force =
+            (stiffness * contact.depth_m + damping_n(touched, contact, contact.normal, contact.depth_m, stiffness)) *
+            contact.normal;
+        result.force_n = touched.placement.direction_to_world(force);
+        return result;
+    }
 
     SurfacePoint at;
     at.p_m = contact.proxy_m;
@@ -316,14 +367,8 @@ Renderer::ObjectForce Renderer::force_of(const Touched& touched, const Contact& 
         contact.depth_m > 0 ? texture.friction_scale * std::min(1.0, elastic.depth_m / contact.depth_m) : 0.0;
     if (elastic.depth_m == 0) return result; // below the base surface, but not yet below the texture
 
-    const glm::dvec3 velocity =
-        object.motion ? touched.velocity.m_per_s() : touched.placement.direction_to_object(velocity_.m_per_s());
-    const double approach = -glm::dot(velocity, at.shading.normal);
-    const double damping = object.material.damping_n_s_per_m / scale * approach *
-                           std::min(1.0, elastic.depth_m / (scale * full_damping_depth_m));
-    const double not_sticky = std::max(damping, -stiffness * elastic.depth_m);
-
-    const glm::dvec3 force = elastic.force_n + stiffness * contact.lag_m + not_sticky * at.shading.normal;
+    const double damping = damping_n(touched, contact, at.shading.normal, elastic.depth_m, stiffness);
+    const glm::dvec3 force = elastic.force_n + stiffness * contact.lag_m + damping * at.shading.normal;
     result.force_n = touched.placement.direction_to_world(force);
     return result;
 }

@@ -42,8 +42,9 @@ struct TickResult {
     bool interrupted = false; // the force rises anew from here on
     bool waiting = false;     // no force yet: the one computed is not small (ServoSettings::wait_for_small_force_n)
     glm::dvec3 force_n{0};    // on the hand, world frame, after rise and limits; finite and never above the limit
-    glm::dvec3 torque_n_m{0}; // about the tip; 0 as long as only the tip presses
-    glm::dvec3 unlimited_force_n{0};
+    glm::dvec3 torque_n_m{0}; // of a stylus about its grip, limited along with the force, and by its own lever
+    glm::dvec3 unlimited_force_n{0}, unlimited_torque_n_m{0};
+    glm::dvec3 grip_m{0};  // where the hand holds the probe: its tip, of a stylus as ProbeSettings says
     uint32_t contacts = 0; // objects touched
     double depth_m = 0;    // below the base surface, of the deepest object touched
     double height_m = 0;   // of the texture there, as published
@@ -94,8 +95,9 @@ private:
         ProbeContact contact;
         TextureReader texture;
         uint64_t serial_at_start;
-        Placement placement;         // of this tick
-        HandVelocity velocity;       // in the space of an object that moves; else not kept
+        Placement placement; // of this tick
+        // Of tip and tail, in the space of an object that moves; else not kept.
+        HandVelocity velocity, tail_velocity;
         bool asleep = false;         // out of the hand's reach: its contact stands where the hand last was
         uint64_t texture_period = 0; // up to which its texture has faded
         // What the texture leaves of the friction coefficients: its own scale, times the share of the depth below the
@@ -123,7 +125,9 @@ private:
     std::span<const Contact> update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept;
     bool feels_in_air(const Touched& touched, const DevicePose& pose) const noexcept;
     ObjectForce force_of(const Touched& touched, const Contact& contact) const noexcept;
-    void send(TickResult& result) noexcept;
+    double damping_n(const Touched& touched, const Contact& contact, const glm::dvec3& normal, double depth_m,
+                     double stiffness_n_per_m) const noexcept;
+    void send(TickResult& result, double lever_m) noexcept;
     void move(Touched& touched) const noexcept;
 
     std::shared_ptr<const Scene> scene_;
@@ -142,16 +146,17 @@ private:
     bool waiting_;                // for a small force
     SkippedStages skipped_;
     ContactWork work_;
-    std::optional<DevicePose> last_pose_; // that was finite
-    HandVelocity velocity_;               // world frame
+    std::optional<DevicePose> last_pose_;   // that was finite
+    HandVelocity velocity_, tail_velocity_; // world frame
 
     // For who takes over, and after having taken over.
     glm::dvec3 sent_n_{0}, computed_n_{0}; // in the tick before, the scene's space
-    std::optional<Felt> felt_;             // what pressed most in the tick before
-    std::vector<uint32_t> was_;            // of each object: its number in the scene before
-    bool swapped_ = false;                 // no tick since
-    glm::dvec3 left_n_{0};                 // was on the hand then, and fades out
-    uint64_t left_period_ = 0;             // from this one on
+    glm::dvec3 sent_n_m_{0};
+    std::optional<Felt> felt_;           // what pressed most in the tick before
+    std::vector<uint32_t> was_;          // of each object: its number in the scene before
+    bool swapped_ = false;               // no tick since
+    glm::dvec3 left_n_{0}, left_n_m_{0}; // was on the hand then, and fades out
+    uint64_t left_period_ = 0;           // from this one on
     uint64_t reloads_before_ = 0;
 };
 

@@ -64,7 +64,9 @@ void Renderer::take_over(Renderer& before) noexcept
     reloads_before_ = before.reloads();
     last_pose_ = before.last_pose_;
     velocity_ = before.velocity_;
+    tail_velocity_ = before.tail_velocity_;
     sent_n_ = before.sent_n_;
+    sent_n_m_ = before.sent_n_m_;
     computed_n_ = before.computed_n_;
     swapped_ = true;
     for (Touched& touched : objects_) touched.texture_period = texture_period_;
@@ -85,6 +87,7 @@ void Renderer::take_over(Renderer& before) noexcept
         if (old && glm::distance(here.tip_m, in_object(*old, *last_pose_).tip_m) <= nudge_m * hand_.workspace.scale) {
             std::swap(touched.contact, old->contact);
             std::swap(touched.velocity, old->velocity);
+            std::swap(touched.tail_velocity, old->tail_velocity);
             touched.friction_share = old->friction_share;
         } else {
             touched.contact.update(in_object(touched, lifted), {});

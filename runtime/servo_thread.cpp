@@ -190,9 +190,16 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
     if (result.faults & fault_pose_not_finite) {
         has_last_tip_ = false;
     } else {
-        // The force of the tick before was held while the hand came here.
-        if (has_last_tip_) report_.energy_j += glm::dot(last_force_n_, pose.tip_m - last_tip_m_);
+        // The force of the tick before was held while the hand came here, and so was the torque while it turned.
+        const glm::dvec3 shaft = pose.tail_m - pose.tip_m;
+        const double length = glm::length(shaft);
+        const glm::dvec3 along = length > 0 ? shaft / length : glm::dvec3(0);
+        if (has_last_tip_)
+            report_.energy_j += glm::dot(last_force_n_, pose.tip_m - last_tip_m_) +
+                                glm::dot(last_torque_n_m_, glm::cross(last_along_, along));
         last_tip_m_ = pose.tip_m;
+        last_along_ = along;
+        last_torque_n_m_ = result.torque_n_m + torque_about(pose.tip_m, result.grip_m, result.force_n);
         last_force_n_ = result.force_n;
         has_last_tip_ = true;
     }
@@ -214,6 +221,7 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
     row.tip_m = pose.tip_m;
     row.tail_m = pose.tail_m;
     row.force_n = result.force_n;
+    row.torque_n_m = result.torque_n_m;
     row.contact = result.contacts;
     row.depth_m = result.depth_m;
     row.height_m = result.height_m;

@@ -87,6 +87,7 @@ private:
 
     // Of the servo thread only.
     glm::dvec3 last_tip_m_{0}, last_force_n_{0};
+    glm::dvec3 last_along_{0}, last_torque_n_m_{0}; // of the stylus, the torque about its tip
     bool has_last_tip_ = false;
     uint64_t periods_ = 0;            // gone by, missed deadlines included
     uint64_t periods_since_pose_ = 0; // of the device; missed deadlines included

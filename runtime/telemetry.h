@@ -19,6 +19,7 @@ struct TickRecord {
     double time_s = 0; // periods since the first pose times the period; steps over those without a pose
     glm::dvec3 tip_m{0}, tail_m{0};
     glm::dvec3 force_n{0};         // as sent to the device, after all limits
+    glm::dvec3 torque_n_m{0};      // the same, about the grip
     uint32_t contact = 0;          // number of objects touched
     double depth_m = 0;            // below the base surface, of the deepest object touched
     double height_m = 0;           // of its texture, as published (not shifted to the envelope)

@@ -12,9 +12,12 @@ namespace {
 // Length of the sum of two unit normals below which the faces nearly fold onto each other.
 constexpr double sharp = 1.0 / 16;
 
+// Lattice units: how far above its feature a proxy is `beside` it, so that rounding does not matter.
+constexpr double clear_beside = 8;
+
 } // namespace
 
-void Walk::run(uint32_t step_limit)
+void Walk::run(uint32_t step_limit, WalkPath* path)
 {
     Step step = Step::again;
     for (count_.steps = 0; step == Step::again && count_.steps < step_limit; ++count_.steps) {
@@ -26,6 +29,7 @@ void Walk::run(uint32_t step_limit)
         case Proxy::On::vertex: step = from_vertex(); break;
         case Proxy::On::nothing: step = Step::stop; break;
         }
+        if (path && proxy_.on != Proxy::On::nothing) path->add(beside(surface_, proxy_));
     }
     count_.cut = step == Step::again || count_.wall_turns > WalkCount::most_wall_turns;
     proxy_.sliding = moved_;
@@ -308,9 +312,32 @@ Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
 }
 
 void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count,
-          uint32_t step_limit) noexcept
+          uint32_t step_limit, WalkPath* path) noexcept
 {
-    Walk(surface, proxy, hand, friction, count).run(step_limit);
+    Walk(surface, proxy, hand, friction, count).run(step_limit, path);
+}
+
+glm::dvec3 beside(const Surface& surface, const Proxy& proxy) noexcept
+{
+    const Face& face = surface.faces[proxy.face];
+    const glm::dvec3 normal = surface.facet_normal(proxy.face, proxy.side);
+    switch (proxy.on) {
+    case Proxy::On::nothing: return proxy.at;
+    case Proxy::On::face: return glm::round(proxy.at + clear_beside * normal);
+    case Proxy::On::vertex:
+        return glm::round(proxy.at + clear_beside * surface.fans[face.fan[proxy.index][proxy.side]].normal);
+    case Proxy::On::edge: break;
+    }
+    const SideEdge link = face.link[proxy.index][proxy.side];
+    const glm::dvec3 between = normal + surface.facet_normal(link.face(), link.side());
+    const double square = glm::dot(between, between);
+    if (square > sharp * sharp) return glm::round(proxy.at + 2 * clear_beside / square * between);
+    const glm::dvec3& begin = surface.vertices[face.vertex[proxy.index]];
+    const glm::dvec3 along = surface.vertices[face.vertex[next(proxy.index)]] - begin;
+    const glm::dvec3 outward = glm::normalize(glm::cross(along, face.normal));
+    const glm::dvec3& tip = surface.vertices[surface.faces[link.face()].vertex[previous(link.edge())]];
+    const bool ridge = link.face() == proxy.face || glm::dot(tip - begin, normal) < 0;
+    return ridge ? glm::round(proxy.at + clear_beside * outward) : proxy.at;
 }
 
 void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const glm::dvec3& from,

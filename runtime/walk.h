@@ -25,7 +25,7 @@ public:
     {
     }
 
-    void run(uint32_t step_limit);
+    void run(uint32_t step_limit, WalkPath* path);
 
 private:
     enum class Step : uint8_t { again, stop };

@@ -1,0 +1,109 @@
+// The dual of the least squares problem has as many unknowns as there are contacts, and is solved by an active set
+// (Lawson and Hanson 1974, Solving Least Squares Problems, 23.3, written for the Gram matrix).
+#include "runtime/held_ends.h"
+
+#include <cmath>
+
+namespace haptel::runtime {
+
+namespace {
+
+constexpr uint32_t n_max = shaft_contacts_max;
+constexpr int steps_max = 32;
+
+// Of a diagonal element: what is left of it below this is no direction of its own but rounding.
+constexpr double independent = 1e-13;
+
+// Lattice units: violations below it are none.
+constexpr double settled = 1e-3;
+
+using Vector = std::array<double, n_max>;
+using Matrix = std::array<Vector, n_max>;
+
+// Solves gram x = b for the chosen contacts by Cholesky's decomposition; false: one depends on the others.
+bool solve(const Matrix& gram, const Vector& b, const std::array<uint32_t, n_max>& chosen, uint32_t count, Vector& x)
+{
+    Matrix l{};
+    Vector y{};
+    for (uint32_t i = 0; i < count; ++i) {
+        for (uint32_t j = 0; j <= i; ++j) {
+            double sum = gram[chosen[i]][chosen[j]];
+            for (uint32_t k = 0; k < j; ++k) sum -= l[i][k] * l[j][k];
+            if (i == j && !(sum > independent * gram[chosen[i]][chosen[i]])) return false;
+            l[i][j] = i == j ? std::sqrt(sum) : sum / l[j][j];
+        }
+        double sum = b[chosen[i]];
+        for (uint32_t k = 0; k < i; ++k) sum -= l[i][k] * y[k];
+        y[i] = sum / l[i][i];
+    }
+    for (uint32_t i = count; i-- > 0;) {
+        double sum = y[i];
+        for (uint32_t k = i + 1; k < count; ++k) sum -= l[k][i] * x[chosen[k]];
+        x[chosen[i]] = sum / l[i][i];
+    }
+    return true;
+}
+
+} // namespace
+
+std::array<double, n_max> pushes(std::span<const ShaftContact> contacts, const glm::dvec3& tip,
+                                 const glm::dvec3& tail) noexcept
+{
+    const uint32_t n = static_cast<uint32_t>(contacts.size() < n_max ? contacts.size() : n_max);
+    Matrix gram{};
+    Vector b{}, push{};
+    for (uint32_t i = 0; i < n; ++i) {
+        const ShaftContact& a = contacts[i];
+        b[i] = a.offset - glm::dot(a.normal, (1 - a.share) * tip + a.share * tail);
+        for (uint32_t j = 0; j <= i; ++j) {
+            const ShaftContact& c = contacts[j];
+            gram[i][j] = gram[j][i] =
+                glm::dot(a.normal, c.normal) * ((1 - a.share) * (1 - c.share) + a.share * c.share);
+        }
+    }
+
+    std::array<uint32_t, n_max> chosen{};
+    uint32_t count = 0;
+    std::array<bool, n_max> in{}, refused{};
+    for (int step = 0; step < steps_max; ++step) {
+        uint32_t worst = n;
+        double by = settled;
+        for (uint32_t i = 0; i < n; ++i) {
+            if (in[i] || refused[i]) continue;
+            double violation = b[i];
+            for (uint32_t j = 0; j < n; ++j) violation -= gram[i][j] * push[j];
+            if (violation <= by) continue;
+            by = violation;
+            worst = i;
+        }
+        if (worst == n) break;
+        chosen[count++] = worst;
+        in[worst] = true;
+        for (;;) {
+            Vector x{};
+            if (!solve(gram, b, chosen, count, x)) { // the newest depends on the others
+                refused[chosen[count - 1]] = true;
+                in[chosen[--count]] = false;
+                push[chosen[count]] = 0;
+                break;
+            }
+            uint32_t first_to_go = count;
+            double share = 1; // of the way from push to x that keeps all at 0 or above
+            for (uint32_t i = 0; i < count; ++i) {
+                const double now = push[chosen[i]], then = x[chosen[i]];
+                if (then > 0 || now >= share * (now - then)) continue;
+                share = now / (now - then);
+                first_to_go = i;
+            }
+            for (uint32_t i = 0; i < count; ++i) push[chosen[i]] += share * (x[chosen[i]] - push[chosen[i]]);
+            if (first_to_go == count) break;
+            push[chosen[first_to_go]] = 0;
+            in[chosen[first_to_go]] = false;
+            for (uint32_t i = first_to_go + 1; i < count; ++i) chosen[i - 1] = chosen[i];
+            --count;
+        }
+    }
+    return push;
+}
+
+} // namespace haptel::runtime

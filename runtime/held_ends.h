@@ -1,0 +1,27 @@
+// How hard each of a few contacts pushes a shaft whose two ends hang on equal springs: the shaft nearest to the hand's,
+// by the sum of the squared ways of its ends, of all that no contact forbids.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace haptel::runtime {
+
+// The point at `share` of the shaft (0: its tip, 1: its tail) is to lie in dot(normal, x) >= offset.
+struct ShaftContact {
+    glm::dvec3 normal{0}; // unit
+    double share = 0;
+    double offset = 0;
+};
+
+inline constexpr uint32_t shaft_contacts_max = 6;
+
+// The pushes, each >= 0: the tip moves by the sum of push (1 - share) normal, the tail by that of push share normal.
+// Contacts that contradict each other within rounding are left out.
+std::array<double, shaft_contacts_max> pushes(std::span<const ShaftContact> contacts, const glm::dvec3& tip,
+                                              const glm::dvec3& tail) noexcept;
+
+} // namespace haptel::runtime

@@ -1,0 +1,410 @@
+// A tick of the stylus: from the pose to contacts. How its shaft moves is in stylus_shaft.cpp.
+#include "runtime/stylus_contact.h"
+
+#include "runtime/box_tree.h"
+#include "runtime/finite.h"
+#include "runtime/held_ends.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace haptel::runtime {
+
+using namespace shaft_tolerance;
+
+namespace {
+
+// Lattice units. A shaft shorter than this has no direction.
+constexpr double least_length = 4096;
+
+// Within which the ends are where they should be: two units, and this share of how far the hand is away.
+constexpr double settled = 2, settled_share = 1e-10;
+
+// Below this many units the direction of a push is rounding.
+constexpr double direction_needs = 64;
+
+// A contact that slides off its edge does so by this many units and this share of its way, so that it is not found
+// there again, wherever the way bends.
+constexpr double beyond = 16, past_the_end = 0.05;
+
+// How often the directions of contacts follow the shaft that they turn.
+constexpr int turns_max = 48;
+
+// What a way that was blocked by nothing new is cut to.
+constexpr double shorter = 0.25;
+
+// A clear region is worth looking for if the hand needs several ticks to cross it.
+constexpr double ticks_per_region = 4;
+
+double farther(const Shaft& a, const Shaft& b)
+{
+    return std::max(glm::distance(a.tip, b.tip), glm::distance(a.tail, b.tail));
+}
+
+bool touches(const Proxy& proxy)
+{
+    return proxy.on != Proxy::On::nothing;
+}
+
+} // namespace
+
+StylusContact::StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space)
+    : tip_(surface, skips_free_space)
+    , tail_(surface, skips_free_space)
+    , skips_free_space_(skips_free_space)
+    , tree_(*surface)
+{
+}
+
+void StylusContact::reset() noexcept
+{
+    tip_.reset();
+    tail_.reset();
+    has_tail_ = tracked_ = astray_ = false;
+    side_count_ = contact_count_ = 0;
+    clear_ = {};
+    collision_ = {};
+    counters_ = {};
+}
+
+std::optional<Shaft> StylusContact::ideal() const noexcept
+{
+    return tracked_ ? std::optional(shaft_) : std::nullopt;
+}
+
+const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
+                                     const Friction& friction) noexcept
+{
+    if (!finite(tip_m)) { // what touches goes on touching
+        tip_.update(tip_m, friction);
+        for (Contact& contact : contacts_) contact.hand_held = true;
+        count();
+        return tip_.contact();
+    }
+    const bool had_tip = begin_ == 0, had_tail = end_ == 1;
+    const uint64_t sweeps = counters_.sweeps;
+    has_shaft_ = take(tip_m, tail_m);
+    if (!has_shaft_) {
+        tracked_ = false;
+        tip_.update(tip_m, friction);
+    } else if (!tracked_) {
+        start(tip_m, friction);
+    } else if (!pass_freely(tip_m, tail_m)) {
+        if (!had_tip || begin_ > 0) restart(tip_, begin_ > 0 ? Lattice::snap_units(hand_.tip) : shaft_.tip);
+        if (!had_tail || end_ < 1) restart(tail_, end_ < 1 ? Lattice::snap_units(hand_.tail) : shaft_.tail);
+        ++tip_.counters_.ticks;
+        resolve(friction);
+    }
+    report();
+    count();
+    counters_.skipped += contact_count_ == 0 && counters_.sweeps == sweeps;
+    counters_.touching_ticks += contact_count_ > 0;
+    return tip_.contact();
+}
+
+void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
+{
+    ++counters_.skipped;
+    tip_.follow(tip_m);
+    tracked_ = has_shaft_ = finite(tip_m) && take(tip_m, tail_m);
+    astray_ = false;
+    side_count_ = 0;
+    if (tracked_) {
+        aim_ = reached_ = hand_;
+        shaft_ = within(hand_.tip, hand_.tail);
+        restart(tail_, shaft_.tail);
+    }
+    contact_count_ = 0;
+    count();
+}
+
+// Takes the pose; false if there is no shaft in the workspace.
+bool StylusContact::take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
+{
+    const Lattice& lattice = surface().lattice;
+    has_tail_ = finite(tail_m);
+    if (!has_tail_) return false;
+    hand_ = {lattice.units(tip_m), lattice.units(tail_m)};
+    const glm::dvec3 along = hand_.tail - hand_.tip;
+    begin_ = 0, end_ = 1;
+    for (int k = 0; k < 3; ++k) {
+        const double low = -Lattice::workspace - hand_.tip[k], high = Lattice::workspace - hand_.tip[k];
+        if (along[k] == 0 && (low > 0 || high < 0)) return false;
+        if (along[k] == 0) continue;
+        begin_ = std::max(begin_, std::min(low / along[k], high / along[k]));
+        end_ = std::min(end_, std::max(low / along[k], high / along[k]));
+    }
+    if (begin_ == 0) hand_.tip = glm::round(hand_.tip); // as the hand of a point is
+    if (end_ == 1) hand_.tail = glm::round(hand_.tail);
+    return (end_ - begin_) * glm::length(along) > least_length; // false for what is not finite, too
+}
+
+// The part of a stylus that is in the workspace.
+Shaft StylusContact::within(const glm::dvec3& tip, const glm::dvec3& tail) const noexcept
+{
+    const auto at = [&](double share) {
+        return Lattice::snap_units(share == 0 ? tip : share == 1 ? tail : tip + share * (tail - tip));
+    };
+    return {at(begin_), at(end_)};
+}
+
+// Where the ends that are tracked want the shaft to be.
+Shaft StylusContact::goal() const noexcept
+{
+    Shaft goal = within(begin_ == 0 ? tip_.proxy_.at : aim_.tip, end_ == 1 ? tail_.proxy_.at : aim_.tail);
+    if (begin_ == 0) goal.tip = beside(surface(), tip_.proxy_);
+    if (end_ == 1) goal.tail = beside(surface(), tail_.proxy_);
+    return goal;
+}
+
+// A stylus that is put down, or that could not be held yet.
+void StylusContact::start(const glm::dvec3& tip_m, const Friction& friction) noexcept
+{
+    const Shaft whole = within(hand_.tip, hand_.tail);
+    Crossing crossing;
+    const bool first = !tip_.placed_;
+    const bool crosses =
+        first && first_crossing(surface(), whole.tail, whole.tip, StartsOn::nothing(), crossing, collision_);
+    tip_.update(tip_m, crosses ? &whole.tail : nullptr, friction);
+    restart(tail_, whole.tail);
+    aim_ = reached_ = hand_;
+    side_count_ = 0;
+    astray_ = false;
+    shaft_ = goal();
+    tracked_ = first && !crosses;
+    if (!tracked_)
+        tracked_ = !first_crossing(surface(), shaft_.tip, shaft_.tail, StartsOn::nothing(), crossing, collision_);
+}
+
+// Where nothing is near nothing is touched: to the hand, if so.
+bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
+{
+    if (side_count_ > 0 || astray_ || touches(tip_.proxy_) || touches(tail_.proxy_)) return false;
+    const Shaft to = within(hand_.tip, hand_.tail);
+    if (!(farther(clear_.at, to) < clear_.radius)) {
+        ++collision_.sweeps;
+        clear_.radius = 0;
+        if (!tree_.is_empty(SweptRegion(shaft_.tip, shaft_.tail, to.tip, to.tail, rest_gap + reach))) return false;
+        const double step = farther(shaft_, to);
+        shaft_ = to;
+        if (skips_free_space_) refresh_clearance(step);
+    }
+    shaft_ = to;
+    aim_ = reached_ = hand_;
+    tip_.follow(tip_m);
+    tail_.follow(tail_m);
+    return true;
+}
+
+// Tries larger regions after success and smaller ones after failure, and none while even a success would not pay.
+void StylusContact::refresh_clearance(double step) noexcept
+{
+    if (clear_.next_radius == 0) clear_.next_radius = 0.25 * Lattice::extent;
+    if (clear_.next_radius < ticks_per_region * step) {
+        clear_.next_radius *= 1.1;
+    } else if (tree_.is_empty(SweptRegion(shaft_.tip, shaft_.tail, shaft_.tip, shaft_.tail, clear_.next_radius))) {
+        clear_.at = shaft_;
+        clear_.radius = clear_.next_radius;
+        clear_.next_radius = std::min(1.4 * clear_.next_radius, Lattice::extent);
+    } else {
+        clear_.next_radius *= 0.5;
+    }
+}
+
+// An end that begins anew at a free place.
+void StylusContact::restart(PointContact& end, const glm::dvec3& at) noexcept
+{
+    end.proxy_.on = Proxy::On::nothing;
+    end.proxy_.at = end.hand_ = end.true_hand_ = at;
+    end.placed_ = true;
+    end.clear_.radius = 0;
+    end.describe();
+}
+
+void StylusContact::restart_ends() noexcept
+{
+    if (begin_ == 0) restart(tip_, shaft_.tip);
+    if (end_ == 1) restart(tail_, shaft_.tail);
+    astray_ = false;
+}
+
+// Ends and shaft in turn, until they agree.
+void StylusContact::resolve(const Friction& friction) noexcept
+{
+    if (astray_) restart_ends();
+    bool stopped = false, tip_slides = false, tail_slides = false;
+    WalkPath tip_path, tail_path;
+    double stride = 1; // share of the hand's way that is tried at once
+    uint32_t round = 0;
+    sweeps_left_ = sweeps_max;
+    for (; round < rounds_max && sweeps_left_ > 0; ++round) {
+        Shaft aim, to = hand_;
+        const double share = std::min(stride, solve(to, aim));
+        if (share < 1) {
+            to = {reached_.tip + share * (to.tip - reached_.tip), reached_.tail + share * (to.tail - reached_.tail)};
+            solve(to, aim);
+        }
+        if (round > 0 && !stopped && share == 1 && farther(aim, aim_) <= settled + settled_share * farther(aim, hand_))
+            break;
+        if (astray_) restart_ends();
+        aim_ = aim;
+        tip_path.count = tail_path.count = 0;
+        if (begin_ == 0) {
+            tip_.aim(aim_.tip);
+            tip_.go(friction, &tip_path);
+            tip_slides |= tip_.proxy_.sliding;
+        }
+        if (end_ == 1) {
+            tail_.aim(aim_.tail);
+            tail_.go(friction, &tail_path);
+            tail_slides |= tail_.proxy_.sliding;
+        }
+        const uint32_t known = side_count_;
+        astray_ = !drag(tip_path, tail_path);
+        stopped = astray_ || share < 1;
+        if (!astray_) {
+            reached_ = to;
+            stride = std::min(1.0, 2 * stride);
+        } else if (side_count_ == known) {
+            stride *= shorter;
+        }
+        let_go_of_ended();
+    }
+    counters_.walks_cut += stopped;
+    tip_.proxy_.sliding = tip_slides;
+    tail_.proxy_.sliding = tail_slides;
+    tip_.describe();
+    tail_.describe();
+    for (uint32_t i = side_count_; i-- > 0;)
+        if (sides_[i].push == 0 && sides_[i].sign * passing_of(sides_[i], shaft_).height > 4 * rest_gap) drop(i);
+}
+
+// Where the ends are to be aimed for the sides to hold a hand; and the share of the way there on which each side that
+// pushes stays within its edge and the shaft.
+double StylusContact::solve(const Shaft& hand, Shaft& aim) noexcept
+{
+    std::array<ShaftContact, shaft_contacts_max> contacts;
+    uint32_t count = side_count_;
+    const auto add_end = [&](const PointContact& end, const glm::dvec3& aimed, double share) {
+        if (!touches(end.proxy_)) return;
+        const glm::dvec3 push = end.proxy_.at - aimed;
+        const double length = glm::length(push);
+        const glm::dvec3 normal = length > direction_needs ? push / length : end.contact_.normal;
+        contacts[count++] = {normal, share, glm::dot(normal, end.proxy_.at)};
+    };
+    add_end(tip_, aim_.tip, 0);
+    add_end(tail_, aim_.tail, 1);
+
+    Shaft at = shaft_;
+    for (int turn = 0; turn < turns_max; ++turn) {
+        for (uint32_t i = 0; i < side_count_; ++i) {
+            Side& side = sides_[i];
+            if (const Passing here = passing_of(side, at); !here.parallel) {
+                side.normal = side.sign * here.normal;
+                side.point = here.edge_point;
+                side.share = begin_ + here.on_shaft * (end_ - begin_);
+            }
+            contacts[i] = {side.normal, side.share, glm::dot(side.normal, side.point) + rest_gap};
+        }
+        const auto push = pushes({contacts.data(), count}, hand.tip, hand.tail);
+        Shaft held = aim = hand;
+        for (uint32_t i = 0; i < count; ++i) {
+            const ShaftContact& contact = contacts[i];
+            const glm::dvec3 by = push[i] * contact.normal;
+            if (i < side_count_) {
+                sides_[i].push = push[i];
+                aim.tip += (1 - contact.share) * by;
+                aim.tail += contact.share * by;
+            }
+            held.tip += (1 - contact.share) * by;
+            held.tail += contact.share * by;
+        }
+        const Shaft next{held.at(begin_), held.at(end_)};
+        const double change = farther(next, at);
+        at = next;
+        if (side_count_ == 0 || change < 0.25) break;
+    }
+
+    double share = 1;
+    for (uint32_t i = 0; i < side_count_; ++i) {
+        if (sides_[i].push == 0) continue;
+        const Passing now = passing_of(sides_[i], shaft_), then = passing_of(sides_[i], at);
+        if (now.parallel || then.parallel) continue;
+        const auto stay = [&](double from, double to, double low, double high) {
+            const double over = past_the_end * std::fabs(to - from);
+            low -= over, high += over;
+            const double end = to < low ? low : to > high ? high : to;
+            if (end != to && from > low && from < high) share = std::min(share, (end - from) / (to - from));
+        };
+        const double off = let_go + beyond, off_shaft = (let_go_by_end + beyond) / now.shaft_length;
+        stay(now.on_edge, then.on_edge, -off, now.edge_length + off);
+        stay(now.on_shaft, then.on_shaft, -off_shaft, 1 + off_shaft);
+    }
+    return share;
+}
+
+void StylusContact::report() noexcept
+{
+    contact_count_ = 0;
+    if (tip_.contact().touching) contacts_[contact_count_++] = tip_.contact();
+    if (!tracked_) return;
+
+    const Lattice& lattice = surface().lattice;
+    const uint32_t first = contact_count_;
+    for (uint32_t i = 0; i < side_count_; ++i) {
+        const Side& side = sides_[i];
+        if (!(side.push > 0)) continue;
+        const SideEdge other = surface().faces[side.face].link[side.edge][0];
+        const auto facing = [&](uint32_t face) {
+            return std::fabs(glm::dot(side.normal, surface().facet_normal(face)));
+        };
+        Contact contact;
+        contact.touching = contact.by_shaft = true;
+        contact.along = glm::clamp(side.share, 0.0, 1.0);
+        contact.face = facing(other.face()) > facing(side.face) ? other.face() : side.face;
+        contact.side = glm::dot(side.normal, surface().facet_normal(contact.face)) >= 0 ? 0 : 1;
+        contact.proxy_m = lattice.metres(side.point);
+        contact.hand_m = lattice.metres(hand_.at(contact.along));
+        contact.barycentric = barycentric_of(surface(), contact.face, side.point);
+        contact.facet_normal = surface().facet_normal(contact.face, contact.side);
+        contact.normal = side.normal;
+        contact.depth_m = side.push * lattice.unit_m;
+        contacts_[contact_count_++] = contact;
+    }
+    std::sort(contacts_.begin() + first, contacts_.begin() + contact_count_,
+              [](const Contact& a, const Contact& b) { return a.depth_m > b.depth_m; });
+    if (end_ == 1 && tail_.contact().touching) {
+        contacts_[contact_count_] = tail_.contact();
+        contacts_[contact_count_++].along = 1;
+    }
+}
+
+void StylusContact::count() noexcept
+{
+    const ContactCounters &tip = tip_.counters(), &tail = tail_.counters();
+    counters_.ticks = tip.ticks;
+    counters_.hands_held = tip.hands_held;
+    counters_.sweeps = tip.sweeps + tail.sweeps + collision_.sweeps;
+    counters_.object_boxes_missed = tip.object_boxes_missed + tail.object_boxes_missed + collision_.object_boxes_missed;
+    counters_.triangles_tested = tip.triangles_tested + tail.triangles_tested + collision_.triangles_tested;
+    counters_.walk_steps = tip.walk_steps + tail.walk_steps;
+    counters_.walk_steps_max = std::max(tip.walk_steps_max, tail.walk_steps_max);
+}
+
+double StylusContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept
+{
+    const bool at_hand = tracked_ ? shaft_ == within(hand_.tip, hand_.tail) : !has_shaft_;
+    return at_hand ? surface().gap_to_box_m(tip_m, tail_m) : 0;
+}
+
+bool StylusContact::shaft_crosses() const noexcept
+{
+    if (!has_tail_ || tracked_ || !tip_.placed_ || tip_.contact_.touching) return false;
+    const Shaft whole = within(hand_.tip, hand_.tail);
+    Crossing crossing;
+    CollisionCount count;
+    return first_crossing(surface(), whole.tail, whole.tip, StartsOn::nothing(), crossing, count);
+}
+
+} // namespace haptel::runtime
