@@ -175,6 +175,7 @@ void SphereContact::move(const Friction& friction) noexcept
     if (contact_count_ > 0) path_[path_length_++] = centre_;
     NearestInHalfSpaces found;
     uint32_t round = 0;
+    bool on_the_way = false; // the last step was as long as it might be
     for (; round < rounds_max; ++round) {
         const double want = glm::distance(hand_, centre_);
         if (want == 0) break;
@@ -186,10 +187,13 @@ void SphereContact::move(const Friction& friction) noexcept
             }
         }
         const glm::dvec3 before = centre_;
-        found = approach(std::min(want, room()));
+        const double step_max = std::min(want, room());
+        found = approach(step_max);
         if (found.count == 0) path_length_ = 0;
         if (path_length_ > 0 && path_length_ <= rounds_max) path_[path_length_++] = centre_;
-        if (glm::distance(before, centre_) <= std::max(4 * rounding, settled * radius_)) break;
+        const double step = glm::distance(before, centre_);
+        if (step <= std::max(4 * rounding, settled * radius_)) break;
+        on_the_way = step > 0.5 * step_max;
     }
     counters_.walk_steps += round;
     counters_.walk_steps_max = std::max<uint64_t>(counters_.walk_steps_max, round);
@@ -199,6 +203,12 @@ void SphereContact::move(const Friction& friction) noexcept
         double nearest = radius_;
         for (const glm::dvec3& point : touched_) nearest = std::min(nearest, glm::distance(point, centre_));
         grown_ = std::max(grown_, nearest - rounding);
+    }
+    // The planes here do not know how deep the hand is where it is: until the ball is there what was felt is felt, but
+    // of what the hand has left.
+    if (round == rounds_max && on_the_way) {
+        if (contact_count_ > 0 && glm::dot(hand_ - centre_, contacts_[0].normal) >= 0) contact_count_ = 0;
+        return;
     }
     if (found.count == 0) {
         sliding_ = false;

@@ -6,7 +6,7 @@
 // move is a straight way within the intersection of half-spaces, so that nothing is crossed at any speed and by any
 // mesh, self-piercing ones included. The nearest point of the intersection to the hand is exact (half_spaces.h); the
 // planes are laid anew there, until that moves nothing. Where many triangles are within reach, a
-// tick may take it three radii far and no farther: the rest is for the next.
+// tick may take it three radii far and no farther: the rest is for the next, and until then it touches as it did.
 //
 // One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
 // sequence of poses. Everything is in the object's space, metres.

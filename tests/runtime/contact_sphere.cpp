@@ -173,6 +173,25 @@ TEST_CASE("without friction a plane pushes a ball straight up at any speed, what
     }
 }
 
+TEST_CASE("a ball that cannot keep up with the hand is not pushed harder, and lets go of what the hand has left")
+{
+    constexpr double radius = 0.05, depth = 1e-3;
+    SphereContact contact(surface_of(make_plane(256)), radius); // 12 of its triangles fit into the radius
+    const auto press = [&](const dvec3& hand) { return glm::length(elastic(contact.update(hand))); };
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> place(-0.45, 0.45);
+    contact.update({0, 0, 0.1});
+    for (int wait = 0; wait < 3; ++wait) press({0, 0, radius - depth});
+    const uint64_t cut = contact.counters().walks_cut;
+    for (int i = 0; i < 2000; ++i) { // up to 18 radii a tick
+        REQUIRE(press({place(random), place(random), radius - depth}) < 1.01 * depth);
+    }
+    CHECK(contact.counters().walks_cut > cut + 1000);
+    for (int wait = 0; wait < 20; ++wait) press({0.1, 0.2, radius - depth});
+    CHECK(std::abs(press({0.1, 0.2, radius - depth}) - depth) < 1e-9);
+    CHECK(press({-0.4, -0.4, 2}) == 0); // and away
+}
+
 TEST_CASE("no ball comes nearer to a mesh than its radius, however wild the hand and bad the mesh")
 {
     std::mt19937_64 random(31);
