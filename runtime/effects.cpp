@@ -1,5 +1,6 @@
 #include "runtime/effects.h"
 
+#include "runtime/contact.h"
 #include "runtime/hand.h"
 #include "runtime/scene.h"
 
@@ -53,13 +54,15 @@ void Effects::begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) no
     }
 }
 
-void Effects::update(std::size_t object, const Placement& placement, bool touched) noexcept
+void Effects::update(std::size_t object, const Placement& placement, std::span<const Contact> contacts) noexcept
 {
     Near& near = *objects_[object];
     const ObjectEffects& effects = near.effects;
     double distance_m = 0;
     glm::dvec3 toward(0);
-    if (!touched) {
+    const bool by_tip =
+        std::any_of(contacts.begin(), contacts.end(), [](const Contact& contact) { return contact.along == 0; });
+    if (!by_tip) {
         const glm::dvec3 tip_m = placement.to_object(tip_m_);
         const double reach_m = effects.reach_m();
         const uint64_t queries = near.distance.queries(), triangles = near.distance.triangles();
@@ -76,7 +79,7 @@ void Effects::update(std::size_t object, const Placement& placement, bool touche
         return distance_m == 0 ? 1.0 : distance_m < reach_m ? 1 - distance_m / reach_m : 0.0;
     };
     damping_n_s_per_m_ += effects.damping_n_s_per_m * share(effects.damping_reach_m);
-    vibrate(effects.vibration, near.level, share(effects.vibration_reach_m), placement);
+    vibrate(effects.vibration, near.level, contacts.empty() ? share(effects.vibration_reach_m) : 1, placement);
 }
 
 glm::dvec3 Effects::force_n() noexcept

@@ -15,15 +15,18 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 namespace haptel::runtime {
 
+struct Contact;
 struct HandSettings;
 struct Scene;
 
 // Of one object. Viscosity and vibration are full while it is touched and fall off with the distance to it, to nothing
-// at their reach; without one a vibration is felt in contact alone.
+// at their reach; without one a vibration is felt in contact alone. A stylus is where its tip is: its shaft feels no
+// more than the vibration of what it touches.
 struct ObjectEffects {
     Magnet magnet;
     double damping_n_s_per_m = 0, damping_reach_m = 0; // >= 0; > 0 if it damps
@@ -46,7 +49,7 @@ public:
 
     // One tick, if they act at all: begin, then update of each object that has effects and may be near, then force.
     void begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) noexcept;
-    void update(std::size_t object, const Placement& placement, bool touched) noexcept;
+    void update(std::size_t object, const Placement& placement, std::span<const Contact> contacts) noexcept;
     glm::dvec3 force_n() noexcept;
 
     void lose_hand() noexcept { trail_.lose_hand(); }

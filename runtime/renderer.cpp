@@ -136,7 +136,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         work_.queries += counters.sweeps - queries;
         work_.triangles += counters.triangles_tested - triangles;
         work_.steps += counters.walk_steps - steps;
-        if (effects_.of(number)) effects_.update(number, touched.placement, !contacts.empty());
+        if (effects_.of(number)) effects_.update(number, touched.placement, contacts);
         if (contacts.empty()) {
             touched.friction_share = 0;
             textured = textured || (!scene_->servo.skips.texture && feels_in_air(touched, pose));
@@ -161,7 +161,8 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
             if (&contact != contacts.data()) continue;
             touched.friction_share = force.friction_share;
             if (result.contacts > 1 && contact.depth_m <= result.depth_m) continue;
-            felt_ = {touched.placement.to_world(contact.proxy_m), touched.placement.direction_to_world(contact.normal)};
+            felt_ = {touched.placement.to_world(contact.proxy_m), touched.placement.direction_to_world(contact.normal),
+                     contact.along};
             result.depth_m = contact.depth_m;
             result.height_m = force.height_m;
             result.binding = touched.texture.to().serial;
@@ -173,8 +174,9 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     skipped_.octaves += band_limited;
     skipped_.mapping += unmapped;
     if (effects_.act()) {
-        result.unlimited_force_n += effects_.force_n();
-        if (has_shaft) result.unlimited_torque_n_m += torque_about(grip_m, pose.tip_m, effects_.force_n());
+        const glm::dvec3 effects_n = effects_.force_n(); // once: its medium lives a tick
+        result.unlimited_force_n += effects_n;
+        if (has_shaft) result.unlimited_torque_n_m += torque_about(grip_m, pose.tip_m, effects_n);
     }
     send(result, std::max(glm::distance(pose.tip_m, grip_m), glm::distance(pose.tail_m, grip_m)));
     return result;
@@ -190,15 +192,20 @@ void Renderer::send(TickResult& result, double lever_m) noexcept
         interrupted_ = true;
     }
     const double small_n = scene_->servo.wait_for_small_force_n;
+    const auto small = [&](const glm::dvec3& force_n, const glm::dvec3& torque_n_m) {
+        return glm::length(force_n) <= small_n && glm::length(torque_n_m) <= small_n * lever_m;
+    };
     if (std::exchange(swapped_, false)) {
         rise_period_ = left_period_ = period_;
         left_n_ = interrupted_ ? glm::dvec3(0) : sent_n_;
         left_n_m_ = interrupted_ ? glm::dvec3(0) : sent_n_m_;
-        waiting_ = waiting_ || (small_n > 0 && !(glm::distance(result.unlimited_force_n, computed_n_) <= small_n));
+        waiting_ = waiting_ || (small_n > 0 && !small(result.unlimited_force_n - computed_n_,
+                                                      result.unlimited_torque_n_m - computed_n_m_));
     }
     computed_n_ = result.unlimited_force_n;
+    computed_n_m_ = result.unlimited_torque_n_m;
     if (waiting_) {
-        waiting_ = !(glm::length(result.unlimited_force_n) <= small_n) || interrupted_;
+        waiting_ = !small(result.unlimited_force_n, result.unlimited_torque_n_m) || interrupted_;
         rise_period_ = period_;
         result.waiting = waiting_;
     }

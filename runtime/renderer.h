@@ -106,6 +106,7 @@ private:
     };
     struct Felt { // world frame
         glm::dvec3 point_m{0}, normal{0, 0, 1};
+        double along = 0; // of a stylus: what of it touched
     };
     struct ObjectForce {
         glm::dvec3 force_n{0}; // world frame
@@ -150,7 +151,7 @@ private:
     HandVelocity velocity_, tail_velocity_; // world frame
 
     // For who takes over, and after having taken over.
-    glm::dvec3 sent_n_{0}, computed_n_{0}; // in the tick before, the scene's space
+    glm::dvec3 sent_n_{0}, computed_n_{0}, computed_n_m_{0}; // in the tick before, the scene's space
     glm::dvec3 sent_n_m_{0};
     std::optional<Felt> felt_;           // what pressed most in the tick before
     std::vector<uint32_t> was_;          // of each object: its number in the scene before

@@ -68,6 +68,7 @@ void Renderer::take_over(Renderer& before) noexcept
     sent_n_ = before.sent_n_;
     sent_n_m_ = before.sent_n_m_;
     computed_n_ = before.computed_n_;
+    computed_n_m_ = before.computed_n_m_;
     swapped_ = true;
     for (Touched& touched : objects_) touched.texture_period = texture_period_;
     if (!last_pose_) return;
@@ -75,16 +76,22 @@ void Renderer::take_over(Renderer& before) noexcept
     DevicePose lifted = *last_pose_;
     if (before.felt_) { // where it was touched, a little above
         const double lift_m = probe_.radius_m + lifted_m * hand_.workspace.scale;
-        lifted.tip_m = before.felt_->point_m + lift_m * before.felt_->normal;
-        lifted.tail_m += lifted.tip_m - last_pose_->tip_m;
+        const glm::dvec3 shaft = last_pose_->tail_m - last_pose_->tip_m;
+        const glm::dvec3 shift =
+            before.felt_->point_m + lift_m * before.felt_->normal - (last_pose_->tip_m + before.felt_->along * shaft);
+        lifted.tip_m += shift;
+        lifted.tail_m += shift;
     }
     for (std::size_t i = 0; i < objects_.size(); ++i) {
         Touched& touched = objects_[i];
         if (touched.object->motion) move(touched);
         Touched* old = i < was_.size() && was_[i] != none ? &before.objects_[was_[i]] : nullptr;
         if (old && old->asleep) before.wake(*old);
-        const ProbePose here = in_object(touched, *last_pose_);
-        if (old && glm::distance(here.tip_m, in_object(*old, *last_pose_).tip_m) <= nudge_m * hand_.workspace.scale) {
+        const auto moved_m = [&](const glm::dvec3& p) {
+            return glm::distance(touched.placement.to_object(p), old->placement.to_object(p));
+        };
+        const double nudge = nudge_m * hand_.workspace.scale;
+        if (old && moved_m(last_pose_->tip_m) <= nudge && moved_m(last_pose_->tail_m) <= nudge) {
             std::swap(touched.contact, old->contact);
             std::swap(touched.velocity, old->velocity);
             std::swap(touched.tail_velocity, old->tail_velocity);

@@ -285,6 +285,33 @@ TEST_CASE("what a viscous medium takes of a hand that goes to and fro is what it
         }
 }
 
+TEST_CASE("a stylus feels by its tip what a point feels, and its grip feels the torque of that")
+{
+    const auto scene = [](ProbeKind probe) {
+        Scene s = magnet_scene(shape("icosphere", 0.1), 1, 0.02);
+        s.objects[0].effects.damping_n_s_per_m = 2;
+        s.objects[0].effects.damping_reach_m = 0.03;
+        Region region;
+        region.damping_n_s_per_m = 1;
+        s.regions.push_back(region);
+        s.probe = {probe, 0.1, 0};
+        return shared(std::move(s));
+    };
+    Renderer point(scene(ProbeKind::point)), stylus(scene(ProbeKind::stylus));
+    double largest_n = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const double t = i * 0.003;
+        const glm::dvec3 tip = (0.062 + 0.008 * std::sin(5 * t)) * glm::dvec3(std::cos(t), std::sin(t), 0);
+        const glm::dvec3 tail = tip * (1 + 0.1 / glm::length(tip));
+        const TickResult a = point.tick({tip, tail}), b = stylus.tick({tip, tail});
+        REQUIRE(b.contacts == 0);
+        CHECK(glm::distance(a.force_n, b.force_n) < 1e-12);
+        CHECK(glm::distance(b.torque_n_m, glm::cross(tip - tail, b.force_n)) < 1e-12); // held at its tail
+        largest_n = std::max(largest_n, glm::length(glm::cross(tip - tail, b.force_n)));
+    }
+    CHECK(largest_n > 0.005);
+}
+
 TEST_CASE("no viscosity shakes a device whose own damping holds its trail; a damper of its strength does")
 {
     constexpr double mass_kg = 0.075;
