@@ -15,6 +15,10 @@ using namespace shaft_tolerance;
 
 namespace {
 
+// Of a stylus that reaches beyond the workspace what is farther out than this is left out: there is nothing, and the
+// ideal stylus is not quite where the hand's is.
+constexpr double drawn_in = 0.75 * Lattice::workspace;
+
 // Lattice units. A shaft shorter than this has no direction.
 constexpr double least_length = 4096;
 
@@ -126,17 +130,21 @@ bool StylusContact::take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noex
     has_tail_ = finite(tail_m);
     if (!has_tail_) return false;
     hand_ = {lattice.units(tip_m), lattice.units(tail_m)};
+    if (touches(tip_.proxy_)) hand_.tip = Lattice::snap_units(hand_.tip); // it does not let go of a hand that is far
     const glm::dvec3 along = hand_.tail - hand_.tip;
     begin_ = 0, end_ = 1;
     for (int k = 0; k < 3; ++k) {
-        const double low = -Lattice::workspace - hand_.tip[k], high = Lattice::workspace - hand_.tip[k];
+        const double low = -drawn_in - hand_.tip[k], high = drawn_in - hand_.tip[k];
         if (along[k] == 0 && (low > 0 || high < 0)) return false;
         if (along[k] == 0) continue;
         begin_ = std::max(begin_, std::min(low / along[k], high / along[k]));
         end_ = std::min(end_, std::max(low / along[k], high / along[k]));
     }
-    if (begin_ == 0) hand_.tip = glm::round(hand_.tip); // as the hand of a point is
-    if (end_ == 1) hand_.tail = glm::round(hand_.tail);
+    const auto in_workspace = [](const glm::dvec3& end) {
+        return glm::all(glm::lessThanEqual(glm::abs(end), glm::dvec3(Lattice::workspace)));
+    };
+    if (in_workspace(hand_.tip)) begin_ = 0, hand_.tip = glm::round(hand_.tip); // as the hand of a point is
+    if (in_workspace(hand_.tail)) end_ = 1, hand_.tail = glm::round(hand_.tail);
     return (end_ - begin_) * glm::length(along) > least_length; // false for what is not finite, too
 }
 

@@ -1,4 +1,5 @@
 // The stylus against closed forms of its geometry, and its ideal shaft against all triangles in exact arithmetic.
+#include "runtime/held_ends.h"
 #include "runtime/stylus_contact.h"
 
 #include "tests/runtime/exact_mesh.h"
@@ -77,6 +78,28 @@ Pose on_edge(const Pose& hand, const dvec3& point, const dvec3& edge)
     return {onto(hand.tip), onto(hand.tail)};
 }
 
+// A plate that hangs from a line.
+Mesh upright(const Pose& upper_edge, double height = 0.3)
+{
+    Mesh mesh;
+    const dvec3 down(0, 0, -height);
+    mesh.positions_m = {upper_edge.tip, upper_edge.tail, upper_edge.tail + down, upper_edge.tip + down};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+    return mesh;
+}
+
+Mesh joined(Mesh a, const Mesh& b)
+{
+    const auto first = static_cast<uint32_t>(a.positions_m.size());
+    a.uv.clear();
+    a.positions_m.insert(a.positions_m.end(), b.positions_m.begin(), b.positions_m.end());
+    for (auto triangle : b.triangles) {
+        for (uint32_t& corner : triangle) corner += first;
+        a.triangles.push_back(triangle);
+    }
+    return a;
+}
+
 bool near(const Wrench& a, const Wrench& b, double tolerance)
 {
     return glm::length(a.force - b.force) < tolerance && glm::length(a.torque - b.torque) < tolerance;
@@ -112,6 +135,215 @@ TEST_CASE("a shaft on the edge of a box is a lever: force and torque at every sh
                 }
 }
 
+TEST_CASE("pushes on a shaft are those of the best active set, whatever the contacts")
+{
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> u(-1, 1);
+    const auto any = [&] { return dvec3(u(random), u(random), u(random)); };
+    for (int trial = 0; trial < 2000; ++trial) {
+        std::vector<ShaftContact> contacts(1 + random() % shaft_contacts_max);
+        const Pose hand{1e9 * any(), 1e9 * any()};
+        for (ShaftContact& contact : contacts)
+            contact = {glm::normalize(any()), 0.5 * (1 + u(random)), 1e9 * u(random)};
+        const auto found = pushes(contacts, hand.tip, hand.tail);
+        // Optimal is what solves the conditions of Karush, Kuhn and Tucker: nothing pulls, nothing is violated, and
+        // what pushes is tight.
+        Pose held = hand;
+        for (size_t i = 0; i < contacts.size(); ++i) {
+            held.tip += found[i] * (1 - contacts[i].share) * contacts[i].normal;
+            held.tail += found[i] * contacts[i].share * contacts[i].normal;
+        }
+        for (size_t i = 0; i < contacts.size(); ++i) {
+            const ShaftContact& contact = contacts[i];
+            const double gap =
+                glm::dot(contact.normal, (1 - contact.share) * held.tip + contact.share * held.tail) - contact.offset;
+            if (found[i] < 0 || gap < -1e-2 || (found[i] > 0 && gap > 1e-2)) {
+                CAPTURE(trial, i, contacts.size(), gap, found[i]);
+                CHECK(contacts.size() == 6); // six of them may have no common solution
+            }
+        }
+    }
+}
+
+TEST_CASE("a shaft across two edges rests on both: it is the line through them")
+{
+    const auto surface =
+        surface_of(joined(upright({{-0.1, -0.3, 0}, {-0.1, 0.3, 0}}), upright({{0.1, -0.3, 0.02}, {0.1, 0.3, 0.02}})));
+    for (const dvec2 depth : {dvec2(0.01, 0.02), dvec2(0.004, 0.003), dvec2(1e-4, 1e-4)}) {
+        const double rise = 0.1; // of the line through both
+        const Pose hand{{-0.3, 0.02, 0.01 - 0.3 * rise - depth.x}, {0.25, -0.04, 0.01 + 0.25 * rise - depth.y}};
+        StylusContact stylus(surface);
+        drive(stylus, moved(hand, {0, 0, 0.1}), hand, 50);
+        REQUIRE(stylus.contacts().size() == 2);
+        const dvec3 normal = glm::normalize(dvec3(-rise, 0, 1));
+        const Pose ideal{hand.tip + depth.x * normal.z * normal, hand.tail + depth.y * normal.z * normal};
+        CHECK(near(wrench(stylus, hand), pulled(hand, ideal), 1e-9));
+        CHECK(glm::distance(stylus.contacts()[0].proxy_m, stylus.contacts()[1].proxy_m) > 0.2);
+    }
+}
+
+TEST_CASE("a tip on a plane with its shaft on an edge is held by both: the best line by search")
+{
+    const dvec2 edge(0.1, 0.05); // x and z
+    const auto surface =
+        surface_of(joined(make_plane(4), upright({{edge.x, -0.3, edge.y}, {edge.x, 0.3, edge.y}}, 0.04)));
+    const Pose hand{{-0.1, 0.01, -0.005}, {0.35, 0.02, -0.005 + 0.45 * 0.255}};
+    StylusContact stylus(surface);
+    drive(stylus, moved(hand, {0, 0, 0.2}), hand, 100);
+    REQUIRE(stylus.contacts().size() == 2);
+    CHECK(stylus.contact().touching);
+    CHECK(stylus.contacts()[1].by_shaft);
+    // Of the lines through the edge's point the one that moves the ends least, its tip not below the plane.
+    const auto held_at = [&](double angle) {
+        const dvec2 along(std::cos(angle), std::sin(angle));
+        const auto onto = [&](const dvec3& end) {
+            const dvec2 at = edge + glm::dot(dvec2(end.x, end.z) - edge, along) * along;
+            return dvec3(at.x, end.y, at.y);
+        };
+        Pose held{onto(hand.tip), onto(hand.tail)};
+        if (held.tip.z < 0) held.tip = {edge.x - edge.y / std::tan(angle), hand.tip.y, 0};
+        return held;
+    };
+    const auto cost = [&](double angle) {
+        const Pose held = held_at(angle);
+        const dvec3 a = held.tip - hand.tip, b = held.tail - hand.tail;
+        return glm::dot(a, a) + glm::dot(b, b);
+    };
+    double low = 0.1, high = 0.6;
+    for (int i = 0; i < 200; ++i) {
+        const double a = low + 0.382 * (high - low), b = high - 0.382 * (high - low);
+        (cost(a) < cost(b) ? high : low) = cost(a) < cost(b) ? b : a;
+    }
+    CHECK(near(wrench(stylus, hand), pulled(hand, held_at(low)), 1e-8)); // a search finds a minimum's place to its root
+}
+
+TEST_CASE("a shaft slides from edge to edge without a step, and rests in the vertex of two")
+{
+    // Straight on: the border of a plate in 16 edges. Nothing changes from one to the next.
+    Mesh plate = make_plane(16);
+    for (dvec3& p : plate.positions_m) p = {0, p.x, p.y - 0.5}; // its upper border is the y axis
+    StylusContact straight(surface_of(plate));
+    const Pose pressed{{-0.2, -0.4, -0.01}, {0.3, -0.38, -0.012}};
+    drive(straight, moved(pressed, {0, 0, 0.1}), pressed, 50);
+    const Wrench first = wrench(straight, pressed);
+    CHECK(first.force.z > 0.01);
+    for (int i = 0; i <= 4000; ++i) {
+        const Pose hand = moved(pressed, {0, 2e-4 * i, 0});
+        straight.update(hand.tip, hand.tail);
+        REQUIRE(near(wrench(straight, hand), first, 1e-9));
+    }
+    // Down into a valley and out of it: no force changes faster than the hand moves, since what is free is convex.
+    StylusContact valley(
+        surface_of(joined(upright({{0, -0.3, 0.06}, {0, 0, 0}}), upright({{0, 0, 0}, {0, 0.3, 0.06}}))));
+    const Pose start{{-0.2, -0.2, 0.02}, {0.2, -0.2, 0.02}};
+    drive(valley, moved(start, {0, 0, 0.1}), start, 50);
+    const double step = 1e-4;
+    Wrench last = wrench(valley, start);
+    for (int i = 1; i <= 4000; ++i) {
+        const Pose hand = moved(start, {0, step * i, 0});
+        valley.update(hand.tip, hand.tail);
+        const Wrench now = wrench(valley, hand);
+        REQUIRE(glm::distance(now.force, last.force) <= 2 * step + 1e-9);
+        last = now;
+    }
+    const Pose over_vertex{{-0.2, 0, -0.01}, {0.2, 0, -0.01}};
+    drive(valley, moved(over_vertex, {0, 0, 0.1}), over_vertex, 50);
+    drive(valley, over_vertex, moved(over_vertex, {0, 0.001, 0}), 10);
+    const dvec3 held = wrench(valley, moved(over_vertex, {0, 0.001, 0})).force;
+    CHECK(glm::distance(held, dvec3(0, -0.002, 0.02)) < 1e-9); // both ends by (0, -0.001, 0.01): back to the vertex
+    CHECK(valley.contacts().size() == 2);
+}
+
+TEST_CASE("without friction closed paths of the stylus gain nothing: the work falls with the square of the step")
+{
+    struct Setting {
+        const char* name;
+        std::shared_ptr<const Surface> surface;
+        Pose centre;
+    };
+    const Setting settings[] = {
+        {"on an edge", surface_of(make_box()), {{0.35, 0.03, 0.535}, {0.85, 0.1, 0.36}}},
+        {"on two edges",
+         surface_of(joined(upright({{-0.1, -0.3, 0}, {-0.1, 0.3, 0}}), upright({{0.1, -0.3, 0.02}, {0.1, 0.3, 0.02}}))),
+         {{-0.3, 0.02, -0.03}, {0.25, -0.04, 0.02}}},
+        {"tip and shaft",
+         surface_of(joined(make_plane(4), upright({{0.1, -0.3, 0.05}, {0.1, 0.3, 0.05}}, 0.04))),
+         {{-0.1, 0.01, -0.008}, {0.35, 0.02, 0.104}}}};
+    for (const Setting& setting : settings) {
+        const auto loop = [&](int steps) {
+            const auto at = [&](int i) {
+                const double t = 2 * 3.14159265358979323846 * i / steps;
+                Pose pose = setting.centre; // both ends on closed curves of their own, 3 mm wide
+                pose.tip += 3e-3 * dvec3(std::sin(t), std::cos(2 * t), std::sin(t + 1));
+                pose.tail += 3e-3 * dvec3(std::cos(t), std::sin(t), std::cos(t - 0.5));
+                return pose;
+            };
+            StylusContact stylus(setting.surface);
+            drive(stylus, moved(at(0), {0, 0, 0.2}), at(0), 100);
+            // The force on each end, of which force and torque are the sums.
+            const auto ends = [&] {
+                Pose sum;
+                for (const Contact& contact : stylus.contacts()) {
+                    const dvec3 force = contact.depth_m * contact.normal + contact.lag_m;
+                    sum.tip += (1 - contact.along) * force;
+                    sum.tail += contact.along * force;
+                }
+                return sum;
+            };
+            double work = 0;
+            int touching = 0;
+            for (int i = 0; i < steps; ++i) {
+                const Pose from = at(i), to = at(i + 1), before = ends();
+                stylus.update(to.tip, to.tail);
+                const Pose after = ends();
+                work += 0.5 * glm::dot(before.tip + after.tip, to.tip - from.tip) +
+                        0.5 * glm::dot(before.tail + after.tail, to.tail - from.tail);
+                touching += !stylus.contacts().empty();
+            }
+            CHECK(touching == steps);
+            return std::fabs(work);
+        };
+        const double coarse = loop(50), finer = loop(200), finest = loop(800);
+        CAPTURE(setting.name, coarse, finer, finest);
+        CHECK(coarse < 1e-6);              // of some 1e-4 that go in and out
+        CHECK(finer < coarse / 8 + 1e-13); // 16
+        CHECK(finest < finer / 8 + 1e-13);
+    }
+}
+
+TEST_CASE("a stylus is held through poses that are no numbers, and far away it is free")
+{
+    const auto surface = surface_of(make_box());
+    const Pose hand{{0.35, 0.03, 0.535}, {0.85, 0.1, 0.36}};
+    StylusContact stylus(surface), twin(surface);
+    drive(stylus, moved(hand, {0, 0, 0.1}), hand, 20);
+    const Wrench held = wrench(stylus, hand);
+    CHECK(glm::length(held.force) > 1e-3);
+    stylus.update({NAN, 0, 0}, hand.tail);
+    CHECK(near(wrench(stylus, hand), held, 0x1p-80));
+    stylus.update(hand.tip, hand.tail);
+    CHECK(near(wrench(stylus, hand), held, 1e-9));
+    for (const double far_m : {10.0, 1e4, 1e12, 1e300}) {
+        stylus.update(moved(hand, {far_m, 0, 0}).tip, moved(hand, {far_m, 0, 0}).tail);
+        CHECK(stylus.contacts().empty());
+    }
+    // It comes back from beyond the workspace as if put down: from above it is held again.
+    drive(stylus, moved(hand, {0, 0, 1}), hand, 50);
+    CHECK(near(wrench(stylus, hand), held, 1e-9));
+    // A tail that is no number is none: the tip is a point.
+    stylus.update(hand.tip, {0, INFINITY, 0});
+    CHECK(stylus.contacts().empty());
+
+    // A stylus of which the tail is far beyond the workspace of a small object is as long as it is.
+    Mesh small = make_box();
+    scale_to_size(small, 1e-3);
+    StylusContact large(surface_of(small));
+    const dvec3 normal = glm::normalize(dvec3(1, 0, 1)), along(normal.z, 0, -normal.x), corner(5e-4, 0, 5e-4);
+    const Pose long_hand{corner - 1e-5 * normal - 0.001 * along, corner - 1e-5 * normal + 0.149 * along};
+    drive(large, moved(long_hand, 1e-3 * normal), long_hand, 20);
+    CHECK(near(wrench(large, long_hand), pulled(long_hand, on_edge(long_hand, corner, {0, 1, 0})), 1e-12));
+}
+
 TEST_CASE("the ideal stylus crosses no triangle, however wildly the hand moves")
 {
     struct Named {
@@ -125,7 +357,7 @@ TEST_CASE("the ideal stylus crosses no triangle, however wildly the hand moves")
     for (const Named& named : meshes) {
         const auto surface = surface_of(named.mesh);
         const ExactMesh exact(*surface);
-        StylusContact stylus(surface);
+        StylusContact stylus(surface), twin(surface);
         WildHand tip(*surface, 11), tail(*surface, 12);
         std::mt19937_64 random(13);
         uint64_t tracked = 0, sides = 0, crossed = 0;
@@ -147,6 +379,11 @@ TEST_CASE("the ideal stylus crosses no triangle, however wildly the hand moves")
                       std::isfinite(contact.depth_m + glm::dot(contact.normal, contact.proxy_m))))
                     FAIL("not finite");
             }
+            twin.update(hand.tip, hand.tail);
+            REQUIRE(twin.contacts().size() == stylus.contacts().size());
+            for (size_t k = 0; k < twin.contacts().size(); ++k)
+                REQUIRE((twin.contacts()[k].depth_m == stylus.contacts()[k].depth_m &&
+                         twin.contacts()[k].normal == stylus.contacts()[k].normal));
             const auto ideal = stylus.ideal();
             if (!ideal) continue;
             ++tracked;
