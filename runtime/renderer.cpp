@@ -137,8 +137,8 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         work_.triangles += counters.triangles_tested - triangles;
         work_.steps += counters.walk_steps - steps;
         if (effects_.of(number)) effects_.update(number, touched.placement, contacts);
+        touched.friction_share = 0;
         if (contacts.empty()) {
-            touched.friction_share = 0;
             textured = textured || (!scene_->servo.skips.texture && feels_in_air(touched, pose));
             if (const double gap_m = gap_to_sleep_m(number, pose, near_m); gap_m > 0) {
                 touched.asleep = true;
@@ -148,7 +148,8 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
             continue;
         }
         ++result.contacts;
-        for (const Contact& contact : contacts) { // what presses most first
+        bool ends_felt = false;
+        for (const Contact& contact : contacts) { // what presses most first, of a stylus its tip
             const ObjectForce force = force_of(touched, contact);
             result.unlimited_force_n += force.force_n;
             if (has_shaft)
@@ -158,8 +159,8 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
             textured = textured || force.textured;
             band_limited = band_limited || force.band_limited;
             unmapped = unmapped || force.unmapped;
+            if (!contact.by_shaft && !std::exchange(ends_felt, true)) touched.friction_share = force.friction_share;
             if (&contact != contacts.data()) continue;
-            touched.friction_share = force.friction_share;
             if (result.contacts > 1 && contact.depth_m <= result.depth_m) continue;
             felt_ = {touched.placement.to_world(contact.proxy_m), touched.placement.direction_to_world(contact.normal),
                      contact.along};
