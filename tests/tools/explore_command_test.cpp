@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fmt/format.h>
 #include <sstream>
 #include <sys/stat.h>
+#include <utility>
 #include <vector>
 
 using namespace haptel::test;
@@ -95,6 +97,33 @@ TEST_CASE("explore feels a scene and reports it as promised")
         CAPTURE(picture);
         CHECK(png_size(stage.out("run") + "/" + picture).first > 500);
     }
+}
+
+TEST_CASE("what a tick leaves out is counted in the report")
+{
+    const Folder folder;
+    folder.write("rock.haptel", "texture rock() { return 60um * fbm(p / 4mm, 4); }\n");
+    const auto skipped = [&](double v_max_m_per_s) {
+        const std::string scene = folder.write(
+            "scene.toml", fmt::format("[servo]\nv_max_m_per_s = {}\n[device]\nstroke = \"press\"\n"
+                                      "[[object]]\nshape = \"sphere\"\nsize_m = 0.1\ntexture = \"rock.haptel:rock\"\n"
+                                      "[[object]]\nshape = \"box\"\nsize_m = 0.1\nposition_m = [1, 0, 0]\n",
+                                      v_max_m_per_s));
+        const Ran ran = run_command("explore " + scene + " --seconds 3 --clock virtual --json");
+        INFO(ran.err);
+        REQUIRE(ran.code == 0);
+        const Json json = json_of(ran);
+        const int touched = json["contact_ticks"];
+        REQUIRE((touched > 500 && touched < 2900));
+        CHECK(json["skipped"]["texture"] == 3000 - touched);
+        CHECK(json["skipped"]["mapping"] == touched); // the sphere has coordinates, which the rock does not read
+        CHECK(json["skipped"]["objects"].get<int>() > 2900);
+        return std::pair(json["skipped"]["octaves"].get<int>(), touched);
+    };
+    const auto [of_fast, touched_fast] = skipped(0.5); // a footprint of 1 mm, where octaves have 4, 2, 1 and 0.5 mm
+    CHECK(of_fast == touched_fast);
+    const auto [of_slow, touched_slow] = skipped(0.01);
+    CHECK(of_slow == 0);
 }
 
 TEST_CASE("through a workspace twin runs and a replay feel the same, bit for bit, and energy is the hand's")
