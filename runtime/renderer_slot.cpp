@@ -41,11 +41,11 @@ void RendererSlot::free_given_back() noexcept
 
 bool RendererSlot::take(std::unique_ptr<Renderer>& current) noexcept
 {
-    if (!next_.load(std::memory_order_relaxed) || given_back_.load(std::memory_order_acquire)) return false;
+    if (!next_.load(std::memory_order_relaxed)) return false;
     Renderer* const next = next_.exchange(nullptr, std::memory_order_acq_rel);
     if (!next) return false; // withdrawn meanwhile
     next->take_over(*current);
-    given_back_.store(current.release(), std::memory_order_release);
+    given_back_.store(current.release(), std::memory_order_release); // empty: publish has freed the one before
     current.reset(next);
     return true;
 }

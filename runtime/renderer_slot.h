@@ -27,8 +27,7 @@ public:
     // Frees what the servo has given back; publish does so too. Any thread but the servo.
     void collect();
 
-    // The servo, once per tick: true if another scene has taken over. Waits for nothing: while the renderer that was
-    // given back before is not collected yet, the next one is left for a later tick.
+    // The servo, once per tick: true if another scene has taken over.
     bool take(std::unique_ptr<Renderer>& current) noexcept;
 
 private:

@@ -136,6 +136,11 @@ TEST_CASE("two hands on one scene feel what each feels alone, bit for bit, in th
 TEST_CASE("hands that take turns end each in its own time, and all on request")
 {
     std::vector<uint64_t> order;
+    const auto run_all = [](std::vector<ServoThread*> servos) {
+        ServoTurns turns(std::move(servos));
+        turns.start();
+        turns.wait();
+    };
     const auto scripted = [&](uint64_t name, uint64_t ticks) {
         return std::make_unique<ScriptedDevice>([&order, name, ticks](uint64_t tick, DevicePose& pose) {
             order.push_back(name);
@@ -147,15 +152,17 @@ TEST_CASE("hands that take turns end each in its own time, and all on request")
     ServoOptions endless;
     endless.clock = ServoClock::virtual_time;
     ServoThread first(scene, scripted(1, 3), endless), second(scene, scripted(2, 1), endless);
-    {
-        ServoTurns turns({&first, &second});
-        turns.start();
-        turns.wait();
-    }
+    run_all({&first, &second});
     CHECK(order == std::vector<uint64_t>{1, 2, 1, 2, 1, 1});
     CHECK(first.wait().ticks == 3);
     CHECK(second.wait().ticks == 1);
     CHECK_FALSE(first.running());
+
+    order.clear();
+    ServoThread fifth(scene, scripted(5, 1), endless), sixth(scene, scripted(6, 0), endless),
+        seventh(scene, scripted(7, 2), endless);
+    run_all({&fifth, &sixth, &seventh});
+    CHECK(order == std::vector<uint64_t>{5, 6, 7, 5, 7, 7});
 
     ServoThread third(scene, scripted(3, ~uint64_t{0}), endless), fourth(scene, scripted(4, ~uint64_t{0}), endless);
     ServoTurns turns({&third, &fourth});

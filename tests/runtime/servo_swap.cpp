@@ -153,6 +153,21 @@ TEST_CASE("friction holds where it held, and a moving object moves on")
     }
 }
 
+TEST_CASE("an object that slept while the hand went round it is met from where the hand is")
+{
+    const auto scene = shared(plane_scene());
+    Stage stage(scene);
+    for (int i = 0; i <= 3000; ++i) { // from above the plane of 0.1 m to below it, far outside
+        const double t = 3.14159265358979 * i / 3000;
+        stage.tick(at(0.3 * std::sin(t), 0, 0.3 * std::cos(t)));
+    }
+    REQUIRE(stage.renderer->skipped().objects > 2900);
+    stage.slot.publish(shared(same_as(*scene)));
+    for (int i = 0; i < 10; ++i) CHECK(stage.tick(at(0, 0, -0.3)).contacts == 0);
+    for (int i = 0; i < 100; ++i) stage.tick(at(0, 0, -0.3 + 0.003 * i));
+    CHECK(stage.tick(at(0, 0, 1e-3)).contacts == 1); // from below
+}
+
 TEST_CASE("a scene that jumps waits for a small force where it says so, and one that does not jump does not")
 {
     Scene first = plane_scene();
