@@ -71,17 +71,18 @@ private:
                glm::normalize(surface_.vertices[corners[previous(sector.corner)]] - at);
     }
 
-    // Whether the direction, which is not on the fan's sheet, leads to the side that the fan sees.
+    // Whether the direction, which is not on the fan's sheet, leads to the side that the fan sees: of an open fan both
+    // sides are one space, around its borders.
     bool sees(size_t i, const glm::dvec3& direction) const
     {
         NearestInFan nearest;
         const bool closed = nearest.consider(surface_, start(i), direction);
-        if (nearest.way == 0) return !closed || glm::dot(surface_.fans[fans_[i]].normal, direction) > 0;
+        if (!closed) return true;
+        if (nearest.way == 0) return glm::dot(surface_.fans[fans_[i]].normal, direction) > 0;
         const Sector& sector = nearest.sector;
         glm::dvec3 outward = surface_.facet_normal(sector.face, sector.side);
         if (nearest.edge != NearestInFan::into_sector) {
             const SideEdge link = surface_.faces[sector.face].link[nearest.edge][sector.side];
-            if (link.face() == sector.face) return true; // a border: both sides are one space
             outward += surface_.facet_normal(link.face(), link.side());
         }
         return glm::dot(outward, direction) > 0;

@@ -303,6 +303,35 @@ TEST_CASE("sheets that cross in a vertex get one each, those that only touch the
           make_touching_cubes(Touching::corners).positions_m.size());
 }
 
+TEST_CASE("a border's corner that stands on a closed sheet: both its sides and the sheet bound one space")
+{
+    Mesh mesh; // a shallow roof with its top in the origin, and a flap that stands on the top, over one of its faces
+    mesh.positions_m = {{0, 0, 0},     {1, 0, -0.1},   {0, 1, -0.1},  {-1, 0, -0.1},
+                        {0, -1, -0.1}, {1, 0.2, 0.15}, {0.2, 1, 0.15}};
+    mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}, {0, 5, 6}};
+    const auto s = surface_of(mesh);
+    const auto corner = [&](uint32_t face) {
+        for (uint32_t i = 0; i < 3; ++i)
+            if (glm::length(s->vertex_m(face, i)) < 1e-9) return i;
+        return 3u;
+    };
+    const uint32_t flap = 4;
+    std::set<uint32_t> ring;
+    for (uint32_t fan = s->faces[flap].fan[corner(flap)][0]; ring.insert(fan).second;) fan = s->fans[fan].next;
+    CHECK(ring.contains(s->faces[flap].fan[corner(flap)][1]));
+    CHECK(ring.contains(s->faces[0].fan[corner(0)][0])); // the roof from above
+    CHECK_FALSE(ring.contains(s->faces[0].fan[corner(0)][1]));
+
+    // What slides down on the flap to its corner is held by the roof there.
+    PointContact contact(s);
+    contact.update({0.3, 0.3, 0.5});
+    for (int i = 0; i <= 300; ++i) contact.update({0.3 - 0.001 * i, 0.3 - 0.001 * i, 0.01 - 0.0001 * i});
+    REQUIRE(contact.contact().touching);
+    for (int i = 1; i <= 20; ++i) contact.update({-0.001 * i, -0.001 * i, -0.02 - 0.01 * i});
+    CHECK(contact.contact().touching);
+    CHECK(std::abs(contact.contact().proxy_m.z) < 0.1);
+}
+
 TEST_CASE("faces that are cut where cracks close keep their smoothing group")
 {
     Mesh mesh; // rows of triangles between whole numbers of y, with T-junctions between them
