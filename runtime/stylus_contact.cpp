@@ -35,6 +35,9 @@ constexpr double beyond = 16, past_the_end = 0.05;
 // How often the directions of contacts follow the shaft that they turn.
 constexpr int turns_max = 48;
 
+// For so long a shaft may fall behind its ends, after a jump around things or where it is jammed; then it is let go.
+constexpr uint32_t patience_ticks = 64;
+
 // What a way that was blocked by nothing new is cut to.
 constexpr double shorter = 0.25;
 
@@ -157,6 +160,13 @@ Shaft StylusContact::within(const glm::dvec3& tip, const glm::dvec3& tail) const
     return {at(begin_), at(end_)};
 }
 
+// The whole stylus of which a part is in the workspace.
+Shaft StylusContact::extended(const Shaft& part) const noexcept
+{
+    const double share = end_ - begin_;
+    return {begin_ == 0 ? part.tip : part.at(-begin_ / share), end_ == 1 ? part.tail : part.at((1 - begin_) / share)};
+}
+
 // Where the ends that are tracked want the shaft to be.
 Shaft StylusContact::goal() const noexcept
 {
@@ -179,6 +189,7 @@ void StylusContact::start(const glm::dvec3& tip_m, const Friction& friction) noe
     aim_ = reached_ = hand_;
     side_count_ = 0;
     astray_ = false;
+    stuck_ticks_ = 0;
     shaft_ = goal();
     tracked_ = first && !crosses;
     if (!tracked_)
@@ -276,10 +287,13 @@ void StylusContact::resolve(const Friction& friction) noexcept
             stride = std::min(1.0, 2 * stride);
         } else if (side_count_ == known) {
             stride *= shorter;
+            reached_ = extended(shaft_);
         }
         let_go_of_ended();
     }
     counters_.walks_cut += stopped;
+    stuck_ticks_ = stopped ? stuck_ticks_ + 1 : 0;
+    if (stuck_ticks_ == patience_ticks) tracked_ = false;
     tip_.proxy_.sliding = tip_slides;
     tail_.proxy_.sliding = tail_slides;
     tip_.describe();

@@ -13,7 +13,8 @@
 // what it met becomes a contact. Contacts that pull are none; what slides off the end of an edge meets the next.
 //
 // A stylus that is put down across the surface, or comes from beyond the workspace of the lattice with its whole
-// length, is held by its tip alone until it crosses nothing.
+// length, is held by its tip alone until it crosses nothing; so is one of which the shaft could not follow for 64 ticks
+// on end.
 //
 // One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
 // sequence of poses. Everything is in the object's space, metres. Friction holds the ends; the shaft slides freely.
@@ -64,7 +65,7 @@ public:
 
 private:
     static constexpr uint32_t sides_max = 4;
-    static constexpr uint32_t rounds_max = 24, sweeps_max = 96;
+    static constexpr uint32_t rounds_max = 24, sweeps_max = 80;
 
     // A contact of the shaft with an edge.
     struct Side {
@@ -94,6 +95,7 @@ private:
 
     bool take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
     Shaft within(const glm::dvec3& tip, const glm::dvec3& tail) const noexcept;
+    Shaft extended(const Shaft& part) const noexcept;
     Shaft goal() const noexcept;
     void start(const glm::dvec3& tip_m, const Friction& friction) noexcept;
     bool pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
@@ -132,6 +134,7 @@ private:
     std::array<Contact, sides_max + 2> contacts_;
     uint32_t contact_count_ = 0;
     uint32_t sweeps_left_ = 0; // in this tick
+    uint32_t stuck_ticks_ = 0; // in a row
     CollisionCount collision_; // of the shaft
     ContactCounters counters_;
 };

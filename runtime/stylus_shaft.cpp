@@ -21,6 +21,9 @@ constexpr double at_the_end = 4096;
 // the end.
 constexpr double drawn_back[] = {64, 1024};
 
+// A sweep past so many triangles counts as another one.
+constexpr uint64_t per_sweep = 256;
+
 } // namespace
 
 const glm::dvec3& StylusContact::edge_end(uint32_t face, uint32_t edge, uint32_t which) const noexcept
@@ -110,7 +113,7 @@ bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstac
     obstacle.time = 1;
     obstacle.exact = false;
     ++collision_.sweeps;
-    if (sweeps_left_ > 0) --sweeps_left_;
+    const uint64_t tested = collision_.triangles_tested;
     tree_.for_each(SweptRegion(from.tip, from.tail, to.tip, to.tail, reach), [&](uint32_t f) {
         ++collision_.triangles_tested;
         const Face& face = s.faces[f];
@@ -126,6 +129,8 @@ bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstac
         }
         return true;
     });
+    const uint64_t cost = 1 + (collision_.triangles_tested - tested) / per_sweep;
+    sweeps_left_ -= static_cast<uint32_t>(std::min<uint64_t>(cost, sweeps_left_));
     if (met) return true;
 
     Crossing crossing;

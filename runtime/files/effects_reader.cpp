@@ -87,6 +87,10 @@ Region read_region(const toml::table& source, double rate_hz, FileMessages& mess
     table.number("edge_m", region.edge_m, Quantity::length, {0, 1000, true});
     if (table.has("edge_m") && shape && !ball && !box)
         messages.error(table.where("edge_m"), "`edge_m` is for a `shape` with a border, \"ball\" or \"box\"");
+    else if (smallest_m > 0 && region.edge_m > smallest_m)
+        messages.error(table.where("edge_m"), "`edge_m` must be at most " + shortest(smallest_m) +
+                                                  ", half of the region's smallest side: beyond that its effects are "
+                                                  "nowhere felt in full");
 
     table.number("damping_n_s_per_m", region.damping_n_s_per_m, Quantity::damping, dampings_n_s_per_m);
     if (const toml::table* vibration = table.table("vibration", vibration_example))

@@ -114,17 +114,28 @@ TEST_CASE("a pose that is not finite gives zero force and keeps the contact")
 
 TEST_CASE("a pose of absurd size is forgotten like one that is not finite")
 {
-    Scene scene = bare_scene(plane_mesh());
-    scene.objects[0].material.damping_n_s_per_m = 1;
-    Renderer renderer(shared(std::move(scene)));
-    for (int i = 0; i < 200; ++i) renderer.tick(at(0.001, 0.002, 1e-4 - i * 5e-6));
-    const glm::dvec3 before = renderer.tick(at(0.001, 0.002, -1e-3)).force_n;
-    REQUIRE(before.z > 0.5);
-    renderer.tick(at(0.001, 0.002, std::numeric_limits<double>::max())); // its speed overflows
-    TickResult after;
-    for (int i = 0; i < 1000; ++i) after = renderer.tick(at(0.001, 0.002, i < 100 ? 1e-3 : -1e-3));
-    CHECK(after.faults == 0);
-    CHECK(after.force_n.z > 0.5);
+    constexpr double most = std::numeric_limits<double>::max();
+    for (const ProbeKind probe : {ProbeKind::point, ProbeKind::sphere, ProbeKind::stylus})
+        for (const glm::dvec3 tip : {glm::dvec3(0.001, 0.002, most), glm::dvec3(-most, most, 1e300)})
+            for (const glm::dvec3 tail : {tip, glm::dvec3(0, 0, 0.1), glm::dvec3(most)}) {
+                Scene scene = bare_scene(plane_mesh());
+                scene.objects[0].material.damping_n_s_per_m = 1;
+                scene.probe = {probe, 0.1, probe == ProbeKind::sphere ? 2e-3 : 0};
+                const double radius_m = scene.probe.radius_m;
+                Renderer renderer(shared(std::move(scene)));
+                const auto hand = [&](double z) {
+                    return DevicePose{{0.001, 0.002, z + radius_m}, {0.001, 0.002, z + 0.1}};
+                };
+                for (int i = 0; i < 200; ++i) renderer.tick(hand(1e-4 - i * 5e-6));
+                REQUIRE(renderer.tick(hand(-1e-3)).force_n.z > 0.5);
+                renderer.tick({tip, tail}); // its speed overflows
+                renderer.tick({glm::dvec3(0.001, 0.002, 0.1), tail});
+                TickResult after;
+                for (int i = 0; i < 1000; ++i) after = renderer.tick(hand(i < 100 ? 1e-3 : -1e-3));
+                CAPTURE(int(probe), tip.x, tail.z);
+                CHECK(after.faults == 0);
+                CHECK(after.force_n.z > 0.5);
+            }
 }
 
 TEST_CASE("a texture that breaks its promises stays finite, below its bound, and is told on")

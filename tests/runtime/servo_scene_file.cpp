@@ -662,6 +662,9 @@ damping_n_s_per_m = 0.5
          "scene.toml:5:12: error: `radius_m` is for `shape = \"ball\"` alone\n"},
         {region + "shape = \"space\"\nedge_m = 1\n",
          "5:10: error: `edge_m` is for a `shape` with a border, \"ball\" or \"box\"\n"},
+        {region + "shape = \"box\"\nsides_m = [1, 0.25, 1]\nedge_m = \"13cm\"\n",
+         "6:10: error: `edge_m` must be at most 0.125, half of the region's smallest side: beyond that its effects are "
+         "nowhere felt in full\n"},
         {region + "shape = \"space\"\ndamping = 1\n",
          "5:1: error: unknown key `damping` in [[region]]: did you mean `damping_n_s_per_m`?\n"},
     };
