@@ -1,0 +1,146 @@
+// What is said about scenes that are wrong.
+#include "tests/runtime/scene_folder.h"
+
+#include <string>
+#include <string_view>
+
+using namespace haptel;
+using namespace haptel::runtime;
+using namespace haptel::tests;
+using namespace std::string_view_literals;
+
+TEST_CASE("what is wrong with a scene is said where it is, all at once")
+{
+    struct Case {
+        const char* toml;
+        const char* said;
+    };
+    const Case cases[] = {
+        {"",
+         "scene.toml:1:1: error: a scene needs something to touch: add an `[[object]]` with a `mesh` or a `shape`\n"},
+        {"[[object]\nshape = 1", nullptr},
+        {"[[object]]\nshape = \"plane\"\nstifness_n_per_m = 3\n",
+         "scene.toml:3:1: error: unknown key `stifness_n_per_m` in [[object]]: did you mean `stiffness_n_per_m`?\n"},
+        {"[[object]]\nshape = \"plane\"\nstiffness = 3\n",
+         "scene.toml:3:1: error: unknown key `stiffness` in [[object]]: did you mean `stiffness_n_per_m`?\n"},
+        {"[servo]\nrate = 3\nqqqqqqqq = 1\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:1: error: unknown key `rate` in [servo]: did you mean `rate_hz`?\n"
+         "scene.toml:3:1: error: unknown key `qqqqqqqq` in [servo]: it may hold rate_hz, force_model, lateral_depth_m, "
+         "force_limit_n, v_max_m_per_s, force_rise_s, wait_for_small_force_n\n"},
+        {"[[objects]]\nshape = \"plane\"\n",
+         "scene.toml:1:1: error: a scene needs something to touch: add an `[[object]]` with a `mesh` or a `shape`\n"
+         "scene.toml:1:3: error: unknown key `objects`: did you mean `object`?\n"},
+        {"[object]\nshape = \"plane\"\n",
+         "scene.toml:1:1: error: expected `[[object]]` in double brackets: a scene may hold several objects\n"},
+        {"probe = 3\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:1:9: error: expected a table: write `[probe]` on a line of its own, its keys below\n"},
+        {"[probe]\nkind = \"ball\"\nradius_m = 0.01\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:8: error: expected \"point\", \"sphere\" or \"stylus\" for `kind`, found \"ball\"\n"
+         "scene.toml:3:12: error: `radius_m` is for `kind = \"sphere\"` alone: write 0\n"},
+        {"[probe]\nkind = \"sphere\"\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:8: error: a sphere needs a radius: write `radius_m = 0.005`, or `kind = \"point\"`\n"},
+        {"[probe]\nkind = \"sphere\"\nradius_m = 0.2\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:5:9: error: the probe's `radius_m` is larger than `plane`: at most the largest side of its box\n"},
+        {"[servo]\nforce_model = \"ho89\"\nrate_hz = 0\nforce_limit_n = -1\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:15: error: expected \"displaced\", \"paper\", \"paper_unit\", \"ho99\" or \"lateral\" for "
+         "`force_model`, found \"ho89\"\n"
+         "scene.toml:3:11: error: `rate_hz` must be from 10 to 100000, found 0\n"
+         "scene.toml:4:17: error: `force_limit_n` must be above 0 up to 100, found -1\n"},
+        {"[[object]]\nshape = \"plane\"\nsize_m = \"15kg\"\n",
+         "scene.toml:3:10: error: expected a length in metres, such as 0.15 or \"15cm\" for `size_m`, found \"15kg\" "
+         "(units that fit: m, cm, mm, um, nm)\n"},
+        {"[[object]]\nshape = \"plane\"\nsize_m = nan\nstiffness_n_per_m = inf\n",
+         "scene.toml:3:10: error: `size_m` must be above 0 up to 1000, found nan\n"
+         "scene.toml:4:21: error: `stiffness_n_per_m` must be above 0 up to 1000000, found inf\n"},
+        {"[[object]]\nshape = \"plane\"\nswing_m = [0, 0, 0.01]\n",
+         "scene.toml:3:11: error: an object swings by `swing_m = [x, y, z]` at `swing_hz`: write both\n"},
+        {"[[object]]\nshape = \"plane\"\nposition_m = [0, 1]\nrotation_deg = 3\n",
+         "scene.toml:3:14: error: expected three numbers, such as [0, 0, 0], for `position_m`, found a list of 2\n"
+         "scene.toml:4:16: error: expected three numbers, such as [0, 0, 0], for `rotation_deg`, found 3\n"},
+        {"[[object]]\nshape = \"cube\"\n", "scene.toml:2:9: error: expected \"plane\", \"box\", \"sphere\", "
+                                           "\"icosphere\" or \"torus\" for `shape`, found "
+                                           "\"cube\"\n"},
+        {"[[object]]\nsize_m = 1\n",
+         "scene.toml:1:1: error: an object needs a `mesh = \"FILE\"` or a `shape`: \"plane\", \"box\", \"sphere\", "
+         "\"icosphere\" or \"torus\"\n"},
+        {"[[object]]\nshape = \"plane\"\nmesh = \"triangle.obj\"\n",
+         "scene.toml:1:1: error: an object has either a `mesh` or a `shape`, not both\n"},
+        {"[[object]]\nshape = \"plane\"\nstatic_friction = 0.1\ndynamic_friction = 0.5\n",
+         "scene.toml:4:20: error: `dynamic_friction` must not exceed `static_friction`: a surface that slides harder "
+         "than it sticks chatters\n"},
+        {"[[object]]\nshape = \"plane\"\nparameters = { a = 1 }\n",
+         "scene.toml:3:14: error: `parameters` belong to a `texture`, but this object has none\n"},
+        {"[[object]]\nshape = \"plane\"\ntexture = \"a.haptel:b\"\nparameters = { a = [1] }\n",
+         "scene.toml:4:20: error: expected a number, true, false or text for parameter `a`, found a list\n"},
+        {"[[object]]\nshape = \"plane\"\ntexture = \"rock.haptel\"\n",
+         "scene.toml:3:11: error: expected a file, a colon and the name of a texture in it, such as "
+         "\"rock.haptel:rock\", found \"rock.haptel\"\n"},
+        {"[[object]]\nmesh = \"bunny.obj\"\n", nullptr},
+        {"[[object]]\nmesh = \"empty.obj\"\n", "scene.toml:2:8: error: mesh `empty.obj`: the file is empty\n"},
+        {"[[object]]\nmesh = \"points.obj\"\n",
+         "scene.toml:2:8: error: mesh `points.obj`: the file holds no triangle\n"},
+        {"[[object]]\nmesh = \"nan.obj\"\n",
+         "scene.toml:2:8: error: mesh `nan.obj`: the mesh has no triangle to touch: "
+         "dropped triangles: 1 with a coordinate that is not finite (of 1)\n"},
+        {"[[object]]\nmesh = \"beyond.obj\"\n",
+         "scene.toml:2:8: error: mesh `beyond.obj`: the file could not be read: OBJ: vertex index out of range\n"},
+        {"[[object]]\nmesh = \"beyond.ply\"\n",
+         "scene.toml:2:8: warning: mesh `beyond.ply`: dropped triangles: 1 with a vertex index that does not exist (of "
+         "2)\n"
+         "scene.toml:2:8: note: mesh `beyond.ply`: open mesh: 3 border edges, past which a hand gets behind the "
+         "surface\n"},
+        {"[[object]]\nmesh = \"beyond.off\"\n",
+         "scene.toml:2:8: error: mesh `beyond.off`: the file could not be read: OFF: Vertex index is out of range\n"},
+        {"[[object]]\nmesh = \"garbage.obj\"\n", nullptr},
+        {"[[object]]\nmesh = \"note.txt\"\n",
+         "scene.toml:2:8: error: mesh `note.txt`: expected a mesh of type .obj, .ply, .stl, .off, .3ds, .dae, .gltf or "
+         ".glb, found .txt\n"},
+        {"[device]\nseed = -1\nstroke = \"zigzag\"\npress_n = true\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:8: error: expected a whole number from 0 on for `seed`, found -1\n"
+         "scene.toml:3:10: error: expected \"circles\", \"scan\", \"press\" or \"random\" for `stroke`, found "
+         "\"zigzag\"\n"
+         "scene.toml:4:11: error: expected a force in newtons, such as 7 or \"500mN\" for `press_n`, found true\n"},
+    };
+    for (const Case& bad : cases) {
+        CAPTURE(bad.toml);
+        const std::string said = diagnostics_of(bad.toml);
+        if (bad.said)
+            CHECK(said == bad.said);
+        else
+            CHECK(said.find("scene.toml:") == 0);
+    }
+}
+
+TEST_CASE("a scene that is no text is reported, not crashed on")
+{
+    CHECK(diagnostics_of("\0\1\2\xff\xfe\xfd"sv).starts_with("scene.toml:1:"));
+    CHECK(diagnostics_of(std::string(20000, '[')).starts_with("scene.toml:1:"));
+    CHECK(diagnostics_of("a = " + std::string(20000, '[')).starts_with("scene.toml:1:"));
+    const LoadedScene missing = load_scene("/nowhere/at/all.toml", resolve_flat, open_scripted);
+    CHECK_FALSE(missing.scene);
+    CHECK(missing.diagnostics == "/nowhere/at/all.toml:1:1: error: the scene could not be read: is the path right?\n");
+    const LoadedScene folder = load_scene(std::filesystem::temp_directory_path(), resolve_flat, open_scripted);
+    CHECK_FALSE(folder.scene);
+    CHECK(folder.diagnostics.ends_with(":1:1: error: this is a folder: name the scene file in it\n"));
+}
+
+TEST_CASE("what textures and devices say reaches the user")
+{
+    const char* toml = "[device]\nname = \"falcon\"\n[[object]]\nshape = \"plane\"\ntexture = \"a.haptel:b\"\n";
+    CHECK(diagnostics_of(toml, [](const TextureRequest&) {
+              return TextureResult{std::nullopt, "a.haptel:3:4: error: what?"};
+          }) == "scene.toml:5:11: error: texture `a.haptel:b` cannot be used\na.haptel:3:4: error: what?\n");
+    CHECK(diagnostics_of(toml,
+                         [](const TextureRequest&) {
+                             TextureResult result{flat_texture(0), ""};
+                             result.binding->facts.height_max_m = INFINITY;
+                             return result;
+                         })
+              .starts_with("scene.toml:5:11: error: texture `a.haptel:b` cannot be used: the range of the texture's "
+                           "height is not"));
+    CHECK(diagnostics_of(toml, resolve_flat, [](const DeviceRequest&) {
+              return DeviceResult{nullptr, "not plugged in"};
+          }) == "scene.toml:1:1: error: device `falcon`: not plugged in\n");
+    CHECK(diagnostics_of(toml, [](const TextureRequest&) -> TextureResult { throw std::runtime_error("oops"); }) ==
+          "scene.toml:1:1: error: the scene could not be loaded: oops\n");
+}

@@ -1,0 +1,143 @@
+// Devices of scenes, what they are told of their objects, and scenes that are loaded again.
+#include "tests/runtime/scene_folder.h"
+
+#include <string>
+#include <string_view>
+
+using namespace haptel;
+using namespace haptel::runtime;
+using namespace haptel::tests;
+
+TEST_CASE("every device of a scene has its probe and its workspace, and is told of the scene as its hand sees it")
+{
+    const Folder folder;
+    std::vector<DeviceRequest> requests;
+    std::optional<TextureRequest> texture;
+    const LoadedScene loaded = load(
+        folder, R"(
+[probe]
+kind = "stylus"
+length_m = 0.3
+[workspace]
+scale = 2
+position_m = [0.1, 0, 0]
+[[device]]
+seed = 4
+[[device]]
+stroke = "press"
+workspace = { scale = 4, rotation_deg = [0, 0, 90] }
+[device.probe]
+kind = "sphere"
+radius_m = 0.02
+[[object]]
+shape = "box"
+size_m = 0.4
+position_m = [0.3, 0, 0]
+texture = "a.haptel:a"
+)",
+        [&](const TextureRequest& request) {
+            texture = request;
+            return resolve_flat(request);
+        },
+        [&](const DeviceRequest& request) {
+            requests.push_back(request);
+            return open_scripted(request);
+        });
+    REQUIRE(loaded.hands.size() == 2);
+    const HandSettings &first = loaded.hands[0].settings, &second = loaded.hands[1].settings;
+    CHECK_FALSE(first.probe);
+    CHECK(first.workspace.scale == 2);
+    CHECK(second.probe->kind == ProbeKind::sphere);
+    CHECK(second.probe->radius_m == 0.02);
+    CHECK(second.workspace.scale == 4);
+    CHECK(second.workspace.placement.position_m == glm::dvec3(0));
+    CHECK(texture->footprint_m == 2 * 4 * 0.3 / 1000); // of the hand that goes fastest
+
+    REQUIRE(requests.size() == 2);
+    CHECK(requests[0].seed == 4);
+    CHECK(requests[1].stroke == "press");
+    CHECK(requests[0].stylus_length_m == 0.15);
+    CHECK(requests[1].stylus_length_m == 0);
+    CHECK(glm::distance(requests[0].box_minimum_m, glm::dvec3(0, -0.1, -0.1)) < 1e-9);
+    CHECK(glm::distance(requests[0].box_maximum_m, glm::dvec3(0.2, 0.1, 0.1)) < 1e-9);
+    // x of the scene is -y of the second hand
+    CHECK(glm::distance(requests[1].box_minimum_m, glm::dvec3(-0.05, -0.125, -0.05)) < 1e-9);
+    CHECK(glm::distance(requests[1].box_maximum_m, glm::dvec3(0.05, -0.025, 0.05)) < 1e-9);
+    CHECK(glm::distance(requests[0].surface_below(0.1, 0.02)->point_m, glm::dvec3(0.1, 0.02, 0.1)) < 1e-9);
+    const auto hit = requests[1].surface_below(0.01, -0.1);
+    CHECK(glm::distance(hit->point_m, glm::dvec3(0.01, -0.1, 0.055)) < 1e-9); // its ball lies there
+    CHECK(glm::distance(hit->facet_normal, glm::dvec3(0, 0, 1)) < 1e-9);
+    CHECK_FALSE(requests[1].surface_below(0.01, 0));
+
+    const std::string object = "[[object]]\nshape = \"plane\"\n";
+    CHECK(diagnostics_of("[workspace]\nscale = 0\nscal = 1\n" + object) ==
+          "scene.toml:2:9: error: `scale` must be from 0.001 to 1000, found 0\n"
+          "scene.toml:3:1: error: unknown key `scal` in [workspace]: did you mean `scale`?\n");
+    CHECK(diagnostics_of("[[device]]\n[[device]]\nworkspace = 3\nprobe = { kin = \"point\" }\n" + object) ==
+          "scene.toml:3:13: error: expected a table, such as `workspace = { scale = 2 }`, found 3\n"
+          "scene.toml:4:11: error: unknown key `kin` in `probe`: did you mean `kind`?\n");
+    CHECK(diagnostics_of("device = [1]\n" + object) ==
+          "scene.toml:1:10: error: expected a table: write `[device]` on a line of its own, its keys below\n");
+    int opened = 0;
+    CHECK(diagnostics_of("[[device]]\n[[device]]\nname = \"other\"\n" + object, resolve_flat,
+                         [&](const DeviceRequest& request) {
+                             if (++opened == 2) return DeviceResult{nullptr, "is not there"};
+                             return open_scripted(request);
+                         }) == "scene.toml:2:1: error: device `other`: is not there\n");
+}
+
+TEST_CASE("the surface below a point is the first hit from above, wherever the object is put")
+{
+    const Folder folder;
+    std::optional<DeviceRequest> device;
+    load(folder,
+         "[[object]]\nshape = \"icosphere\"\nsize_m = 0.2\nposition_m = [0.5, 0, 1]\nrotation_deg = [30, 40, 50]\n",
+         resolve_flat, [&](const DeviceRequest& request) {
+             device = request;
+             return open_scripted(request);
+         });
+    REQUIRE(device);
+    const auto hit = device->surface_below(0.53, 0.04);
+    REQUIRE(hit);
+    const double expected_z = 1 + std::sqrt(0.1 * 0.1 - 0.03 * 0.03 - 0.04 * 0.04);
+    CHECK(std::abs(hit->point_m.x - 0.53) < 1e-9);
+    CHECK(std::abs(hit->point_m.y - 0.04) < 1e-9);
+    CHECK(std::abs(hit->point_m.z - expected_z) < 2e-4); // facets
+    CHECK(glm::dot(hit->facet_normal, glm::dvec3(0.3, 0.4, std::sqrt(0.75))) > 0.998);
+    CHECK_FALSE(device->surface_below(0.61, 0.0).has_value());
+}
+
+TEST_CASE("a scene that is loaded again has the surfaces that did not change, and those alone")
+{
+    const Folder folder;
+    folder.write("triangle.obj", triangle_obj);
+    const auto file = folder.write("scene.toml", "[[object]]\nmesh = \"triangle.obj\"\nsize_m = 0.1\n"
+                                                 "[[object]]\nshape = \"box\"\n[[object]]\nshape = \"box\"\n");
+    SurfaceCache surfaces;
+    const auto load_again = [&] { return load_scene(file, resolve_flat, open_scripted, &surfaces); };
+    LoadedScene first = load_again();
+    CHECK(first.meshes == std::vector<std::filesystem::path>{folder.path() / "triangle.obj"});
+    const LoadedScene second = load_again();
+    REQUIRE(second.scene);
+    CHECK(second.scene != first.scene);
+    for (std::size_t i = 0; i < 3; ++i) CHECK(second.scene->objects[i].surface == first.scene->objects[i].surface);
+
+    folder.write("triangle.obj", std::string(triangle_obj) + "v 4 3 0\nf 2 3 4\n");
+    const LoadedScene third = load_again();
+    CHECK(third.scene->objects[0].surface != first.scene->objects[0].surface);
+    CHECK(third.scene->objects[0].surface->faces.size() == 2);
+    CHECK(third.scene->objects[1].surface == first.scene->objects[1].surface);
+    folder.write("scene.toml", "[[object]]\nmesh = \"triangle.obj\"\nsize_m = 0.2\n[[object]]\nshape = \"box\"\n"
+                               "crease_deg = 40\n"); // the default, but written: smoothing groups do not count
+    const LoadedScene fourth = load_again();
+    CHECK(fourth.scene->objects[0].surface != third.scene->objects[0].surface);
+    CHECK(fourth.scene->objects[1].surface != third.scene->objects[1].surface);
+
+    // It holds nothing: what nobody else holds is gone.
+    const std::weak_ptr<const Surface> gone = first.scene->objects[0].surface;
+    first = {};
+    CHECK_FALSE(gone.expired()); // `second` has it
+    folder.write("triangle.obj", "nothing");
+    CHECK_FALSE(load_again().scene);
+    CHECK(load_again().meshes.size() == 1);
+}
