@@ -47,6 +47,11 @@ inline runtime::DevicePose at(double x, double y, double z)
     return {{x, y, z}, {x, y, z}};
 }
 
+inline double degrees_between(const glm::dvec3& a, const glm::dvec3& b)
+{
+    return glm::degrees(std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)));
+}
+
 // A device whose hand follows a function of the tick; what is written is kept for the test to see.
 class ScriptedDevice : public runtime::HapticDevice {
 public:
