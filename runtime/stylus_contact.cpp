@@ -25,9 +25,6 @@ constexpr double least_length = 4096;
 // Within which the ends are where they should be: two units, and this share of how far the hand is away.
 constexpr double settled = 2, settled_share = 1e-10;
 
-// Below this many units the direction of a push is rounding.
-constexpr double direction_needs = 64;
-
 // A contact that slides off its edge does so by this many units and this share of its way, so that it is not found
 // there again, wherever the way bends.
 constexpr double beyond = 16, past_the_end = 0.05;
@@ -37,6 +34,7 @@ constexpr int turns_max = 48;
 
 // For so long a shaft may fall behind its ends, after a jump around things or where it is jammed; then it is let go.
 constexpr uint32_t patience_ticks = 64;
+constexpr double far_behind = 0x1p20; // lattice units: a millionth of the object
 
 // What a way that was blocked by nothing new is cut to.
 constexpr double shorter = 0.25;
@@ -292,7 +290,7 @@ void StylusContact::resolve(const Friction& friction) noexcept
         let_go_of_ended();
     }
     counters_.walks_cut += stopped;
-    stuck_ticks_ = stopped ? stuck_ticks_ + 1 : 0;
+    stuck_ticks_ = stopped && farther(shaft_, goal()) > far_behind ? stuck_ticks_ + 1 : 0;
     if (stuck_ticks_ == patience_ticks) tracked_ = false;
     tip_.proxy_.sliding = tip_slides;
     tail_.proxy_.sliding = tail_slides;
@@ -308,15 +306,13 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim) noexcept
 {
     std::array<ShaftContact, shaft_contacts_max> contacts;
     uint32_t count = side_count_;
-    const auto add_end = [&](const PointContact& end, const glm::dvec3& aimed, double share) {
+    const auto add_end = [&](const PointContact& end, double share) {
         if (!touches(end.proxy_)) return;
-        const glm::dvec3 push = end.proxy_.at - aimed;
-        const double length = glm::length(push);
-        const glm::dvec3 normal = length > direction_needs ? push / length : end.contact_.normal;
+        const glm::dvec3& normal = end.contact_.normal;
         contacts[count++] = {normal, share, glm::dot(normal, end.proxy_.at)};
     };
-    add_end(tip_, aim_.tip, 0);
-    add_end(tail_, aim_.tail, 1);
+    add_end(tip_, 0);
+    add_end(tail_, 1);
 
     Shaft at = shaft_;
     for (int turn = 0; turn < turns_max; ++turn) {
