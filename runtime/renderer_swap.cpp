@@ -69,6 +69,7 @@ void Renderer::take_over(Renderer& before) noexcept
     sent_n_m_ = before.sent_n_m_;
     computed_n_ = before.computed_n_;
     computed_n_m_ = before.computed_n_m_;
+    felt_ = before.felt_;
     swapped_ = true;
     for (Touched& touched : objects_) touched.texture_period = texture_period_;
     if (!last_pose_) return;

@@ -193,6 +193,22 @@ TEST_CASE("a scene that jumps waits for a small force where it says so, and one 
     CHECK(std::abs(stage.press(-1e-3, 1).force_n.z - 4) < 1e-8);
 }
 
+TEST_CASE("a scene that was never ticked hands on where the hand touched")
+{
+    // As while a device is not ready: two other planes, one after the other, in the place of the one that is pressed.
+    Scene second = plane_scene(), third = plane_scene();
+    second.objects[0].surface = build_surface(plane_mesh(0.1, 7)).surface;
+    third.objects[0].surface = build_surface(plane_mesh(0.1, 5)).surface;
+    Stage stage(shared(plane_scene()));
+    stage.press(1e-3, 1);
+    stage.press(-1e-3, 200);
+    for (const Scene& next : {second, third}) {
+        stage.slot.publish(shared(same_as(next)));
+        REQUIRE(stage.slot.take(stage.renderer));
+    }
+    CHECK(std::abs(stage.press(-1e-3, 200).force_n.z - 1) < 1e-8);
+}
+
 TEST_CASE("a hand without a force on it is left alone by the fade")
 {
     const auto scene = shared(plane_scene());
