@@ -344,6 +344,28 @@ TEST_CASE("a stylus is held through poses that are no numbers, and far away it i
     CHECK(near(wrench(large, long_hand), pulled(long_hand, on_edge(long_hand, corner, {0, 1, 0})), 1e-12));
 }
 
+TEST_CASE("a shaft that jumps past a thin pole in one tick is caught by it, at any speed")
+{
+    Mesh pole = make_box({1e-4, 1e-4, 1}); // metres: as thin as a hair
+    const auto surface = surface_of(pole);
+    for (const double jump_m : {1e-3, 0.02, 0.2})
+        for (const double turn : {0.0, 0.4}) {
+            StylusContact stylus(surface);
+            const Pose before{{-0.3, -0.5 * jump_m, 0.01}, {0.3, -0.5 * jump_m, 0.02}};
+            const Pose after{{-0.3, 0.5 * jump_m, 0.01}, {0.3, (0.5 + turn) * jump_m, 0.02}};
+            stylus.update(before.tip, before.tail);
+            for (int i = 0; i < 10; ++i) {
+                stylus.update(after.tip, after.tail);
+                CAPTURE(jump_m, turn, i);
+                REQUIRE(stylus.ideal());
+                const dvec3 tip = surface->lattice.metres(stylus.ideal()->tip),
+                            tail = surface->lattice.metres(stylus.ideal()->tail);
+                CHECK(tip.y + tip.x / (tip.x - tail.x) * (tail.y - tip.y) < 0); // passes it where it came from
+            }
+            CHECK(wrench(stylus, after).force.y < -0.8 * jump_m); // back, about twice half of the jump
+        }
+}
+
 TEST_CASE("the ideal stylus crosses no triangle, however wildly the hand moves")
 {
     struct Named {
