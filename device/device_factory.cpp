@@ -91,7 +91,10 @@ DeviceResult open_simulated(std::string_view variant, const DeviceRequest& reque
     if (!within(request.rate_hz, 1, 1e6)) return refused("a simulated device runs at 1 Hz to 1 MHz");
     if (!within(request.speed_m_per_s, 0, 10)) return refused("the speed of a stroke is 0 to 10 m/s");
     if (!within(request.press_n, 0, 100)) return refused("a simulated hand presses with 0 to 100 N");
-    if (!within(request.stylus_length_m, 0, 10)) return refused("a stylus is 0 to 10 m long");
+    if (!within(request.stylus_length_m, 0, 10))
+        return refused(fmt::format("a stylus is 0 to 10 m long in the hand's space, found {:g} m: its length over the "
+                                   "scale of the workspace",
+                                   request.stylus_length_m));
     if (!request.surface_below) return refused("a simulated hand needs a surface to explore");
 
     const glm::dvec2 low(request.box_minimum_m), high(request.box_maximum_m);

@@ -57,8 +57,12 @@ std::optional<Exploration> load(const ExploreOptions& options, ExploreTextures& 
     const auto devices = [&](runtime::DeviceRequest request) {
         const std::size_t hand = exploration.surfaces.size();
         exploration.surfaces.push_back(request.surface_below);
-        if (hand < options.devices.size()) request.name = options.devices[hand];
-        return device::open_device(request);
+        const bool replaced = hand < options.devices.size();
+        if (replaced) request.name = options.devices[hand];
+        runtime::DeviceResult opened = device::open_device(request);
+        if (replaced && !opened.device)
+            opened.error = fmt::format("`--device {}` in its place: {}", request.name, opened.error);
+        return opened;
     };
     exploration.loaded = runtime::load_scene(options.scene, textures.resolver(), devices, &surfaces);
     const runtime::LoadedScene& loaded = exploration.loaded;

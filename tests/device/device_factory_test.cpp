@@ -50,6 +50,13 @@ TEST_CASE("unknown names are answered with what was meant, or with what there is
     CHECK(error_of(request_on_plane(std::string(1'000'000, 'x'))).size() < 300);
 }
 
+TEST_CASE("a stylus that a workspace makes too long is told of by its length in the hand")
+{
+    DeviceRequest request = request_on_plane("simulated:premium");
+    request.stylus_length_m = 150;
+    CHECK(contains(error_of(request), "found 150 m: its length over the scale of the workspace"));
+}
+
 TEST_CASE("requests out of range are refused, not simulated")
 {
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();

@@ -196,6 +196,8 @@ TEST_CASE("two devices on one scene feel what each feels alone, and are reported
     const Ran many = run_command("explore " + folder.file("one.toml") + " --device simulated --device simulated");
     CHECK(many.code == 1);
     CHECK(contains(many.err, "--device is given 2 times, but the scene has one device"));
+    const Ran other = run_command("explore " + folder.file("one.toml") + " --device simulated:tuch");
+    CHECK(contains(other.err, "device `simulated:touch`: `--device simulated:tuch` in its place: unknown"));
     const Ran people = run_command("explore " + folder.file("both.toml") + " --seconds 0.1 --clock virtual");
     CHECK(contains(people.out, "both.toml with simulated:touch"));
     CHECK(contains(people.out, "both.toml with simulated:premium"));
