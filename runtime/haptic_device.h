@@ -47,6 +47,8 @@ public:
     // Force (N) and torque about the grip of a stylus (N m; ProbeSettings::grip_m) on the hand, world frame, held until
     // the next write.
     virtual DeviceStatus write(const glm::dvec3& force_n, const glm::dvec3& torque_n_m) noexcept = 0;
+    // Before write, of a gripper alone: how hard its fingers are to be pushed apart, N. For devices with such a motor.
+    virtual void write_grip(double /*grip_force_n*/) noexcept {}
     // Zero force, motors off. Safe to call at any time, from the destructor too.
     virtual void stop() noexcept = 0;
 };
@@ -65,7 +67,7 @@ struct DeviceRequest {
     double press_n = 1.0;
     uint64_t seed = 1;
     double rate_hz = 1000;
-    double stylus_length_m = 0;                    // 0: point probe
+    double stylus_length_m = 0;                    // or from finger to finger of a gripper; 0: point probe
     glm::dvec3 box_minimum_m{0}, box_maximum_m{0}; // of the object that the stroke explores, world frame
     // First hit from +z at (x, y), or nothing. Allocates nothing; may be called from read().
     std::function<std::optional<SurfaceHit>(double x_m, double y_m)> surface_below;

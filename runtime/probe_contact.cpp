@@ -6,13 +6,14 @@ namespace haptel::runtime {
 
 namespace {
 
-std::variant<PointContact, SphereContact, StylusContact>
+std::variant<PointContact, SphereContact, StylusContact, GripperContact>
 make(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, bool skips_free_space)
 {
     switch (probe.kind) {
     case ProbeKind::point: return PointContact(surface, skips_free_space);
     case ProbeKind::sphere: return SphereContact(surface, probe.radius_m);
     case ProbeKind::stylus: return StylusContact(surface, skips_free_space);
+    case ProbeKind::gripper: return GripperContact(surface, skips_free_space);
     }
     return PointContact(surface, skips_free_space);
 }
@@ -26,6 +27,7 @@ std::span<const Contact> touched(const Contact& contact)
 
 glm::dvec3 ProbeSettings::grip_of(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const
 {
+    if (kind == ProbeKind::gripper) return 0.5 * tip_m + 0.5 * tail_m;
     const glm::dvec3 along = tail_m - tip_m;
     const double length = glm::length(along);
     return !grip_m ? tail_m : length > 0 ? tip_m + *grip_m / length * along : tip_m;
@@ -41,6 +43,8 @@ std::span<const Contact> ProbeContact::update(const ProbePose& pose, const Frict
 {
     if (auto* point = std::get_if<PointContact>(&contact_)) return touched(point->update(pose.tip_m, friction));
     if (auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->update(pose.tip_m, friction);
+    if (auto* gripper = std::get_if<GripperContact>(&contact_))
+        return gripper->update(pose.tip_m, pose.tail_m, friction);
     auto& stylus = *std::get_if<StylusContact>(&contact_);
     stylus.update(pose.tip_m, pose.tail_m, friction);
     return stylus.contacts();
@@ -50,6 +54,7 @@ void ProbeContact::follow(const ProbePose& pose) noexcept
 {
     if (auto* point = std::get_if<PointContact>(&contact_)) return point->follow(pose.tip_m);
     if (auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->follow(pose.tip_m);
+    if (auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->follow(pose.tip_m, pose.tail_m);
     std::get_if<StylusContact>(&contact_)->follow(pose.tip_m, pose.tail_m);
 }
 
@@ -62,13 +67,17 @@ uint32_t ProbeContact::read_ahead() const noexcept
     };
     if (const auto* point = std::get_if<PointContact>(&contact_)) return around(*point);
     if (const auto* stylus = std::get_if<StylusContact>(&contact_)) return around(*stylus);
-    return 0;
+    uint32_t seen = 0;
+    if (const auto* gripper = std::get_if<GripperContact>(&contact_))
+        for (const Contact& at : gripper->contacts()) seen += runtime::read_ahead(gripper->surface(), at.face, at.side);
+    return seen;
 }
 
 double ProbeContact::gap_m(const ProbePose& pose) const noexcept
 {
     if (const auto* point = std::get_if<PointContact>(&contact_)) return point->gap_m(pose.tip_m);
     if (const auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->gap_m(pose.tip_m);
+    if (const auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->gap_m(pose.tip_m, pose.tail_m);
     return std::get_if<StylusContact>(&contact_)->gap_m(pose.tip_m, pose.tail_m);
 }
 
@@ -76,6 +85,7 @@ const ContactCounters& ProbeContact::counters() const noexcept
 {
     if (const auto* point = std::get_if<PointContact>(&contact_)) return point->counters();
     if (const auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->counters();
+    if (const auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->counters();
     return std::get_if<StylusContact>(&contact_)->counters();
 }
 

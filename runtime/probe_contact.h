@@ -2,6 +2,7 @@
 #pragma once
 
 #include "runtime/contact.h"
+#include "runtime/gripper_contact.h"
 #include "runtime/sphere_contact.h"
 #include "runtime/stylus_contact.h"
 
@@ -12,19 +13,22 @@
 
 namespace haptel::runtime {
 
-enum class ProbeKind : uint8_t { point, sphere, stylus };
+enum class ProbeKind : uint8_t { point, sphere, stylus, gripper };
 
 struct ProbeSettings {
     ProbeKind kind = ProbeKind::point;
-    double length_m = 0.15; // of the stylus, tip to tail
+    double length_m = 0.15; // of the stylus, tip to tail; of a simulated gripper, finger to finger
     double radius_m = 0;    // of the sphere, > 0
     // Of the stylus: from its tip to where the hand holds it, about which torque is told. Nothing: at the tail.
     std::optional<double> grip_m = {};
 
+    // A stylus or a gripper: where its tail is counts, and there is a torque.
+    bool has_tail() const { return kind == ProbeKind::stylus || kind == ProbeKind::gripper; }
+    // Where the hand holds it: a gripper in the middle between its fingers.
     glm::dvec3 grip_of(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const;
 };
 
-// Where the hand holds it: the centre of a sphere is its tip, only a stylus has a tail.
+// Where the hand holds it: the centre of a sphere is its tip; a stylus has a tail, and a gripper's is its other finger.
 struct ProbePose {
     glm::dvec3 tip_m{0}, tail_m{0};
 };
@@ -48,7 +52,7 @@ public:
     const ContactCounters& counters() const noexcept;
 
 private:
-    std::variant<PointContact, SphereContact, StylusContact> contact_;
+    std::variant<PointContact, SphereContact, StylusContact, GripperContact> contact_;
 };
 
 } // namespace haptel::runtime

@@ -103,9 +103,13 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         return result;
     }
     velocity_.update(pose.tip_m, periods);
-    const bool has_shaft = probe_.kind == ProbeKind::stylus;
-    if (has_shaft) tail_velocity_.update(pose.tail_m, periods);
-    const glm::dvec3 grip_m = result.grip_m = has_shaft ? probe_.grip_of(pose.tip_m, pose.tail_m) : pose.tip_m;
+    const bool has_tail = probe_.has_tail();
+    if (has_tail) tail_velocity_.update(pose.tail_m, periods);
+    const glm::dvec3 grip_m = result.grip_m = has_tail ? probe_.grip_of(pose.tip_m, pose.tail_m) : pose.tip_m;
+    const auto dot_along = [&](const glm::dvec3& force_n) { // from finger to finger
+        const glm::dvec3 along = pose.tail_m - pose.tip_m;
+        return along == glm::dvec3(0) ? 0.0 : glm::dot(force_n, glm::normalize(along));
+    };
     result.interrupted = std::exchange(interrupted_, false) || pose.interrupted;
     if (result.interrupted) {
         rise_period_ = period_;
@@ -152,9 +156,11 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         for (const Contact& contact : contacts) { // what presses most first, of a stylus its tip
             const ObjectForce force = force_of(touched, contact);
             result.unlimited_force_n += force.force_n;
-            if (has_shaft)
+            if (has_tail)
                 result.unlimited_torque_n_m +=
                     torque_about(grip_m, pose.tip_m + contact.along * (pose.tail_m - pose.tip_m), force.force_n);
+            if (probe_.kind == ProbeKind::gripper)
+                result.grip_force_n += (contact.along - 0.5) * dot_along(force.force_n);
             result.faults |= force.faults;
             textured = textured || force.textured;
             band_limited = band_limited || force.band_limited;
@@ -177,7 +183,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     if (effects_.act()) {
         const glm::dvec3 effects_n = effects_.force_n(); // once: its medium lives a tick
         result.unlimited_force_n += effects_n;
-        if (has_shaft) result.unlimited_torque_n_m += torque_about(grip_m, pose.tip_m, effects_n);
+        if (has_tail) result.unlimited_torque_n_m += torque_about(grip_m, pose.tip_m, effects_n);
     }
     send(result, std::max(glm::distance(pose.tip_m, grip_m), glm::distance(pose.tail_m, grip_m)));
     return result;
@@ -187,8 +193,10 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
 // push against each other may add up to a torque without a force: it is limited by what the largest force has there.
 void Renderer::send(TickResult& result, double lever_m) noexcept
 {
-    if (!finite(result.unlimited_force_n) || !finite(result.unlimited_torque_n_m)) {
+    if (!finite(result.unlimited_force_n) || !finite(result.unlimited_torque_n_m) ||
+        !std::isfinite(result.grip_force_n)) {
         result.unlimited_force_n = result.unlimited_torque_n_m = glm::dvec3(0);
+        result.grip_force_n = 0;
         result.faults |= fault_force_not_finite;
         interrupted_ = true;
     }
@@ -224,6 +232,7 @@ void Renderer::send(TickResult& result, double lever_m) noexcept
         if (gone == 1) left_n_ = left_n_m_ = glm::dvec3(0);
     }
     result.force_n = limited(force_n, force_limit_n_);
+    result.grip_force_n = std::clamp(risen * result.grip_force_n, -force_limit_n_, force_limit_n_);
     if (torque_n_m != glm::dvec3(0)) {
         const double length_n = glm::length(force_n);
         result.torque_n_m = length_n > force_limit_n_ ? force_limit_n_ / length_n * torque_n_m : torque_n_m;
@@ -292,8 +301,7 @@ std::span<const Contact> Renderer::update_contact(Touched& touched, const Device
     if (touched.object->motion) {
         move(touched);
         touched.velocity.update(touched.placement.to_object(pose.tip_m), periods);
-        if (probe_.kind == ProbeKind::stylus)
-            touched.tail_velocity.update(touched.placement.to_object(pose.tail_m), periods);
+        if (probe_.has_tail()) touched.tail_velocity.update(touched.placement.to_object(pose.tail_m), periods);
     }
     const Material& material = touched.object->material;
     const Friction friction{material.static_friction * touched.friction_share,

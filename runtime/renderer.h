@@ -43,6 +43,7 @@ struct TickResult {
     bool waiting = false;     // no force yet: the one computed is not small (ServoSettings::wait_for_small_force_n)
     glm::dvec3 force_n{0};    // on the hand, world frame, after rise and limits; finite and never above the limit
     glm::dvec3 torque_n_m{0}; // of a stylus about its grip, limited along with the force, and by its own lever
+    double grip_force_n = 0;  // of a gripper: how hard its fingers are pushed apart, after rise and limit
     glm::dvec3 unlimited_force_n{0}, unlimited_torque_n_m{0};
     glm::dvec3 grip_m{0};  // where the hand holds the probe: its tip, of a stylus as ProbeSettings says
     uint32_t contacts = 0; // objects touched

@@ -159,6 +159,7 @@ bool ServoThread::tick()
     DevicePose pose;
     const DeviceStatus read = device_->read(pose);
     if (read == DeviceStatus::not_ready) {
+        device_->write_grip(0);
         device_->write(glm::dvec3(0), glm::dvec3(0));
         interrupted_ = true;
         return true;
@@ -176,6 +177,7 @@ bool ServoThread::tick()
     const TickResult result = renderer_->tick(pose);
     const int64_t compute_ns = monotonic_ns() - start_ns;
 
+    device_->write_grip(result.grip_force_n);
     const DeviceStatus written = device_->write(result.force_n, result.torque_n_m);
     record(pose, result, static_cast<uint64_t>(compute_ns));
     renderer_->between_ticks();
@@ -233,6 +235,7 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
 
 void ServoThread::end(ServoState state, const char* reason)
 {
+    device_->write_grip(0);
     device_->write(glm::dvec3(0), glm::dvec3(0));
     report_.state = state;
     report_.stop_reason = reason;

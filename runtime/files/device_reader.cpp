@@ -48,7 +48,8 @@ ProbeSettings read_probe(const toml::table& source, const std::string& name, Fil
 {
     ProbeSettings probe;
     TableReader table(source, name, messages);
-    if (const auto kind = table.word("kind", {"point", "sphere", "stylus"})) probe.kind = static_cast<ProbeKind>(*kind);
+    if (const auto kind = table.word("kind", {"point", "sphere", "stylus", "gripper"}))
+        probe.kind = static_cast<ProbeKind>(*kind);
     table.number("length_m", probe.length_m, Quantity::length, {0, 10, true});
     table.number("radius_m", probe.radius_m, Quantity::length, {0, 10});
     if (double grip_m = probe.length_m; table.has("grip_m")) {
@@ -64,7 +65,8 @@ ProbeSettings read_probe(const toml::table& source, const std::string& name, Fil
         messages.error(table.where(table.has("radius_m") ? "radius_m" : "kind"),
                        "a sphere needs a radius: write `radius_m = 0.005`, or `kind = \"point\"`");
     if (probe.kind != ProbeKind::sphere && probe.radius_m > 0)
-        messages.error(table.where("radius_m"), "`radius_m` is for `kind = \"sphere\"` alone: write 0");
+        messages.error(table.where("radius_m"),
+                       "`radius_m` is for `kind = \"sphere\"` alone: write that, or leave `radius_m` out");
     table.report_unknown_keys();
     return probe;
 }

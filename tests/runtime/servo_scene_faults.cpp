@@ -35,8 +35,8 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
         {"probe = 3\n[[object]]\nshape = \"plane\"\n",
          "scene.toml:1:9: error: expected a table: write `[probe]` on a line of its own, its keys below\n"},
         {"[probe]\nkind = \"ball\"\nradius_m = 0.01\n[[object]]\nshape = \"plane\"\n",
-         "scene.toml:2:8: error: expected \"point\", \"sphere\" or \"stylus\" for `kind`, found \"ball\"\n"
-         "scene.toml:3:12: error: `radius_m` is for `kind = \"sphere\"` alone: write 0\n"},
+         "scene.toml:2:8: error: expected \"point\", \"sphere\", \"stylus\" or \"gripper\" for `kind`, found \"ball\"\n"
+         "scene.toml:3:12: error: `radius_m` is for `kind = \"sphere\"` alone: write that, or leave `radius_m` out\n"},
         {"[probe]\nkind = \"sphere\"\n[[object]]\nshape = \"plane\"\n",
          "scene.toml:2:8: error: a sphere needs a radius: write `radius_m = 0.005`, or `kind = \"point\"`\n"},
         {"[probe]\nkind = \"sphere\"\nradius_m = 0.2\n[[object]]\nshape = \"plane\"\n",
