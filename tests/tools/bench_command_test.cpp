@@ -133,6 +133,10 @@ TEST_CASE("bench scale: every axis from its first row on, for every probe, and w
     REQUIRE(json["builds"].size() == 6);
     for (const Json& row : json["builds"]) {
         CHECK(row["build_ms"].get<double>() > 0);
+#if defined(__SANITIZE_ADDRESS__) // whose memory is resident as it likes
+        continue;
+#endif
+        REQUIRE(row["bytes_per_triangle"].is_number());
         const double bytes = row["bytes_per_triangle"];
         CHECK((bytes > 150 && bytes < 1500)); // a face, its links and half a vertex take 150
     }
