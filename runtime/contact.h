@@ -44,7 +44,7 @@ struct Contact {
     // where they pierce each other.
     glm::dvec3 normal{0, 0, 1};
     double depth_m = 0;    // >= 0: how deep the hand is below the proxy along `normal`
-    double along = 0;      // of a stylus: where it touches, 0 at its tip, 1 at its tail
+    double along = 0;      // of a stylus or a gripper: where it touches, 0 at its tip, 1 at its tail
     bool by_shaft = false; // of a stylus: between its ends, on an edge
     glm::dvec3 lag_m{0};   // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
 };

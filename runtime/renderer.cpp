@@ -106,7 +106,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     const bool has_tail = probe_.has_tail();
     if (has_tail) tail_velocity_.update(pose.tail_m, periods);
     const glm::dvec3 grip_m = result.grip_m = has_tail ? probe_.grip_of(pose.tip_m, pose.tail_m) : pose.tip_m;
-    const auto dot_along = [&](const glm::dvec3& force_n) { // from finger to finger
+    const auto along_fingers = [&](const glm::dvec3& force_n) { // from the tip's to the tail's
         const glm::dvec3 along = pose.tail_m - pose.tip_m;
         return along == glm::dvec3(0) ? 0.0 : glm::dot(force_n, glm::normalize(along));
     };
@@ -115,7 +115,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         rise_period_ = period_;
         waiting_ = scene_->servo.wait_for_small_force_n > 0;
         swapped_ = false;
-        left_n_ = glm::dvec3(0);
+        left_n_ = left_n_m_ = glm::dvec3(0);
         effects_.lose_hand();
     }
     if (effects_.act()) effects_.begin(pose.tip_m, result.time_s, periods);
@@ -160,7 +160,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
                 result.unlimited_torque_n_m +=
                     torque_about(grip_m, pose.tip_m + contact.along * (pose.tail_m - pose.tip_m), force.force_n);
             if (probe_.kind == ProbeKind::gripper)
-                result.grip_force_n += (contact.along - 0.5) * dot_along(force.force_n);
+                result.grip_force_n += (contact.along - 0.5) * along_fingers(force.force_n);
             result.faults |= force.faults;
             textured = textured || force.textured;
             band_limited = band_limited || force.band_limited;

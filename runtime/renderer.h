@@ -45,7 +45,7 @@ struct TickResult {
     glm::dvec3 torque_n_m{0}; // of a stylus about its grip, limited along with the force, and by its own lever
     double grip_force_n = 0;  // of a gripper: how hard its fingers are pushed apart, after rise and limit
     glm::dvec3 unlimited_force_n{0}, unlimited_torque_n_m{0};
-    glm::dvec3 grip_m{0};  // where the hand holds the probe: its tip, of a stylus as ProbeSettings says
+    glm::dvec3 grip_m{0};  // where the hand holds the probe: its tip, of a stylus or a gripper as ProbeSettings says
     uint32_t contacts = 0; // objects touched
     double depth_m = 0;    // below the base surface, of the deepest object touched
     double height_m = 0;   // of the texture there, as published

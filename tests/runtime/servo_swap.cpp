@@ -98,6 +98,26 @@ TEST_CASE("another stiffness comes by a ramp, and time goes on")
     }
 }
 
+TEST_CASE("an interruption ends what fades out of the scene before, torque and force alike")
+{
+    Scene first = plane_scene();
+    first.probe = {ProbeKind::stylus, 0.1};
+    const auto scene = shared(std::move(first));
+    Scene without = same_as(*scene);
+    without.objects[0].placement.position_m = {0, 0, -0.5};
+    Stage stage(scene);
+    const auto leaning = [](double z) { return DevicePose{{0, 0, z}, {0.06, 0, z + 0.08}}; };
+    stage.tick(leaning(1e-3));
+    for (int i = 0; i < 200; ++i) stage.tick(leaning(-1e-3));
+    stage.slot.publish(shared(std::move(without)));
+    CHECK(glm::length(stage.tick(leaning(-1e-3)).torque_n_m) > 0.01);
+    DevicePose anew = leaning(-1e-3);
+    anew.interrupted = true;
+    const TickResult result = stage.tick(anew);
+    CHECK(result.force_n == glm::dvec3(0));
+    CHECK(result.torque_n_m == glm::dvec3(0));
+}
+
 TEST_CASE("whatever a new scene holds, the force changes no faster than by the ramp")
 {
     const auto scene = shared(plane_scene());
