@@ -123,6 +123,35 @@ bool visit_box(RTCPointQueryFunctionArguments* arguments)
     return true;
 }
 
+struct BallList {
+    std::size_t most;
+    std::vector<uint32_t>& faces;
+    bool more = false;
+};
+
+bool list_face(RTCPointQueryFunctionArguments* arguments)
+{
+    BallList& list = *static_cast<BallList*>(arguments->userPtr);
+    list.more = list.faces.size() == list.most;
+    if (!list.more) {
+        list.faces.push_back(arguments->primID);
+        return false;
+    }
+    arguments->query->radius = 0; // that is enough
+    return true;
+}
+
+void ask(RTCScene scene, const glm::dvec3& centre, double radius, RTCPointQueryFunction told, void* asker)
+{
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    const glm::vec3 at = embree_point(centre);
+    RTCPointQuery query = {};
+    query.x = at.x, query.y = at.y, query.z = at.z;
+    query.radius = query_radius(radius);
+    rtcPointQuery(scene, &query, &context, told, asker);
+}
+
 // One device for the process; a single thread, so that building does not start others behind the servo's back.
 RTCDevice embree()
 {
@@ -194,13 +223,16 @@ void BoxTree::segment(const glm::dvec3& from, const glm::dvec3& to, SegmentVisit
 void BoxTree::ball(const glm::dvec3& centre, double radius, BallVisitor& visitor) const noexcept
 {
     BallQuery ball{handles_->boxes, centre, radius, visitor};
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    const glm::vec3 at = embree_point(centre);
-    RTCPointQuery query = {};
-    query.x = at.x, query.y = at.y, query.z = at.z;
-    query.radius = query_radius(radius);
-    rtcPointQuery(handles_->scene, &query, &context, visit_box, &ball);
+    ask(handles_->scene, centre, radius, visit_box, &ball);
+}
+
+bool BoxTree::ball(const glm::dvec3& centre, double radius, std::size_t most,
+                   std::vector<uint32_t>& faces) const noexcept
+{
+    faces.clear();
+    BallList list{most, faces};
+    ask(handles_->scene, centre, radius, list_face, &list);
+    return !list.more;
 }
 
 } // namespace haptel::runtime

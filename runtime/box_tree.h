@@ -9,6 +9,7 @@
 
 #include "runtime/surface.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -48,6 +49,8 @@ public:
 
     // Every face whose box comes within `radius` of the centre, roughly the near ones first.
     void ball(const glm::dvec3& centre, double radius, BallVisitor& visitor) const noexcept;
+    // The same faces, and some a little farther away, as a list that has room for so many; false if there are more.
+    bool ball(const glm::dvec3& centre, double radius, std::size_t most, std::vector<uint32_t>& faces) const noexcept;
 
 private:
     BoxTree() = default;

@@ -103,15 +103,18 @@ bool take_in(std::span<const HalfSpace> spaces, uint32_t space, NearestInHalfSpa
 
 } // namespace
 
-double open_share(std::span<const HalfSpace> spaces, const glm::dvec3& from, const glm::dvec3& way,
-                  double tolerance) noexcept
+OpenShare open_share(std::span<const HalfSpace> spaces, const glm::dvec3& from, const glm::dvec3& way,
+                     double tolerance) noexcept
 {
-    double share = 1;
-    for (const HalfSpace& space : spaces) {
-        const double before = glm::dot(space.normal, from) - space.offset, change = glm::dot(space.normal, way);
-        if (before + change < -tolerance && change < 0) share = std::min(share, std::max(0.0, before) / -change);
+    OpenShare open;
+    for (uint32_t i = 0; i < spaces.size(); ++i) {
+        const double before = glm::dot(spaces[i].normal, from) - spaces[i].offset;
+        const double change = glm::dot(spaces[i].normal, way);
+        if (!(before + change < -tolerance && change < 0)) continue;
+        const double share = std::max(0.0, before) / -change;
+        if (share < open.share) open = {share, i};
     }
-    return share;
+    return open;
 }
 
 NearestInHalfSpaces nearest_in(std::span<const HalfSpace> spaces, const glm::dvec3& target, const glm::dvec3& inside,
@@ -121,9 +124,10 @@ NearestInHalfSpaces nearest_in(std::span<const HalfSpace> spaces, const glm::dve
     now.at = target;
     for (int step = 0; step < steps_max; ++step) {
         const uint32_t space = most_violated(spaces, now.at, tolerance);
-        if (space == none || !take_in(spaces, space, now)) break;
+        if (space == none) return now;
+        if (!take_in(spaces, space, now)) break;
     }
-    const double share = open_share(spaces, inside, now.at - inside, tolerance);
+    const double share = open_share(spaces, inside, now.at - inside, tolerance).share;
     if (share < 1) now.at = inside + share * (now.at - inside);
     return now;
 }

@@ -18,9 +18,13 @@ struct HalfSpace {
     double offset;
 };
 
-// How much of the way from a point in all of them stays in all, but for `tolerance`: 0 .. 1.
-double open_share(std::span<const HalfSpace> spaces, const glm::dvec3& from, const glm::dvec3& way,
-                  double tolerance) noexcept;
+// How much of the way from a point in all of them stays in all, but for `tolerance`: 0 .. 1, and which one ends it.
+struct OpenShare {
+    double share = 1;
+    uint32_t ended_by = ~0u;
+};
+OpenShare open_share(std::span<const HalfSpace> spaces, const glm::dvec3& from, const glm::dvec3& way,
+                     double tolerance) noexcept;
 
 struct NearestInHalfSpaces {
     glm::dvec3 at{0};

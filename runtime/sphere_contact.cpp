@@ -1,12 +1,10 @@
 #include "runtime/sphere_contact.h"
 
-#include "runtime/box_tree.h"
 #include "runtime/finite.h"
 #include "runtime/nearest_point.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace haptel::runtime {
@@ -24,40 +22,31 @@ constexpr double margin_most = 1.0 / 16, margin_least = 1.0 / 64, settled = 1e-8
 // Where there are fewer faces the ball looks farther around, where there are more less far.
 constexpr std::size_t few_faces = 16, many_faces = 64;
 
-// Faces in reach at once. Where there are more, the ball takes shorter steps.
-constexpr std::size_t faces_most = 1 << 14;
+// It looks farther around than margin_most only for so many faces. Where there are too many it looks less far by this,
+// so often below margin_most.
+constexpr std::size_t far_faces = 256;
+constexpr double less_far = 1.0 / 8;
+constexpr int looks_most = 4;
 
-class Collect final : public BallVisitor {
-public:
-    explicit Collect(std::vector<uint32_t>& faces) : faces_(faces) { faces_.clear(); }
-    double visit(uint32_t face) noexcept override
-    {
-        full = faces_.size() == faces_.capacity();
-        if (!full) faces_.push_back(face);
-        return full ? 0 : std::numeric_limits<double>::infinity();
-    }
-    bool full = false;
+// Looked at in one tick before the rest of the way is left to the next: it bounds the time of a tick.
+constexpr uint64_t faces_per_tick = 1 << 11;
 
-private:
-    std::vector<uint32_t>& faces_;
-};
+// How far a round may lead is what planes are picked for: of the hand's way, of the last step, of a last step that came
+// to the end of what was picked; of the radius at least; and picked anew where it is so many times as far as needed.
+constexpr double stride_of_hand = 1.1, stride_of_step = 0.5, stride_of_end = 4, stride_least = 1e-3, stride_most = 8;
 
 } // namespace
 
 SphereContact::SphereContact(std::shared_ptr<const Surface> surface, double radius_m)
-    : surface_(std::move(surface)), radius_(radius_m / surface_->lattice.unit_m), grown_(radius_)
+    : surface_(std::move(surface)), radius_(radius_m / surface_->lattice.unit_m), grown_(radius_), faces_(*surface_)
 {
-    const std::size_t room = std::min(faces_most, surface_->faces.size());
-    faces_.reserve(room);
-    planes_.reserve(room);
-    plane_of_.reserve(room);
-    touched_.reserve(room);
 }
 
 void SphereContact::reset() noexcept
 {
     placed_ = sliding_ = false;
-    around_ = {};
+    around_ = close_ = {};
+    lag_ = 0;
     contact_count_ = 0;
     counters_ = {};
 }
@@ -70,6 +59,7 @@ std::span<const Contact> SphereContact::update(const glm::dvec3& centre_m, const
         for (Contact& contact : contacts_) contact.hand_held = true;
         return {contacts_, contact_count_};
     }
+    hand_before_ = hand_;
     hand_ = surface_->lattice.snap(centre_m);
     if (!placed_) place();
     if (placed_) move(friction);
@@ -94,75 +84,55 @@ void SphereContact::place() noexcept
 {
     centre_ = hand_;
     if (!look_around(0)) return;
-    grown_ = 0;
-    lay_planes(radius_);
-    grown_ = radius_;
-    for (const glm::dvec3& point : touched_) grown_ = std::min(grown_, glm::distance(point, centre_));
+    grown_ = faces_.distance(centre_, radius_);
     placed_ = grown_ >= std::min(least_radius, radius_);
 }
 
 // Finds the faces within the radius and a margin, or within less where there are too many. False: nothing less is left.
 bool SphereContact::look_around(double margin) noexcept
 {
-    for (int attempt = 0; attempt < 24; ++attempt, margin *= 0.5) {
-        Collect found(faces_);
-        surface_->tree->ball(centre_, radius_ + margin + rounding, found);
+    close_.margin = -1;
+    const double near = margin_most * radius_;
+    for (int looks = 0; looks < looks_most;) {
+        const bool far = margin > near;
+        const bool all = faces_.find(centre_, radius_ + margin + rounding, far ? far_faces : NearFaces::faces_most);
         ++counters_.sweeps;
-        counters_.triangles_tested += faces_.size();
-        if (found.full) continue;
-        around_ = {centre_, margin};
-        if (faces_.size() < few_faces) margin_ = std::min(2 * std::max(margin, margin_), Lattice::extent);
-        if (faces_.size() > many_faces) margin_ = 0.5 * margin;
-        return true;
+        counters_.triangles_tested += faces_.boxes();
+        if (all) {
+            around_ = {centre_, margin};
+            if (faces_.count() < few_faces) margin_ = std::min(2 * std::max(margin, margin_), Lattice::extent);
+            if (faces_.count() > many_faces) margin_ = 0.5 * margin;
+            return true;
+        }
+        margin = far ? std::max(near, less_far * margin) : less_far * margin;
+        margin_ = margin;
+        looks += !far;
     }
     around_.margin = -1;
     return false;
 }
 
-// How far the centre may move before something may be met that was not found.
-double SphereContact::room() const noexcept
-{
-    return around_.margin - glm::distance(centre_, around_.centre);
-}
-
-// Of the faces that may be met within `reach`.
-void SphereContact::lay_planes(double reach) noexcept
-{
-    planes_.clear();
-    plane_of_.clear();
-    touched_.clear();
-    const double near = grown_ + reach + rounding;
-    for (const uint32_t face : faces_) {
-        const auto& corners = surface_->faces[face].vertex;
-        const glm::dvec3 point = nearest_point(surface_->vertices[corners[0]], surface_->vertices[corners[1]],
-                                               surface_->vertices[corners[2]], centre_)
-                                     .at;
-        const glm::dvec3 away = centre_ - point;
-        const double square = glm::dot(away, away);
-        if (square > near * near) continue;
-        const double distance = std::sqrt(square);
-        const glm::dvec3 normal = distance > 0 ? away / distance : surface_->faces[face].normal;
-        planes_.push_back({normal, glm::dot(normal, centre_) - distance + grown_});
-        plane_of_.push_back(face);
-        touched_.push_back(point);
-    }
-}
-
-// One straight step toward the hand, or to where the planes around let it come.
+// One straight step toward the hand, or to where the planes around let it come. Those that hold it are seen from here.
 NearestInHalfSpaces SphereContact::approach(double step_max) noexcept
 {
-    lay_planes(step_max);
     const glm::dvec3 to_hand = hand_ - centre_;
     if (path_length_ == 0) { // in the air: first straight on, to where it touches
         const double length = glm::length(to_hand);
         const double within = length > step_max ? step_max / length : 1;
-        const double open = open_share(planes_, centre_, within * to_hand, 0);
-        centre_ += open * within * to_hand;
-        if (open == 1) return {centre_, 0, {}, {}};
+        OpenShare open;
+        do open = open_share(faces_.picked(), centre_, within * to_hand, 0);
+        while (open.share < 1 && faces_.renew(open.ended_by, centre_));
+        centre_ += open.share * within * to_hand;
+        if (open.share == 1) return {centre_, 0, {}, {}};
         path_[path_length_++] = centre_;
-        step_max -= open * within * length;
+        step_max -= open.share * within * length;
     }
-    NearestInHalfSpaces found = nearest_in(planes_, hand_, centre_, rounding);
+    NearestInHalfSpaces found;
+    for (bool renewed = true; renewed;) {
+        found = nearest_in(faces_.picked(), hand_, centre_, rounding);
+        renewed = false;
+        for (std::size_t i = 0; i < found.count; ++i) renewed |= faces_.renew(found.active[i], centre_);
+    }
     const glm::dvec3 way = found.at - centre_;
     const double length = glm::length(way);
     centre_ += length > step_max ? step_max / length * way : way;
@@ -175,49 +145,63 @@ void SphereContact::move(const Friction& friction) noexcept
     if (contact_count_ > 0) path_[path_length_++] = centre_;
     NearestInHalfSpaces found;
     uint32_t round = 0;
+    double stride = stride_of_hand * glm::distance(hand_, hand_before_) + lag_;
     bool on_the_way = false; // the last step was as long as it might be
-    for (; round < rounds_max; ++round) {
+    bool cut = false;
+    const uint64_t seen = counters_.triangles_tested;
+    for (;; ++round) {
         const double want = glm::distance(hand_, centre_);
         if (want == 0) break;
-        if (room() < std::min(want, margin_least * radius_)) {
+        cut = round == rounds_max;
+        if (cut) break;
+        if (around_.room(centre_) < std::min(want, margin_least * radius_)) {
+            if (round > 0 && counters_.triangles_tested - seen > faces_per_tick) {
+                cut = on_the_way = true;
+                break;
+            }
             const double most = std::max(margin_, margin_most * radius_);
             if (!look_around(std::clamp(2 * want, margin_least * radius_, most))) {
                 ++counters_.walks_cut; // too much at once: what is touched stays touched
                 return;
             }
         }
+        const double open = std::min(want, around_.room(centre_));
+        stride = std::max(stride, stride_least * radius_);
+        if (round == 0 || close_.room(centre_) < std::min(open, stride) || close_.margin > stride_most * stride) {
+            close_ = {centre_, path_length_ == 0 ? open : std::min(open, stride)};
+            faces_.pick(centre_, grown_, close_.margin);
+        }
         const glm::dvec3 before = centre_;
-        const double step_max = std::min(want, room());
+        const double step_max = std::min(open, close_.room(centre_));
         found = approach(step_max);
         if (found.count == 0) path_length_ = 0;
         if (path_length_ > 0 && path_length_ <= rounds_max) path_[path_length_++] = centre_;
         const double step = glm::distance(before, centre_);
         if (step <= std::max(4 * rounding, settled * radius_)) break;
-        on_the_way = step > 0.5 * step_max;
+        on_the_way = step > 0.5 * open;
+        stride = (step > 0.9 * step_max ? stride_of_end : stride_of_step) * step;
     }
     counters_.walk_steps += round;
     counters_.walk_steps_max = std::max<uint64_t>(counters_.walk_steps_max, round);
-    counters_.walks_cut += round == rounds_max;
+    counters_.walks_cut += cut;
     counters_.skipped += round == 0;
-    if (grown_ < radius_) {
-        double nearest = radius_;
-        for (const glm::dvec3& point : touched_) nearest = std::min(nearest, glm::distance(point, centre_));
-        grown_ = std::max(grown_, nearest - rounding);
-    }
+    if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(centre_, radius_) - rounding);
     // The planes here do not know how deep the hand is where it is: until the ball is there what was felt is felt, but
     // of what the hand has left.
-    if (round == rounds_max && on_the_way) {
+    if (cut && on_the_way) {
         if (contact_count_ > 0 && glm::dot(hand_ - centre_, contacts_[0].normal) >= 0) contact_count_ = 0;
         return;
     }
     if (found.count == 0) {
         sliding_ = false;
+        lag_ = 0;
         contact_count_ = 0;
         return;
     }
     const glm::dvec3 nearest = centre_;
     hold_by_friction(friction);
-    describe(found);
+    describe(found, nearest);
+    lag_ = glm::distance(centre_, nearest);
     const glm::dvec3 lag_m = (centre_ - nearest) * surface_->lattice.unit_m;
     double depth_m = 0;
     for (std::size_t i = 0; i < contact_count_; ++i) depth_m += contacts_[i].depth_m;
@@ -246,7 +230,7 @@ void SphereContact::hold_by_friction(const Friction& friction) noexcept
     }
 }
 
-void SphereContact::describe(const NearestInHalfSpaces& found) noexcept
+void SphereContact::describe(const NearestInHalfSpaces& found, const glm::dvec3& nearest) noexcept
 {
     std::array<uint32_t, 3> order{0, 1, 2}; // who presses most first
     for (const auto& [a, b] : {std::pair{0, 1}, {1, 2}, {0, 1}})
@@ -254,20 +238,20 @@ void SphereContact::describe(const NearestInHalfSpaces& found) noexcept
             std::swap(order[a], order[b]);
     contact_count_ = found.count;
     for (std::size_t i = 0; i < found.count; ++i) {
-        const uint32_t plane = found.active[order[i]];
-        const auto& corners = surface_->faces[plane_of_[plane]].vertex;
+        const uint32_t picked = found.active[order[i]];
         Contact& contact = contacts_[i];
         contact = {};
         contact.touching = true;
         contact.sliding = sliding_;
-        contact.face = plane_of_[plane];
-        contact.normal = planes_[plane].normal;
-        contact.side = glm::dot(contact.normal, surface_->faces[contact.face].normal) >= 0 ? 0 : 1;
+        contact.face = faces_.face(picked);
+        const Face& face = surface_->faces[contact.face];
+        contact.normal = faces_.picked()[picked].normal;
+        contact.side = glm::dot(contact.normal, face.normal) >= 0 ? 0 : 1;
         contact.facet_normal = surface_->facet_normal(contact.face, contact.side);
-        contact.barycentric = nearest_point(surface_->vertices[corners[0]], surface_->vertices[corners[1]],
-                                            surface_->vertices[corners[2]], touched_[plane])
-                                  .barycentric;
-        contact.proxy_m = surface_->lattice.metres(touched_[plane]);
+        const NearestPoint point = nearest_point(surface_->vertices[face.vertex[0]], surface_->vertices[face.vertex[1]],
+                                                 surface_->vertices[face.vertex[2]], nearest);
+        contact.barycentric = point.barycentric;
+        contact.proxy_m = surface_->lattice.metres(point.at);
         contact.hand_m = surface_->lattice.metres(hand_);
         contact.depth_m = found.push[order[i]] * surface_->lattice.unit_m;
     }

@@ -5,20 +5,19 @@
 // would touch. As long as the centre stays in front of all these planes no triangle comes nearer than the radius: each
 // move is a straight way within the intersection of half-spaces, so that nothing is crossed at any speed and by any
 // mesh, self-piercing ones included. The nearest point of the intersection to the hand is exact (half_spaces.h); the
-// planes are laid anew there, until that moves nothing. Where many triangles are within reach, a
-// tick may take it three radii far and no farther: the rest is for the next, and until then it touches as it did.
+// planes that hold the ball are laid anew there, until that moves nothing. What one tick may look at is bounded: where
+// there are many triangles the ball may have a part of its way left for the next, and until then it touches as it did.
 //
 // One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
 // sequence of poses. Everything is in the object's space, metres.
 #pragma once
 
 #include "runtime/contact.h"
-#include "runtime/half_spaces.h"
+#include "runtime/near_faces.h"
 
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <vector>
 
 namespace haptel::runtime {
 
@@ -46,31 +45,29 @@ public:
 private:
     static constexpr uint32_t rounds_max = 48;
 
-    // The triangles that may be met within `margin` of where they were looked for.
+    // Where it is known what may be met.
     struct Neighbourhood {
         glm::dvec3 centre{0};
         double margin = -1; // below 0: none
+        // How far the ball's centre may move before something may be met that was not found.
+        double room(const glm::dvec3& from) const { return margin - glm::distance(from, centre); }
     };
 
     void place() noexcept;
     bool look_around(double margin) noexcept;
-    double room() const noexcept;
-    void lay_planes(double reach) noexcept;
     NearestInHalfSpaces approach(double step_max) noexcept;
     void move(const Friction& friction) noexcept;
     void hold_by_friction(const Friction& friction) noexcept;
-    void describe(const NearestInHalfSpaces& found) noexcept;
+    void describe(const NearestInHalfSpaces& found, const glm::dvec3& nearest) noexcept;
 
     std::shared_ptr<const Surface> surface_;
     double radius_, grown_; // lattice units; `grown_` of the ball that was put down into something
-    glm::dvec3 hand_{0}, centre_{0};
+    glm::dvec3 hand_{0}, hand_before_{0}, centre_{0};
     bool placed_ = false, sliding_ = false;
-    Neighbourhood around_;
+    NearFaces faces_;
+    Neighbourhood around_, close_;    // of all found, of those picked
     double margin_ = 0;               // that suits the density of the mesh here
-    std::vector<uint32_t> faces_;     // of the neighbourhood; room for all is made beforehand
-    std::vector<HalfSpace> planes_;   // of the last round
-    std::vector<uint32_t> plane_of_;  // the face of each
-    std::vector<glm::dvec3> touched_; // the point of each
+    double lag_ = 0;                  // by which friction held the ball back
     glm::dvec3 path_[rounds_max + 1]; // of this tick, from where it began to touch
     uint32_t path_length_ = 0;
     Contact contacts_[3];

@@ -1,5 +1,6 @@
 // A ball as probe: closed forms on simple shapes, and that nothing comes nearer to its centre than its radius.
 #include "runtime/half_spaces.h"
+#include "runtime/near_faces.h"
 #include "runtime/nearest_point.h"
 #include "runtime/sphere_contact.h"
 #include "tests/runtime/meshes.h"
@@ -103,6 +104,88 @@ TEST_CASE("the nearest point of a triangle is in it, and no nearer one is")
         CHECK(std::abs(glm::distance(found.at, corner[3]) - distance_to(corner[0], corner[1], corner[2], corner[3])) <
               (trial % 3 == 0 ? 1e-8 : 1e-12));
     }
+}
+
+TEST_CASE("near faces are all found, and each lies behind its plane wherever that was laid from")
+{
+    std::mt19937_64 random(6);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const Mesh& mesh : {make_bumpy_sphere(3), make_star(2), make_stairs(), make_box({1, 1, 2e-6})}) {
+        const auto surface = surface_of(mesh);
+        const auto corner = [&](uint32_t face, int i) { return surface->vertices[surface->faces[face].vertex[i]]; };
+        const auto distance = [&](uint32_t face, const dvec3& p) {
+            return distance_to(corner(face, 0), corner(face, 1), corner(face, 2), p);
+        };
+        // Lattice units. A plane is turned by what rounding moves the point touched by (1e-2), over the distance.
+        constexpr double slack = 4;
+        NearFaces near(*surface);
+        for (int trial = 0; trial < 200; ++trial) {
+            // Somewhere over a face, and from there a few steps within the margin.
+            const auto over = static_cast<uint32_t>(random() % surface->faces.size());
+            const double radius = Lattice::extent * std::pow(10.0, -3 * uniform(random));
+            const double margin = 0.3 * uniform(random) * radius;
+            dvec3 centre = corner(over, 0) + 1.1 * radius * random_direction(random);
+            const dvec3 start = centre;
+            REQUIRE(near.find(centre, radius + margin));
+            for (int step = 0; step < 4; ++step) {
+                const double room = margin - glm::distance(start, centre), reach = uniform(random) * room;
+                near.pick(centre, radius, reach);
+                std::vector<uint32_t> picked;
+                for (uint32_t i = 0; i < near.picked().size(); ++i) {
+                    picked.push_back(near.face(i));
+                    const HalfSpace& space = near.picked()[i];
+                    const double turned = 1e-2 * 2 * Lattice::extent / distance(near.face(i), centre);
+                    for (int c = 0; c < 3; ++c)
+                        REQUIRE(glm::dot(space.normal, corner(near.face(i), c)) <=
+                                space.offset - radius + slack + turned);
+                    // Laid from here: it is as far as the triangle.
+                    REQUIRE(std::abs(glm::dot(space.normal, centre) - space.offset + radius -
+                                     distance(near.face(i), centre)) < slack);
+                    CHECK(!near.renew(i, centre));
+                }
+                double least = INFINITY;
+                for (uint32_t face = 0; face < surface->faces.size(); ++face) {
+                    const double away = distance(face, centre);
+                    least = std::min(least, away);
+                    const bool is_picked = std::find(picked.begin(), picked.end(), face) != picked.end();
+                    if (away < radius + reach) REQUIRE(is_picked);
+                    if (away > radius + reach + slack) REQUIRE(!is_picked);
+                }
+                REQUIRE(std::abs(near.distance(centre, radius) - std::min(least, radius)) < slack);
+                centre += uniform(random) * room * random_direction(random);
+                for (uint32_t i = 0; i < std::min<std::size_t>(3, near.picked().size()); ++i) {
+                    REQUIRE(near.renew(i, centre));
+                    const HalfSpace& space = near.picked()[i];
+                    REQUIRE(std::abs(glm::dot(space.normal, centre) - space.offset + radius -
+                                     distance(near.face(i), centre)) < slack);
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("a ball that an object swings against looks at so many triangles in a tick and no more")
+{
+    // Through the air, where it has learned to look far around, into a fine mesh in one tick; and through that.
+    const auto surface = surface_of(make_bumpy_sphere(6));
+    std::mt19937_64 random(8);
+    uint64_t most = 0, met = 0;
+    for (int run = 0; run < 20; ++run) {
+        for (const double r : {0.01, 0.05, 0.1, 0.2}) {
+            SphereContact contact(surface, r);
+            const dvec3 d = random_direction(random), e = random_direction(random);
+            for (int i = 0; i < 60; ++i) {
+                const double x = run % 2 ? (i < 40 ? 0 : 0.6) : 0.5 * (1 - std::cos(0.1 * i));
+                const uint64_t before = contact.counters().triangles_tested;
+                met += !contact.update(d * (1.2 + r - x) + 0.3 * x * e).empty();
+                most = std::max(most, contact.counters().triangles_tested - before);
+                if (i % 10 == 0) CHECK(distance_to(*surface, contact.proxy_m()) > r * (1 - 1e-8));
+            }
+        }
+    }
+    CHECK(met > 1000);
+    CHECK(most > 2048); // it is put off
+    CHECK(most < 4096);
 }
 
 TEST_CASE("a ball rests on a plane, an edge and a corner at its radius")

@@ -178,3 +178,41 @@ TEST_CASE("first_hit reports where a line meets a sphere, from far outside too")
     CHECK_FALSE(s->first_hit({0, 0, 0.6}, {0, 0, INFINITY}));
     CHECK(s->first_hit({0, 0, 0}, {0, 0, 1})->side == 1);
 }
+
+TEST_CASE("the faces around a point are all listed, and few that are farther away")
+{
+    std::mt19937_64 random(17);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (const Mesh& mesh : {make_bumpy_sphere(3), make_star(2), make_box({1, 1, 2e-9})}) {
+        const auto s = surface_of(mesh);
+        std::vector<uint32_t> listed, cut;
+        listed.reserve(s->faces.size());
+        cut.reserve(s->faces.size());
+        for (int i = 0; i < 300; ++i) {
+            const dvec3 centre = 1.3 * Lattice::extent * dvec3(uniform(random), uniform(random), uniform(random));
+            const double radius = Lattice::extent * std::pow(uniform(random), 2);
+            REQUIRE(s->tree->ball(centre, radius, s->faces.size(), listed));
+            std::sort(listed.begin(), listed.end());
+            REQUIRE(std::adjacent_find(listed.begin(), listed.end()) == listed.end());
+            std::size_t within = 0;
+            for (uint32_t face = 0; face < s->faces.size(); ++face) {
+                dvec3 low(INFINITY), high(-INFINITY);
+                for (const uint32_t corner : s->faces[face].vertex) {
+                    low = glm::min(low, s->vertices[corner]);
+                    high = glm::max(high, s->vertices[corner]);
+                }
+                const double distance = glm::distance(centre, glm::clamp(centre, low, high));
+                const bool is_listed = std::binary_search(listed.begin(), listed.end(), face);
+                if (distance <= radius) REQUIRE(is_listed);
+                if (distance > radius + 1e-5 * Lattice::extent) REQUIRE(!is_listed);
+                within += is_listed;
+            }
+            REQUIRE(within == listed.size());
+            // With less room: so many of them, and that there are more.
+            if (listed.size() < 2) continue;
+            CHECK(!s->tree->ball(centre, radius, listed.size() - 1, cut));
+            CHECK(cut.size() == listed.size() - 1);
+            CHECK(s->tree->ball(centre, radius, listed.size(), cut));
+        }
+    }
+}
