@@ -32,7 +32,7 @@ struct ObjectText {
     bool own_crease = false; // it was written: the mesh's smoothing groups do not count
     SceneObject object;
     std::vector<std::pair<std::string, std::string>> parameters;
-    toml::source_region mesh_at, texture_at;
+    toml::source_region mesh_at, texture_at, reach_at;
 };
 
 struct SceneText {
@@ -122,6 +122,7 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
     text.object.motion = read_motion(table, text.object.placement, messages);
     text.object.material = read_material(table, messages);
     text.object.effects = read_object_effects(table, rate_hz, messages);
+    text.reach_at = farthest_reach_at(source, text.object.effects);
     table.text("texture", text.texture);
     text.texture_at = table.where("texture");
     text.parameters = table.values_as_written("parameters");
@@ -205,9 +206,9 @@ void check_reach(const ObjectText& text, const std::vector<DeviceText>& devices,
             break;
         }
     if (text.object.effects.reach_m() > largest_m)
-        messages.error(text.mesh_at, "the `reach_m` of an effect is larger than `" + text.object.name +
-                                         "`: at most the largest side of its box; what is felt farther away is a "
-                                         "`[[region]]`");
+        messages.error(text.reach_at, "the `reach_m` of an effect is larger than `" + text.object.name +
+                                          "`: at most the largest side of its box; what is felt farther away is a "
+                                          "`[[region]]`");
 }
 
 // The scene's speeds are those of the hand times this.
