@@ -277,6 +277,7 @@ void describe_object(DeviceText& device, const std::shared_ptr<const Scene>& sce
     DeviceRequest& request = device.request;
     request.rate_hz = scene->servo.rate_hz;
     request.stylus_length_m = device.probe.has_tail() ? device.probe.length_m / workspace.scale : 0;
+    request.gripper = device.probe.kind == ProbeKind::gripper;
     request.box_minimum_m = glm::dvec3(infinity);
     request.box_maximum_m = glm::dvec3(-infinity);
     for (const glm::dvec3& vertex : object.surface->vertices) {
