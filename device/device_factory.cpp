@@ -104,12 +104,21 @@ DeviceResult open_simulated(std::string_view variant, const DeviceRequest& reque
         make_curve(request.stroke, {low, high, glm::dvec2(start->point_m), request.speed_m_per_s, request.seed});
     if (!curve) return refused(unknown("stroke", request.stroke, {stroke_names().begin(), stroke_names().end()}));
 
+    std::string warning;
+    const double around_m = start->point_m.z + approach_m - request.box_minimum_m.z;
+    if (request.gripper && request.stylus_length_m <= around_m)
+        warning = fmt::format("its fingers, {:g} m apart, do not reach round the object, which takes more than {:g} m: "
+                              "`length_m` over the scale of the workspace",
+                              request.stylus_length_m, around_m);
+
     Hand hand(holding->impedance, Stroke(std::move(curve), request.surface_below, *start), request.press_n,
               1 / request.rate_hz);
     runtime::DeviceInfo info{request.name, preset->model.force_max_n, preset->model.stiffness_max_n_per_m, 0};
-    return {std::make_unique<SimulatedDevice>(std::move(info), preset->model, std::move(hand),
-                                              SimulatedDevice::Options{request.rate_hz, request.stylus_length_m}),
-            {}};
+    return {std::make_unique<SimulatedDevice>(
+                std::move(info), preset->model, std::move(hand),
+                SimulatedDevice::Options{request.rate_hz, request.stylus_length_m, request.gripper}),
+            {},
+            std::move(warning)};
 }
 
 DeviceResult open_recording(std::string_view file, const DeviceRequest& request)

@@ -25,6 +25,9 @@ void Hand::advance()
 
     push_from_n_ = push_to_n_;
     push_to_n_ += passed * (-press_n_ * target.press * target.normal - push_to_n_);
+
+    opened_from_ = opened_to_;
+    if (press_n_ > 0) opened_to_ += passed * (1 - target.press - opened_to_);
 }
 
 } // namespace haptel::device

@@ -1,7 +1,7 @@
 // The hand that holds a simulated device: a mass, a damper and a spring towards where it means to be, and a push.
 //
-// Voluntary motion is slow: aim and push pass a first-order low-pass at 20 Hz, and the aim never moves faster than a
-// fast stroke, so that a jump of the surface below the stroke is no jump of the hand.
+// Voluntary motion is slow: aim, push and grip pass a first-order low-pass at 20 Hz, and the aim never moves faster
+// than a fast stroke, so that a jump of the surface below the stroke is no jump of the hand.
 #pragma once
 
 #include "device/stroke.h"
@@ -31,6 +31,9 @@ public:
     // Aim and push at a share (0 .. 1) of the current period.
     glm::dvec3 aim_m(double share) const { return glm::mix(aim_from_m_, aim_to_m_, share); }
     glm::dvec3 push_n(double share) const { return glm::mix(push_from_n_, push_to_n_, share); }
+    // How hard it closes a gripper instead, and how much of its stiffness holds that open, 0 .. 1.
+    double squeeze_n(double share) const { return press_n_ * (1 - opened(share)); }
+    double opened(double share) const { return glm::mix(opened_from_, opened_to_, share); }
     glm::dvec3 aim_velocity_m_per_s() const { return (aim_to_m_ - aim_from_m_) / period_s_; }
 
 private:
@@ -40,6 +43,7 @@ private:
     uint64_t periods_ = 0;
     glm::dvec3 aim_from_m_, aim_to_m_;
     glm::dvec3 push_from_n_{0}, push_to_n_{0};
+    double opened_from_ = 1, opened_to_ = 1;
 };
 
 } // namespace haptel::device

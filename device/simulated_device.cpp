@@ -12,6 +12,8 @@ constexpr double substep_max_s = 10e-6;
 
 // A right hand at -y holds its stylus leaning towards itself.
 const glm::dvec3 stylus_direction = glm::normalize(glm::dvec3(0, -0.25, 1));
+// With its thumb below what it holds.
+const glm::dvec3 gripper_direction(0, 0, -1);
 
 bool is_finite(const glm::dvec3& v)
 {
@@ -32,16 +34,18 @@ SimulatedDevice::SimulatedDevice(runtime::DeviceInfo info, const DeviceModel& mo
     , period_s_(1 / options.rate_hz)
     , substeps_(std::max(1, static_cast<int>(std::ceil(period_s_ / substep_max_s - 1e-6))))
     , delay_periods_(options.delay_periods)
-    , tail_from_tip_m_(options.stylus_length_m * stylus_direction)
-    , position_m_(hand_.aim_m(1))
+    , gripper_(options.gripper)
+    , open_m_(options.stylus_length_m * (gripper_ ? gripper_direction : stylus_direction))
+    , tip_{hand_.aim_m(1)}
+    , opening_{open_m_}
 {
 }
 
 runtime::DeviceStatus SimulatedDevice::read(runtime::DevicePose& pose) noexcept
 {
     if (std::exchange(started_, true)) advance_period();
-    pose.tip_m = quantized(position_m_, model_.encoder_m);
-    pose.tail_m = pose.tip_m + tail_from_tip_m_;
+    pose.tip_m = quantized(tip_.position_m, model_.encoder_m);
+    pose.tail_m = pose.tip_m + (gripper_ ? quantized(opening_.position_m, model_.encoder_m) : open_m_);
     pose.periods = 1;
     return runtime::DeviceStatus::ok;
 }
@@ -56,32 +60,53 @@ runtime::DeviceStatus SimulatedDevice::write(const glm::dvec3& force_n, const gl
     return runtime::DeviceStatus::ok;
 }
 
+void SimulatedDevice::write_grip(double grip_force_n) noexcept
+{
+    const double late_n = grip_written_n_;
+    grip_written_n_ =
+        std::isfinite(grip_force_n) ? std::clamp(grip_force_n, -model_.force_max_n, model_.force_max_n) : 0;
+    grip_acting_n_ = delay_periods_ == 0 ? grip_written_n_ : late_n;
+}
+
 void SimulatedDevice::stop() noexcept
 {
     written_n_ = acting_n_ = glm::dvec3(0);
+    grip_written_n_ = grip_acting_n_ = 0;
 }
 
 // Damping and friction are implicit, which makes sticking exact: the mass stands still when, and only when, friction
 // can hold it. The spring is symplectic, which keeps its energy.
-void SimulatedDevice::advance_period() noexcept
+void SimulatedDevice::step(Mass& mass, const glm::dvec3& force_n) const noexcept
 {
-    hand_.advance();
     const HandImpedance& hand = hand_.impedance();
     const double dt = period_s_ / substeps_;
     const double dt_by_mass = dt / (model_.mass_kg + hand.mass_kg);
     const double damping = 1 + dt_by_mass * (model_.damping_n_s_per_m + hand.damping_n_s_per_m);
     const double stopped_by_friction = dt_by_mass * model_.coulomb_n; // speed lost in a substep
-    const glm::dvec3 towards_aim_n = hand.damping_n_s_per_m * hand_.aim_velocity_m_per_s();
 
+    const glm::dvec3 driven = mass.velocity_m_per_s + dt_by_mass * force_n;
+    const double speed = glm::length(driven);
+    mass.velocity_m_per_s =
+        speed <= stopped_by_friction ? glm::dvec3(0) : driven * ((1 - stopped_by_friction / speed) / damping);
+    mass.position_m += dt * mass.velocity_m_per_s;
+}
+
+void SimulatedDevice::advance_period() noexcept
+{
+    hand_.advance();
+    const HandImpedance& hand = hand_.impedance();
+    const glm::dvec3 towards_aim_n = hand.damping_n_s_per_m * hand_.aim_velocity_m_per_s();
     for (int i = 1; i <= substeps_; ++i) {
         const double share = static_cast<double>(i) / substeps_;
-        const glm::dvec3 force_n = acting_n_ + hand_.push_n(share) + towards_aim_n +
-                                   hand.stiffness_n_per_m * (hand_.aim_m(share) - position_m_);
-        const glm::dvec3 driven = velocity_m_per_s_ + dt_by_mass * force_n;
-        const double speed = glm::length(driven);
-        velocity_m_per_s_ =
-            speed <= stopped_by_friction ? glm::dvec3(0) : driven * ((1 - stopped_by_friction / speed) / damping);
-        position_m_ += dt * velocity_m_per_s_;
+        const double opened = hand_.opened(share);
+        const glm::dvec3 push_n = gripper_ ? glm::dvec3(0) : hand_.push_n(share);
+        const glm::dvec3 held(1, 1, gripper_ ? opened : 1); // the arm goes where the fingers find their balance
+        step(tip_, acting_n_ + push_n + towards_aim_n +
+                       hand.stiffness_n_per_m * (held * (hand_.aim_m(share) - tip_.position_m)));
+        if (!gripper_) continue;
+        step(opening_, (grip_acting_n_ - hand_.squeeze_n(share)) * gripper_direction +
+                           opened * hand.stiffness_n_per_m * (open_m_ - opening_.position_m));
+        if (glm::dot(opening_.position_m, gripper_direction) < 0) opening_ = {}; // the fingers meet
     }
 }
 

@@ -2,6 +2,10 @@
 //
 //   M dv/dt = u - b v - c v/|v| + k (aim - x) + b_hand (aim' - v) + push,    M = device + hand
 //
+// A gripper's first finger is such a mass, and what it is open is another one, of the same figures. The hand does not
+// push then: it closes the fingers where it would press, lets them carry the arm up or down, and holds them open
+// elsewhere.
+//
 // u is the force written, held over each period and acting one period late, as on a real bus; the position is read
 // through an encoder. Every read() after the first advances by exactly one nominal period, whatever the wall clock
 // says, so that equal scenes give equal bits.
@@ -16,7 +20,8 @@ class SimulatedDevice final : public runtime::HapticDevice {
 public:
     struct Options {
         double rate_hz = 1000;
-        double stylus_length_m = 0; // 0: point probe, no tail
+        double stylus_length_m = 0; // 0: point probe, no tail; of a gripper: how far it opens
+        bool gripper = false;       // its second finger is below the first
         int delay_periods = 1;      // 0 or 1: whether a force acts in the period after it was written, or in the next
     };
 
@@ -26,15 +31,21 @@ public:
     runtime::DeviceStatus read(runtime::DevicePose& pose) noexcept override;
     // Saturates at force_max_n, direction kept; a force that is not finite is none. The torque has no effect.
     runtime::DeviceStatus write(const glm::dvec3& force_n, const glm::dvec3& torque_n_m) noexcept override;
+    void write_grip(double grip_force_n) noexcept override;
     void stop() noexcept override;
 
     // The truth behind the encoder, for tests and energy balances.
-    glm::dvec3 position_m() const { return position_m_; }
-    glm::dvec3 velocity_m_per_s() const { return velocity_m_per_s_; }
-    void set_velocity(const glm::dvec3& velocity_m_per_s) { velocity_m_per_s_ = velocity_m_per_s; }
+    glm::dvec3 position_m() const { return tip_.position_m; }
+    glm::dvec3 velocity_m_per_s() const { return tip_.velocity_m_per_s; }
+    void set_velocity(const glm::dvec3& velocity_m_per_s) { tip_.velocity_m_per_s = velocity_m_per_s; }
 
 private:
+    struct Mass {
+        glm::dvec3 position_m{0}, velocity_m_per_s{0};
+    };
+
     void advance_period() noexcept;
+    void step(Mass& mass, const glm::dvec3& force_n) const noexcept; // one substep
 
     runtime::DeviceInfo info_;
     DeviceModel model_;
@@ -42,9 +53,11 @@ private:
     double period_s_;
     int substeps_; // of at most 10 us
     int delay_periods_;
-    glm::dvec3 tail_from_tip_m_;
-    glm::dvec3 position_m_, velocity_m_per_s_{0};
+    bool gripper_;
+    glm::dvec3 open_m_; // of a stylus and of an open gripper: its tail from its tip
+    Mass tip_, opening_;
     glm::dvec3 written_n_{0}, acting_n_{0};
+    double grip_written_n_ = 0, grip_acting_n_ = 0;
     bool started_ = false;
 };
 

@@ -88,9 +88,9 @@ private:
 //
 // A triangle is at least as far away as its plane and, in the plane, as each of its edges' lines beyond which the
 // centre lies. Unlike the nearest point of a sliver this does not depend on which of its features is the nearest.
-class Clearance final : public BallVisitor {
+class LeastDistance final : public BallVisitor {
 public:
-    Clearance(const Surface& surface, const glm::dvec3& centre, double radius)
+    LeastDistance(const Surface& surface, const glm::dvec3& centre, double radius)
         : least(radius), surface_(surface), centre_(centre)
     {
     }
@@ -123,9 +123,9 @@ private:
 
 double clearance(const Surface& surface, const glm::dvec3& centre, double radius) noexcept
 {
-    Clearance clearance(surface, centre, radius);
-    surface.tree->ball(centre, radius, clearance);
-    return clearance.least;
+    LeastDistance distance(surface, centre, radius);
+    surface.tree->ball(centre, radius, distance);
+    return distance.least;
 }
 
 bool first_crossing(const Surface& surface, const glm::dvec3& from, const glm::dvec3& to, const StartsOn& start,

@@ -45,7 +45,7 @@ void PointContact::reset() noexcept
 const Contact& PointContact::update(const glm::dvec3& hand_m, const glm::dvec3* tail, const Friction& friction) noexcept
 {
     if (!take(hand_m)) return contact_;
-    if (placed_ && proxy_.on == Proxy::On::nothing) {
+    if (placed_ && !proxy_.touches()) {
         move_freely(hand_);
     } else if (!placed_) {
         placed_ = true;
@@ -62,9 +62,9 @@ const Contact& PointContact::update(const glm::dvec3& hand_m, const glm::dvec3* 
 // To where it aims; `path`: where it went, as far as it touched. A tick may have several goes.
 void PointContact::go(const Friction& friction, WalkPath* path) noexcept
 {
-    const bool free = proxy_.on == Proxy::On::nothing;
+    const bool free = !proxy_.touches();
     if (free) move_freely(hand_);
-    if (path && free && proxy_.on != Proxy::On::nothing) path->add(beside(*surface_, proxy_));
+    if (path && free && proxy_.touches()) path->add(beside(*surface_, proxy_));
     finish(friction, path);
 }
 
@@ -151,7 +151,7 @@ void PointContact::refresh_clearance(double step) noexcept
 
 void PointContact::finish(const Friction& friction, WalkPath* path) noexcept
 {
-    if (proxy_.on != Proxy::On::nothing) {
+    if (proxy_.touches()) {
         WalkCount count;
         walk(*surface_, proxy_, hand_, checked(friction), count, walk_steps_max, path);
         counters_.walk_steps += count.steps;
@@ -167,7 +167,7 @@ void PointContact::finish(const Friction& friction, WalkPath* path) noexcept
 void PointContact::describe() noexcept
 {
     const Lattice& lattice = surface_->lattice;
-    contact_.touching = proxy_.on != Proxy::On::nothing;
+    contact_.touching = proxy_.touches();
     contact_.sliding = contact_.touching && proxy_.sliding;
     contact_.proxy_m = lattice.metres(proxy_.at);
     contact_.hand_m = lattice.metres(hand_);

@@ -68,6 +68,7 @@ struct DeviceRequest {
     uint64_t seed = 1;
     double rate_hz = 1000;
     double stylus_length_m = 0;                    // or from finger to finger of a gripper; 0: point probe
+    bool gripper = false;                          // what has that length has fingers at its ends
     glm::dvec3 box_minimum_m{0}, box_maximum_m{0}; // of the object that the stroke explores, world frame
     // First hit from +z at (x, y), or nothing. Allocates nothing; may be called from read().
     std::function<std::optional<SurfaceHit>(double x_m, double y_m)> surface_below;

@@ -18,6 +18,8 @@ struct Proxy {
     bool at_wall = false;        // a sheet that pierces its own holds it, too
     glm::dvec3 crease{0};        // then: the direction in which it may slide, unit; zero in a corner of three
     glm::dvec3 at{0};            // on nothing: the hand, a lattice point; else within rounding of the feature
+
+    bool touches() const { return on != On::nothing; }
 };
 
 struct WalkCount {

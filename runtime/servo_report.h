@@ -37,10 +37,11 @@ struct ServoReport {
     uint64_t ticks = 0;
     uint64_t missed_deadlines = 0; // periods in which no force was sent because the tick before was late
     uint64_t contact_ticks = 0;
-    uint64_t waiting_ticks = 0;              // without a force because the one computed was not small yet
-    Histogram tick_ns;                       // pose in hand to force computed
-    Histogram wake_late_ns;                  // after the deadline; empty on the virtual clock
-    double force_rms_n = 0, force_max_n = 0; // as sent, over all ticks
+    uint64_t waiting_ticks = 0;                        // without a force because the one computed was not small yet
+    Histogram tick_ns;                                 // pose in hand to force computed
+    Histogram wake_late_ns;                            // after the deadline; empty on the virtual clock
+    double force_rms_n = 0, force_max_n = 0;           // as sent, over all ticks
+    double grip_force_rms_n = 0, grip_force_max_n = 0; // the same of what pushes a gripper's fingers apart
     double energy_j = 0;         // that the forces gave to the hand; negative where they took more than they gave
     uint64_t faults = 0;         // ticks with a fault of texture, pose or force
     uint32_t fault_bits = 0;     // bits of TickResult::faults seen

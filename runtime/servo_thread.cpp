@@ -97,7 +97,11 @@ void ServoThread::finish()
 {
     device_->stop();
     report_.seconds = static_cast<double>(periods_) / rate_hz_;
-    report_.force_rms_n = report_.ticks == 0 ? 0 : std::sqrt(force_squared_sum_ / static_cast<double>(report_.ticks));
+    const auto rms = [&](double squared_sum) {
+        return report_.ticks == 0 ? 0 : std::sqrt(squared_sum / static_cast<double>(report_.ticks));
+    };
+    report_.force_rms_n = rms(force_squared_sum_);
+    report_.grip_force_rms_n = rms(grip_squared_sum_);
     report_.skipped = renderer_->skipped();
     report_.reloads = renderer_->reloads();
     report_.records_dropped = telemetry_.dropped();
@@ -192,22 +196,29 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
     if (result.faults & fault_pose_not_finite) {
         has_last_tip_ = false;
     } else {
-        // The force of the tick before was held while the hand came here, and so was the torque while it turned.
+        // The force of the tick before was held while the hand came here, and so was the torque while it turned; what
+        // pushed a gripper's fingers apart, while they opened: half of the sum and of the difference are the second's.
         const glm::dvec3 shaft = pose.tail_m - pose.tip_m;
         const double length = glm::length(shaft);
         const glm::dvec3 along = length > 0 ? shaft / length : glm::dvec3(0);
         if (has_last_tip_)
             report_.energy_j += glm::dot(last_force_n_, pose.tip_m - last_tip_m_) +
                                 glm::dot(last_torque_n_m_, glm::cross(last_along_, along));
+        if (has_last_tip_ && last_grip_n_ != 0)
+            report_.energy_j += (last_grip_n_ + 0.5 * glm::dot(last_force_n_, last_along_)) * (length - last_length_m_);
         last_tip_m_ = pose.tip_m;
         last_along_ = along;
         last_torque_n_m_ = result.torque_n_m + torque_about(pose.tip_m, result.grip_m, result.force_n);
         last_force_n_ = result.force_n;
+        last_length_m_ = length;
+        last_grip_n_ = result.grip_force_n;
         has_last_tip_ = true;
     }
     const double force_n = glm::length(result.force_n);
     force_squared_sum_ += force_n * force_n;
     report_.force_max_n = std::max(report_.force_max_n, force_n);
+    grip_squared_sum_ += result.grip_force_n * result.grip_force_n;
+    report_.grip_force_max_n = std::max(report_.grip_force_max_n, std::abs(result.grip_force_n));
     report_.contact_ticks += result.contacts > 0;
     report_.waiting_ticks += result.waiting;
     report_.faults += result.faults != 0;
@@ -224,6 +235,7 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
     row.tail_m = pose.tail_m;
     row.force_n = result.force_n;
     row.torque_n_m = result.torque_n_m;
+    row.grip_force_n = result.grip_force_n;
     row.contact = result.contacts;
     row.depth_m = result.depth_m;
     row.height_m = result.height_m;

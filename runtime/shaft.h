@@ -4,6 +4,7 @@
 
 #include <glm/glm.hpp>
 
+#include <algorithm>
 #include <cstdint>
 
 namespace haptel::runtime {
@@ -14,6 +15,12 @@ struct Shaft {
     glm::dvec3 at(double share) const { return tip + share * (tail - tip); }
     bool operator==(const Shaft&) const = default;
 };
+
+// How far the ends are from each other's, of the pair that is farther.
+inline double farther(const Shaft& a, const Shaft& b)
+{
+    return std::max(glm::distance(a.tip, b.tip), glm::distance(a.tail, b.tail));
+}
 
 // In lattice units, below 1e-9 of the object's size all of them together. What rests does so at `rest_gap`, far
 // above what rounding does; each edge reaches beyond its ends by `reach`, so that nothing slips through at a vertex:

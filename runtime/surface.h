@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,6 +21,7 @@
 namespace haptel::runtime {
 
 class BoxTree;
+class SweptTree;
 
 // What was found in a mesh and mended. All counts, no unit.
 struct MeshReport {
@@ -124,6 +126,13 @@ struct Surface {
     // First crossing of the segment, by exact predicates: never lost, whatever edge or vertex it passes through.
     // Allocates nothing. Not finite ends: nothing.
     std::optional<SegmentHit> first_hit(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept;
+
+    // Of the faces, for shafts. Whoever asks for it first makes it, which allocates and takes a while: never in a tick.
+    const SweptTree& swept_tree() const;
+
+private:
+    mutable std::once_flag swept_tree_made_;
+    mutable std::shared_ptr<const SweptTree> swept_tree_; // null before
 };
 
 struct SurfaceResult {

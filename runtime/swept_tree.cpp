@@ -51,6 +51,12 @@ SweptRegion::SweptRegion(const glm::dvec3& tip0, const glm::dvec3& tail0, const 
     }
 }
 
+const SweptTree& Surface::swept_tree() const
+{
+    std::call_once(swept_tree_made_, [this] { swept_tree_ = std::make_shared<const SweptTree>(*this); });
+    return *swept_tree_;
+}
+
 SweptTree::SweptTree(const Surface& surface)
 {
     boxes_.reserve(surface.faces.size());
@@ -75,7 +81,11 @@ void SweptTree::build(uint32_t begin, uint32_t end)
     }
     const uint32_t index = static_cast<uint32_t>(nodes_.size());
     nodes_.push_back({glm::vec3(0.5 * (minimum + maximum)), widened(0.5 * (maximum - minimum)), begin, end});
-    if (end - begin <= leaf_size) return;
+    if (end - begin <= leaf_size) { // in an order of their own, not the library's
+        std::sort(boxes_.begin() + begin, boxes_.begin() + end,
+                  [](const Box& a, const Box& b) { return a.face < b.face; });
+        return;
+    }
     const glm::dvec3 spread = high - low;
     const int axis = spread.x >= spread.y && spread.x >= spread.z ? 0 : spread.y >= spread.z ? 1 : 2;
     const uint32_t middle = begin + (end - begin) / 2;

@@ -20,6 +20,7 @@ struct TickRecord {
     glm::dvec3 tip_m{0}, tail_m{0};
     glm::dvec3 force_n{0};         // as sent to the device, after all limits
     glm::dvec3 torque_n_m{0};      // the same, about the grip
+    double grip_force_n = 0;       // the same: what pushes a gripper's fingers apart
     uint32_t contact = 0;          // number of objects touched
     double depth_m = 0;            // below the base surface, of the deepest object touched
     double height_m = 0;           // of its texture, as published (not shifted to the envelope)

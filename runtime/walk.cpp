@@ -29,7 +29,7 @@ void Walk::run(uint32_t step_limit, WalkPath* path)
         case Proxy::On::vertex: step = from_vertex(); break;
         case Proxy::On::nothing: step = Step::stop; break;
         }
-        if (path && proxy_.on != Proxy::On::nothing) path->add(beside(surface_, proxy_));
+        if (path && proxy_.touches()) path->add(beside(surface_, proxy_));
     }
     count_.cut = step == Step::again || count_.wall_turns > WalkCount::most_wall_turns;
     proxy_.sliding = moved_;

@@ -232,7 +232,8 @@ ExitCode run(const BenchOptions& given)
 Command bench_command(CLI::App& app)
 {
     const auto options = std::make_shared<BenchOptions>();
-    CLI::App* command = app.add_subcommand("bench", "Figures: error against time, and how long text takes to code");
+    CLI::App* command = app.add_subcommand(
+        "bench", "Figures: compile times, accuracy, batches, math, servo ticks, how they scale and what they skip");
     command
         ->add_option(
             "what", options->what,

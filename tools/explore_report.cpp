@@ -95,6 +95,8 @@ void add(Json& json, const HandOutcome& hand)
     json["wake_late_us"]["max"] = maximum(servo.wake_late_ns, 1e3);
     json["force_n"]["rms"] = finite_or_null(servo.force_rms_n);
     json["force_n"]["max"] = finite_or_null(servo.force_max_n);
+    json["grip_force_n"]["rms"] = finite_or_null(servo.grip_force_rms_n);
+    json["grip_force_n"]["max"] = finite_or_null(servo.grip_force_max_n);
     json["energy_j"] = finite_or_null(servo.energy_j);
     json["faults"] = servo.faults;
     json["reloads"] = servo.reloads;
@@ -125,6 +127,8 @@ std::string lines_of(const HandOutcome& hand, const ExploreOutcome& outcome)
     if (servo.waiting_ticks > 0)
         line("waited", fmt::format("{} ticks for a small force, with none on the hand", servo.waiting_ticks));
     line("force", fmt::format("rms {:.3f} N, largest {:.3f} N", servo.force_rms_n, servo.force_max_n));
+    if (servo.grip_force_max_n > 0)
+        line("grip", fmt::format("rms {:.3f} N, largest {:.3f} N", servo.grip_force_rms_n, servo.grip_force_max_n));
     line("energy", fmt::format("{:.3g} J given to the hand", servo.energy_j));
     line("tick", percentiles_text(servo.tick_ns));
     if (servo.wake_late_ns.count() > 0) line("woke late", percentiles_text(servo.wake_late_ns));

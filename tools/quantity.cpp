@@ -28,7 +28,7 @@ std::string_view trimmed(std::string_view text)
 std::size_t number_length(std::string_view text)
 {
     double ignored = 0;
-    const std::size_t sign = !text.empty() && text[0] == '+';
+    const std::size_t sign = text.starts_with('+') && !text.starts_with("+-"); // from_chars knows no plus
     const auto [end, error] = std::from_chars(text.data() + sign, text.data() + text.size(), ignored);
     return error == std::errc::invalid_argument ? 0 : static_cast<std::size_t>(end - text.data());
 }

@@ -55,12 +55,15 @@ ProbeSettings read_probe(const toml::table& source, const std::string& name, Fil
     if (double grip_m = probe.length_m; table.has("grip_m")) {
         table.number("grip_m", grip_m, Quantity::length, {0, 10});
         probe.grip_m = grip_m;
-        if (grip_m > probe.length_m)
-            messages.error(table.where("grip_m"),
-                           "`grip_m` is measured from the tip, and may not be beyond the stylus's `length_m`");
         if (probe.kind != ProbeKind::stylus)
             messages.error(table.where("grip_m"), "`grip_m` is for `kind = \"stylus\"` alone: leave it out");
+        else if (grip_m > probe.length_m)
+            messages.error(table.where("grip_m"),
+                           "`grip_m` is measured from the tip, and may not be beyond the stylus's `length_m`");
     }
+    if (table.has("length_m") && !probe.has_tail())
+        messages.error(table.where("length_m"), "`length_m` is for `kind = \"stylus\"` or `\"gripper\"`: write one of "
+                                                "them, or leave `length_m` out");
     if (probe.kind == ProbeKind::sphere && probe.radius_m == 0)
         messages.error(table.where(table.has("radius_m") ? "radius_m" : "kind"),
                        "a sphere needs a radius: write `radius_m = 0.005`, or `kind = \"point\"`");

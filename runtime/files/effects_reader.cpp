@@ -135,6 +135,16 @@ ObjectEffects read_object_effects(TableReader& object, double rate_hz, FileMessa
     return effects;
 }
 
+const toml::source_region& farthest_reach_at(const toml::table& object, const ObjectEffects& effects)
+{
+    const double farthest_m = effects.reach_m();
+    const char* effect = effects.magnet.acts() && effects.magnet.reach_m == farthest_m            ? "magnet"
+                         : effects.damping_n_s_per_m > 0 && effects.damping_reach_m == farthest_m ? "viscosity"
+                                                                                                  : "vibration";
+    const toml::node* written = object[effect]["reach_m"].node();
+    return (written ? *written : object).source();
+}
+
 std::vector<Region> read_regions(const toml::table& root, double rate_hz, FileMessages& messages)
 {
     std::vector<Region> regions;

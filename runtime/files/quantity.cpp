@@ -63,7 +63,7 @@ std::string units_of(Quantity quantity)
 std::optional<double> parse_quantity(std::string_view text, Quantity quantity)
 {
     text = without_blanks(text);
-    if (text.starts_with('+')) text.remove_prefix(1);
+    if (text.starts_with('+') && !text.starts_with("+-")) text.remove_prefix(1); // from_chars knows no plus
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc()) return std::nullopt;

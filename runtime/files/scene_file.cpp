@@ -32,7 +32,7 @@ struct ObjectText {
     bool own_crease = false; // it was written: the mesh's smoothing groups do not count
     SceneObject object;
     std::vector<std::pair<std::string, std::string>> parameters;
-    toml::source_region mesh_at, texture_at;
+    toml::source_region mesh_at, texture_at, reach_at;
 };
 
 struct SceneText {
@@ -122,6 +122,7 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
     text.object.motion = read_motion(table, text.object.placement, messages);
     text.object.material = read_material(table, messages);
     text.object.effects = read_object_effects(table, rate_hz, messages);
+    text.reach_at = farthest_reach_at(source, text.object.effects);
     table.text("texture", text.texture);
     text.texture_at = table.where("texture");
     text.parameters = table.values_as_written("parameters");
@@ -205,9 +206,9 @@ void check_reach(const ObjectText& text, const std::vector<DeviceText>& devices,
             break;
         }
     if (text.object.effects.reach_m() > largest_m)
-        messages.error(text.mesh_at, "the `reach_m` of an effect is larger than `" + text.object.name +
-                                         "`: at most the largest side of its box; what is felt farther away is a "
-                                         "`[[region]]`");
+        messages.error(text.reach_at, "the `reach_m` of an effect is larger than `" + text.object.name +
+                                          "`: at most the largest side of its box; what is felt farther away is a "
+                                          "`[[region]]`");
 }
 
 // The scene's speeds are those of the hand times this.
@@ -276,6 +277,7 @@ void describe_object(DeviceText& device, const std::shared_ptr<const Scene>& sce
     DeviceRequest& request = device.request;
     request.rate_hz = scene->servo.rate_hz;
     request.stylus_length_m = device.probe.has_tail() ? device.probe.length_m / workspace.scale : 0;
+    request.gripper = device.probe.kind == ProbeKind::gripper;
     request.box_minimum_m = glm::dvec3(infinity);
     request.box_maximum_m = glm::dvec3(-infinity);
     for (const glm::dvec3& vertex : object.surface->vertices) {

@@ -57,6 +57,20 @@ TEST_CASE("a stylus that a workspace makes too long is told of by its length in 
     CHECK(contains(error_of(request), "found 150 m: its length over the scale of the workspace"));
 }
 
+TEST_CASE("a gripper that cannot reach round its object is told of")
+{
+    DeviceRequest request = request_on_plane("simulated:premium");
+    request.box_minimum_m.z = -0.03;
+    request.gripper = true;
+    request.stylus_length_m = 0.041; // from 1 cm above the plane to 1 mm below the object
+    CHECK(open_device(request).warning.empty());
+    request.stylus_length_m = 0.039;
+    CHECK(contains(open_device(request).warning, "0.039 m apart, do not reach round the object, which takes more than "
+                                                 "0.04 m"));
+    request.gripper = false;
+    CHECK(open_device(request).warning.empty());
+}
+
 TEST_CASE("requests out of range are refused, not simulated")
 {
     const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();

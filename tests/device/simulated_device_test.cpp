@@ -180,6 +180,75 @@ TEST_CASE("stop lets go")
     CHECK(device.velocity_m_per_s() == none);
 }
 
+namespace {
+
+// Two fingers about a layer as thick as that, the plane z = 0 on its upper side: what pushes each is a spring.
+struct Pinched {
+    DevicePose pose;
+    double grip_n = 0, net_n = 0;
+};
+Pinched pinch(SimulatedDevice& device, double thickness_m, double stiffness_n_per_m)
+{
+    Pinched felt;
+    REQUIRE(device.read(felt.pose) == DeviceStatus::ok);
+    const double above_n = stiffness_n_per_m * std::max(0.0, -felt.pose.tip_m.z),
+                 below_n = stiffness_n_per_m * std::max(0.0, felt.pose.tail_m.z + thickness_m);
+    felt.grip_n = 0.5 * (above_n + below_n);
+    felt.net_n = above_n - below_n;
+    device.write_grip(felt.grip_n);
+    REQUIRE(device.write({0, 0, felt.net_n}, none) == DeviceStatus::ok);
+    return felt;
+}
+
+SimulatedDevice gripper(Stroke stroke, double press_n, double open_m)
+{
+    SimulatedDevice::Options options;
+    options.stylus_length_m = open_m;
+    options.gripper = true;
+    const HandImpedance hand{.mass_kg = 0.1, .damping_n_s_per_m = 5, .stiffness_n_per_m = 500};
+    return SimulatedDevice({}, {.mass_kg = 0.05, .force_max_n = 8}, Hand(hand, std::move(stroke), press_n, period_s),
+                           options);
+}
+
+} // namespace
+
+TEST_CASE("a gripper closes on what is between its fingers with the force of the hand, which then cancels")
+{
+    constexpr double thickness_m = 0.02, stiffness_n_per_m = 600, press_n = 1.2;
+    SimulatedDevice device = gripper(resting(), press_n, 0.05);
+    const Pinched first = pinch(device, thickness_m, stiffness_n_per_m);
+    CHECK(first.pose.tail_m == first.pose.tip_m - glm::dvec3(0, 0, 0.05));
+    CHECK(first.pose.tip_m.z == approach_m);
+    Pinched felt;
+    for (int i = 0; i < 4000; ++i) felt = pinch(device, thickness_m, stiffness_n_per_m);
+    CHECK(std::abs(felt.grip_n - press_n) < 1e-6);
+    CHECK(std::abs(felt.net_n) < 1e-6);
+    device.stop();
+    for (int i = 0; i < 2000; ++i) {
+        REQUIRE(device.read(felt.pose) == DeviceStatus::ok);
+        REQUIRE(device.write(none, none) == DeviceStatus::ok);
+        CHECK(felt.pose.tail_m.z <= felt.pose.tip_m.z);
+    }
+    CHECK(glm::distance(felt.pose.tail_m, felt.pose.tip_m) < 1e-9); // nothing between them: they meet
+}
+
+TEST_CASE("a gripper opens where the stroke does not press, and stays open in a hand that never does")
+{
+    SimulatedDevice device =
+        gripper(Stroke([](double t) { return CurvePoint{{}, 0, t < 1 ? 1.0 : 0.0}; }, plane_at(0), *plane_at(0)(0, 0)),
+                1, 0.05);
+    for (int i = 0; i < 1500; ++i) pinch(device, 0.02, 600);
+    CHECK(pinch(device, 0.02, 600).grip_n > 0.9);
+    for (int i = 0; i < 1500; ++i) pinch(device, 0.02, 600);
+    const Pinched open = pinch(device, 0.02, 600);
+    CHECK(open.grip_n < 1e-9);
+    CHECK(std::abs(glm::distance(open.pose.tail_m, open.pose.tip_m) - 0.05) < 1e-9);
+
+    SimulatedDevice idle = gripper(resting(), 0, 0.05);
+    for (int i = 0; i < 2000; ++i) pinch(idle, 0.02, 600);
+    CHECK(std::abs(pinch(idle, 0.02, 600).pose.tail_m.z + 0.05) < 1e-12);
+}
+
 TEST_CASE("a stylus leans from its tip by its length; a point probe has no tail")
 {
     SimulatedDevice point = make({.mass_kg = 0.1});

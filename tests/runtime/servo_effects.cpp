@@ -17,20 +17,6 @@ namespace {
 constexpr double pi = 3.141592653589793;
 constexpr double period_s = 1e-3;
 
-Mesh shape(const char* name, double size_m)
-{
-    Mesh mesh = *make_shape(name);
-    scale_to_size(mesh, size_m);
-    return mesh;
-}
-
-Scene magnet_scene(const Mesh& mesh, double force_n, double reach_m)
-{
-    Scene scene = bare_scene(mesh);
-    scene.objects[0].effects.magnet = {force_n, reach_m};
-    return scene;
-}
-
 Scene vibrating(const Mesh& mesh, double force_n, double frequency_hz, double reach_m)
 {
     Scene scene = bare_scene(mesh);

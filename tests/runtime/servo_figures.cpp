@@ -138,6 +138,8 @@ TEST_CASE("a trace comes back bit for bit")
         r.height_m = any();
         r.compute_ns = random();
         r.binding = random();
+        r.torque_n_m = {any(), any(), any()};
+        r.grip_force_n = any();
         written.push_back(r);
         write_trace_row(out, r);
     }
@@ -151,10 +153,12 @@ TEST_CASE("a trace comes back bit for bit")
             CHECK(bits(a.tip_m[axis]) == bits(b.tip_m[axis]));
             CHECK(bits(a.tail_m[axis]) == bits(b.tail_m[axis]));
             CHECK(bits(a.force_n[axis]) == bits(b.force_n[axis]));
+            CHECK(bits(a.torque_n_m[axis]) == bits(b.torque_n_m[axis]));
         }
         CHECK(bits(a.time_s) == bits(b.time_s));
         CHECK(bits(a.depth_m) == bits(b.depth_m));
         CHECK(bits(a.height_m) == bits(b.height_m));
+        CHECK(bits(a.grip_force_n) == bits(b.grip_force_n));
         CHECK((a.tick == b.tick && a.contact == b.contact && a.compute_ns == b.compute_ns && a.binding == b.binding));
     }
 }
@@ -178,9 +182,10 @@ TEST_CASE("what is wrong with a trace is said with its line")
         read_text("").error ==
         "FILE:1: expected a trace (a CSV file as `haptel explore --out` writes it), but the file is missing or empty");
     CHECK(read_text("tick,time_s\n").error == "FILE:1: the trace has no column `x_m`");
-    CHECK(read_text(header + "\n1,2\n").error == "FILE:2: expected 22 values, found 2");
-    CHECK(read_text(header + "\n1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,0,7,0,1,2,3\n1,2,abc,4,5,6,7,8,9,10,11,12,13,14,"
-                             "15,16,0,7,0,1,2,3\n")
+    CHECK(read_text(header + "\n1,2\n").error == "FILE:2: expected 23 values, found 2");
+    CHECK(read_text(header +
+                    "\n1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,0,7,0,1,2,3,4\n1,2,abc,4,5,6,7,8,9,10,11,12,13,14,"
+                    "15,16,0,7,0,1,2,3,4\n")
               .error == "FILE:3: expected a number in column `x_m`, found `abc`");
     CHECK(read_text(std::string("\0\xff\x80garbage", 10)).error.starts_with("FILE:1: "));
 }

@@ -193,6 +193,26 @@ TEST_CASE("after missed deadlines damping knows the speed that was, not a multip
     }
 }
 
+TEST_CASE("the speed of the hand passes a low-pass of 100 Hz, at every rate and over late ticks")
+{
+    for (const double rate_hz : {10.0, 120.0, 1000.0, 4000.0, 1e5}) {
+        HandVelocity timely(1 / rate_hz);
+        timely.update(glm::dvec3(0), 1);
+        for (int period = 1; period <= 100; ++period) {
+            timely.update({period, -2 * period, 0}, 1);
+            HandVelocity late(1 / rate_hz);
+            late.update(glm::dvec3(0), 1);
+            late.update({period, -2 * period, 0}, uint64_t(period));
+            const double share = -std::expm1(-2 * pi * 100 * period / rate_hz);
+            for (const HandVelocity* hand : {&timely, &late}) {
+                CAPTURE(rate_hz, period, hand == &late);
+                CHECK(std::abs(hand->m_per_s().x / rate_hz - share) < 1e-13 * share);
+                CHECK(hand->m_per_s().y == -2 * hand->m_per_s().x);
+            }
+        }
+    }
+}
+
 TEST_CASE("force shading makes an icosphere of 5120 triangles a sphere")
 {
     Mesh mesh = make_icosphere(4);

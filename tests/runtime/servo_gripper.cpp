@@ -156,6 +156,36 @@ TEST_CASE("the gripping force reaches the device, and zero when the run is over"
     CHECK(written_n->back() == 0);
 }
 
+TEST_CASE("what a gripper's springs take while it closes they give back while it opens")
+{
+    constexpr int steps = 4000;
+    constexpr double depth_m = 2e-3;
+    // Moved as a whole meanwhile, so that one finger goes deeper than the other.
+    const auto close = [](uint64_t tick, DevicePose& pose) {
+        const double share = std::min(1.0, double(tick) / steps);
+        pose = fingers(0.0101 - share * (depth_m + 1e-4));
+        pose.tip_m.x += 1e-3 * share;
+        pose.tail_m.x += 1e-3 * share;
+        return DeviceStatus::ok;
+    };
+    const auto energy_j = [&](const ScriptedDevice::Read& hand, double seconds) {
+        ServoOptions options;
+        options.clock = ServoClock::virtual_time;
+        options.seconds = seconds;
+        ServoThread servo(shared(box_for_fingers()), std::make_unique<ScriptedDevice>(hand), options);
+        servo.start();
+        return servo.wait().energy_j;
+    };
+    const double taken_j = -energy_j(close, 1e-3 * (steps + 1));
+    // One finger is 3 mm deep, the other 1 mm: each stores half of K d^2.
+    const double stored_j = 0.5 * stiffness_n_per_m * (3e-3 * 3e-3 + 1e-3 * 1e-3);
+    CHECK(std::abs(taken_j / stored_j - 1) < 1e-3);
+    const auto there_and_back = [&](uint64_t tick, DevicePose& pose) {
+        return close(tick <= steps ? tick : 2 * steps - std::min(tick, uint64_t(2 * steps)), pose);
+    };
+    CHECK(std::abs(energy_j(there_and_back, 2e-3 * (steps + 1))) < 2e-3 * stored_j);
+}
+
 TEST_CASE("a scene may be felt with a gripper")
 {
     Folder folder;

@@ -41,20 +41,6 @@ double distance_to(const Surface& surface, const glm::dvec3& p)
     return least;
 }
 
-Mesh shape(const char* name, double size_m)
-{
-    Mesh mesh = *make_shape(name);
-    scale_to_size(mesh, size_m);
-    return mesh;
-}
-
-Scene magnet_scene(const Mesh& mesh, double force_n, double reach_m)
-{
-    Scene scene = bare_scene(mesh);
-    scene.objects[0].effects.magnet = {force_n, reach_m};
-    return scene;
-}
-
 // Energy that held forces give to a hand on its way.
 struct Energy {
     double given_j = 0, squared_way_m2 = 0;

@@ -76,7 +76,10 @@ damping_n_s_per_m = 0.5
         {object + "viscosity = { damping_n_s_per_m = 2000, reach_m = 0.1 }\n",
          "3:35: error: `damping_n_s_per_m` must be from 0 to 1000, found 2000\n"},
         {object + "viscosity = { damping_n_s_per_m = 2, reach_m = \"11cm\" }\n",
-         "2:9: error: the `reach_m` of an effect is larger than `plane`: at most the largest side of its box; what is "
+         "3:48: error: the `reach_m` of an effect is larger than `plane`: at most the largest side of its box; what is "
+         "felt farther away is a `[[region]]`\n"},
+        {object + "magnet = { force_n = 1, reach_m = 0.1 }\nvibration = { reach_m = 0.2, force_n = 1 }\n",
+         "4:25: error: the `reach_m` of an effect is larger than `plane`: at most the largest side of its box; what is "
          "felt farther away is a `[[region]]`\n"},
         {object + "vibration = { force_n = 1, frequency_hz = 500 }\n",
          "3:43: error: `frequency_hz` must be below half of the servo's `rate_hz`, so below 500: at that rate faster "

@@ -41,6 +41,21 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "scene.toml:2:8: error: a sphere needs a radius: write `radius_m = 0.005`, or `kind = \"point\"`\n"},
         {"[probe]\nkind = \"sphere\"\nradius_m = 0.2\n[[object]]\nshape = \"plane\"\n",
          "scene.toml:5:9: error: the probe's `radius_m` is larger than `plane`: at most the largest side of its box\n"},
+        {"[probe]\nlength_m = \"2cm\"\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:2:12: error: `length_m` is for `kind = \"stylus\"` or `\"gripper\"`: write one of them, or leave "
+         "`length_m` out\n"},
+        {"[[device]]\nprobe = { kind = \"sphere\", radius_m = 0.01, length_m = 0.1, grip_m = 0.2 }\n[[object]]\n"
+         "shape = \"plane\"\n",
+         "scene.toml:2:56: error: `length_m` is for `kind = \"stylus\"` or `\"gripper\"`: write one of them, or leave "
+         "`length_m` out\n"
+         "scene.toml:2:70: error: `grip_m` is for `kind = \"stylus\"` alone: leave it out\n"},
+        {"[probe]\nkind = \"gripper\"\nlength_m = 0.1\nradius_m = 0.01\ngrip_m = 0.05\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:4:12: error: `radius_m` is for `kind = \"sphere\"` alone: write that, or leave `radius_m` out\n"
+         "scene.toml:5:10: error: `grip_m` is for `kind = \"stylus\"` alone: leave it out\n"},
+        {"[probe]\nkind = \"stylus\"\nlength_m = \"+-5mm\"\n[[object]]\nshape = \"plane\"\n",
+         "scene.toml:3:12: error: expected a length in metres, such as 0.15 or \"15cm\" for `length_m`, found "
+         "\"+-5mm\" "
+         "(units that fit: m, cm, mm, um, nm)\n"},
         {"[servo]\nforce_model = \"ho89\"\nrate_hz = 0\nforce_limit_n = -1\n[[object]]\nshape = \"plane\"\n",
          "scene.toml:2:15: error: expected \"displaced\", \"paper\", \"paper_unit\", \"ho99\" or \"lateral\" for "
          "`force_model`, found \"ho89\"\n"

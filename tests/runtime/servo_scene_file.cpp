@@ -27,7 +27,8 @@ TEST_CASE("quantities are numbers in SI or text with a unit, to the last bit")
     CHECK(parse_quantity("0.8 N/mm", Quantity::stiffness) == 800);
     CHECK(parse_quantity("100mm/s", Quantity::speed) == 0.1);
     CHECK(std::abs(*parse_quantity("3.141592653589793rad", Quantity::angle_deg) - 180) < 1e-12);
-    for (const char* wrong : {"", "m", "1 m m", "1kg", "1Hz", "1,5m", "0x10", "1e", "1 M", "--1"})
+    for (const char* wrong :
+         {"", "m", "1 m m", "1kg", "1Hz", "1,5m", "0x10", "1e", "1 M", "--1", "+-5mm", "-+5mm", "++5mm", "+"})
         CHECK_FALSE(parse_quantity(wrong, Quantity::length).has_value());
     CHECK_FALSE(parse_quantity("1m", Quantity::number).has_value());
 }

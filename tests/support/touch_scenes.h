@@ -29,6 +29,21 @@ inline runtime::Scene bare_scene(const runtime::Mesh& mesh, TextureBinding textu
     return scene;
 }
 
+// A built-in shape whose largest side is that long.
+inline runtime::Mesh shape(const char* name, double size_m)
+{
+    runtime::Mesh mesh = *runtime::make_shape(name);
+    runtime::scale_to_size(mesh, size_m);
+    return mesh;
+}
+
+inline runtime::Scene magnet_scene(const runtime::Mesh& mesh, double force_n, double reach_m)
+{
+    runtime::Scene scene = bare_scene(mesh);
+    scene.objects[0].effects.magnet = {force_n, reach_m};
+    return scene;
+}
+
 // The plane z = 0 with the given side, metres.
 inline runtime::Mesh plane_mesh(double side_m = 0.1, uint32_t cells = 1)
 {

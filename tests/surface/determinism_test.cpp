@@ -178,14 +178,16 @@ namespace {
 // Whole numbers from a generator that the standard defines to the bit, and + - * / and square roots of them.
 class Wander {
 public:
+    explicit Wander(uint32_t seed, const dvec3& place) : random_(seed), place_(place) {}
+
     // -1 .. 1
     double next() { return static_cast<double>(random_()) / 2147483648.0 - 1; }
 
     dvec3 toward(const dvec3& goal, double share) { return place_ += share * (goal - place_); }
 
 private:
-    std::mt19937 random_{2024};
-    dvec3 place_{0, 0, 0.02};
+    std::mt19937 random_;
+    dvec3 place_;
 };
 
 // An octahedron: angles at a vertex are equal, so that its normals do not depend on their digits.
@@ -215,7 +217,28 @@ public:
     }
 };
 
-uint64_t hash_of_forces(const ProbeSettings& probe)
+// FNV-1a.
+class BitHash {
+public:
+    void add(const dvec3& v)
+    {
+        for (int k = 0; k < 3; ++k) {
+            const auto bits = std::bit_cast<uint64_t>(v[k] + 0.0); // -0 is 0
+            for (int byte = 0; byte < 8; ++byte) hash_ = (hash_ ^ (bits >> 8 * byte & 0xff)) * 0x100000001b3;
+        }
+    }
+    std::string hex() const
+    {
+        char text[20];
+        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash_));
+        return text;
+    }
+
+private:
+    uint64_t hash_ = 0xcbf29ce484222325;
+};
+
+std::string hash_of_forces(const ProbeSettings& probe, double damping_n_s_per_m)
 {
     const auto program = compiled(source);
     Scene scene;
@@ -230,33 +253,42 @@ uint64_t hash_of_forces(const ProbeSettings& probe)
     round.placement.rotation = turned();
     round.effects.magnet = {0.5, 0.004};
     scene.objects.push_back(round);
-    for (SceneObject& object : scene.objects) object.material.damping_n_s_per_m = 0;
+    for (SceneObject& object : scene.objects) object.material.damping_n_s_per_m = damping_n_s_per_m;
 
     Renderer renderer(tests::shared(std::move(scene)));
-    Wander wander;
-    dvec3 goal(0);
-    uint64_t hash = 0xcbf29ce484222325; // FNV-1a over the bits of the forces
-    int contacts = 0;
+    Wander wander(2024, {0, 0, 0.02}), lean(4202, {0, 0, 0.1});
+    dvec3 goal(0), lean_goal(0);
+    BitHash hash;
+    int contacts = 0, by_shaft = 0;
     for (int i = 0; i < 30'000; ++i) {
-        if (i % 150 == 0) goal = {0.05 * wander.next(), 0.05 * wander.next(), 0.002 + 0.012 * wander.next()};
-        const dvec3 tip = wander.toward(goal, i % 1000 < 20 ? 0.5 : 0.01);
-        const TickResult felt = renderer.tick({tip, tip + dvec3(0, 0, 0.1)});
-        contacts += felt.contacts > 0;
-        for (int k = 0; k < 3; ++k) {
-            const auto bits = std::bit_cast<uint64_t>(felt.force_n[k] + 0.0); // -0 is 0
-            for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (bits >> 8 * byte & 0xff)) * 0x100000001b3;
+        if (i % 150 == 0) {
+            goal = {0.05 * wander.next(), 0.05 * wander.next(), 0.002 + 0.012 * wander.next()};
+            lean_goal = {0.1 * lean.next(), 0.1 * lean.next(), 0.02 + 0.02 * lean.next()};
+            if (probe.kind == ProbeKind::gripper) lean_goal *= dvec3(0.3, 0.3, 0.2);
         }
+        DevicePose pose;
+        pose.tip_m = wander.toward(goal, i % 1000 < 20 ? 0.5 : 0.01);
+        pose.tail_m = pose.tip_m + (probe.has_tail() ? lean.toward(lean_goal, 0.01) : dvec3(0, 0, 0.1));
+        pose.periods = damping_n_s_per_m > 0 && i % 70 == 69 ? 3 : 1;
+        const TickResult felt = renderer.tick(pose);
+        contacts += felt.contacts > 0;
+        hash.add(felt.force_n);
+        if (!probe.has_tail()) continue;
+        hash.add(felt.torque_n_m);
+        hash.add({felt.grip_force_n, 0, 0});
+        const dvec3 by_tip = torque_about(felt.grip_m, pose.tip_m, felt.force_n);
+        by_shaft += glm::distance(felt.torque_n_m, by_tip) > 1e-3;
     }
     CHECK(contacts > 8000);
-    return hash;
+    if (probe.has_tail()) CHECK(by_shaft > 1000); // or by the tail
+    return hash.hex();
 }
 
 } // namespace
 
 // These runs use + - * / and square roots, and the language's own elementary functions, so that no C library, compiler,
-// optimisation level or instruction set has a say: contact, friction, shading, textures by place and by
-// normal with material outputs, a moving object, a magnet. Without damping, whose low-pass is made by the C library's
-// exp.
+// optimisation level or instruction set has a say: contact of all probes, friction, damping, shading, textures by place
+// and by normal with material outputs, a moving object, a magnet, late ticks.
 //
 // When a hash moves: it is found on one machine or with one compiler only? Then a rounding is not where it was written:
 // look for -ffast-math, contraction to fma, x87, an elementary function of the C library, a value that was never set.
@@ -265,13 +297,11 @@ uint64_t hash_of_forces(const ProbeSettings& probe)
 // hash with the change that moved it.
 TEST_CASE("the forces of a run are these bits, with every compiler, optimisation and instruction set")
 {
-    const auto hex = [](uint64_t hash) {
-        char text[20];
-        std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-        return std::string(text);
-    };
-    CHECK(hex(hash_of_forces({ProbeKind::point, 0, 0})) == "e1aaccdd31c0e5e8");
-    CHECK(hex(hash_of_forces({ProbeKind::sphere, 0, 3e-3})) == "8148482b2deeb0be");
+    CHECK(hash_of_forces({ProbeKind::point, 0, 0}, 0) == "e1aaccdd31c0e5e8");
+    CHECK(hash_of_forces({ProbeKind::sphere, 0, 3e-3}, 0) == "8148482b2deeb0be");
+    CHECK(hash_of_forces({ProbeKind::stylus, 0.1, 0}, 0) == "ab22cff922de6855");
+    CHECK(hash_of_forces({ProbeKind::stylus, 0.1, 0}, 2) == "891527e4da09f560");
+    CHECK(hash_of_forces({ProbeKind::gripper, 0.1, 0}, 2) == "e51c06647abddc2d");
 }
 
 TEST_CASE("no multiplication is fused with an addition")

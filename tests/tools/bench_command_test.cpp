@@ -48,6 +48,20 @@ TEST_CASE("bench compile: rows by length, with machine, commit and flags")
     CHECK(run_command("bench --quick --out /proc/none").code == 1);
 }
 
+TEST_CASE("bench --help: its first line, which haptel --help has too, names every kind there is")
+{
+    const std::string help = run_command("bench --help").out, first = help.substr(0, help.find('\n'));
+    CHECK(contains(run_command("--help").out, first));
+    std::string kinds = help.substr(help.find('{') + 1);
+    kinds = kinds.substr(0, kinds.find('}')) + ",";
+    int count = 0;
+    for (size_t end; (end = kinds.find(',')) != std::string::npos; kinds.erase(0, end + 1), ++count) {
+        CAPTURE(kinds, first);
+        CHECK(contains(first, kinds.substr(0, end)));
+    }
+    CHECK(count == 7);
+}
+
 TEST_CASE("bench tick: what a tick looks at does not grow with the mesh or the scene")
 {
     const Ran ran = run_command("bench tick --quick --json");
@@ -58,6 +72,8 @@ TEST_CASE("bench tick: what a tick looks at does not grow with the mesh or the s
         CHECK(row["tick_ns"]["median"].get<double>() > 0);
         CHECK(row["tree_ns"]["median"].get<double>() > 0);
         CHECK(row["contact"].get<double>() == (row["scene"] == "free" ? 0 : 1));
+        REQUIRE(row.contains("nodes"));
+        CHECK(row["nodes"].is_null()); // not told
         if (row["scene"] != "fbm4") continue;
         // In contact a proxy walks, and asks no tree; of other objects one wakes now and then.
         CHECK(row["queries"]["p99"].get<double>() <= (row["objects"] == 1 ? 0 : 3));

@@ -217,7 +217,8 @@ TEST_CASE("who waits for a small force is told so, in the report, the trace and 
     const auto waited = json["waiting_ticks"].get<uint64_t>();
     CHECK(waited > 0);
     uint64_t rows_waiting = 0;
-    for (const std::string& row : felt(stage.out("wait"))) rows_waiting += row.ends_with(",1,0,0,0,"); // no torque
+    for (const std::string& row : felt(stage.out("wait")))
+        rows_waiting += row.ends_with(",1,0,0,0,0,"); // no torque, no grip
     CHECK(rows_waiting == waited);
     CHECK(contains(run_command("explore " + scene + " --seconds 0.2 --clock virtual").out,
                    "waited       " + std::to_string(waited) + " ticks"));

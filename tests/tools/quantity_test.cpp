@@ -27,7 +27,8 @@ TEST_CASE("a length is the double nearest to its decimal value times its unit")
 
 TEST_CASE("what is no length is refused with what was expected and what was found")
 {
-    for (const std::string text : {"", "mm", "x", "--2mm", "nan", "inf", "-infinity", "1e999mm", "nanmm", "0x10"}) {
+    for (const std::string text :
+         {"", "mm", "x", "--2mm", "+-2mm", "++2mm", "nan", "inf", "-infinity", "1e999mm", "nanmm", "0x10"}) {
         CAPTURE(text);
         CHECK(!parse_length(text));
     }
