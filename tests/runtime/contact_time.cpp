@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
+#include <string>
 #include <vector>
 
 using namespace haptel::runtime;
@@ -43,7 +44,7 @@ void report(const char* what, size_t triangles, const std::vector<dvec3>& stroke
     }
     std::sort(times_ns.begin(), times_ns.end());
     const auto share = [&](double s) { return times_ns[size_t(s * double(times_ns.size() - 1))]; };
-    std::printf("%-24s %8zu triangles: median %5.0f  p99 %5.0f  p99.9 %5.0f ns\n", what, triangles, share(0.5),
+    std::printf("%-32s %8zu triangles: median %5.0f  p99 %5.0f  p99.9 %5.0f ns\n", what, triangles, share(0.5),
                 share(0.99), share(0.999));
 }
 
@@ -64,11 +65,14 @@ TEST_CASE("time of a tick", "[.time]")
         report("pressed", triangles, pressed, [&](const dvec3& p) { point.update(p); });
         report("pressed, friction", triangles, pressed, [&](const dvec3& p) { rubbing.update(p, {0.3, 0.2}); });
         report("pressed, stylus", triangles, pressed, [&](const dvec3& p) { stylus.update(p, 1.15 * p); });
-        SphereContact ball(surface, 0.05), rubbing_ball(surface, 0.05);
-        for (SphereContact* contact : {&ball, &rubbing_ball}) contact->update({0, 0, 1.5});
-        report("pressed, ball", triangles, pressed, [&](const dvec3& p) { ball.update(1.05 * p); });
-        report("pressed, ball, friction", triangles, pressed,
-               [&](const dvec3& p) { rubbing_ball.update(1.05 * p, {0.3, 0.2}); });
+        for (const double radius : {0.05, 0.1}) { // a twentieth of the object's radius, and of its diameter
+            SphereContact ball(surface, radius), rubbing_ball(surface, radius);
+            for (SphereContact* contact : {&ball, &rubbing_ball}) contact->update({0, 0, 1.5});
+            const std::string name = "pressed, ball of " + std::to_string(radius).substr(0, 4);
+            report(name.c_str(), triangles, pressed, [&](const dvec3& p) { ball.update((1 + radius) * p); });
+            report((name + ", friction").c_str(), triangles, pressed,
+                   [&](const dvec3& p) { rubbing_ball.update((1 + radius) * p, {0.3, 0.2}); });
+        }
         report("hovering", triangles, hovering, [&](const dvec3& p) { free.update(p); });
         report("tapping", triangles, tapping, [&](const dvec3& p) { taps.update(p); });
     }
