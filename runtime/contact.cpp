@@ -119,6 +119,7 @@ void PointContact::move_freely(const glm::dvec3& hand) noexcept
     Crossing crossing;
     if ((!outside || Lattice::clip_to_workspace(from, to)) && sweep(from, to, crossing)) {
         land(*surface_, proxy_, crossing, from, to);
+        proxy_.sliding = false; // static friction holds what comes down
         clear_.radius = 0;
         return;
     }

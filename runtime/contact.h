@@ -12,7 +12,8 @@
 // sequence of poses. Everything is in the object's space, metres: transform the hand into it first.
 //
 // Where faces pierce each other without sharing edges (walls.h) up to three sheets at once hold the proxy. Known
-// limits: where a vertex lies within rounding on another sheet the proxy may rest before the nearest point for a tick.
+// limits: where a vertex lies within rounding on another sheet the proxy may rest before the nearest point for a tick;
+// of joined surfaces a hand within rounding on an edge of the seam may, rarely, get behind it.
 #pragma once
 
 #include "runtime/proxy.h"
@@ -28,6 +29,15 @@ struct Friction {
     double static_coefficient = 0, dynamic_coefficient = 0;
 };
 WalkFriction checked(const Friction& friction) noexcept;
+
+// Of a probe that has two ends, which may touch what is different. One for both of them: Friction.
+struct EndsFriction {
+    Friction tip, tail;
+
+    EndsFriction() = default;
+    EndsFriction(const Friction& both) : tip(both), tail(both) {}
+    EndsFriction(const Friction& of_tip, const Friction& of_tail) : tip(of_tip), tail(of_tail) {}
+};
 
 // Where and how the probe touches after a tick. If !touching, proxy_m is the hand and the rest is meaningless.
 struct Contact {
@@ -46,7 +56,9 @@ struct Contact {
     double depth_m = 0;    // >= 0: how deep the hand is below the proxy along `normal`
     double along = 0;      // of a stylus or a gripper: where it touches, 0 at its tip, 1 at its tail
     bool by_shaft = false; // of a stylus: between its ends, on an edge
-    glm::dvec3 lag_m{0};   // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
+    // Of an object that is joined to others (body.h): they have a crease here, where its own surface may have none.
+    bool on_crease = false;
+    glm::dvec3 lag_m{0}; // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
 };
 
 // Since construction or reset().

@@ -10,10 +10,10 @@ GripperContact::GripperContact(const std::shared_ptr<const Surface>& surface, bo
 }
 
 std::span<const Contact> GripperContact::update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
-                                                const Friction& friction) noexcept
+                                                const EndsFriction& friction) noexcept
 {
-    tip_.update(tip_m, friction);
-    tail_.update(tail_m, friction);
+    tip_.update(tip_m, friction.tip);
+    tail_.update(tail_m, friction.tail);
     count_ = 0;
     if (tip_.contact().touching) contacts_[count_++] = tip_.contact();
     if (tail_.contact().touching) {

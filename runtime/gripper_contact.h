@@ -15,7 +15,7 @@ public:
 
     // One tick: where its fingers touch, the tip first. A finger whose pose is not finite is held where it was.
     std::span<const Contact> update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
-                                    const Friction& friction = {}) noexcept;
+                                    const EndsFriction& friction = {}) noexcept;
     // One tick of a probe that is free and known to have met nothing on its way.
     void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
 

@@ -18,7 +18,7 @@ make(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, 
     return PointContact(surface, skips_free_space);
 }
 
-std::span<const Contact> touched(const Contact& contact)
+std::span<const Contact> any(const Contact& contact)
 {
     return {&contact, contact.touching ? std::size_t{1} : std::size_t{0}};
 }
@@ -35,14 +35,22 @@ glm::dvec3 ProbeSettings::grip_of(const glm::dvec3& tip_m, const glm::dvec3& tai
 
 ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
                            bool skips_free_space)
-    : contact_(make(probe, surface, skips_free_space))
+    : surface_(surface.get())
+    , parts_(surface->origins.empty() ? nullptr : std::make_unique<PartShares>())
+    , contact_(make(probe, surface, skips_free_space))
 {
 }
 
-std::span<const Contact> ProbeContact::update(const ProbePose& pose, const Friction& friction) noexcept
+std::span<const Contact> ProbeContact::update(const ProbePose& pose, const EndsFriction& friction) noexcept
 {
-    if (auto* point = std::get_if<PointContact>(&contact_)) return touched(point->update(pose.tip_m, friction));
-    if (auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->update(pose.tip_m, friction);
+    const std::span<const Contact> contacts = touched(pose, friction);
+    return parts_ ? parts_->of(*surface_, contacts) : contacts;
+}
+
+std::span<const Contact> ProbeContact::touched(const ProbePose& pose, const EndsFriction& friction) noexcept
+{
+    if (auto* point = std::get_if<PointContact>(&contact_)) return any(point->update(pose.tip_m, friction.tip));
+    if (auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->update(pose.tip_m, friction.tip);
     if (auto* gripper = std::get_if<GripperContact>(&contact_))
         return gripper->update(pose.tip_m, pose.tail_m, friction);
     auto& stylus = *std::get_if<StylusContact>(&contact_);

@@ -3,6 +3,7 @@
 
 #include "runtime/contact.h"
 #include "runtime/gripper_contact.h"
+#include "runtime/part_shares.h"
 #include "runtime/sphere_contact.h"
 #include "runtime/stylus_contact.h"
 
@@ -39,8 +40,8 @@ public:
     ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
                  bool skips_free_space = true);
 
-    // One tick: where it touches, none if it does not.
-    std::span<const Contact> update(const ProbePose& pose, const Friction& friction) noexcept;
+    // One tick: where it touches, none if it does not. Of a joined surface: each is of one part.
+    std::span<const Contact> update(const ProbePose& pose, const EndsFriction& friction) noexcept;
     // One tick of a probe that is free and known to have met nothing on its way.
     void follow(const ProbePose& pose) noexcept;
 
@@ -52,6 +53,10 @@ public:
     const ContactCounters& counters() const noexcept;
 
 private:
+    std::span<const Contact> touched(const ProbePose& pose, const EndsFriction& friction) noexcept;
+
+    const Surface* surface_;
+    std::unique_ptr<PartShares> parts_; // of a joined surface
     std::variant<PointContact, SphereContact, StylusContact, GripperContact> contact_;
 };
 

@@ -3,7 +3,7 @@
 //
 // Known by the way that the hand has gone, added up: an object at least a gap away sleeps until the way has grown by
 // that gap. One heap, ordered by the way at which to wake. Who is then still far away, by the ball around it, sleeps
-// on: the hand goes up and down more than away.
+// on: the hand goes up and down more than away. Objects that are joined are one here (body.h).
 #pragma once
 
 #include <glm/glm.hpp>

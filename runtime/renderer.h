@@ -6,11 +6,11 @@
 // friction and damping, effects, limits. tick() allocates nothing, locks nothing, throws nothing.
 #pragma once
 
+#include "runtime/body.h"
 #include "runtime/effects.h"
 #include "runtime/hand.h"
 #include "runtime/hand_velocity.h"
 #include "runtime/haptic_device.h"
-#include "runtime/probe_contact.h"
 #include "runtime/reach.h"
 #include "runtime/scene.h"
 #include "runtime/servo_report.h"
@@ -90,20 +90,12 @@ public:
     uint64_t reloads() const noexcept;
 
 private:
-    // What the servo remembers of one object.
+    // What the servo remembers of one object, whichever body it is of.
     struct Touched {
         const SceneObject* object;
-        ProbeContact contact;
         TextureReader texture;
         uint64_t serial_at_start;
-        Placement placement; // of this tick
-        // Of tip and tail, in the space of an object that moves; else not kept.
-        HandVelocity velocity, tail_velocity;
-        bool asleep = false;         // out of the hand's reach: its contact stands where the hand last was
         uint64_t texture_period = 0; // up to which its texture has faded
-        // What the texture leaves of the friction coefficients: its own scale, times the share of the depth below the
-        // base surface that is also below the texture. Of the tick before: contact comes before texture.
-        double friction_share = 0;
     };
     struct Felt { // world frame
         glm::dvec3 point_m{0}, normal{0, 0, 1};
@@ -112,25 +104,41 @@ private:
     struct ObjectForce {
         glm::dvec3 force_n{0}; // world frame
         double height_m = 0;
-        double friction_share = 0; // as in Touched
+        // What the texture leaves of the friction coefficients: its own scale, times the share of the depth below the
+        // base surface that is also below the texture.
+        double friction_share = 0;
         uint32_t faults = 0;
         bool textured = false, band_limited = false; // a texture was evaluated, with less detail than it has
         bool unmapped = false;                       // coordinates or the turning of normals were left out
     };
+    struct Skipped { // in this tick
+        bool query = true, texture = true, octaves = false, mapping = false;
+    };
+    struct OnHand {
+        glm::dvec3 n{0}, n_m{0};
+        double grip_n = 0;
+        bool operator==(const OnHand&) const = default;
+    };
 
-    static std::vector<Surroundings> surroundings(const Scene& scene, double probe_radius_m);
+    static std::vector<Body> make_bodies(const Scene& scene, const ProbeSettings& probe);
+    static std::vector<Surroundings> surroundings(const Scene& scene, const std::vector<Body>& bodies,
+                                                  double probe_radius_m);
     TickResult feel(const DevicePose& pose) noexcept;
-    static ProbePose in_object(const Touched& touched, const DevicePose& pose) noexcept;
+    void touch(Body& body, const PartContacts& part, const DevicePose& pose, TickResult& result,
+               Skipped& skipped) noexcept;
     void advance_texture(Touched& touched) noexcept;
-    void wake(Touched& touched) noexcept;
-    double gap_to_sleep_m(uint32_t number, const DevicePose& pose, double near_m) const noexcept;
-    std::span<const Contact> update_contact(Touched& touched, const DevicePose& pose, uint64_t periods) noexcept;
-    bool feels_in_air(const Touched& touched, const DevicePose& pose) const noexcept;
-    ObjectForce force_of(const Touched& touched, const Contact& contact) const noexcept;
-    double damping_n(const Touched& touched, const Contact& contact, const glm::dvec3& normal, double depth_m,
-                     double stiffness_n_per_m) const noexcept;
+    void advance_textures(const Body& body) noexcept;
+    void wake(Body& body) noexcept;
+    double gap_to_sleep_m(const Body& body, const DevicePose& pose, double near_m) const noexcept;
+    std::span<const Contact> update_contact(Body& body, const DevicePose& pose, uint64_t periods) noexcept;
+    void update_effects(const Body& body, std::span<const PartContacts> parts) noexcept;
+    bool feels_in_air(const Body& body, const DevicePose& pose) const noexcept;
+    ObjectForce force_of(const Body& body, const Touched& touched, const Placement& placement,
+                         const Contact& contact) const noexcept;
+    double damping_n(const Body& body, const Material& material, const Placement& placement, const Contact& contact,
+                     const glm::dvec3& normal, double depth_m, double stiffness_n_per_m) const noexcept;
     void send(TickResult& result, double lever_m) noexcept;
-    void move(Touched& touched) const noexcept;
+    double time_s() const noexcept { return static_cast<double>(period_) * period_s_; }
 
     std::shared_ptr<const Scene> scene_;
     HandSettings hand_;
@@ -138,8 +146,9 @@ private:
     double period_s_;
     double force_limit_n_;
     std::vector<Touched> objects_;
+    std::vector<Body> bodies_;
     Effects effects_;
-    Reach reach_;
+    Reach reach_; // of bodies
     bool started_ = false;
     uint64_t period_ = 0;         // number of this tick's period, 0 at the first pose
     uint64_t texture_period_ = 0; // the same, those before a pose included
@@ -152,14 +161,16 @@ private:
     HandVelocity velocity_, tail_velocity_; // world frame
 
     // For who takes over, and after having taken over.
-    glm::dvec3 sent_n_{0}, computed_n_{0}, computed_n_m_{0}; // in the tick before, the scene's space
-    glm::dvec3 sent_n_m_{0};
-    std::optional<Felt> felt_;           // what pressed most in the tick before
-    std::vector<uint32_t> was_;          // of each object: its number in the scene before
-    bool swapped_ = false;               // no tick since
-    glm::dvec3 left_n_{0}, left_n_m_{0}; // was on the hand then, and fades out
-    uint64_t left_period_ = 0;           // from this one on
+    OnHand sent_;                                // in the tick before, the scene's space
+    glm::dvec3 computed_n_{0}, computed_n_m_{0}; // the same
+    std::optional<Felt> felt_;                   // what pressed most in the tick before
+    std::vector<uint32_t> was_;                  // of each body: its number in the scene before
+    bool swapped_ = false;                       // no tick since
+    OnHand left_;                                // was on the hand then, and fades out
+    uint64_t left_period_ = 0;                   // from this one on
     uint64_t reloads_before_ = 0;
+
+    ContactsByPart by_part_;
 };
 
 } // namespace haptel::runtime

@@ -11,8 +11,8 @@ namespace {
 
 constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
 
-// An object that lies elsewhere by at most this, where the hand is, was moved under the hand and goes on touching it;
-// one that lies farther away is another object.
+// A body that lies elsewhere by at most this, where the hand is, was moved under the hand and goes on touching it; one
+// that lies farther away is another one.
 constexpr double nudge_m = 1e-3;
 
 // Above the place that was touched, from where the hand is put down on what is there now.
@@ -31,20 +31,22 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand,
     : Renderer(std::move(scene), hand)
 {
     const ProbeSettings probe = hand.probe.value_or(before.probe);
-    was_.assign(objects_.size(), none);
+    was_.assign(bodies_.size(), none);
     if (probe.kind != probe_.kind || probe.radius_m != probe_.radius_m || probe.length_m != probe_.length_m) return;
 
-    // The same surface makes the same object, nearer ones first.
+    // The same surface makes the same body, nearer ones first.
+    const std::vector<BodyObjects> old = bodies_of(before);
     std::unordered_map<const Surface*, std::vector<uint32_t>> by_surface;
-    for (uint32_t i = 0; i < before.objects.size(); ++i) by_surface[before.objects[i].surface.get()].push_back(i);
-    for (uint32_t i = 0; i < objects_.size(); ++i) {
-        const auto candidates = by_surface.find(scene_->objects[i].surface.get());
+    for (uint32_t i = 0; i < old.size(); ++i) by_surface[old[i].surface(before).get()].push_back(i);
+    for (uint32_t i = 0; i < bodies_.size(); ++i) {
+        const BodyObjects& now = bodies_[i].objects;
+        const auto candidates = by_surface.find(now.surface(*scene_).get());
         if (candidates == by_surface.end()) continue;
         auto nearest = candidates->second.end();
         double least_m = std::numeric_limits<double>::infinity();
-        for (auto old = candidates->second.begin(); old != candidates->second.end(); ++old) {
-            const double away_m = distance_m(before.objects[*old].placement, scene_->objects[i].placement);
-            if (away_m < least_m) least_m = away_m, nearest = old;
+        for (auto candidate = candidates->second.begin(); candidate != candidates->second.end(); ++candidate) {
+            const double away_m = distance_m(old[*candidate].placement(before), now.placement(*scene_));
+            if (away_m < least_m) least_m = away_m, nearest = candidate;
         }
         if (nearest == candidates->second.end()) continue;
         was_[i] = *nearest;
@@ -65,8 +67,7 @@ void Renderer::take_over(Renderer& before) noexcept
     last_pose_ = before.last_pose_;
     velocity_ = before.velocity_;
     tail_velocity_ = before.tail_velocity_;
-    sent_n_ = before.sent_n_;
-    sent_n_m_ = before.sent_n_m_;
+    sent_ = before.sent_;
     computed_n_ = before.computed_n_;
     computed_n_m_ = before.computed_n_m_;
     felt_ = before.felt_;
@@ -83,22 +84,23 @@ void Renderer::take_over(Renderer& before) noexcept
         lifted.tip_m += shift;
         lifted.tail_m += shift;
     }
-    for (std::size_t i = 0; i < objects_.size(); ++i) {
-        Touched& touched = objects_[i];
-        if (touched.object->motion) move(touched);
-        Touched* old = i < was_.size() && was_[i] != none ? &before.objects_[was_[i]] : nullptr;
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        Body& body = bodies_[i];
+        if (body.motion) body.move(time_s());
+        Body* old = i < was_.size() && was_[i] != none ? &before.bodies_[was_[i]] : nullptr;
         if (old && old->asleep) before.wake(*old);
         const auto moved_m = [&](const glm::dvec3& p) {
-            return glm::distance(touched.placement.to_object(p), old->placement.to_object(p));
+            return glm::distance(body.placement.to_object(p), old->placement.to_object(p));
         };
         const double nudge = nudge_m * hand_.workspace.scale;
         if (old && moved_m(last_pose_->tip_m) <= nudge && moved_m(last_pose_->tail_m) <= nudge) {
-            std::swap(touched.contact, old->contact);
-            std::swap(touched.velocity, old->velocity);
-            std::swap(touched.tail_velocity, old->tail_velocity);
-            touched.friction_share = old->friction_share;
+            std::swap(body.contact, old->contact);
+            std::swap(body.velocity, old->velocity);
+            std::swap(body.tail_velocity, old->tail_velocity);
+            body.tip_friction = old->tip_friction;
+            body.tail_friction = old->tail_friction;
         } else {
-            touched.contact.update(in_object(touched, lifted), {});
+            body.contact.update(body.pose_of(lifted), {});
         }
     }
 }

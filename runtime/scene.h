@@ -40,6 +40,12 @@ struct SceneObject {
     std::optional<TextureRequest> request; // what the texture was resolved from, for live reload
 };
 
+// Objects at rest whose surfaces meet, as one to the probe: it slides from one to the other as if they were one mesh.
+struct JoinedObjects {
+    std::shared_ptr<const Surface> surface; // the scene's space; its origins tell parts by their place in `objects`
+    std::vector<uint32_t> objects;          // numbers in Scene::objects, each in one join at most
+};
+
 // What a tick leaves out because it cannot change the force (docs/realtime.md). Off only to measure what it saves and
 // to prove that nobody feels it.
 struct Skips {
@@ -62,7 +68,8 @@ struct ServoSettings {
 };
 
 struct Scene {
-    std::vector<SceneObject> objects; // the first is the one that a simulated hand explores
+    std::vector<SceneObject> objects;  // the first is the one that a simulated hand explores
+    std::vector<JoinedObjects> joined; // every other object is touched by itself
     std::vector<Region> regions;
     ProbeSettings probe;
     ServoSettings servo;

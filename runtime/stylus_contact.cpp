@@ -51,10 +51,10 @@ std::optional<Shaft> StylusContact::ideal() const noexcept
 }
 
 const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
-                                     const Friction& friction) noexcept
+                                     const EndsFriction& friction) noexcept
 {
     if (!finite(tip_m)) { // what touches goes on touching
-        tip_.update(tip_m, friction);
+        tip_.update(tip_m, friction.tip);
         for (Contact& contact : contacts_) contact.hand_held = true;
         count();
         return tip_.contact();
@@ -64,9 +64,9 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
     has_shaft_ = take(tip_m, tail_m);
     if (!has_shaft_) {
         tracked_ = false;
-        tip_.update(tip_m, friction);
+        tip_.update(tip_m, friction.tip);
     } else if (!tracked_) {
-        start(tip_m, friction);
+        start(tip_m, friction.tip);
     } else if (!pass_freely(tip_m, tail_m)) {
         if (!had_tip || begin_ > 0) restart(tip_, begin_ > 0 ? Lattice::snap_units(hand_.tip) : shaft_.tip);
         if (!had_tail || end_ < 1) restart(tail_, end_ < 1 ? Lattice::snap_units(hand_.tail) : shaft_.tail);

@@ -40,7 +40,8 @@ public:
     // One tick. The first puts the stylus down from its tail: one that enters the object by a front side touches there,
     // with its tip. A tail that is not finite is none: the tip is a point. Returns the contact of the tip, touching or
     // not.
-    const Contact& update(const glm::dvec3& tip_m, const glm::dvec3& tail_m, const Friction& friction = {}) noexcept;
+    const Contact& update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
+                          const EndsFriction& friction = {}) noexcept;
     void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
     void reset() noexcept;
 
@@ -103,7 +104,7 @@ private:
     void restart(PointContact& end, const glm::dvec3& at) noexcept;
     void restart_ends() noexcept;
 
-    void resolve(const Friction& friction) noexcept;
+    void resolve(const EndsFriction& friction) noexcept;
     double solve(const Shaft& hand, Shaft& aim) noexcept;
     bool drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept;
     bool move(Shaft to) noexcept;

@@ -59,7 +59,7 @@ void StylusContact::restart_ends() noexcept
 }
 
 // Ends and shaft in turn, until they agree.
-void StylusContact::resolve(const Friction& friction) noexcept
+void StylusContact::resolve(const EndsFriction& friction) noexcept
 {
     if (astray_) restart_ends();
     bool stopped = false, tip_slides = false, tail_slides = false;
@@ -81,12 +81,12 @@ void StylusContact::resolve(const Friction& friction) noexcept
         tip_path.count = tail_path.count = 0;
         if (begin_ == 0) {
             tip_.aim(aim_.tip);
-            tip_.go(friction, &tip_path);
+            tip_.go(friction.tip, &tip_path);
             tip_slides |= tip_.proxy_.sliding;
         }
         if (end_ == 1) {
             tail_.aim(aim_.tail);
-            tail_.go(friction, &tail_path);
+            tail_.go(friction.tail, &tail_path);
             tail_slides |= tail_.proxy_.sliding;
         }
         const uint32_t known = side_count_;

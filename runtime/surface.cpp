@@ -58,6 +58,7 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg)
         return result;
     }
     close_cracks(*surface, result.report);
+    if (!surface->origins.empty()) imprint(*surface, result.error);
     int rounds = 0;
     do {
         connect(*surface, result);

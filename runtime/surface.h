@@ -93,6 +93,7 @@ struct Surface {
     std::vector<Fan> fans;
     std::vector<std::array<glm::dvec2, 3>> uv; // per face and corner; empty without texture coordinates
     std::vector<uint32_t> smoothing_groups;    // per face, as in Mesh; or empty
+    std::vector<Origin> origins;               // per face; empty if it is of one piece
     std::vector<uint32_t> pierced_by;
     // Force shading: the normals at corners, and which of them a face has [corner][side].
     std::vector<ShadingNormal> shading_normals;

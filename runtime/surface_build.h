@@ -3,13 +3,28 @@
 
 #include "runtime/surface.h"
 
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace haptel::runtime {
 
 // Lattice, vertices and faces without normal or links: what is left after repair. False: no triangle left.
 bool repair(const Mesh& mesh, Surface& surface, MeshReport& report);
 
+// Of the faces all but those without area, and all but the first of those with the same corners, whatever their
+// winding, with what belongs to them.
+size_t drop_flat_faces(Surface& surface);
+size_t drop_repeated_faces(Surface& surface);
+
 // Joins borders that lie on each other without sharing vertices.
 void close_cracks(Surface& surface, MeshReport& report);
+
+// Gives the parts of a joined surface common vertices and edges where they meet; of what lies on each other only the
+// first part's is left.
+void imprint(Surface& surface, std::string& error);
+// Which parts meet, in rising order.
+std::vector<std::pair<uint32_t, uint32_t>> meeting_parts(Surface& surface, std::string& error);
 
 // Face normals, and links around each edge, by exact radial order.
 void link_faces(Surface& surface, MeshReport& report);

@@ -16,8 +16,6 @@ namespace {
 // 1e-6 of the object's size: what six decimal digits, or single precision, cannot tell apart.
 constexpr double crack = 2097152;
 
-using Corners = std::array<uint32_t, 3>;
-
 struct BorderEdge {
     uint32_t face, edge;
 };
@@ -122,7 +120,7 @@ public:
         if (welded == 0) return 0;
         for (Face& face : surface_.faces)
             for (uint32_t& corner : face.vertex) corner = becomes[corner];
-        drop_flat();
+        drop_flat_faces(surface_); // that lost their area when a corner moved
         find();
         return welded;
     }
@@ -143,7 +141,7 @@ public:
             ++cuts;
         }
         if (cuts > 0) {
-            drop_flat();
+            drop_flat_faces(surface_);
             find();
         }
         return cuts;
@@ -192,29 +190,13 @@ private:
         surface_.faces[border.face].vertex[second] = corner;
         surface_.faces.push_back(rest);
         if (auto& groups = surface_.smoothing_groups; !groups.empty()) groups.push_back(uint32_t{groups[border.face]});
+        if (auto& origins = surface_.origins; !origins.empty()) origins.push_back(Origin{origins[border.face]});
         if (surface_.uv.empty()) return;
         std::array<glm::dvec2, 3> rest_uv = surface_.uv[border.face];
         const glm::dvec2 uv = glm::mix(rest_uv[first], rest_uv[second], share);
         rest_uv[first] = uv;
         surface_.uv[border.face][second] = uv;
         surface_.uv.push_back(rest_uv);
-    }
-
-    // Faces that lost their area when a corner moved.
-    void drop_flat()
-    {
-        size_t kept = 0;
-        for (size_t f = 0; f < surface_.faces.size(); ++f) {
-            const Corners& v = surface_.faces[f].vertex;
-            if (exact_normal(at(v[0]), at(v[1]), at(v[2])).is_zero()) continue;
-            surface_.faces[kept] = surface_.faces[f];
-            if (!surface_.uv.empty()) surface_.uv[kept] = surface_.uv[f];
-            if (auto& groups = surface_.smoothing_groups; !groups.empty()) groups[kept] = groups[f];
-            ++kept;
-        }
-        surface_.faces.resize(kept);
-        if (!surface_.uv.empty()) surface_.uv.resize(kept);
-        if (auto& groups = surface_.smoothing_groups; !groups.empty()) groups.resize(kept);
     }
 
     Surface& surface_;

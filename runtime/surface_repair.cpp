@@ -72,21 +72,52 @@ std::vector<uint32_t> weld(const Mesh& mesh, const std::vector<bool>& used, Surf
     return vertex;
 }
 
-// Keeps the first of the triangles that share three corners, whatever their winding.
-std::vector<bool> repeats(const std::vector<Triangle>& triangles)
+// Keeps the faces told, with what belongs to them. Returns how many it dropped.
+size_t keep_faces(Surface& surface, const std::vector<bool>& keep)
 {
-    std::vector<Triangle> sorted = triangles;
-    for (Triangle& t : sorted) std::sort(t.begin(), t.end());
+    const auto keep_of = [&](auto& records) {
+        if (records.empty()) return;
+        size_t kept = 0;
+        for (size_t f = 0; f < keep.size(); ++f)
+            if (keep[f]) records[kept++] = records[f];
+        records.resize(kept);
+    };
+    keep_of(surface.uv);
+    keep_of(surface.smoothing_groups);
+    keep_of(surface.origins);
+    keep_of(surface.faces);
+    return keep.size() - surface.faces.size();
+}
+
+} // namespace
+
+size_t drop_flat_faces(Surface& surface)
+{
+    std::vector<bool> keep(surface.faces.size());
+    const auto& v = surface.vertices;
+    for (size_t f = 0; f < keep.size(); ++f) {
+        const Triangle& corners = surface.faces[f].vertex;
+        keep[f] = !exact_normal(v[corners[0]], v[corners[1]], v[corners[2]]).is_zero();
+    }
+    return keep_faces(surface, keep);
+}
+
+size_t drop_repeated_faces(Surface& surface)
+{
+    std::vector<Triangle> sorted;
+    sorted.reserve(surface.faces.size());
+    for (const Face& face : surface.faces) {
+        sorted.push_back(face.vertex);
+        std::sort(sorted.back().begin(), sorted.back().end());
+    }
     std::vector<uint32_t> order(sorted.size());
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(),
               [&](uint32_t a, uint32_t b) { return sorted[a] != sorted[b] ? sorted[a] < sorted[b] : a < b; });
-    std::vector<bool> repeated(sorted.size());
-    for (size_t k = 1; k < order.size(); ++k) repeated[order[k]] = sorted[order[k]] == sorted[order[k - 1]];
-    return repeated;
+    std::vector<bool> keep(sorted.size(), true);
+    for (size_t k = 1; k < order.size(); ++k) keep[order[k]] = sorted[order[k]] != sorted[order[k - 1]];
+    return keep_faces(surface, keep);
 }
-
-} // namespace
 
 bool repair(const Mesh& mesh, Surface& surface, MeshReport& report)
 {
@@ -105,40 +136,25 @@ bool repair(const Mesh& mesh, Surface& surface, MeshReport& report)
     surface.lattice = Lattice::around(minimum, maximum);
     const std::vector<uint32_t> vertex = weld(mesh, used, surface, report);
 
-    std::vector<Triangle> triangles;
-    std::vector<size_t> source;
-    for (size_t t : sound) {
-        const Triangle& given = mesh.triangles[t];
-        const Triangle corners = {vertex[given[0]], vertex[given[1]], vertex[given[2]]};
-        const auto& v = surface.vertices;
-        if (exact_normal(v[corners[0]], v[corners[1]], v[corners[2]]).is_zero()) {
-            ++report.degenerate;
-            continue;
-        }
-        triangles.push_back(corners);
-        source.push_back(t);
-    }
-
-    const std::vector<bool> repeated = repeats(triangles);
     const bool has_uv = mesh.uv.size() == mesh.positions_m.size();
     const bool has_groups = mesh.smoothing_groups.size() == mesh.triangles.size();
-    for (size_t k = 0; k < triangles.size(); ++k) {
-        if (repeated[k]) {
-            ++report.duplicate;
-            continue;
-        }
-        Face face;
-        face.vertex = triangles[k];
-        surface.faces.push_back(face);
-        if (has_groups) surface.smoothing_groups.push_back(mesh.smoothing_groups[source[k]]);
+    const bool has_origins = mesh.origins.size() == mesh.triangles.size();
+    surface.faces.reserve(sound.size());
+    for (size_t t : sound) {
+        const Triangle& given = mesh.triangles[t];
+        surface.faces.emplace_back().vertex = {vertex[given[0]], vertex[given[1]], vertex[given[2]]};
+        if (has_groups) surface.smoothing_groups.push_back(mesh.smoothing_groups[t]);
+        if (has_origins) surface.origins.push_back(mesh.origins[t]);
         if (!has_uv) continue;
         std::array<glm::dvec2, 3> uv;
         for (size_t i = 0; i < 3; ++i) {
-            uv[i] = mesh.uv[mesh.triangles[source[k]][i]];
+            uv[i] = mesh.uv[given[i]];
             if (!std::isfinite(uv[i].x) || !std::isfinite(uv[i].y)) uv[i] = {0, 0};
         }
         surface.uv.push_back(uv);
     }
+    report.degenerate = drop_flat_faces(surface);
+    report.duplicate = drop_repeated_faces(surface);
     report.triangles_kept = surface.faces.size();
     if (surface.faces.empty()) return false;
 

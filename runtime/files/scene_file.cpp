@@ -2,6 +2,7 @@
 
 #include "runtime/files/device_reader.h"
 #include "runtime/files/effects_reader.h"
+#include "runtime/files/joining.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/files/table_reader.h"
 #include "runtime/shading.h"
@@ -30,6 +31,8 @@ struct ObjectText {
     double size_m = 0; // 0: as it is
     double crease_deg = default_crease_deg;
     bool own_crease = false; // it was written: the mesh's smoothing groups do not count
+    bool joined = true;      // with what it meets
+    std::string surface_key;
     SceneObject object;
     std::vector<std::pair<std::string, std::string>> parameters;
     toml::source_region mesh_at, texture_at, reach_at;
@@ -120,6 +123,9 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
 
     text.object.placement = read_placement(table);
     text.object.motion = read_motion(table, text.object.placement, messages);
+    table.yes_or_no("joined", text.joined);
+    if (table.has("joined") && text.joined && text.object.motion)
+        messages.error(table.where("joined"), "an object that moves cannot be joined to what it meets");
     text.object.material = read_material(table, messages);
     text.object.effects = read_object_effects(table, rate_hz, messages);
     text.reach_at = farthest_reach_at(source, text.object.effects);
@@ -161,8 +167,8 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, Surfac
 {
     text.object.name = text.mesh.empty() ? text.shape : text.mesh;
     const std::filesystem::path file = text.mesh.empty() ? "" : (folder / text.mesh).lexically_normal();
-    const std::string key = SurfaceCache::key(file, text.shape, text.size_m,
-                                              text.own_crease ? std::optional(text.crease_deg) : std::nullopt);
+    const std::string key = text.surface_key = SurfaceCache::key(
+        file, text.shape, text.size_m, text.own_crease ? std::optional(text.crease_deg) : std::nullopt);
     if (surfaces) text.object.surface = surfaces->find(key);
     if (text.object.surface) return;
     Mesh mesh;
@@ -331,6 +337,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
         } else { // what is there many times is held once
             object->object.name = same->object.name;
             object->object.surface = same->object.surface;
+            object->surface_key = same->surface_key;
         }
         if (object->object.surface) check_reach(*object, text.devices, messages);
     }
@@ -342,7 +349,13 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
     scene->probe = text.probe;
     scene->servo = text.servo;
     scene->regions = std::move(text.regions);
-    for (ObjectText& object : text.objects) scene->objects.push_back(std::move(object.object));
+    std::vector<Joinable> joinable;
+    for (ObjectText& object : text.objects) {
+        if (object.joined && !object.object.motion)
+            joinable.push_back({uint32_t(scene->objects.size()), std::move(object.surface_key), object.mesh_at});
+        scene->objects.push_back(std::move(object.object));
+    }
+    join_objects(*scene, joinable, surfaces, messages);
 
     for (DeviceText& device : text.devices) {
         if (!devices) break;

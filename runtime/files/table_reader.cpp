@@ -225,6 +225,17 @@ void TableReader::text(std::string_view key, std::string& value)
         value = *text;
 }
 
+void TableReader::yes_or_no(std::string_view key, bool& value)
+{
+    const toml::node* node = find(key);
+    if (!node) return;
+    if (const auto yes = node->value_exact<bool>())
+        value = *yes;
+    else
+        messages_.error(node->source(),
+                        "expected true or false for `" + std::string(key) + "`, found " + kind_of(*node));
+}
+
 const toml::table* TableReader::table(std::string_view key, std::string_view example)
 {
     const toml::node* node = find(key);

@@ -63,6 +63,7 @@ public:
     void number(std::string_view key, double& value, Quantity quantity, const Range& range);
     void three_numbers(std::string_view key, glm::dvec3& value, Quantity quantity, const Range& range);
     void text(std::string_view key, std::string& value);
+    void yes_or_no(std::string_view key, bool& value);
     // The table there, or null if absent or something else, which is told by an example.
     const toml::table* table(std::string_view key, std::string_view example);
     void whole_number(std::string_view key, uint64_t& value);

@@ -46,6 +46,7 @@ public:
                     Crossing crossing;
                     if (first_crossing(surface_, from, to, StartsOn::nothing(), crossing, count.collision)) {
                         land(surface_, proxy_, crossing, from, to);
+                        proxy_.sliding = false;
                         if (!followed(proxy_)) return false;
                         break;
                     }

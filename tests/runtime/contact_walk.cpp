@@ -358,3 +358,22 @@ TEST_CASE("a stylus far from the surface is spared the query, its shaft included
     CHECK(counters.skipped > 950);
     CHECK(counters.sweeps + counters.skipped <= counters.ticks); // a tick queries or is spared it, not both
 }
+
+TEST_CASE("what comes down anew is held by static friction, however it slid before it left")
+{
+    PointContact contact(surface_of(make_plane()));
+    const Friction friction{0.5, 0.1};
+    const auto go = [&](double x_m, double z_m) -> const Contact& {
+        return contact.update({x_m, 0.01, z_m}, friction);
+    };
+    go(0.4, 0.01);
+    go(0.4, -0.01);
+    CHECK(go(0.45, -0.01).sliding);
+    REQUIRE_FALSE(go(0.6, -0.01).touching); // it slid over the border
+    REQUIRE_FALSE(go(0.6, 0.01).touching);
+    REQUIRE_FALSE(go(0.4, 1e-6).touching);
+    const Contact& touch = go(0.404, -0.01);
+    CHECK(touch.touching);
+    CHECK_FALSE(touch.sliding);
+    CHECK(std::abs(touch.lag_m.x + 0.004) < 1e-6);
+}

@@ -162,6 +162,74 @@ Mesh make_moebius_strip()
     return mesh;
 }
 
+// Parts of what is to be joined, each where it lies; all are turned at odd angles at the end.
+class Joined {
+public:
+    void add(const Mesh& part, const dvec3& at_m)
+    {
+        test::add(mesh_, part, at_m);
+        for (uint32_t f = 0; f < part.triangles.size(); ++f) mesh_.origins.push_back({parts_, f});
+        ++parts_;
+    }
+    Mesh turned() const
+    {
+        const double a = 0.7, b = 0.4;
+        Mesh mesh = mesh_;
+        for (dvec3& p : mesh.positions_m) {
+            p = {std::cos(a) * p.x - std::sin(a) * p.y, std::sin(a) * p.x + std::cos(a) * p.y, p.z};
+            p = {p.x, std::cos(b) * p.y - std::sin(b) * p.z, std::sin(b) * p.y + std::cos(b) * p.z};
+        }
+        return mesh;
+    }
+
+private:
+    Mesh mesh_;
+    uint32_t parts_ = 0;
+};
+
+void add_joined(std::vector<NamedMesh>& meshes)
+{
+    using runtime::make_box;
+    Joined stacked;
+    stacked.add(make_box(), {0, 0, 0});
+    stacked.add(make_box({1, 0.6, 1}), {1, 0.1, 0});
+    stacked.add(make_box(), {0.4, 0.2, 1});
+    meshes.push_back({"joined: two boxes under a third", stacked.turned()});
+
+    Joined sunk;
+    sunk.add(make_box({2, 2, 1}), {0, 0, -0.5});
+    sunk.add(runtime::make_icosphere(2), {0.1, 0.05, 0.1});
+    meshes.push_back({"joined: a ball sunk in a box", sunk.turned()});
+
+    Joined tiles;
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 3; ++x) tiles.add(make_box({1, 1, 0.2}), {x + (y == 1 ? 0.3 : 0.0), y, 0});
+    meshes.push_back({"joined: tiles", tiles.turned()});
+
+    Joined crossing;
+    crossing.add(make_box({1, 0.6, 0.4}), {0, 0, 0});
+    crossing.add(make_box({0.5, 1.1, 0.3}), {0.1, 0.05, 0.02});
+    crossing.add(make_box({0.3, 0.2, 1.2}), {0.2, 0.1, 0.1});
+    meshes.push_back({"joined: three boxes cross", crossing.turned()});
+
+    Joined corner;
+    corner.add(make_box({2, 2, 0.2}), {0, 0, -0.1});
+    corner.add(make_box({0.2, 2, 1}), {-0.9, 0, 0.5});
+    corner.add(make_box({0.5, 0.5, 0.5}), {-0.55, 0.3, 0.25});
+    meshes.push_back({"joined: a box in a corner of two", corner.turned()});
+
+    Joined touching; // the octahedron's lowest corner
+    Mesh octahedron = runtime::make_sphere(4, 2);
+    touching.add(runtime::make_plane(2), {0, 0, 0});
+    touching.add(octahedron, {0.1, 0.2, 0.5});
+    meshes.push_back({"joined: a corner on a plane", touching.turned()});
+
+    Joined standing;
+    standing.add(runtime::make_plane(3), {0, 0, 0});
+    standing.add(make_box({0.3, 0.3, 0.3}), {0.1, 0.05, 0.15});
+    meshes.push_back({"joined: a box on an open plane", standing.turned()});
+}
+
 } // namespace
 
 std::vector<NamedMesh> make_hard_meshes()
@@ -225,6 +293,7 @@ std::vector<NamedMesh> make_hard_meshes()
     }
     meshes.push_back({"soup", make_soup(6, 150, 0.4)});
     meshes.push_back({"soup far away", far_away(make_soup(7, 150, 0.4))});
+    add_joined(meshes);
     return meshes;
 }
 

@@ -98,6 +98,46 @@ TEST_CASE("another stiffness comes by a ramp, and time goes on")
     }
 }
 
+TEST_CASE("the force between a gripper's fingers fades out with the scene that it is of, and the new one's rises")
+{
+    Mesh box = make_box();
+    scale_to_size(box, 0.02);
+    Scene first = bare_scene(box);
+    first.probe.kind = ProbeKind::gripper;
+    first.servo.force_rise_s = rise_s;
+    Scene without = first, stiffer = first;
+    without.objects[0].placement.position_m = {0, 0, -0.5};
+    stiffer.objects[0].material.stiffness_n_per_m = 3000;
+    const auto fingers = [](double apart_m) { return DevicePose{{-apart_m, 0, 0}, {apart_m, 0, 0}}; };
+    const auto scene = shared(std::move(first));
+    const auto stage = [&] { // 1 mm deep each, 1 N
+        Stage begun(scene);
+        begun.tick(fingers(0.02));
+        for (int i = 0; i < 200; ++i) begun.tick(fingers(0.009));
+        return begun.tick(fingers(0.009)).grip_force_n;
+    };
+    CHECK(std::abs(stage() - 1) < 1e-8);
+    for (const auto& [next, force_n] : {std::pair<const Scene*, double>{&without, 0}, {&stiffer, 3}}) {
+        Stage swapped(scene);
+        swapped.tick(fingers(0.02));
+        for (int i = 0; i < 200; ++i) swapped.tick(fingers(0.009));
+        swapped.slot.publish(shared(same_as(*next)));
+        for (int i = 0; i < 200; ++i) {
+            const double risen = std::min(1.0, i / 100.0);
+            CHECK(std::abs(swapped.tick(fingers(0.009)).grip_force_n - (risen * force_n + 1 - risen)) < 1e-8);
+        }
+    }
+    // An interruption ends it.
+    Stage interrupted(scene);
+    interrupted.tick(fingers(0.02));
+    for (int i = 0; i < 200; ++i) interrupted.tick(fingers(0.009));
+    interrupted.slot.publish(shared(same_as(without)));
+    CHECK(interrupted.tick(fingers(0.009)).grip_force_n > 0.9);
+    DevicePose anew = fingers(0.009);
+    anew.interrupted = true;
+    CHECK(interrupted.tick(anew).grip_force_n == 0);
+}
+
 TEST_CASE("an interruption ends what fades out of the scene before, torque and force alike")
 {
     Scene first = plane_scene();

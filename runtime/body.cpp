@@ -1,0 +1,100 @@
+#include "runtime/body.h"
+
+#include "runtime/collision.h"
+#include "runtime/shading.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace haptel::runtime {
+
+std::vector<BodyObjects> bodies_of(const Scene& scene)
+{
+    std::vector<const JoinedObjects*> joined_by(scene.objects.size());
+    for (const JoinedObjects& joined : scene.joined)
+        for (const uint32_t number : joined.objects) joined_by[number] = &joined;
+    std::vector<BodyObjects> bodies;
+    for (uint32_t number = 0; number < scene.objects.size(); ++number) {
+        const JoinedObjects* joined = joined_by[number];
+        if (!joined || number == *std::min_element(joined->objects.begin(), joined->objects.end()))
+            bodies.push_back({number, joined});
+    }
+    return bodies;
+}
+
+Surroundings surroundings_of(const Scene& scene, const BodyObjects& objects, double probe_radius_m)
+{
+    const Surface& surface = *objects.surface(scene);
+    double reach_m = 0;
+    for (const uint32_t number : objects.numbers())
+        reach_m = std::max(reach_m, scene.objects[number].effects.reach_m());
+    const glm::dvec3 middle = 0.5 * surface.box_minimum_m + 0.5 * surface.box_maximum_m;
+    const double radius_m = glm::distance(surface.box_minimum_m, middle) + probe_radius_m + reach_m;
+    return {objects.placement(scene).to_world(middle),
+            objects.motion(scene) ? std::numeric_limits<double>::infinity() : radius_m * (1 + 1e-6)};
+}
+
+Body::Body(const Scene& scene, const BodyObjects& of, const ProbeSettings& probe)
+    : objects(of)
+    , motion(of.motion(scene))
+    , contact(probe, of.surface(scene), scene.servo.skips.free_space)
+    , placement(of.placement(scene))
+    , velocity(1 / scene.servo.rate_hz)
+    , tail_velocity(1 / scene.servo.rate_hz)
+{
+}
+
+void Body::move(double time_s) noexcept
+{
+    const auto now = motion->at(time_s);
+    if (now && finite(*now)) placement = *now;
+}
+
+void EndFriction::add(const Friction& friction, double push_n) noexcept
+{
+    if (!(push_n > 0)) return;
+    pushing_n += push_n;
+    const double share = push_n / pushing_n;
+    mean.static_coefficient += share * (friction.static_coefficient - mean.static_coefficient);
+    mean.dynamic_coefficient += share * (friction.dynamic_coefficient - mean.dynamic_coefficient);
+}
+
+Contact on_part(const Contact& contact, const Surface& joined, const SceneObject& part) noexcept
+{
+    const Surface& own = *part.surface;
+    const Placement& placement = part.placement;
+    const bool on_facet = contact.normal == contact.facet_normal;
+    Contact result = contact;
+    result.face = joined.origins[contact.face].face;
+    result.proxy_m = placement.to_object(contact.proxy_m);
+    result.hand_m = placement.to_object(contact.hand_m);
+    result.barycentric = barycentric_of(own, result.face, own.lattice.units(result.proxy_m));
+    result.facet_normal = own.facet_normal(result.face, contact.side);
+    result.normal = on_facet ? result.facet_normal : placement.direction_to_object(contact.normal);
+    result.lag_m = placement.direction_to_object(contact.lag_m);
+    result.on_crease = !on_facet && on_crease(joined, contact.face, contact.side, contact.barycentric);
+    return result;
+}
+
+std::span<const PartContacts> ContactsByPart::of(const Scene& scene, const JoinedObjects& joined,
+                                                 std::span<const Contact> contacts) noexcept
+{
+    const Surface& surface = *joined.surface;
+    const auto part_of = [&](const Contact& contact) { return surface.origins[contact.face].part; };
+    contacts = contacts.first(std::min(contacts.size(), most));
+    std::size_t contact_count = 0, part_count = 0;
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const uint32_t part = part_of(contacts[i]);
+        const bool again = std::any_of(contacts.begin(), contacts.begin() + static_cast<std::ptrdiff_t>(i),
+                                       [&](const Contact& earlier) { return part_of(earlier) == part; });
+        if (again) continue;
+        const std::size_t first = contact_count;
+        for (const Contact& contact : contacts.subspan(i))
+            if (part_of(contact) == part)
+                contacts_[contact_count++] = on_part(contact, surface, scene.objects[joined.objects[part]]);
+        parts_[part_count++] = {part, {contacts_.data() + first, contact_count - first}};
+    }
+    return {parts_.data(), part_count};
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,67 @@
+#include "runtime/files/joining.h"
+
+#include "runtime/joined_surfaces.h"
+
+#include <memory>
+#include <sstream>
+#include <string>
+#include <utility>
+
+namespace haptel::runtime {
+
+namespace {
+
+// Of the same surfaces in the same places.
+std::string joined_key(const Scene& scene, const std::vector<Joinable>& joinable, const std::vector<uint32_t>& numbers)
+{
+    std::ostringstream key;
+    key << std::hexfloat << "joined";
+    for (uint32_t i : numbers) {
+        const Placement& placement = scene.objects[joinable[i].number].placement;
+        key << '\n' << joinable[i].surface_key;
+        for (int k = 0; k < 3; ++k) {
+            key << '\n' << placement.position_m[k];
+            for (int j = 0; j < 3; ++j) key << ' ' << placement.rotation[k][j];
+        }
+    }
+    return key.str();
+}
+
+} // namespace
+
+void join_objects(Scene& scene, const std::vector<Joinable>& joinable, SurfaceCache* surfaces, FileMessages& messages)
+{
+    std::vector<PlacedSurface> placed;
+    for (const Joinable& one : joinable)
+        placed.push_back({scene.objects[one.number].surface, scene.objects[one.number].placement});
+    for (const MeetingSurfaces& meeting : find_meeting(placed)) {
+        std::string error = meeting.error;
+        std::shared_ptr<const Surface> joined;
+        if (error.empty()) {
+            const std::string key = joined_key(scene, joinable, meeting.numbers);
+            if (surfaces) joined = surfaces->find(key);
+            if (!joined) {
+                SurfaceResult built = join(placed, meeting.numbers);
+                joined = std::move(built.surface);
+                error = std::move(built.error);
+                if (surfaces && joined) surfaces->keep(key, joined);
+            }
+        }
+        if (!joined) {
+            std::string told = "objects that meet (";
+            for (const uint32_t i : meeting.numbers) {
+                if (told.size() > 100) continue; // those are enough to know which
+                if (i != meeting.numbers[0]) told += ", ";
+                told += '`' + scene.objects[joinable[i].number].name + '`';
+            }
+            told += ") are touched each by itself, and their seams are felt: ";
+            messages.warning(joinable[meeting.numbers[0]].at, told += error);
+            continue;
+        }
+        JoinedObjects& objects = scene.joined.emplace_back();
+        objects.surface = std::move(joined);
+        for (uint32_t i : meeting.numbers) objects.objects.push_back(joinable[i].number);
+    }
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,23 @@
+// Joins those objects of a scene that are at rest and meet: joined_surfaces.h.
+#pragma once
+
+#include "runtime/files/surface_cache.h"
+#include "runtime/files/table_reader.h"
+#include "runtime/scene.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace haptel::runtime {
+
+struct Joinable {
+    uint32_t number;         // in Scene::objects
+    std::string surface_key; // SurfaceCache::key of its surface
+    toml::source_region at;
+};
+
+// Fills scene.joined. What cannot be joined is told and stays apart.
+void join_objects(Scene& scene, const std::vector<Joinable>& joinable, SurfaceCache* surfaces, FileMessages& messages);
+
+} // namespace haptel::runtime
