@@ -2,8 +2,9 @@
 // vertices and edges, so that links lead from one part to the other and nothing pierces anything there.
 //
 // Each edge is held against the faces of the other parts; the lowest features that meet become one, or are cut in a
-// new vertex, and the edges that this makes are looked at in their turn. Faces are cut in two or three pieces, never
-// moved by more than the tolerance. Ends when nothing meets any more that is not common.
+// new vertex, and the edges that this makes are looked at in their turn. Faces are cut in two or three pieces; corners
+// move by corners_reach tolerances at most at a time. Ends when nothing meets any more that is not common, or when it
+// was too much: what is left pierces.
 #include "runtime/box_tree.h"
 #include "runtime/fan.h"
 #include "runtime/meeting.h"
@@ -23,7 +24,7 @@ namespace haptel::runtime {
 namespace {
 
 using Corners = std::array<uint32_t, 3>;
-using Edge = std::array<uint32_t, 2>; // the earlier vertex first
+using Edge = std::array<uint32_t, 2>; // waiting to be looked at: the earlier vertex first
 
 // What parts that are to meet may miss each other by, in lattice units: what a query of the tree is sure to find, times
 // corners_reach; and of the smallest part's size, for small parts among large ones.
