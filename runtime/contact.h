@@ -12,8 +12,7 @@
 // sequence of poses. Everything is in the object's space, metres: transform the hand into it first.
 //
 // Where faces pierce each other without sharing edges (walls.h) up to three sheets at once hold the proxy. Known
-// limits: where a vertex lies within rounding on another sheet the proxy may rest before the nearest point for a tick;
-// of joined surfaces a hand within rounding on an edge of the seam may, rarely, get behind it.
+// limit: where a vertex lies within rounding on another sheet the proxy may rest before the nearest point for a tick.
 #pragma once
 
 #include "runtime/proxy.h"

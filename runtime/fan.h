@@ -3,6 +3,8 @@
 
 #include "runtime/surface.h"
 
+#include <limits>
+
 namespace haptel::runtime {
 
 // One face of a fan, by its corner at the vertex and the side that is seen.
@@ -58,6 +60,9 @@ struct NearestInFan {
     static constexpr uint32_t into_sector = 3;
 
     double way = 0; // from the vertex to that point; 0: it is the vertex itself
+    // From that point to where the vector leads. Of points far from the vertex this tells which is nearer; their ways
+    // are equal within rounding, and in a valley a hand that is behind one face may be before the other.
+    double across_square = std::numeric_limits<double>::infinity();
     Sector sector;
     uint32_t edge = into_sector; // or the edge of the sector that the point is on
 

@@ -251,8 +251,9 @@ TEST_CASE("joined: the proxy stays out of both objects and no farther from the h
     CHECK(worst_ball < 6e-4);
 }
 
-TEST_CASE("joined: no hand gets inside, however it wanders and jumps")
+TEST_CASE("joined: no hand gets inside, however it wanders and jumps, and from where the boxes' edges are")
 {
+    enum class Hand { wanders, jumps, on_features };
     struct Box {
         dvec3 centre, sides;
     };
@@ -260,11 +261,12 @@ TEST_CASE("joined: no hand gets inside, however it wanders and jumps")
         {{{0, 0, 0}, {1, 1, 1}}, {{1, 0.3, 0}, {1, 1, 1}}, {{0.5, 0.1, 0.75}, {0.6, 0.5, 0.5}}},
         {{{0, 0, 0}, {1, 1, 0.2}}, {{1, 0, 0}, {1, 1, 0.2}}, {{0.3, 1, 0}, {1, 1, 0.2}}, {{1.3, 1, 0}, {1, 1, 0.2}}},
         {{{0, 0, 0}, {1, 1, 1}}, {{0.5, 0.5, 0.5}, {1, 1, 1}}},
-        {{{0, 0, 0}, {2, 2, 1}}, {{0, 0, 0.75}, {0.5, 0.5, 0.5}}}};
+        {{{0, 0, 0}, {2, 2, 1}}, {{0, 0, 0.75}, {0.5, 0.5, 0.5}}},
+        {{{0, 0, 0}, {1, 1, 1}}, {{1, 0.25, 0}, {1, 1, 1}}}};
     long touching = 0;
     for (uint32_t seed = 0; seed < 5; ++seed)
         for (const std::vector<Box>& boxes : scenes)
-            for (const bool jumps : {false, true}) {
+            for (const Hand manner : {Hand::wanders, Hand::jumps, Hand::on_features}) {
                 std::mt19937_64 random(seed + 1);
                 std::normal_distribution<double> normal(0, 1);
                 std::uniform_real_distribution<double> any(-1, 1);
@@ -272,6 +274,16 @@ TEST_CASE("joined: no hand gets inside, however it wanders and jumps")
                 const glm::dmat3 turn = seed == 0 ? glm::dmat3(1) : turned(direction(), 3 * any(random));
                 std::vector<PlacedSurface> surfaces;
                 for (const Box& box : boxes) surfaces.push_back(placed(make_box(box.sides), turn * box.centre, turn));
+                // On a corner, an edge or a side of a box, as exactly as numbers have it, or a little beside it.
+                const auto on_feature = [&] {
+                    const Box& box = boxes[random() % boxes.size()];
+                    dvec3 at;
+                    for (int i = 0; i < 3; ++i) {
+                        const uint64_t end = random() % 3; // one of two, or between
+                        at[i] = 0.5 * box.sides[i] * (end == 2 ? any(random) : end == 1 ? 1.0 : -1.0);
+                    }
+                    return box.centre + at + (random() % 2 ? 0.0 : 0.003) * direction();
+                };
                 const SurfaceResult joined = join_all(surfaces);
                 PointContact contact(joined.surface);
                 dvec3 hand(0.5, 0.5, 2.5);
@@ -280,7 +292,10 @@ TEST_CASE("joined: no hand gets inside, however it wanders and jumps")
                 for (int tick = 0; tick < 10000; ++tick) {
                     const dvec3 goal = {0.6 + 0.9 * std::cos(0.0007 * tick), 0.5 + 0.9 * std::cos(0.0011 * tick + 1),
                                         0.4 * std::cos(0.0005 * tick)};
-                    if (jumps && tick % 7 == 0)
+                    const bool jumps = manner == Hand::jumps;
+                    if (manner == Hand::on_features)
+                        hand = on_feature();
+                    else if (jumps && tick % 7 == 0)
                         hand = dvec3(0.5, 0.5, 0.2) + 1.3 * dvec3(any(random), any(random), any(random));
                     else
                         hand += (jumps ? 0.0 : 0.02) * (goal - hand) + (jumps ? 0.01 : 0.004) * direction();
@@ -293,7 +308,7 @@ TEST_CASE("joined: no hand gets inside, however it wanders and jumps")
                         deepest = std::max(deepest, std::min({inside.x, inside.y, inside.z}));
                     }
                 }
-                CAPTURE(seed, jumps, boxes.size());
+                CAPTURE(seed, int(manner), boxes.size());
                 CHECK(deepest < 5e-7);
             }
     CHECK(touching > 80000);

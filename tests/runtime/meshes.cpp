@@ -162,7 +162,8 @@ Mesh make_moebius_strip()
     return mesh;
 }
 
-// Parts of what is to be joined, each where it lies; all are turned at odd angles at the end.
+// Parts of what is to be joined, each where it lies; all are turned at odd angles at the end,
+// so that no plane is level along an axis within rounding: there the accomplice's grid cannot tell its sides.
 class Joined {
 public:
     void add(const Mesh& part, const dvec3& at_m)
@@ -173,11 +174,12 @@ public:
     }
     Mesh turned() const
     {
-        const double a = 0.7, b = 0.4;
+        const double a = 0.7, b = 0.4, c = 0.3;
         Mesh mesh = mesh_;
         for (dvec3& p : mesh.positions_m) {
             p = {std::cos(a) * p.x - std::sin(a) * p.y, std::sin(a) * p.x + std::cos(a) * p.y, p.z};
             p = {p.x, std::cos(b) * p.y - std::sin(b) * p.z, std::sin(b) * p.y + std::cos(b) * p.z};
+            p = {std::cos(c) * p.x + std::sin(c) * p.z, p.y, std::cos(c) * p.z - std::sin(c) * p.x};
         }
         return mesh;
     }
@@ -205,6 +207,7 @@ void add_joined(std::vector<NamedMesh>& meshes)
     for (int y = 0; y < 3; ++y)
         for (int x = 0; x < 3; ++x) tiles.add(make_box({1, 1, 0.2}), {x + (y == 1 ? 0.3 : 0.0), y, 0});
     meshes.push_back({"joined: tiles", tiles.turned()});
+    meshes.push_back({"joined: tiles far away", far_away(tiles.turned())});
 
     Joined crossing;
     crossing.add(make_box({1, 0.6, 0.4}), {0, 0, 0});
