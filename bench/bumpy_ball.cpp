@@ -65,8 +65,9 @@ std::shared_ptr<Scene> balls_on_a_grid(const std::shared_ptr<const Surface>& sur
 
 TextureBinding bound_over_ball(const char* text, const char* name, double footprint_m)
 {
-    const jit::CompiledTextures compiled = jit::compile_texture(text);
+    const jit::CompiledTextures compiled = jit::compile_texture(text, jit::servo_options());
     if (!compiled.program) throw std::runtime_error(compiled.rendered());
+    compiled.program->optimise(); // as a scene's, soon after
     TextureRequest request;
     for (int i = 0; i < 3; ++i) request.box_minimum_m[i] = -0.06, request.box_maximum_m[i] = 0.06;
     request.footprint_m = footprint_m;

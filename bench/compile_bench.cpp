@@ -46,10 +46,7 @@ std::string edited(std::string text, uint32_t edit)
 
 std::shared_ptr<const jit::CompiledProgram> compiled(const std::string& text)
 {
-    jit::TextureOptions options;
-    options.entries = jit::Entries::height_gradient;
-    options.effort = jit::Effort::draft; // as a scene does
-    jit::CompiledTextures made = jit::compile_texture(text, options);
+    jit::CompiledTextures made = jit::compile_texture(text, jit::servo_options()); // as a scene does
     if (!made.program) throw std::runtime_error("a text that is measured does not compile: " + made.rendered());
     return made.program;
 }

@@ -31,10 +31,7 @@ std::shared_ptr<const CompiledTextures> ProgramCache::load(const std::string& pa
     const std::lock_guard lock(mutex);
     std::shared_ptr<const CompiledTextures>& known = newest[path];
     if (!known || !is_current(*known)) {
-        TextureOptions options;
-        options.entries = Entries::height_gradient;
-        options.effort = Effort::draft;
-        known = std::make_shared<CompiledTextures>(compile_texture_file(path, options));
+        known = std::make_shared<CompiledTextures>(compile_texture_file(path, servo_options()));
         BackgroundOptimiser::shared().add(known->program);
     }
     return known;

@@ -114,6 +114,15 @@ std::future<void> start_engine_once()
 
 } // namespace
 
+TextureOptions servo_options()
+{
+    TextureOptions options;
+    options.entries = Entries::height_gradient;
+    options.effort = Effort::draft;
+    options.iterations_in_lanes = true;
+    return options;
+}
+
 CompiledTextures compile_texture(std::string_view text, const TextureOptions& options)
 {
     const std::future<void> starting = start_engine_once();

@@ -71,6 +71,10 @@ struct TextureOptions {
     std::optional<bool> iterations_in_lanes = {};
 };
 
+// What a scene's textures are compiled with, for a hand that waits: a draft with height and gradient, to be optimised,
+// and iterations in lanes.
+TextureOptions servo_options();
+
 struct CompiledTextures {
     std::shared_ptr<const CompiledProgram> program; // null if there was an error
     lang::Diagnostics diagnostics;

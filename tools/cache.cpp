@@ -23,14 +23,15 @@ struct CacheOptions {
 // Every texture of the library as a servo calls it, and as pictures and tests do: what they call becomes kernels.
 void prime()
 {
+    jit::TextureOptions servo = jit::servo_options(), pictures;
+    servo.effort = jit::Effort::quick; // kernels of drafts are not kept
+    pictures.entries = jit::Entries::both_and_batches;
     const auto files = stdlib::tests();
     Progress progress;
     for (size_t i = 0; i < files.size(); ++i) {
         progress.show(static_cast<double>(i) / static_cast<double>(files.size()));
-        for (const jit::Entries entries : {jit::Entries::height_gradient, jit::Entries::both_and_batches}) {
-            jit::TextureOptions options;
+        for (jit::TextureOptions options : {servo, pictures}) {
             options.name = files[i].name;
-            options.entries = entries;
             jit::compile_texture(files[i].text, options);
         }
     }

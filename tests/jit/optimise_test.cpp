@@ -33,10 +33,9 @@ bool same_bits(const std::vector<haptel_sample>& a, const std::vector<haptel_sam
 
 TEST_CASE("a caller in another thread holds its pointer while the code behind it is replaced, and sees no other bit")
 {
-    for (const jit::Entries entries : {jit::Entries::height_gradient, jit::Entries::both_and_batches}) {
-        jit::TextureOptions options;
-        options.entries = entries;
-        options.effort = entries == jit::Entries::height_gradient ? jit::Effort::draft : jit::Effort::quick;
+    jit::TextureOptions pictures;
+    pictures.entries = jit::Entries::both_and_batches;
+    for (jit::TextureOptions options : {jit::servo_options(), pictures}) {
         options.kernels = false; // never from disk: not of full effort for certain
         const jit::CompiledTextures made = jit::compile_texture(text, options);
         REQUIRE(made.program);
