@@ -100,8 +100,7 @@ void PointContact::aim(const glm::dvec3& hand) noexcept
 {
     before_ = std::exchange(true_hand_, hand);
     hand_ = Lattice::snap_units(true_hand_);
-    contact_.hand_clamped =
-        glm::any(glm::greaterThan(glm::abs(hand_ - true_hand_), glm::dvec3(Lattice::vertex_spacing)));
+    contact_.hand_clamped = Lattice::beyond(hand_ - true_hand_, Lattice::vertex_spacing);
 }
 
 void PointContact::move_freely(const glm::dvec3& hand) noexcept

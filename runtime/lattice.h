@@ -9,6 +9,8 @@
 
 #include <glm/glm.hpp>
 
+#include <cmath>
+
 namespace haptel::runtime {
 
 struct Lattice {
@@ -26,9 +28,11 @@ struct Lattice {
     glm::dvec3 snap_vertex(const glm::dvec3& point_m) const noexcept; // nearest point of the coarse lattice
     static glm::dvec3 snap_units(const glm::dvec3& units) noexcept;   // the same of a place in lattice units
     glm::dvec3 units(const glm::dvec3& point_m) const noexcept;       // neither rounded nor clamped
-    static bool beyond_workspace(const glm::dvec3& units) noexcept
+    static bool beyond_workspace(const glm::dvec3& units) noexcept { return beyond(units, workspace); }
+    // Whether a coordinate is larger, of either sign: what rounding leaves has any sign, and is asked for every tick.
+    static bool beyond(const glm::dvec3& v, double bound) noexcept
     {
-        return glm::any(glm::greaterThan(glm::abs(units), glm::dvec3(workspace)));
+        return std::fabs(v.x) > bound || std::fabs(v.y) > bound || std::fabs(v.z) > bound;
     }
     // Leaves of the straight way between two places in lattice units what lies in the workspace, its ends lattice
     // points. False: nothing does.
