@@ -1,9 +1,9 @@
 // Every kind of picture, to the last bit of its numbers; and pictures that are none.
 #include "jit/image_file.h"
 #include "jit/picture.h"
-#include "tests/jit/folder.h"
 #include "tests/jit/pictures.h"
 #include "tests/support/catch.h"
+#include "tests/support/folder.h"
 
 #include <cmath>
 #include <limits>

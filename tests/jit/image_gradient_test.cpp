@@ -1,7 +1,7 @@
 // Gradients of pictures against those of the height fields that they were sampled from.
-#include "tests/jit/folder.h"
 #include "tests/jit/pictures.h"
 #include "tests/jit/samples.h"
+#include "tests/support/folder.h"
 
 #include <cmath>
 #include <numbers>

@@ -2,8 +2,8 @@
 #include "jit/check_gradient.h"
 #include "jit/image_file.h"
 #include "jit/oracle.h"
-#include "tests/jit/folder.h"
 #include "tests/jit/samples.h"
+#include "tests/support/folder.h"
 
 #include <cmath>
 #include <numbers>

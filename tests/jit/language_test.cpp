@@ -2,8 +2,8 @@
 // oracle, and with closed forms where there are some.
 #include "jit/oracle.h"
 #include "jit/resolver.h"
-#include "tests/jit/folder.h"
 #include "tests/jit/samples.h"
+#include "tests/support/folder.h"
 
 #include <cmath>
 #include <random>

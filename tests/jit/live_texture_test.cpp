@@ -2,8 +2,8 @@
 #include "jit/file_watch.h"
 #include "jit/live_texture.h"
 #include "jit/resolver.h"
-#include "tests/jit/folder.h"
 #include "tests/jit/samples.h"
+#include "tests/support/folder.h"
 
 #include <atomic>
 #include <condition_variable>
@@ -325,7 +325,10 @@ TEST_CASE("200 edits in a row, every fourth broken: the last good one is felt, a
         Follower follower(folder);
         for (int i = 1; i <= 200; ++i) {
             const std::string text = i % 4 == 0 ? "texture t() { return" : constant(std::to_string(i));
-            i % 3 == 0 ? folder.replace("t.haptel", text) : folder.write("t.haptel", text);
+            if (i % 3 == 0)
+                folder.replace("t.haptel", text);
+            else
+                folder.write("t.haptel", text);
             std::this_thread::sleep_for(15ms);
         }
         folder.write("t.haptel", constant("199.5"));

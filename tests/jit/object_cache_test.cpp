@@ -1,7 +1,7 @@
 // Objects on disk: whole or absent, whatever lies in the folder and whoever else is at work there.
 #include "jit/object_cache.h"
-#include "tests/jit/folder.h"
 #include "tests/support/catch.h"
+#include "tests/support/folder.h"
 
 #include <chrono>
 #include <fstream>

@@ -1,9 +1,9 @@
 // Quick code becomes fast code in the background: the same pointers, the same bits, at any moment.
 #include "jit/background_optimiser.h"
 #include "jit/program_cache.h"
-#include "tests/jit/folder.h"
 #include "tests/jit/samples.h"
 #include "tests/support/catch.h"
+#include "tests/support/folder.h"
 
 #include <atomic>
 #include <cstring>

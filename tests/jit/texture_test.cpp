@@ -1,8 +1,8 @@
 // Text to textures: what the C interface says, bindings, the resolver, and code that goes when its program goes.
 #include "jit/oracle.h"
 #include "jit/resolver.h"
-#include "tests/jit/folder.h"
 #include "tests/jit/samples.h"
+#include "tests/support/folder.h"
 
 #include <cmath>
 #include <numbers>

@@ -16,10 +16,10 @@ dvec3 on_grid(const dvec3& p)
 }
 
 // A hand that lies on a face, an edge or a vertex is taken to be moved by (e, e^2, e^3): as near to that as the grid
-// has.
-dvec3 beside(const dvec3& hand)
+// has; by less where something else is in the way at that distance.
+dvec3 beside(const dvec3& hand, int attempt = 0)
 {
-    return hand + dvec3(192, 0.375, 1.0 / 1024);
+    return hand + on_grid(std::exp2(-2 * (attempt % 6)) * dvec3(192, 0.375, 1.0 / 1024));
 }
 
 } // namespace
@@ -42,7 +42,7 @@ void Accomplice::put(const dvec3& hand)
 // Points near the proxy, on the claimed side, the likeliest first.
 dvec3 Accomplice::witness(const Proxy& proxy, int attempt)
 {
-    if (proxy.on == Proxy::On::nothing) return mesh_.holds(proxy.at) ? beside(proxy.at) : proxy.at;
+    if (proxy.on == Proxy::On::nothing) return mesh_.holds(proxy.at) ? beside(proxy.at, attempt) : proxy.at;
     const dvec3 &a = mesh_.corner(proxy.face, 0), &b = mesh_.corner(proxy.face, 1), &c = mesh_.corner(proxy.face, 2);
     double u = std::sqrt(uniform()), v = uniform();
     if (attempt == 0) u = 2.0 / 3, v = 0.5; // the middle
@@ -160,7 +160,10 @@ bool Accomplice::follow(const Proxy& proxy)
     for (int attempt = 0; attempt < 200 && goals.size() < 8; ++attempt) {
         const dvec3 goal = witness(proxy, attempt);
         if (!bears_out(proxy, goal)) continue;
-        if (mesh_.open(at_, goal)) {
+        // From tie to tie, along an edge, it may be open nearer by only.
+        const dvec3 nearer = beside(before_, attempt);
+        const bool ties = attempt > 0 && proxy.on == Proxy::On::nothing && mesh_.holds(proxy.at);
+        if (mesh_.open(at_, goal) || (ties && mesh_.open(at_, nearer) && mesh_.open(nearer, goal))) {
             detours += attempt > 0;
             at_ = goal;
             before_ = proxy.at;

@@ -3,39 +3,17 @@
 
 #include "runtime/files/scene_file.h"
 #include "tests/support/catch.h"
+#include "tests/support/folder.h"
 #include "tests/support/lambda_texture.h"
 #include "tests/support/touch_scenes.h"
 
-#include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <string_view>
 
-#include <unistd.h>
-
 namespace haptel::tests {
 
-// A folder of its own, gone afterwards.
-class Folder {
-public:
-    Folder() : path_(std::filesystem::temp_directory_path() / ("haptel_scene_test_" + std::to_string(::getpid())))
-    {
-        std::filesystem::remove_all(path_);
-        std::filesystem::create_directories(path_);
-    }
-    ~Folder() { std::filesystem::remove_all(path_); }
-
-    std::filesystem::path write(const std::string& name, std::string_view text) const
-    {
-        std::ofstream(path_ / name, std::ios::binary) << text;
-        return path_ / name;
-    }
-    const std::filesystem::path& path() const { return path_; }
-
-private:
-    std::filesystem::path path_;
-};
+using test::Folder;
 
 // One right-angled triangle with legs of 3 and 4 units.
 inline constexpr std::string_view triangle_obj = "v 0 0 0\nv 4 0 0\nv 0 3 0\nf 1 2 3\n";
@@ -71,7 +49,7 @@ inline std::string diagnostics_of(std::string_view toml, const TextureResolver& 
     folder.write("note.txt", "hello");
     const runtime::LoadedScene loaded = runtime::load_scene(folder.write("scene.toml", toml), textures, devices);
     std::string text = loaded.diagnostics;
-    const std::string name = folder.path().string() + "/";
+    const std::string name = folder.path.string() + "/";
     for (std::size_t at; (at = text.find(name)) != std::string::npos;) text.erase(at, name.size());
     CHECK((loaded.scene == nullptr) == (text.find(": error: ") != std::string::npos));
     CHECK(loaded.hands.empty() == (loaded.scene == nullptr));

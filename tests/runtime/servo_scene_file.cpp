@@ -77,7 +77,7 @@ shape = "icosphere"
             device = request;
             return open_scripted(request);
         });
-    CHECK(loaded.diagnostics == (folder.path() / "scene.toml").string() +
+    CHECK(loaded.diagnostics == (folder.path / "scene.toml").string() +
                                     ":18:8: note: mesh `triangle.obj`: open mesh: 3 border edges, past which a hand "
                                     "gets behind the surface\nrock.haptel:1:1: warning: harmless\n");
 
@@ -108,7 +108,7 @@ shape = "icosphere"
     CHECK_FALSE(scene.objects[1].request.has_value());
 
     REQUIRE(texture);
-    CHECK(texture->reference == (folder.path() / "sub/rock.haptel").string() + ":rock");
+    CHECK(texture->reference == (folder.path / "sub/rock.haptel").string() + ":rock");
     CHECK(texture->parameters == std::vector<std::pair<std::string, std::string>>{
                                      {"depth", "60um"}, {"gain", "0.5"}, {"octaves", "5"}, {"sharp", "true"}});
     CHECK(std::abs(texture->box_maximum_m[0] - 0.04) < 1e-9);
@@ -116,7 +116,7 @@ shape = "icosphere"
     CHECK(triangle.request->reference == texture->reference);
 
     REQUIRE(device);
-    CHECK(device->name == "replay:" + (folder.path() / "runs/trace.csv").string());
+    CHECK(device->name == "replay:" + (folder.path / "runs/trace.csv").string());
     CHECK(device->stroke == "scan");
     CHECK(device->speed_m_per_s == 0.05);
     CHECK(device->press_n == 2);
@@ -170,7 +170,7 @@ TEST_CASE("the scene of the documentation is one, and has every key")
     for (const char* table : {"[probe]", "[servo]", "[workspace]", "[device]", "[[object]]\nshape = \"plane\"",
                               "[[region]]\nshape = \"box\"\nsides_m = [1, 1, 1]"}) {
         folder.write("wrong.toml", std::string(table) + "\nqqqqqqqqqqqqq = 1\n");
-        const std::string said = load_scene(folder.path() / "wrong.toml", resolve_flat, open_scripted).diagnostics;
+        const std::string said = load_scene(folder.path / "wrong.toml", resolve_flat, open_scripted).diagnostics;
         const std::string before = "it may hold ";
         const std::size_t at = said.find(before);
         REQUIRE(at != std::string::npos);

@@ -116,7 +116,7 @@ TEST_CASE("a scene that is loaded again has the surfaces that did not change, an
     SurfaceCache surfaces;
     const auto load_again = [&] { return load_scene(file, resolve_flat, open_scripted, &surfaces); };
     LoadedScene first = load_again();
-    CHECK(first.meshes == std::vector<std::filesystem::path>{folder.path() / "triangle.obj"});
+    CHECK(first.meshes == std::vector<std::filesystem::path>{folder.path / "triangle.obj"});
     const LoadedScene second = load_again();
     REQUIRE(second.scene);
     CHECK(second.scene != first.scene);

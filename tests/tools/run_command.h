@@ -1,8 +1,9 @@
 // Runs the built haptel command as a user would, and keeps what it said.
 #pragma once
 
+#include "tests/support/folder.h"
+
 #include <array>
-#include <atomic>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -12,28 +13,6 @@
 #include <unistd.h>
 
 namespace haptel::test {
-
-// A folder of its own for a test, gone with it.
-struct Folder {
-    std::filesystem::path path;
-    Folder()
-    {
-        static std::atomic<int> count = 0;
-        path = std::filesystem::temp_directory_path() /
-               ("haptel-test-" + std::to_string(getpid()) + "-" + std::to_string(count++));
-        std::filesystem::create_directories(path);
-    }
-    ~Folder() { std::filesystem::remove_all(path); }
-    Folder(const Folder&) = delete;
-    Folder& operator=(const Folder&) = delete;
-
-    std::string file(const std::string& name) const { return (path / name).string(); }
-    std::string write(const std::string& name, const std::string& text) const
-    {
-        std::ofstream(path / name, std::ios::binary) << text;
-        return file(name);
-    }
-};
 
 inline std::string read_file(const std::filesystem::path& file)
 {
