@@ -1,4 +1,4 @@
-#include "runtime/files/mesh_file.h"
+#include "runtime/files/mesh_process.h"
 
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
@@ -13,7 +13,7 @@
 #include <fstream>
 #include <limits>
 #include <map>
-#include <mutex>
+#include <new>
 #include <optional>
 #include <sstream>
 #include <system_error>
@@ -55,11 +55,11 @@ void append(Mesh& mesh, const aiMesh& part, bool with_uv)
 }
 
 // Listens to what assimp says of vertex indices while one file is read: some of its readers put another vertex in the
-// place of one that does not exist, and only log it. The log is assimp's one of the process: files are read one at a
-// time, and a logger that the program has made itself stays.
+// place of one that does not exist, and only log it. The log is assimp's one of the process: a logger that the program
+// has made itself stays.
 class IndexListener final : public Assimp::LogStream {
 public:
-    IndexListener() : lock_(reading_), own_logger_(Assimp::DefaultLogger::isNullLogger())
+    IndexListener() : own_logger_(Assimp::DefaultLogger::isNullLogger())
     {
         if (own_logger_) Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
         Assimp::DefaultLogger::get()->attachStream(this, severities);
@@ -82,9 +82,7 @@ public:
 
 private:
     static constexpr unsigned severities = Assimp::Logger::Warn | Assimp::Logger::Err;
-    static inline std::mutex reading_;
 
-    std::lock_guard<std::mutex> lock_;
     bool own_logger_;
     std::string heard_;
 };
@@ -136,6 +134,8 @@ private:
     std::map<std::string, uint32_t> numbers_;
 };
 
+const std::string unreadable = "the file could not be read: ";
+
 MeshFileResult failed(std::string why)
 {
     MeshFileResult result;
@@ -143,20 +143,17 @@ MeshFileResult failed(std::string why)
     return result;
 }
 
-} // namespace
+// A machine that is slow, and a build that checks everything, read a megabyte in this time.
+constexpr double processor_s_per_byte = 1e-6, processor_s_min = 10;
 
-MeshFileResult load_mesh(const std::filesystem::path& file)
-try {
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored))
-        return failed("there is no such file (looked for " + file.string() + ")");
-    if (!std::filesystem::is_regular_file(file, ignored)) return failed("this is not a file");
-    if (std::filesystem::file_size(file, ignored) == 0) return failed("the file is empty");
-    const std::string extension = lower_case(file.extension().string());
-    if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
-        return failed("expected a mesh of type .obj, .ply, .stl, .off, .3ds, .dae, .gltf or .glb, found " +
-                      (extension.empty() ? "no type" : extension));
+MeshReadLimits limits_for(std::uintmax_t size_bytes)
+{
+    const double processor_s = processor_s_min + processor_s_per_byte * static_cast<double>(size_bytes);
+    return {processor_s, 6 * processor_s};
+}
 
+MeshFileResult read_mesh(const std::filesystem::path& file, const std::string& extension)
+{
     const IndexListener listener;
     Assimp::Importer importer;
     constexpr unsigned steps = aiProcess_Triangulate | aiProcess_PreTransformVertices;
@@ -168,12 +165,11 @@ try {
                                : importer.ReadFile(file.string(), steps);
     if (!scene) {
         const std::string why = importer.GetErrorString();
+        if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
         // How assimp says that a file holds points only.
-        return failed(why.starts_with("No output meshes") ? "the file holds no triangle"
-                                                          : "the file could not be read: " + why);
+        return failed(why.starts_with("No output meshes") ? "the file holds no triangle" : unreadable + why);
     }
-
-    if (!listener.heard().empty()) return failed("the file could not be read: " + listener.heard());
+    if (!listener.heard().empty()) return failed(unreadable + listener.heard());
 
     MeshFileResult result;
     bool with_uv = scene->mNumMeshes > 0;
@@ -186,10 +182,39 @@ try {
     }
     if (result.mesh.triangles.empty()) return failed("the file holds no triangle");
     return result;
+}
+
+} // namespace
+
+MeshFileResult load_mesh(const std::filesystem::path& file, std::optional<MeshReadLimits> limits)
+try {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored))
+        return failed("there is no such file (looked for " + file.string() + ")");
+    if (!std::filesystem::is_regular_file(file, ignored)) return failed("this is not a file");
+    const std::uintmax_t size_bytes = std::filesystem::file_size(file, ignored);
+    if (size_bytes == 0) return failed("the file is empty");
+    const std::string extension = lower_case(file.extension().string());
+    if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
+        return failed("expected a mesh of type .obj, .ply, .stl, .off, .3ds, .dae, .gltf or .glb, found " +
+                      (extension.empty() ? "no type" : extension));
+    MeshReading reading = read_in_own_process(
+        [&] {
+            try {
+                return read_mesh(file, extension);
+            } catch (const std::bad_alloc&) {
+                throw;
+            } catch (const std::exception& problem) {
+                return failed(unreadable + problem.what());
+            }
+        },
+        limits.value_or(limits_for(size_bytes)));
+    if (!reading.gave_up.empty())
+        return failed("the reader of " + extension + " files gave up: " + reading.gave_up +
+                      "; the file may be damaged or cut off: export it again, or as OBJ or STL");
+    return std::move(reading.result);
 } catch (const std::exception& problem) {
-    return failed(std::string("the file could not be read: ") + problem.what());
-} catch (...) {
-    return failed("the file could not be read");
+    return failed(unreadable + problem.what());
 }
 
 } // namespace haptel::runtime
