@@ -180,6 +180,7 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, Surfac
             messages.error(text.mesh_at, "mesh `" + text.mesh + "`: " + read.error);
             return;
         }
+        if (!read.warning.empty()) messages.warning(text.mesh_at, "mesh `" + text.mesh + "`: " + read.warning);
         mesh = std::move(read.mesh);
     }
     if (text.own_crease) mesh.smoothing_groups.clear();

@@ -94,8 +94,9 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "\"rock.haptel:rock\", found \"rock.haptel\"\n"},
         {"[[object]]\nmesh = \"bunny.obj\"\n", nullptr},
         {"[[object]]\nmesh = \"empty.obj\"\n", "scene.toml:2:8: error: mesh `empty.obj`: the file is empty\n"},
-        {"[[object]]\nmesh = \"points.obj\"\n",
-         "scene.toml:2:8: error: mesh `points.obj`: the file holds no triangle\n"},
+        {"[[object]]\nmesh = \"points.obj\"\n", "scene.toml:2:8: error: mesh `points.obj`: the file holds no triangle: "
+                                                "points or lines only, or it is cut off before "
+                                                "its faces\n"},
         {"[[object]]\nmesh = \"nan.obj\"\n",
          "scene.toml:2:8: error: mesh `nan.obj`: the mesh has no triangle to touch: "
          "dropped triangles: 1 with a coordinate that is not finite (of 1)\n"},
