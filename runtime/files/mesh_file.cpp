@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <exception>
 #include <fstream>
 #include <limits>
@@ -134,7 +135,32 @@ private:
     std::map<std::string, uint32_t> numbers_;
 };
 
-const std::string unreadable = "the file could not be read: ";
+// Coordinates come from assimp as 32-bit numbers, also where the file has more digits: far from the origin that is
+// coarse. Of the vertices that triangles use, in the file's units.
+std::string warning_of_rounding(const Mesh& mesh)
+{
+    constexpr double tolerable = 1e-5; // of its size: 1 um of 10 cm
+    glm::dvec3 minimum(std::numeric_limits<double>::infinity()), maximum = -minimum;
+    for (const auto& triangle : mesh.triangles)
+        for (const uint32_t corner : triangle) {
+            if (corner >= mesh.positions_m.size()) continue;
+            minimum = glm::min(minimum, mesh.positions_m[corner]);
+            maximum = glm::max(maximum, mesh.positions_m[corner]);
+        }
+    const auto largest = [](const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); };
+    const double size = largest(maximum - minimum), farthest = largest(glm::max(maximum, -minimum));
+    const double rounding = std::ldexp(farthest, -std::numeric_limits<float>::digits);
+    if (!(rounding > tolerable * size && std::isfinite(farthest))) return {};
+    std::ostringstream text;
+    text.precision(3);
+    text << "its coordinates are read as 32-bit numbers, and as far from the origin as " << farthest
+         << " they are rounded by up to " << rounding << "; its size is only " << size / rounding
+         << " times that: move the model to the origin before it is exported";
+    return text.str();
+}
+
+const std::string unreadable = "the file could not be read: ",
+                  no_triangle = "the file holds no triangle: points or lines only, or it is cut off before its faces";
 
 MeshFileResult failed(std::string why)
 {
@@ -167,7 +193,7 @@ MeshFileResult read_mesh(const std::filesystem::path& file, const std::string& e
         const std::string why = importer.GetErrorString();
         if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
         // How assimp says that a file holds points only.
-        return failed(why.starts_with("No output meshes") ? "the file holds no triangle" : unreadable + why);
+        return failed(why.starts_with("No output meshes") ? no_triangle : unreadable + why);
     }
     if (!listener.heard().empty()) return failed(unreadable + listener.heard());
 
@@ -180,7 +206,8 @@ MeshFileResult read_mesh(const std::filesystem::path& file, const std::string& e
             result.mesh.smoothing_groups.resize(result.mesh.triangles.size(),
                                                 groups->group_of(*scene, *scene->mMeshes[i]));
     }
-    if (result.mesh.triangles.empty()) return failed("the file holds no triangle");
+    if (result.mesh.triangles.empty()) return failed(no_triangle);
+    result.warning = warning_of_rounding(result.mesh);
     return result;
 }
 

@@ -10,8 +10,9 @@
 namespace haptel::runtime {
 
 struct MeshFileResult {
-    Mesh mesh;         // triangles of all parts of the file, in the file's units, as if metres
-    std::string error; // why there is none, in words; empty: read
+    Mesh mesh;                // triangles of all parts of the file, in the file's units, as if metres
+    std::string error;        // why there is none, in words; empty: read
+    std::string warning = {}; // what was lost by reading it, in words; empty: nothing
 };
 
 struct MeshReadLimits {

@@ -71,18 +71,19 @@ bool receive_values(int pipe, Values& values)
 bool send_result(int pipe, const MeshFileResult& result)
 {
     const Mesh& mesh = result.mesh;
-    return send_values(pipe, result.error) && send_values(pipe, mesh.positions_m) &&
-           send_values(pipe, mesh.triangles) && send_values(pipe, mesh.uv) && send_values(pipe, mesh.smoothing_groups);
+    return send_values(pipe, result.error) && send_values(pipe, result.warning) &&
+           send_values(pipe, mesh.positions_m) && send_values(pipe, mesh.triangles) && send_values(pipe, mesh.uv) &&
+           send_values(pipe, mesh.smoothing_groups);
 }
 
 bool receive_result(int pipe, MeshFileResult& result)
 {
     Mesh& mesh = result.mesh;
     const auto fits = [](std::size_t count, std::size_t all) { return count == 0 || count == all; };
-    return receive_values(pipe, result.error) && receive_values(pipe, mesh.positions_m) &&
-           receive_values(pipe, mesh.triangles) && receive_values(pipe, mesh.uv) &&
-           receive_values(pipe, mesh.smoothing_groups) && fits(mesh.uv.size(), mesh.positions_m.size()) &&
-           fits(mesh.smoothing_groups.size(), mesh.triangles.size());
+    return receive_values(pipe, result.error) && receive_values(pipe, result.warning) &&
+           receive_values(pipe, mesh.positions_m) && receive_values(pipe, mesh.triangles) &&
+           receive_values(pipe, mesh.uv) && receive_values(pipe, mesh.smoothing_groups) &&
+           fits(mesh.uv.size(), mesh.positions_m.size()) && fits(mesh.smoothing_groups.size(), mesh.triangles.size());
 }
 
 void lower(__rlimit_resource_t what, rlim_t most)

@@ -62,6 +62,7 @@ TEST_CASE("what is read in a process of its own arrives bit for bit")
 {
     std::mt19937_64 random(1);
     MeshFileResult sent;
+    sent.warning = "beware";
     for (int i = 0; i < 1'200'000; ++i) { // more than one step of it
         sent.mesh.positions_m.emplace_back(std::ldexp(double(random()), int(random() % 2000) - 1060), -0.0,
                                            std::numeric_limits<double>::quiet_NaN());
@@ -72,6 +73,7 @@ TEST_CASE("what is read in a process of its own arrives bit for bit")
     const MeshReading reading = read_in_own_process([&] { return sent; }, hasty);
     CHECK(reading.gave_up.empty());
     CHECK(reading.result.error.empty());
+    CHECK(reading.result.warning == "beware");
     const auto same = [](const auto& a, const auto& b) {
         return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
     };
@@ -185,4 +187,47 @@ TEST_CASE("a mesh file of any format that is cut off or damaged gives a mesh or 
     CHECK(told.find(" files gave up: it ") != std::string::npos); // else this shows nothing
     CHECK(told.find("the file may be damaged or cut off: export it again, or as OBJ or STL") != std::string::npos);
     CHECK(!has_children());
+}
+
+TEST_CASE("a mesh far from its origin is told with the rounding of its coordinates, one at the origin is not")
+{
+    const test::Folder folder;
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> within(-0.025, 0.025);
+    // Told from 1e-5 * 0.05 * 2^24 = 8.39 on. At a million numbers lie 0.0625 apart: the last is between two of them.
+    for (const double away : {0.0, 0.03, 2.0, 8.0, 9.0, 1e4, 1'000'000.03}) {
+        CAPTURE(away);
+        std::vector<glm::dvec3> exact;
+        std::string obj = "v 1e9 0 0\n"; // which no face has
+        for (int i = 0; i < 300; ++i) {
+            exact.emplace_back(within(random), away + within(random), within(random));
+            std::ostringstream line;
+            line.precision(17);
+            line << "v " << exact.back().x << " " << exact.back().y << " " << exact.back().z << "\n";
+            obj += line.str();
+            if (i % 3 == 2)
+                obj += "f " + std::to_string(i) + " " + std::to_string(i + 1) + " " + std::to_string(i + 2) + "\n";
+        }
+        const MeshFileResult read = load_mesh(folder.write("mesh.obj", obj));
+        CHECK(read.error == "");
+        REQUIRE(read.mesh.positions_m.size() == exact.size());
+        double error = 0;
+        for (std::size_t i = 0; i < exact.size(); ++i)
+            error = std::max(error, std::fabs(read.mesh.positions_m[i].y - exact[i].y));
+        CAPTURE(error, read.warning);
+        CHECK(read.warning.empty() == (away < 8.39));
+        if (read.warning.empty()) {
+            CHECK(error <= 1e-5 * 0.05);
+            continue;
+        }
+        const auto number_after = [&](const std::string& words) {
+            return std::stod(read.warning.substr(read.warning.find(words) + words.size()));
+        };
+        CHECK(std::fabs(number_after("as far from the origin as ") / away - 1) < 0.01);
+        const double told = number_after("rounded by up to ");
+        CHECK(error <= told * 1.005); // three digits of it
+        CHECK(error >= told / 2.1);   // a half at most is what the number's power of two can give away
+        // Each end of it is rounded, too; and 300 points come near the whole range.
+        CHECK(std::fabs(number_after("its size is only ") * told - 0.05) < 2 * told + 0.002);
+    }
 }
