@@ -26,7 +26,7 @@ using namespace haptel::runtime;
 
 namespace {
 
-constexpr MeshReadLimits hasty = {1, 20};
+constexpr MeshReadLimits hasty = {1, 20}, patient = {60, 60};
 
 std::size_t open_files()
 {
@@ -84,7 +84,7 @@ MeshFileResult random_mesh(const std::string& seed)
 TEST_CASE("what is read in a process of its own arrives bit for bit")
 {
     const MeshFileResult sent = random_mesh("1");
-    const MeshReading reading = read_in_own_process(random_mesh, "1", hasty);
+    const MeshReading reading = read_in_own_process(random_mesh, "1", patient);
     CHECK(reading.gave_up.empty());
     CHECK(reading.result.error.empty());
     CHECK(reading.result.warning == "beware");
