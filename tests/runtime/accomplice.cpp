@@ -36,6 +36,8 @@ void Accomplice::put(const dvec3& hand)
 {
     before_ = hand;
     at_ = mesh_.holds(hand) ? beside(hand) : hand;
+    last_ = {at_, {}};
+    last_.proxy.at = hand;
     placed_ = true;
 }
 
@@ -80,12 +82,12 @@ dvec3 Accomplice::scout(const dvec3& around, const std::vector<uint32_t>& faces,
 }
 
 // Grows what the accomplice can see, and what the goals can see, until they meet.
-bool Accomplice::search(const Proxy& proxy, const Points& goals)
+bool Accomplice::search(const Proxy& proxy, const Points& goals, int most)
 {
     const std::vector<uint32_t> faces[2] = {mesh_.near(before_, reach), mesh_.near(proxy.at, reach)};
     Points here{at_}, there = goals;
     std::vector<dvec3> root = goals; // the goal that each of `there` leads to
-    for (int i = 0; i < tries; ++i) {
+    for (int i = 0; i < most; ++i) {
         const int end = int(random_() % 2);
         const dvec3& centre = end == 0 ? before_ : proxy.at;
         const double radius = reach * (i % 2 == 0 ? uniform() : std::exp2(-8 * uniform()));
@@ -156,6 +158,15 @@ bool Accomplice::could_go_nearer(const Proxy& proxy, const dvec3& hand)
 bool Accomplice::follow(const Proxy& proxy)
 {
     if (!placed_) return false;
+    const Followed now{at_, proxy};
+    placed_ = go(proxy);
+    before_ = proxy.at;
+    last_ = now;
+    return placed_;
+}
+
+bool Accomplice::go(const Proxy& proxy)
+{
     Points goals;
     for (int attempt = 0; attempt < 200 && goals.size() < 8; ++attempt) {
         const dvec3 goal = witness(proxy, attempt);
@@ -166,7 +177,6 @@ bool Accomplice::follow(const Proxy& proxy)
         if (mesh_.open(at_, goal) || (ties && mesh_.open(at_, nearer) && mesh_.open(nearer, goal))) {
             detours += attempt > 0;
             at_ = goal;
-            before_ = proxy.at;
             return true;
         }
         goals.push_back(goal);
@@ -174,13 +184,30 @@ bool Accomplice::follow(const Proxy& proxy)
     if (goals.empty()) {
         const bool there =
             proxy.on != Proxy::On::nothing && glm::length(proxy.at - mesh_.nearest(proxy.face, proxy.at)) <= reach;
-        if (!there) return placed_ = false;
+        if (!there) return false;
         ++sideless;
     }
     ++detours;
-    if (!search(proxy, goals)) return placed_ = false;
-    before_ = proxy.at;
-    return true;
+    for (int i = 0; i < 4; ++i) // anew, rather than long: what a search costs grows with the square of its tries
+        if (search(proxy, goals, tries / 8)) return true;
+    return go_otherwise(proxy) || search(proxy, goals, tries);
+}
+
+// Where a wall stands within reach of the proxy's last place, both of its sides bear that place out, and the accomplice
+// may have chosen the one that the proxy did not come to. It goes the last step anew, to other places.
+bool Accomplice::go_otherwise(const Proxy& proxy)
+{
+    for (int i = 0; i < tries; ++i) {
+        const dvec3 point = witness(last_.proxy, 1 + i % 200);
+        if (!bears_out(last_.proxy, point) || !mesh_.open(last_.at, point)) continue;
+        for (int attempt = 0; attempt < 8; ++attempt) {
+            const dvec3 goal = witness(proxy, attempt);
+            if (!bears_out(proxy, goal) || !mesh_.open(point, goal)) continue;
+            at_ = goal;
+            return true;
+        }
+    }
+    return false;
 }
 
 } // namespace haptel::test

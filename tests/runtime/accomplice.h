@@ -48,11 +48,19 @@ public:
 private:
     using Points = std::vector<glm::dvec3>;
 
+    // A step: from where, and the proxy after it.
+    struct Followed {
+        glm::dvec3 at{0};
+        runtime::Proxy proxy;
+    };
+
+    bool go(const runtime::Proxy& proxy);
+    bool go_otherwise(const runtime::Proxy& proxy);
     bool bears_out(const runtime::Proxy& proxy, const glm::dvec3& point) const;
     glm::dvec3 witness(const runtime::Proxy& proxy, int attempt);
     glm::dvec3 scout(const glm::dvec3& around, const std::vector<uint32_t>& faces, double radius);
     bool could_go_nearer_from(const glm::dvec3& point, const glm::dvec3& hand) const;
-    bool search(const runtime::Proxy& proxy, const Points& goals);
+    bool search(const runtime::Proxy& proxy, const Points& goals, int most);
     double uniform() { return std::uniform_real_distribution<double>(0, 1)(random_); }
     glm::dvec3 in_ball();
 
@@ -60,6 +68,7 @@ private:
     std::mt19937_64 random_;
     glm::dvec3 at_{0};     // the accomplice
     glm::dvec3 before_{0}; // the proxy it last followed
+    Followed last_;
     bool placed_ = false;
 };
 
