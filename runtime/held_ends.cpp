@@ -46,8 +46,8 @@ bool solve(const Matrix& gram, const Vector& b, const std::array<uint32_t, n_max
 
 } // namespace
 
-std::array<double, n_max> pushes(std::span<const ShaftContact> contacts, const glm::dvec3& tip,
-                                 const glm::dvec3& tail) noexcept
+std::array<double, n_max> pushes(std::span<const ShaftContact> contacts, const glm::dvec3& tip, const glm::dvec3& tail,
+                                 EndsGive gives) noexcept
 {
     const uint32_t n = static_cast<uint32_t>(contacts.size() < n_max ? contacts.size() : n_max);
     Matrix gram{};
@@ -57,8 +57,9 @@ std::array<double, n_max> pushes(std::span<const ShaftContact> contacts, const g
         b[i] = a.offset - glm::dot(a.normal, (1 - a.share) * tip + a.share * tail);
         for (uint32_t j = 0; j <= i; ++j) {
             const ShaftContact& c = contacts[j];
-            gram[i][j] = gram[j][i] =
-                glm::dot(a.normal, c.normal) * ((1 - a.share) * (1 - c.share) + a.share * c.share);
+            const double by_tip = gives.tip ? (1 - a.share) * (1 - c.share) : 0;
+            const double by_tail = gives.tail ? a.share * c.share : 0;
+            gram[i][j] = gram[j][i] = glm::dot(a.normal, c.normal) * (by_tip + by_tail);
         }
     }
 

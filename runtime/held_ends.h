@@ -20,8 +20,12 @@ struct ShaftContact {
 inline constexpr uint32_t shaft_contacts_max = 6;
 
 // The pushes, each >= 0: the tip moves by the sum of push (1 - share) normal, the tail by that of push share normal.
-// Contacts that contradict each other within rounding are left out.
+// Contacts that contradict each other within rounding are left out. An end that does not give stays where it is,
+// whatever pushes.
+struct EndsGive {
+    bool tip = true, tail = true;
+};
 std::array<double, shaft_contacts_max> pushes(std::span<const ShaftContact> contacts, const glm::dvec3& tip,
-                                              const glm::dvec3& tail) noexcept;
+                                              const glm::dvec3& tail, EndsGive gives = {}) noexcept;
 
 } // namespace haptel::runtime

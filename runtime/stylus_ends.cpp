@@ -1,11 +1,11 @@
 // How the ends of a stylus and its shaft come to agree: the pushes of the shaft's contacts say where the ends are
 // aimed, the ends walk there, the shaft follows and meets new contacts.
-#include "runtime/held_ends.h"
 #include "runtime/stylus_contact.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace haptel::runtime {
 
@@ -14,7 +14,8 @@ using namespace shaft_tolerance;
 namespace {
 
 // Within which the ends are where they should be: two units, and this share of how far the hand is away.
-constexpr double settled = 2, settled_share = 1e-10;
+// An end that slips goes its way in a few goes, each as far as friction lets it: for it, this share.
+constexpr double settled = 2, settled_share = 1e-10, slipping_share = 1e-4;
 
 // A contact that slides off its edge does so by this many units and this share of its way, so that it is not found
 // there again, wherever the way bends.
@@ -67,27 +68,48 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     double stride = 1; // share of the hand's way that is tried at once
     uint32_t round = 0;
     sweeps_left_ = sweeps_max;
+    Grips grips;
+    grips.tip.friction = checked(friction.tip);
+    grips.tail.friction = checked(friction.tail);
     for (; round < rounds_max && sweeps_left_ > 0; ++round) {
         Shaft aim, to = hand_;
-        const double share = std::min(stride, solve(to, aim));
+        const double share = std::min(stride, solve(to, aim, grips));
         if (share < 1) {
             to = {reached_.tip + share * (to.tip - reached_.tip), reached_.tail + share * (to.tail - reached_.tail)};
-            solve(to, aim);
+            solve(to, aim, grips);
         }
-        if (round > 0 && !stopped && share == 1 && farther(aim, aim_) <= settled + settled_share * farther(aim, hand_))
+        const bool slips = grips.tip.slips || grips.tail.slips;
+        if (round > 0 && !stopped && share == 1 &&
+            farther(aim, aim_) <= settled + (slips ? slipping_share : settled_share) * farther(aim, hand_))
             break;
         if (astray_) restart_ends();
         aim_ = aim;
         tip_path.count = tail_path.count = 0;
-        if (begin_ == 0) {
-            tip_.aim(aim_.tip);
-            tip_.go(friction.tip, &tip_path);
+        Shaft clear = aim_;
+        const auto go_tip = [&] {
+            if (begin_ > 0) return;
+            tip_.aim(clear.tip);
+            tip_.go(grips.tip.of_walk(), &tip_path);
             tip_slides |= tip_.proxy_.sliding;
-        }
-        if (end_ == 1) {
-            tail_.aim(aim_.tail);
-            tail_.go(friction.tail, &tail_path);
+        };
+        const auto go_tail = [&] {
+            if (end_ < 1) return;
+            tail_.aim(clear.tail);
+            tail_.go(grips.tail.of_walk(), &tail_path);
             tail_slides |= tail_.proxy_.sliding;
+        };
+        if (grips.tail.drags() && !grips.tip.touches) {
+            go_tail();
+            clear.tail = tail_.proxy_.at;
+            clear = clear_of_sides(clear, {true, false});
+            go_tip();
+        } else {
+            go_tip();
+            if (grips.tip.drags() && !grips.tail.touches) {
+                clear.tip = tip_.proxy_.at;
+                clear = clear_of_sides(clear, {false, true});
+            }
+            go_tail();
         }
         const uint32_t known = side_count_;
         astray_ = !drag(tip_path, tail_path);
@@ -112,19 +134,74 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         if (sides_[i].push == 0 && sides_[i].sign * passing_of(sides_[i], shaft_).height > 4 * rest_gap) drop(i);
 }
 
-// Where the ends are to be aimed for the sides to hold a hand; and the share of the way there on which each side that
-// pushes stays within its edge and the shaft.
-double StylusContact::solve(const Shaft& hand, Shaft& aim) noexcept
+// The end that gives makes way for the sides where friction has left the other elsewhere than it was to go: on a short
+// lever that is far.
+Shaft StylusContact::clear_of_sides(const Shaft& to, EndsGive gives) const noexcept
 {
     std::array<ShaftContact, shaft_contacts_max> contacts;
-    uint32_t count = side_count_;
-    const auto add_end = [&](const PointContact& end, double share) {
-        if (!end.proxy_.touches()) return;
-        const glm::dvec3& normal = end.contact_.normal;
-        contacts[count++] = {normal, share, glm::dot(normal, end.proxy_.at)};
-    };
-    add_end(tip_, 0);
-    add_end(tail_, 1);
+    Shaft at = to;
+    for (int turn = 0; turn < turns_max; ++turn) {
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < side_count_; ++i) {
+            const Passing here = passing_of(sides_[i], {at.at(begin_), at.at(end_)});
+            if (here.parallel || sides_[i].push == 0) continue;
+            const glm::dvec3 normal = sides_[i].sign * here.normal;
+            const double share = begin_ + here.on_shaft * (end_ - begin_);
+            contacts[count++] = {normal, share, glm::dot(normal, here.edge_point) + rest_gap};
+        }
+        const auto push = pushes({contacts.data(), count}, to.tip, to.tail, gives);
+        Shaft next = to;
+        for (uint32_t i = 0; i < count; ++i) {
+            if (gives.tip) next.tip += (1 - contacts[i].share) * push[i] * contacts[i].normal;
+            if (gives.tail) next.tail += contacts[i].share * push[i] * contacts[i].normal;
+        }
+        const double change = farther(next, at);
+        at = next;
+        if (change < 0.25) break;
+    }
+    return at;
+}
+
+// An end as it begins: it sticks where it is. One that went where the shaft could not follow comes back first.
+void StylusContact::take_hold(Grip& grip, const PointContact& end, const glm::dvec3& on_shaft) const noexcept
+{
+    grip.touches = end.proxy_.touches();
+    grip.normal = end.contact_.normal;
+    grip.at = end.proxy_.at;
+    if (astray_) grip.at = on_shaft + glm::dot(grip.normal, grip.at - on_shaft) * grip.normal;
+    grip.lag = glm::dvec3(0);
+    const bool slides = end.proxy_.sliding && !astray_;
+    grip.most = slides ? grip.friction.dynamic_coefficient : grip.friction.static_coefficient;
+    grip.sticks = grip.touches && side_count_ > 0 && !grip.slips && grip.most > 0;
+}
+
+// What friction does if the end is aimed there, as the walk has it; returns by how much that is news, lattice units.
+double StylusContact::Grip::follow(const glm::dvec3& aim) noexcept
+{
+    const glm::dvec3 from_aim = at - aim;
+    const double height = glm::dot(normal, from_aim), depth = std::max(0.0, height);
+    const glm::dvec3 back = from_aim - height * normal;
+    const double way = glm::length(back);
+    if (sticks) {
+        if (way <= most * depth) return 0;
+        sticks = false;
+        slips = true;
+        return HUGE_VAL;
+    }
+    const glm::dvec3 before =
+        std::exchange(lag, way > 0 ? friction.dynamic_coefficient * depth / way * back : glm::dvec3(0));
+    return glm::distance(lag, before);
+}
+
+// Where the ends are to be aimed for the sides to hold a hand; and the share of the way there on which each side that
+// pushes stays within its edge and the shaft.
+double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips) noexcept
+{
+    std::array<ShaftContact, shaft_contacts_max> contacts;
+    Grip &tip = grips.tip, &tail = grips.tail;
+    take_hold(tip, tip_, shaft_.tip);
+    take_hold(tail, tail_, shaft_.tail);
+    if (tip.sticks) tail.sticks = false; // one of them has to give
 
     Shaft at = shaft_;
     for (int turn = 0; turn < turns_max; ++turn) {
@@ -137,8 +214,15 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim) noexcept
             }
             contacts[i] = {side.normal, side.share, glm::dot(side.normal, side.point) + rest_gap};
         }
-        const auto push = pushes({contacts.data(), count}, hand.tip, hand.tail);
-        Shaft held = aim = hand;
+        uint32_t count = side_count_;
+        const auto add_end = [&](const Grip& grip, double share) {
+            if (grip.touches && !grip.sticks) contacts[count++] = {grip.normal, share, glm::dot(grip.normal, grip.at)};
+        };
+        add_end(tip, 0);
+        add_end(tail, 1);
+        aim = hand;
+        Shaft held{tip.sticks ? tip.at : hand.tip + tip.lag, tail.sticks ? tail.at : hand.tail + tail.lag};
+        const auto push = pushes({contacts.data(), count}, held.tip, held.tail, {!tip.sticks, !tail.sticks});
         for (uint32_t i = 0; i < count; ++i) {
             const ShaftContact& contact = contacts[i];
             const glm::dvec3 by = push[i] * contact.normal;
@@ -147,12 +231,14 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim) noexcept
                 aim.tip += (1 - contact.share) * by;
                 aim.tail += contact.share * by;
             }
-            held.tip += (1 - contact.share) * by;
-            held.tail += contact.share * by;
+            if (!tip.sticks) held.tip += (1 - contact.share) * by;
+            if (!tail.sticks) held.tail += contact.share * by;
         }
         const Shaft next{held.at(begin_), held.at(end_)};
-        const double change = farther(next, at);
+        double change = farther(next, at);
         at = next;
+        if (tip.touches) change = std::max(change, tip.follow(aim.tip));
+        if (tail.touches) change = std::max(change, tail.follow(aim.tail));
         if (side_count_ == 0 || change < 0.25) break;
     }
 
