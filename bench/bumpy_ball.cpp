@@ -23,17 +23,26 @@ double bumpy_radius_m(const glm::dvec3& d)
     return radius_m + bump_m * std::sin(9 * d.x) * std::sin(9 * d.y) * std::sin(9 * d.z);
 }
 
+Mesh with_bumps(Mesh ball, bool drawn)
+{
+    for (glm::dvec3& p : ball.positions_m) {
+        const glm::dvec3 d = glm::normalize(p);
+        if (drawn) ball.uv.emplace_back(d.x, d.z); // seen from the side
+        p = d * bumpy_radius_m(d);
+    }
+    return ball;
+}
+
 } // namespace
 
 Mesh bumpy_ball(uint32_t subdivisions, bool drawn)
 {
-    Mesh mesh = make_icosphere(subdivisions);
-    for (glm::dvec3& p : mesh.positions_m) {
-        const glm::dvec3 d = glm::normalize(p);
-        if (drawn) mesh.uv.emplace_back(d.x, d.z); // seen from the side
-        p = d * bumpy_radius_m(d);
-    }
-    return mesh;
+    return with_bumps(make_icosphere(subdivisions), drawn);
+}
+
+Mesh bumpy_geodesic(uint32_t parts)
+{
+    return with_bumps(make_geodesic(parts), false);
 }
 
 glm::dvec3 place_on_stroke(int tick, double height_m)

@@ -11,6 +11,8 @@ namespace haptel::bench {
 
 // 20 * 4^subdivisions triangles; `drawn`: with coordinates of the mesh.
 runtime::Mesh bumpy_ball(uint32_t subdivisions, bool drawn = false);
+// 20 * parts^2 triangles.
+runtime::Mesh bumpy_geodesic(uint32_t parts);
 
 // Where the hand is in that tick, 0.1 mm further: this high above the surface, or below it.
 glm::dvec3 place_on_stroke(int tick, double height_m);

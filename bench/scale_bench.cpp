@@ -13,6 +13,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <unistd.h>
 #include <utility>
 #include <vector>
@@ -24,6 +25,10 @@ using namespace haptel::runtime;
 using SharedSurface = std::shared_ptr<const Surface>;
 
 constexpr double depth_m = 1e-3;
+
+// Large balls on 699 380 triangles.
+constexpr uint32_t large_parts = 187;
+constexpr double object_radius_m = 0.05;
 
 const std::pair<const char*, ProbeSettings> probes[] = {{"point", {ProbeKind::point, 0, 0}},
                                                         {"sphere", {ProbeKind::sphere, 0, 2.5e-3}},
@@ -37,6 +42,8 @@ public:
     {
         row_.axis = std::move(axis);
         row_.probe = name;
+        row_.probe_radius_m = probe.radius_m;
+        row_.friction = scene->objects[0].material.static_friction > 0;
         row_.triangles = scene->objects[0].surface->faces.size();
         row_.objects = scene->objects.size();
         const glm::dvec3 start = place_on_stroke(0, 0.02);
@@ -139,12 +146,21 @@ Scale bench_scale(bool quick, const std::function<void(double)>& progress)
             add("contacts", scene);
         }
     }
+    const SharedSurface large = build_surface(bumpy_geodesic(large_parts)).surface;
+    for (const bool friction : {true, false})
+        for (const double radius_m : {object_radius_m / 20, object_radius_m / 10}) {
+            const ProbeSettings ball{ProbeKind::sphere, 0, radius_m};
+            const auto scene = balls_on_a_grid(large, 1, texture, ball);
+            Material& material = scene->objects[0].material;
+            if (!friction) material.static_friction = material.dynamic_friction = 0;
+            all.push_back(std::make_unique<Rendered>("radius", "sphere", ball, scene));
+        }
     stroke(all, ticks, [&](double share) { progress(0.4 + 0.6 * share); });
 
-    std::map<std::pair<std::string, std::string>, Times> first;
+    std::map<std::tuple<std::string, std::string, bool>, Times> first;
     for (const auto& rendered : all) {
         ScaleRow row = rendered->row();
-        const Times& base = first.try_emplace({row.axis, row.probe}, row.tick_ns).first->second;
+        const Times& base = first.try_emplace({row.axis, row.probe, row.friction}, row.tick_ns).first->second;
         row.growth_median = row.tick_ns.median / base.median;
         row.growth_p99 = row.tick_ns.p99 / base.p99;
         scale.rows.push_back(row);

@@ -10,14 +10,16 @@
 
 namespace haptel::bench {
 
-// Of ticks in contact with fbm of four octaves, friction and damping.
+// Of ticks in contact with fbm of four octaves, damping and, where not said otherwise, friction.
 struct ScaleRow {
-    std::string axis; // what grows: triangles, objects, contacts (objects touched at once)
+    std::string axis; // what grows: triangles, objects, contacts (objects touched at once), radius (of a ball as probe)
     std::string probe;
+    double probe_radius_m = 0; // 0: not a ball
+    bool friction = true;
     uint64_t triangles = 0, objects = 1;
     double contacts = 0; // mean
     Times tick_ns;       // the clock's own time taken off
-    // Over the first row of the same axis and probe.
+    // Over the first row of the same axis, probe and friction.
     double growth_median = 1, growth_p99 = 1;
 };
 

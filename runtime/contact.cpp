@@ -169,6 +169,7 @@ void PointContact::describe() noexcept
     const Lattice& lattice = surface_->lattice;
     contact_.touching = proxy_.touches();
     contact_.sliding = contact_.touching && proxy_.sliding;
+    contact_.on_crease = contact_.touching && proxy_.at_wall;
     contact_.proxy_m = lattice.metres(proxy_.at);
     contact_.hand_m = lattice.metres(hand_);
     contact_.depth_m = 0;

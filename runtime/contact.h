@@ -55,7 +55,8 @@ struct Contact {
     double depth_m = 0;    // >= 0: how deep the hand is below the proxy along `normal`
     double along = 0;      // of a stylus or a gripper: where it touches, 0 at its tip, 1 at its tail
     bool by_shaft = false; // of a stylus: between its ends, on an edge
-    // Of an object that is joined to others (body.h): they have a crease here, where its own surface may have none.
+    // A crease where its own surface may have no edge: with an object that it is joined to (body.h), or of sheets that
+    // pierce each other.
     bool on_crease = false;
     glm::dvec3 lag_m{0}; // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
 };

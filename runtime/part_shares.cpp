@@ -32,12 +32,13 @@ struct Sheets {
 
     explicit Sheets(const Surface& of) : surface(of) {}
 
-    uint32_t part(uint32_t k) const { return surface.origins[sheet[k].face].part; }
+    uint32_t part_of(uint32_t face) const { return surface.origins.empty() ? 0 : surface.origins[face].part; }
+    uint32_t part(uint32_t k) const { return part_of(sheet[k].face); }
     void add(uint32_t face, uint32_t side)
     {
         const glm::dvec3 normal = surface.facet_normal(face, side);
         for (uint32_t k = 0; k < count; ++k)
-            if (part(k) == surface.origins[face].part && glm::distance(sheet[k].normal, normal) < enough) return;
+            if (part(k) == part_of(face) && glm::distance(sheet[k].normal, normal) < enough) return;
         if (count < most) sheet[count++] = {face, side, normal, false};
     }
     bool of_one_part() const
@@ -173,9 +174,10 @@ void PartShares::add(const Surface& surface, const Contact& contact) noexcept
     const auto keep = [&](const Contact& one) {
         if (count_ < contacts_.size()) contacts_[count_++] = one;
     };
-    if (contact.by_shaft || contact.depth_m == 0) return keep(contact);
+    const bool joined = !surface.origins.empty(), by_sheet = contact.on_crease;
+    if (contact.by_shaft || contact.depth_m == 0 || (!joined && !by_sheet)) return keep(contact);
     const Sheets sheets = sheets_around(surface, contact);
-    if (sheets.of_one_part()) return keep(contact);
+    if (sheets.of_one_part() && !by_sheet) return keep(contact);
 
     const Shares share = shares(sheets, contact.depth_m * contact.normal);
     if (!(share.left <= lost * contact.depth_m)) return keep(contact);
@@ -186,7 +188,7 @@ void PartShares::add(const Surface& surface, const Contact& contact) noexcept
         glm::dvec3 push(0);
         uint32_t most = k, pushing = 0;
         for (uint32_t i = k; i < sheets.count; ++i) {
-            if (sheets.part(i) != sheets.part(k)) continue;
+            if (by_sheet ? i != k : sheets.part(i) != sheets.part(k)) continue;
             done[i] = true;
             push += share.of[i] * sheets.sheet[i].normal;
             pushing += share.of[i] > 0;

@@ -1,5 +1,6 @@
-// Where several parts of a joined surface hold the proxy at once, in a crease or on a ridge between them: what each of
-// them holds, so that each is felt with its own material and texture and none of them begins or ends with a step.
+// Where several parts of a joined surface hold the proxy at once, in a crease or on a ridge between them, or several
+// sheets that pierce each other: what each of them holds, so that each is felt with its own material, texture and
+// shading and none of them begins or ends with a step.
 #pragma once
 
 #include "runtime/contact.h"
@@ -11,8 +12,8 @@ namespace haptel::runtime {
 
 class PartShares {
 public:
-    // Of a joined surface: each contact as it is if one part alone holds the proxy there, else one for each part, at
-    // the same place, what holds most first. Depths times normals add up to what they were, and so does the lag.
+    // Each contact as it is if one part alone, or one sheet, holds the proxy there, else one for each, at the same
+    // place, what holds most first. Depths times normals add up to what they were, and so does the lag.
     std::span<const Contact> of(const Surface& surface, std::span<const Contact> contacts) noexcept;
 
 private:

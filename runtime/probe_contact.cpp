@@ -36,7 +36,7 @@ glm::dvec3 ProbeSettings::grip_of(const glm::dvec3& tip_m, const glm::dvec3& tai
 ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
                            bool skips_free_space)
     : surface_(surface.get())
-    , parts_(surface->origins.empty() ? nullptr : std::make_unique<PartShares>())
+    , shares_(surface->origins.empty() && surface->pierced_by.empty() ? nullptr : std::make_unique<PartShares>())
     , contact_(make(probe, surface, skips_free_space))
 {
 }
@@ -44,7 +44,7 @@ ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<con
 std::span<const Contact> ProbeContact::update(const ProbePose& pose, const EndsFriction& friction) noexcept
 {
     const std::span<const Contact> contacts = touched(pose, friction);
-    return parts_ ? parts_->of(*surface_, contacts) : contacts;
+    return shares_ ? shares_->of(*surface_, contacts) : contacts;
 }
 
 std::span<const Contact> ProbeContact::touched(const ProbePose& pose, const EndsFriction& friction) noexcept

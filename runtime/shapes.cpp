@@ -43,6 +43,20 @@ Turn turn(uint32_t k, uint32_t n)
     return {std::cos(angle), std::sin(angle)};
 }
 
+// Its corners 1/2 from the origin.
+Mesh make_icosahedron()
+{
+    const double g = std::numbers::phi;
+    Mesh mesh;
+    mesh.positions_m = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
+                        {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
+    mesh.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
+    for (glm::dvec3& p : mesh.positions_m) p = 0.5 * glm::normalize(p);
+    return mesh;
+}
+
 } // namespace
 
 Mesh make_plane(uint32_t cells)
@@ -93,15 +107,7 @@ Mesh make_sphere(uint32_t longitudes, uint32_t latitudes)
 
 Mesh make_icosphere(uint32_t subdivisions)
 {
-    const double g = std::numbers::phi;
-    Mesh mesh;
-    mesh.positions_m = {{-1, g, 0},  {1, g, 0},  {-1, -g, 0}, {1, -g, 0}, {0, -1, g},  {0, 1, g},
-                        {0, -1, -g}, {0, 1, -g}, {g, 0, -1},  {g, 0, 1},  {-g, 0, -1}, {-g, 0, 1}};
-    mesh.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
-                      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
-                      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
-    for (glm::dvec3& p : mesh.positions_m) p = 0.5 * glm::normalize(p);
-
+    Mesh mesh = make_icosahedron();
     for (uint32_t level = 0; level < subdivisions; ++level) {
         std::map<std::pair<uint32_t, uint32_t>, uint32_t> middles;
         const auto middle = [&](uint32_t a, uint32_t b) {
@@ -116,6 +122,44 @@ Mesh make_icosphere(uint32_t subdivisions)
             finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
         }
         mesh.triangles = std::move(finer);
+    }
+    return mesh;
+}
+
+Mesh make_geodesic(uint32_t parts)
+{
+    const Mesh whole = make_icosahedron();
+    const uint32_t cuts = std::max(parts, 1u);
+    Mesh mesh;
+    // A vertex is its weights of the corners: those on edges and corners are shared by more than one face.
+    using Weights = std::vector<std::pair<uint32_t, uint32_t>>;
+    std::map<Weights, uint32_t> shared;
+    for (const std::array<uint32_t, 3>& face : whole.triangles) {
+        const auto vertex = [&](uint32_t i, uint32_t j) { // i parts toward the second corner, j toward the third
+            Weights weights;
+            for (const auto& [which, weight] : {std::pair{face[0], cuts - i - j}, {face[1], i}, {face[2], j}})
+                if (weight > 0) weights.emplace_back(which, weight);
+            std::sort(weights.begin(), weights.end());
+            glm::dvec3 place(0);
+            for (const auto& [which, weight] : weights) place += double(weight) * whole.positions_m[which];
+            const auto next = uint32_t(mesh.positions_m.size());
+            if (weights.size() < 3) {
+                const auto [known, is_new] = shared.try_emplace(weights, next);
+                if (!is_new) return known->second;
+            }
+            mesh.positions_m.push_back(0.5 * glm::normalize(place));
+            return next;
+        };
+        std::vector<uint32_t> row;
+        for (uint32_t j = 0; j <= cuts; ++j) {
+            std::vector<uint32_t> next;
+            for (uint32_t i = 0; i + j <= cuts; ++i) next.push_back(vertex(i, j));
+            for (uint32_t i = 0; i < next.size() && j > 0; ++i) {
+                mesh.triangles.push_back({row[i], row[i + 1], next[i]});
+                if (i + 1 < next.size()) mesh.triangles.push_back({row[i + 1], next[i + 1], next[i]});
+            }
+            row = std::move(next);
+        }
     }
     return mesh;
 }

@@ -22,6 +22,9 @@ Mesh make_sphere(uint32_t longitudes = 96, uint32_t latitudes = 48);
 // No texture coordinates: it has no natural ones.
 Mesh make_icosphere(uint32_t subdivisions = 5);
 
+// The same with every edge of the icosahedron cut into `parts` (>= 1): 20 parts^2 triangles, less even in size.
+Mesh make_geodesic(uint32_t parts);
+
 // A torus around the z axis of outer diameter 1; `tube` is the tube's radius as a share of the ring's, in (0, 1).
 Mesh make_torus(double tube = 0.4, uint32_t around = 128, uint32_t tube_sides = 48);
 

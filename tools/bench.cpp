@@ -30,6 +30,7 @@ struct BenchOptions {
     std::string first;
     uint32_t edit = 0;
     // of batch alone
+    std::vector<const CLI::Option*> of_batch;
     std::vector<std::string> paths;
     ParameterTexts parameters;
     std::string precision = "mixed";
@@ -192,8 +193,10 @@ ExitCode run(const BenchOptions& given)
         return time_ms ? ExitCode::fine : ExitCode::misuse;
     }
     BenchOptions options = given;
-    if (options.what != "batch" && !(options.paths.empty() && options.parameters.empty())) {
-        say_error("texture files and --set are for haptel bench batch: the others bring their own textures");
+    for (const CLI::Option* option : options.of_batch) {
+        if (options.what == "batch" || option->count() == 0) continue;
+        say_error(fmt::format("{} for haptel bench batch: the others bring their own textures and points",
+                              option->get_positional() ? "texture files are" : option->get_name() + " is"));
         return ExitCode::misuse;
     }
     if (options.paths.empty()) options.paths = {"stdlib", "examples"};
@@ -242,16 +245,17 @@ Command bench_command(CLI::App& app)
             "and number of objects; scale: how that grows, and what a surface costs; skip: what a tick leaves out")
         ->check(CLI::IsMember({"compile", "accuracy", "batch", "math", "tick", "scale", "skip"}))
         ->capture_default_str();
-    command->add_option("paths", options->paths, "batch: texture files, FILE:NAME, or folders [stdlib examples]")
-        ->type_name("PATH");
-    command->add_option("--points", options->points, "batch: so many at once")
-        ->check(CLI::Range(1, 100'000'000))
-        ->capture_default_str();
-    command->add_option("--precision", options->precision, "batch: f64, mixed or f32")
-        ->check(CLI::IsMember({"f64", "mixed", "f32"}))
-        ->capture_default_str();
-    add_length(*command, "--box", options->box_m, "batch: side of the cube of points round the origin [50mm]");
-    add_parameters(*command, options->parameters);
+    options->of_batch = {
+        command->add_option("paths", options->paths, "batch: texture files, FILE:NAME, or folders [stdlib examples]")
+            ->type_name("PATH"),
+        command->add_option("--points", options->points, "batch: so many at once")
+            ->check(CLI::Range(1, 100'000'000))
+            ->capture_default_str(),
+        command->add_option("--precision", options->precision, "batch: f64, mixed or f32")
+            ->check(CLI::IsMember({"f64", "mixed", "f32"}))
+            ->capture_default_str(),
+        add_length(*command, "--box", options->box_m, "batch: side of the cube of points round the origin [50mm]"),
+        add_parameters(*command, options->parameters)};
     command->add_option("--first", options->first, "")->group(""); // not for people
     command->add_option("--edit", options->edit, "")->group("");
     command->add_flag("--quick", options->quick, "Fewer rounds and points");

@@ -2,6 +2,7 @@
 
 #include "runtime/joined_surfaces.h"
 
+#include <algorithm>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -12,7 +13,8 @@ namespace haptel::runtime {
 namespace {
 
 // Of the same surfaces in the same places.
-std::string joined_key(const Scene& scene, const std::vector<Joinable>& joinable, const std::vector<uint32_t>& numbers)
+std::string joined_key(const Scene& scene, const std::vector<ObjectAtRest>& joinable,
+                       const std::vector<uint32_t>& numbers)
 {
     std::ostringstream key;
     key << std::hexfloat << "joined";
@@ -29,10 +31,28 @@ std::string joined_key(const Scene& scene, const std::vector<Joinable>& joinable
 
 } // namespace
 
-void join_objects(Scene& scene, const std::vector<Joinable>& joinable, SurfaceCache* surfaces, FileMessages& messages)
+void warn_of_doubles(const Scene& scene, const std::vector<ObjectAtRest>& at_rest, FileMessages& messages)
 {
+    const auto object = [&](const ObjectAtRest& one) -> const SceneObject& { return scene.objects[one.number]; };
+    for (auto second = at_rest.begin(); second != at_rest.end(); ++second) {
+        const auto first = std::find_if(at_rest.begin(), second, [&](const ObjectAtRest& other) {
+            const Placement &a = object(other).placement, &b = object(*second).placement;
+            return object(other).surface == object(*second).surface && a.position_m == b.position_m &&
+                   a.rotation == b.rotation;
+        });
+        if (first == second) continue;
+        messages.warning(second->at, "objects " + std::to_string(first->number + 1) + " and " +
+                                         std::to_string(second->number + 1) + " are both `" + object(*second).name +
+                                         "` in the same place: their forces add, as of one that is as stiff as both. "
+                                         "Move one of them (`position_m`), or leave it out");
+    }
+}
+
+void join_objects(Scene& scene, std::vector<ObjectAtRest> joinable, SurfaceCache* surfaces, FileMessages& messages)
+{
+    std::erase_if(joinable, [](const ObjectAtRest& one) { return !one.joined; });
     std::vector<PlacedSurface> placed;
-    for (const Joinable& one : joinable)
+    for (const ObjectAtRest& one : joinable)
         placed.push_back({scene.objects[one.number].surface, scene.objects[one.number].placement});
     for (const MeetingSurfaces& meeting : find_meeting(placed)) {
         std::string error = meeting.error;

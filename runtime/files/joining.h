@@ -11,13 +11,17 @@
 
 namespace haptel::runtime {
 
-struct Joinable {
+struct ObjectAtRest {
     uint32_t number;         // in Scene::objects
     std::string surface_key; // SurfaceCache::key of its surface
     toml::source_region at;
+    bool joined; // with what it meets
 };
 
+// Warns of those that are there twice: they have no seam, and would be felt twice.
+void warn_of_doubles(const Scene& scene, const std::vector<ObjectAtRest>& at_rest, FileMessages& messages);
+
 // Fills scene.joined. What cannot be joined is told and stays apart.
-void join_objects(Scene& scene, const std::vector<Joinable>& joinable, SurfaceCache* surfaces, FileMessages& messages);
+void join_objects(Scene& scene, std::vector<ObjectAtRest> at_rest, SurfaceCache* surfaces, FileMessages& messages);
 
 } // namespace haptel::runtime

@@ -1,4 +1,4 @@
-#include "runtime/files/mesh_file.h"
+#include "runtime/files/mesh_process.h"
 
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
@@ -9,11 +9,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <exception>
 #include <fstream>
 #include <limits>
 #include <map>
-#include <mutex>
+#include <new>
 #include <optional>
 #include <sstream>
 #include <system_error>
@@ -55,11 +56,11 @@ void append(Mesh& mesh, const aiMesh& part, bool with_uv)
 }
 
 // Listens to what assimp says of vertex indices while one file is read: some of its readers put another vertex in the
-// place of one that does not exist, and only log it. The log is assimp's one of the process: files are read one at a
-// time, and a logger that the program has made itself stays.
+// place of one that does not exist, and only log it. The log is assimp's one of the process: a logger that the program
+// has made itself stays.
 class IndexListener final : public Assimp::LogStream {
 public:
-    IndexListener() : lock_(reading_), own_logger_(Assimp::DefaultLogger::isNullLogger())
+    IndexListener() : own_logger_(Assimp::DefaultLogger::isNullLogger())
     {
         if (own_logger_) Assimp::DefaultLogger::create("", Assimp::Logger::NORMAL, 0);
         Assimp::DefaultLogger::get()->attachStream(this, severities);
@@ -82,9 +83,7 @@ public:
 
 private:
     static constexpr unsigned severities = Assimp::Logger::Warn | Assimp::Logger::Err;
-    static inline std::mutex reading_;
 
-    std::lock_guard<std::mutex> lock_;
     bool own_logger_;
     std::string heard_;
 };
@@ -136,6 +135,33 @@ private:
     std::map<std::string, uint32_t> numbers_;
 };
 
+// Coordinates come from assimp as 32-bit numbers, also where the file has more digits: far from the origin that is
+// coarse. Of the vertices that triangles use, in the file's units.
+std::string warning_of_rounding(const Mesh& mesh)
+{
+    constexpr double tolerable = 1e-5; // of its size: 1 um of 10 cm
+    glm::dvec3 minimum(std::numeric_limits<double>::infinity()), maximum = -minimum;
+    for (const auto& triangle : mesh.triangles)
+        for (const uint32_t corner : triangle) {
+            if (corner >= mesh.positions_m.size()) continue;
+            minimum = glm::min(minimum, mesh.positions_m[corner]);
+            maximum = glm::max(maximum, mesh.positions_m[corner]);
+        }
+    const auto largest = [](const glm::dvec3& v) { return std::max({v.x, v.y, v.z}); };
+    const double size = largest(maximum - minimum), farthest = largest(glm::max(maximum, -minimum));
+    const double rounding = std::ldexp(farthest, -std::numeric_limits<float>::digits);
+    if (!(rounding > tolerable * size && std::isfinite(farthest))) return {};
+    std::ostringstream text;
+    text.precision(3);
+    text << "its coordinates are read as 32-bit numbers, and as far from the origin as " << farthest
+         << " they are rounded by up to " << rounding << "; its size is only " << size / rounding
+         << " times that: move the model to the origin before it is exported";
+    return text.str();
+}
+
+const std::string unreadable = "the file could not be read: ",
+                  no_triangle = "the file holds no triangle: points or lines only, or it is cut off before its faces";
+
 MeshFileResult failed(std::string why)
 {
     MeshFileResult result;
@@ -143,20 +169,17 @@ MeshFileResult failed(std::string why)
     return result;
 }
 
-} // namespace
+// A machine that is slow, and a build that checks everything, read a megabyte in this time.
+constexpr double processor_s_per_byte = 1e-6, processor_s_min = 10;
 
-MeshFileResult load_mesh(const std::filesystem::path& file)
-try {
-    std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored))
-        return failed("there is no such file (looked for " + file.string() + ")");
-    if (!std::filesystem::is_regular_file(file, ignored)) return failed("this is not a file");
-    if (std::filesystem::file_size(file, ignored) == 0) return failed("the file is empty");
-    const std::string extension = lower_case(file.extension().string());
-    if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
-        return failed("expected a mesh of type .obj, .ply, .stl, .off, .3ds, .dae, .gltf or .glb, found " +
-                      (extension.empty() ? "no type" : extension));
+MeshReadLimits limits_for(std::uintmax_t size_bytes)
+{
+    const double processor_s = processor_s_min + processor_s_per_byte * static_cast<double>(size_bytes);
+    return {processor_s, 6 * processor_s};
+}
 
+MeshFileResult read_mesh(const std::filesystem::path& file, const std::string& extension)
+{
     const IndexListener listener;
     Assimp::Importer importer;
     constexpr unsigned steps = aiProcess_Triangulate | aiProcess_PreTransformVertices;
@@ -168,12 +191,11 @@ try {
                                : importer.ReadFile(file.string(), steps);
     if (!scene) {
         const std::string why = importer.GetErrorString();
+        if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
         // How assimp says that a file holds points only.
-        return failed(why.starts_with("No output meshes") ? "the file holds no triangle"
-                                                          : "the file could not be read: " + why);
+        return failed(why.starts_with("No output meshes") ? no_triangle : unreadable + why);
     }
-
-    if (!listener.heard().empty()) return failed("the file could not be read: " + listener.heard());
+    if (!listener.heard().empty()) return failed(unreadable + listener.heard());
 
     MeshFileResult result;
     bool with_uv = scene->mNumMeshes > 0;
@@ -184,12 +206,42 @@ try {
             result.mesh.smoothing_groups.resize(result.mesh.triangles.size(),
                                                 groups->group_of(*scene, *scene->mMeshes[i]));
     }
-    if (result.mesh.triangles.empty()) return failed("the file holds no triangle");
+    if (result.mesh.triangles.empty()) return failed(no_triangle);
+    result.warning = warning_of_rounding(result.mesh);
     return result;
+}
+
+} // namespace
+
+MeshFileResult load_mesh(const std::filesystem::path& file, std::optional<MeshReadLimits> limits)
+try {
+    std::error_code ignored;
+    if (!std::filesystem::exists(file, ignored))
+        return failed("there is no such file (looked for " + file.string() + ")");
+    if (!std::filesystem::is_regular_file(file, ignored)) return failed("this is not a file");
+    const std::uintmax_t size_bytes = std::filesystem::file_size(file, ignored);
+    if (size_bytes == 0) return failed("the file is empty");
+    const std::string extension = lower_case(file.extension().string());
+    if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
+        return failed("expected a mesh of type .obj, .ply, .stl, .off, .3ds, .dae, .gltf or .glb, found " +
+                      (extension.empty() ? "no type" : extension));
+    MeshReading reading = read_in_own_process(
+        [&] {
+            try {
+                return read_mesh(file, extension);
+            } catch (const std::bad_alloc&) {
+                throw;
+            } catch (const std::exception& problem) {
+                return failed(unreadable + problem.what());
+            }
+        },
+        limits.value_or(limits_for(size_bytes)));
+    if (!reading.gave_up.empty())
+        return failed("the reader of " + extension + " files gave up: " + reading.gave_up +
+                      "; the file may be damaged or cut off: export it again, or as OBJ or STL");
+    return std::move(reading.result);
 } catch (const std::exception& problem) {
-    return failed(std::string("the file could not be read: ") + problem.what());
-} catch (...) {
-    return failed("the file could not be read");
+    return failed(unreadable + problem.what());
 }
 
 } // namespace haptel::runtime

@@ -4,17 +4,26 @@
 #include "runtime/mesh.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 namespace haptel::runtime {
 
 struct MeshFileResult {
-    Mesh mesh;         // triangles of all parts of the file, in the file's units, as if metres
-    std::string error; // why there is none, in words; empty: read
+    Mesh mesh;                // triangles of all parts of the file, in the file's units, as if metres
+    std::string error;        // why there is none, in words; empty: read
+    std::string warning = {}; // what was lost by reading it, in words; empty: nothing
+};
+
+struct MeshReadLimits {
+    double processor_s, wall_s;
 };
 
 // Polygons are cut into triangles; points and lines are left out. Formats: OBJ, PLY, STL, OFF, 3DS, DAE, glTF.
 // Smoothing groups are those of an OBJ file with lines `s N` and `s off`; faces before the first of them are of none.
-MeshFileResult load_mesh(const std::filesystem::path& file);
+//
+// The file is read in a process of its own, for which this one forks: one that is damaged is an error in words,
+// whatever its reader does about it. Limits: unless given, more the larger the file is.
+MeshFileResult load_mesh(const std::filesystem::path& file, std::optional<MeshReadLimits> limits = std::nullopt);
 
 } // namespace haptel::runtime

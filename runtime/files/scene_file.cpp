@@ -180,6 +180,7 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, Surfac
             messages.error(text.mesh_at, "mesh `" + text.mesh + "`: " + read.error);
             return;
         }
+        if (!read.warning.empty()) messages.warning(text.mesh_at, "mesh `" + text.mesh + "`: " + read.warning);
         mesh = std::move(read.mesh);
     }
     if (text.own_crease) mesh.smoothing_groups.clear();
@@ -349,13 +350,15 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
     scene->probe = text.probe;
     scene->servo = text.servo;
     scene->regions = std::move(text.regions);
-    std::vector<Joinable> joinable;
+    std::vector<ObjectAtRest> at_rest;
     for (ObjectText& object : text.objects) {
-        if (object.joined && !object.object.motion)
-            joinable.push_back({uint32_t(scene->objects.size()), std::move(object.surface_key), object.mesh_at});
+        if (!object.object.motion)
+            at_rest.push_back(
+                {uint32_t(scene->objects.size()), std::move(object.surface_key), object.mesh_at, object.joined});
         scene->objects.push_back(std::move(object.object));
     }
-    join_objects(*scene, joinable, surfaces, messages);
+    warn_of_doubles(*scene, at_rest, messages);
+    join_objects(*scene, std::move(at_rest), surfaces, messages);
 
     for (DeviceText& device : text.devices) {
         if (!devices) break;

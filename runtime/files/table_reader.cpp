@@ -39,6 +39,8 @@ std::string kind_of(const toml::node& node)
     return "something else";
 }
 
+// To `b` as it is or without its unit, or whatever else follows a `_`: "stifness" is one letter from
+// "stiffness_n_per_m".
 std::size_t edit_distance(std::string_view a, std::string_view b)
 {
     std::vector<std::size_t> row(b.size() + 1);
@@ -52,7 +54,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b)
             row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
         }
     }
-    return row.back();
+    std::size_t smallest = row.back();
+    for (std::size_t j = 0; j < b.size(); ++j)
+        if (b[j] == '_') smallest = std::min(smallest, row[j]);
+    return smallest;
 }
 
 } // namespace

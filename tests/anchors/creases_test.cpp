@@ -149,7 +149,7 @@ TEST_CASE("anchors row 1: nor is a ball wedged, of a twentieth of the object's r
 TEST_CASE("anchors row 1: in a bowl of two million triangles the force is the ideal one")
 {
     constexpr double depth_m = 0.01;
-    const auto surface = build_surface(make_geodesic(316)).surface;
+    const auto surface = build_surface(make_unit_geodesic(316)).surface;
     REQUIRE(surface->faces.size() == 1'997'120);
     const double furthest_m = furthest_facet_m(*surface, [](const dvec3& p) { return glm::normalize(p); });
     for (const bool friction : {false, true}) {

@@ -7,8 +7,8 @@
 
 namespace haptel::test {
 
-// The unit sphere from an icosahedron, every edge cut into `parts`: 20 parts^2 triangles.
-runtime::Mesh make_geodesic(uint32_t parts);
+// make_geodesic() of radius 1 m: 20 parts^2 triangles.
+runtime::Mesh make_unit_geodesic(uint32_t parts);
 
 // A smooth surface around the origin: its radius over directions, 1 m with bumps of 0.02 m.
 struct BumpySphere {

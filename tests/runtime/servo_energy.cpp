@@ -78,6 +78,49 @@ TEST_CASE("without friction a closed path inside a hollow body gives and takes n
         }
 }
 
+TEST_CASE("where sheets of one mesh pierce each other each pushes by its own depth, and a closed path gives nothing")
+{
+    // The planes x = 0, y = 0 and z = 0 as one mesh without common edges, vertices or symmetry.
+    Mesh mesh;
+    for (int axis = 0; axis < 3; ++axis) {
+        const Mesh plane = plane_mesh(size_m, 3);
+        const auto first = uint32_t(mesh.positions_m.size());
+        for (const dvec3& p : plane.positions_m)
+            mesh.positions_m.push_back(axis == 0   ? dvec3(p.z, p.x, p.y)
+                                       : axis == 1 ? dvec3(p.y, p.z, p.x)
+                                                   : p + dvec3(0.003, 0.004, 0));
+        for (const auto& t : plane.triangles) mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+    }
+    for (const ProbeKind kind : {ProbeKind::point, ProbeKind::stylus}) {
+        Scene scene = bare_scene(mesh);
+        scene.probe = {kind, 0.1};
+        const auto touched = shared(std::move(scene));
+        for (const dvec3& across : {dvec3(1, -1, 0), dvec3(1, 0, -1), dvec3(1, 1, -2), dvec3(2, -1, -1)}) {
+            Renderer renderer(touched);
+            const dvec3 tail(0.02);
+            renderer.tick({dvec3(2e-3), dvec3(2e-3) + tail});
+            const dvec3 one = glm::normalize(across), other = glm::normalize(glm::cross(one, dvec3(1)));
+            double work_j = 0, worst_n = 0;
+            int touching[4] = {};
+            dvec3 before_m(0), before_n(0);
+            for (int i = 0; i <= 40000; ++i) {
+                const double angle = 2 * std::numbers::pi * i / 20000;
+                const dvec3 hand = -2e-4 * dvec3(1) + 2e-3 * (std::cos(angle) * one + std::sin(angle) * other);
+                const TickResult felt = renderer.tick({hand, hand + tail});
+                const dvec3 expected = stiffness_n_per_m * glm::max(dvec3(0), -hand);
+                worst_n = std::max(worst_n, glm::length(felt.force_n - expected));
+                if (i > 20000) work_j += 0.5 * glm::dot(felt.force_n + before_n, hand - before_m);
+                ++touching[(hand.x < 0) + (hand.y < 0) + (hand.z < 0)];
+                before_m = hand, before_n = felt.force_n;
+            }
+            CAPTURE(int(kind), across.x, across.y, across.z, work_j);
+            CHECK(touching[2] > 5000);
+            CHECK(worst_n < 1e-6);
+            CHECK(std::abs(work_j) < 1e-9);
+        }
+    }
+}
+
 TEST_CASE("without friction a closed path outside of a faceted body gives nothing, whatever it takes")
 {
     double taken_before_j = std::numeric_limits<double>::infinity();

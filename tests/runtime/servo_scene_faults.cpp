@@ -23,6 +23,8 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "scene.toml:3:1: error: unknown key `stifness_n_per_m` in [[object]]: did you mean `stiffness_n_per_m`?\n"},
         {"[[object]]\nshape = \"plane\"\nstiffness = 3\n",
          "scene.toml:3:1: error: unknown key `stiffness` in [[object]]: did you mean `stiffness_n_per_m`?\n"},
+        {"[[object]]\nshape = \"plane\"\nstifness = 3\n",
+         "scene.toml:3:1: error: unknown key `stifness` in [[object]]: did you mean `stiffness_n_per_m`?\n"},
         {"[servo]\nrate = 3\nqqqqqqqq = 1\n[[object]]\nshape = \"plane\"\n",
          "scene.toml:2:1: error: unknown key `rate` in [servo]: did you mean `rate_hz`?\n"
          "scene.toml:3:1: error: unknown key `qqqqqqqq` in [servo]: it may hold rate_hz, force_model, lateral_depth_m, "
@@ -92,8 +94,9 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "\"rock.haptel:rock\", found \"rock.haptel\"\n"},
         {"[[object]]\nmesh = \"bunny.obj\"\n", nullptr},
         {"[[object]]\nmesh = \"empty.obj\"\n", "scene.toml:2:8: error: mesh `empty.obj`: the file is empty\n"},
-        {"[[object]]\nmesh = \"points.obj\"\n",
-         "scene.toml:2:8: error: mesh `points.obj`: the file holds no triangle\n"},
+        {"[[object]]\nmesh = \"points.obj\"\n", "scene.toml:2:8: error: mesh `points.obj`: the file holds no triangle: "
+                                                "points or lines only, or it is cut off before "
+                                                "its faces\n"},
         {"[[object]]\nmesh = \"nan.obj\"\n",
          "scene.toml:2:8: error: mesh `nan.obj`: the mesh has no triangle to touch: "
          "dropped triangles: 1 with a coordinate that is not finite (of 1)\n"},

@@ -1,6 +1,8 @@
 // Which objects of a scene file are joined to one surface.
+#include "runtime/renderer.h"
 #include "tests/runtime/scene_folder.h"
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -75,6 +77,34 @@ TEST_CASE("objects at rest that meet are joined, unless the scene says no")
     // A hand pressed through the soft ball finds the hard one.
     CHECK(joined_in(ball(0.05, "stiffness_n_per_m = 100") + ball(0.03)) == Groups{});
     CHECK(joined_in(ball(0.05) + ball(0.05, "position_m = [0.03, 0.01, 0]")) == Groups{{0, 1}});
+}
+
+TEST_CASE("an object that is there twice in one place is told, however it came there: both are felt")
+{
+    const auto said = [](size_t line, int first, int second) {
+        return "scene.toml:" + std::to_string(line) + ":9: warning: objects " + std::to_string(first) + " and " +
+               std::to_string(second) +
+               " are both `box` in the same place: their forces add, as of one that is as stiff as both. Move one of "
+               "them (`position_m`), or leave it out\n";
+    };
+    // Each box is five lines long.
+    CHECK(diagnostics_of(box(0) + box(0.1) + box(0)) == said(12, 1, 3));
+    CHECK(diagnostics_of(box(0) + box(0) + box(0)) == said(7, 1, 2) + said(12, 1, 3));
+    CHECK(diagnostics_of(box(0, "joined = false") + box(0, "stiffness_n_per_m = 100")) == said(7, 1, 2));
+    CHECK(diagnostics_of(box(0) + box(1e-6)).empty());
+    CHECK(diagnostics_of(box(0) + box(0, "rotation_deg = [0, 0, 1]")).empty());
+    CHECK(diagnostics_of(box(0) + box(0, "spin_deg_per_s = [0, 0, 9]")).empty());
+
+    const Folder folder;
+    const auto force_n = [&](const std::string& toml) {
+        Renderer renderer(load(folder, toml).scene);
+        renderer.tick({{0, 0, 0.02}, {0, 0, 0.1}});
+        glm::dvec3 felt(0);
+        for (int i = 0; i < 1000; ++i) felt = renderer.tick({{0, 0, 0.0095}, {0, 0, 0.1}}).force_n;
+        return felt.z;
+    };
+    CHECK(std::abs(force_n(box(0)) - 0.4) < 1e-9); // 800 N/m, 0.5 mm
+    CHECK(std::abs(force_n(box(0) + box(0)) - 0.8) < 1e-9);
 }
 
 TEST_CASE("what cannot be joined as the scene says is an error")

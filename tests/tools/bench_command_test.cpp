@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <map>
+#include <set>
 #include <thread>
 
 using namespace haptel::test;
@@ -123,13 +124,13 @@ TEST_CASE("bench scale: every axis from its first row on, for every probe, and w
     INFO(ran.err);
     REQUIRE(ran.code == 0);
     const Json json = Json::parse(ran.out);
-    std::map<std::string, Json> first; // of an axis and a probe
+    std::map<std::string, Json> first; // of an axis and a probe, with and without friction
     std::map<std::string, size_t> seen;
     for (const Json& row : json["rows"]) {
         const std::string axis = row["axis"], key = axis + " " + row["probe"].get<std::string>();
         CAPTURE(key, row["triangles"].get<int>(), row["objects"].get<int>());
         ++seen[key];
-        const Json& base = first.try_emplace(key, row).first->second;
+        const Json& base = first.try_emplace(key + (row["friction"].get<bool>() ? "" : " none"), row).first->second;
         for (const char* figure : {"median", "p99"}) {
             const double growth = row["growth"][figure],
                          by = row["tick_ns"][figure].get<double>() / base["tick_ns"][figure].get<double>();
@@ -140,12 +141,20 @@ TEST_CASE("bench scale: every axis from its first row on, for every probe, and w
         CHECK(std::fabs(row["contacts"].get<double>() - touched) < 0.05);
         if (touched == 8) CHECK(row["growth"]["median"].get<double>() > 2);
     }
-    CHECK(seen.size() == 9);
+    CHECK(seen.size() == 10);
     for (const char* probe : {"point", "sphere", "stylus"}) {
         CHECK(seen[std::string("triangles ") + probe] == 6);
         CHECK(seen[std::string("objects ") + probe] == 4);
         CHECK(seen[std::string("contacts ") + probe] == 4);
     }
+    // Balls of a twentieth of the object's radius and of its diameter, on 20 * 187^2 triangles.
+    std::set<std::pair<long, bool>> large; // micrometres
+    for (const Json& row : json["rows"]) {
+        if (row["axis"] != "radius") continue;
+        CHECK(row["triangles"] == 699'380);
+        large.emplace(std::lround(1e6 * row["probe_radius_m"].get<double>()), row["friction"].get<bool>());
+    }
+    CHECK(large == std::set<std::pair<long, bool>>{{2500, false}, {2500, true}, {5000, false}, {5000, true}});
     REQUIRE(json["builds"].size() == 6);
     for (const Json& row : json["builds"]) {
         CHECK(row["build_ms"].get<double>() > 0);
@@ -288,7 +297,22 @@ TEST_CASE("bench batch: every texture that paths name, on one thread and on all,
         run_command("bench batch '" + folder.write("broken.haptel", "texture t() { return x; }\n") + "'");
     CHECK(broken.code == 1);
     CHECK(contains(broken.err, "broken.haptel:1:"));
-    CHECK(run_command("bench compile --quick '" + file + "'").code == 2);
+}
+
+TEST_CASE("bench: what is for batch alone is refused by the others, in words")
+{
+    const std::map<std::string, std::string> given{{"stdlib", "texture files are for haptel bench batch"},
+                                                   {"--points 5", "--points is for haptel bench batch"},
+                                                   {"--precision f32", "--precision is for haptel bench batch"},
+                                                   {"--box 5mm", "--box is for haptel bench batch"},
+                                                   {"--set depth=1mm", "--set is for haptel bench batch"}};
+    for (const std::string kind : {"compile", "accuracy", "math", "tick", "scale", "skip"})
+        for (const auto& [option, words] : given) {
+            const Ran ran = run_command("bench " + kind + " " + option + " --quick");
+            CAPTURE(kind, option, ran.err);
+            CHECK(ran.code == 2);
+            CHECK(contains(ran.err, words));
+        }
 }
 
 TEST_CASE("bench math: every elementary function is as exact as promised, with its times")
