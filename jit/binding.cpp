@@ -82,8 +82,9 @@ std::vector<double> values_of(const ir::Texture& texture, const TextureRequest& 
             continue;
         }
         const lang::ParameterValue parsed = lang::parse_value(text, texture.parameters[i]);
-        if (!parsed.error.empty())
-            complaints.add("parameter '" + name + "' of texture '" + texture.name + "': " + parsed.error, parsed.hint);
+        const std::string of = "parameter '" + name + "' of texture '" + texture.name + "': ";
+        if (!parsed.error.empty()) complaints.add(of + parsed.error, parsed.hint);
+        if (!parsed.warning.empty()) complaints.warn(of + parsed.warning, "it is taken as it is: is the unit meant?");
         values[i] = parsed.value;
     }
     return values;

@@ -46,8 +46,8 @@ ParameterValue fail(std::string error, std::string hint = {})
 
 ParameterValue read_boolean(std::string_view text)
 {
-    if (text == "true") return {1, {}, {}};
-    if (text == "false") return {0, {}, {}};
+    if (text == "true") return {1};
+    if (text == "false") return {0};
     return fail("expected true or false, found '" + printable(text) + "'");
 }
 
@@ -61,14 +61,18 @@ ParameterValue read_whole(std::string_view text, bool negative, const Number& nu
         return fail("expected " + range + ", found '" + printable(text) + "'");
     const double value = negative ? -number.value : number.value;
     if (value < low || value > high) return fail(printable(text) + " is outside its range: expected " + range);
-    return {value == 0 ? 0 : value, {}, {}};
+    return {value == 0 ? 0 : value};
 }
 
 ParameterValue read_real(std::string_view text, bool negative, const Number& number, const ir::Parameter& parameter)
 {
     if (!number.unit.empty() && si_unit(number.unit) != parameter.unit)
         return fail("expected " + expected_number(parameter.unit) + ", found '" + printable(text) + "'");
-    return {negative ? -number.value : number.value, {}, {}};
+    ParameterValue read{negative ? -number.value : number.value};
+    if (read.value < parameter.minimum || read.value > parameter.maximum)
+        read.warning = printable(text) + " is outside of its range " + shown(parameter.minimum) + " .. " +
+                       shown(parameter.maximum) + (parameter.unit.empty() ? "" : " " + parameter.unit);
+    return read;
 }
 
 } // namespace

@@ -9,9 +9,10 @@
 namespace haptel::lang {
 
 struct ParameterValue {
-    double value = 0;  // SI; integers exactly, booleans 0 or 1
-    std::string error; // what was expected and what was found; empty: nothing is wrong
-    std::string hint;
+    double value = 0;         // SI; integers exactly, booleans 0 or 1
+    std::string error = {};   // what was expected and what was found; empty: nothing is wrong
+    std::string hint = {};    // for the error
+    std::string warning = {}; // of a real number outside of its range
 };
 
 // `text` is any bytes; blanks around it do not count. A real number may lie outside its range, which is for sliders; a

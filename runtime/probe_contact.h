@@ -40,8 +40,8 @@ public:
     ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
                  bool skips_free_space = true);
 
-    // One tick: where it touches, none if it does not. Of a joined surface each is of one part; where
-    // sheets pierce each other each is of one of them.
+    // One tick: where it touches, none if it does not. Of a joined surface each is of one part, and where sheets
+    // pierce each other of one of them.
     std::span<const Contact> update(const ProbePose& pose, const EndsFriction& friction) noexcept;
     // One tick of a probe that is free and known to have met nothing on its way.
     void follow(const ProbePose& pose) noexcept;

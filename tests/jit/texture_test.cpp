@@ -155,6 +155,13 @@ TEST_CASE("values that do not fit are refused with the mending")
     }
     CHECK(contains(jit::make_binding(program, "groovs", request_over(0.05)).diagnostics, "did you mean 'grooves'?"));
     auto request = request_over(0.05);
+    request.parameters = {{"pitch", "60m"}}; // a real number may leave its range, but not in silence
+    const TextureResult wide = jit::make_binding(program, "grooves", request);
+    CHECK(wide.binding);
+    CHECK(contains(wide.diagnostics, "warning: parameter 'pitch' of texture 'grooves': 60m is outside of its range "));
+    request.parameters = {{"pitch", "1mm"}};
+    CHECK(jit::make_binding(program, "grooves", request).diagnostics.empty());
+    request = request_over(0.05);
     request.box_maximum_m[1] = NAN;
     CHECK(contains(jit::make_binding(program, "", request).diagnostics, "not a box"));
 }
