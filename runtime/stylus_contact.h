@@ -17,13 +17,15 @@
 // on end.
 //
 // One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
-// sequence of poses. Everything is in the object's space, metres. Friction holds the ends; the shaft slides freely.
-// What it does to them is in the balance with the sides from the start: an end that sticks bears none of their lever.
+// sequence of poses. Everything is in the object's space, metres. Friction holds the ends; the shaft slides freely. Its
+// pushes and what friction does to the ends are found together (stylus_friction.h): an end that friction keeps in its
+// place does not make way for an edge, so the other has to, and friction bears what the edge pushes the kept end with.
 #pragma once
 
 #include "runtime/contact.h"
 #include "runtime/held_ends.h"
 #include "runtime/shaft.h"
+#include "runtime/stylus_friction.h"
 #include "runtime/swept_tree.h"
 
 #include <array>
@@ -87,24 +89,8 @@ private:
         bool exact = false; // not met on the way, but crossed at the end of it
         double on_shaft = 0;
     };
-    // What holds an end that touches, while the pushes of the sides are looked for: its face, and friction on it. That
-    // sticks if it can; else it drags as far as the depth gives, against the way.
-    struct Grip {
-        WalkFriction friction;
-        bool slips = false; // in this tick; it does not stick again
-        bool touches = false, sticks = false;
-        double most = 0; // way over depth at which it sticks
-        glm::dvec3 at{0}, normal{0}, lag{0};
-
-        Friction of_walk() const
-        {
-            return {slips ? friction.dynamic_coefficient : friction.static_coefficient, friction.dynamic_coefficient};
-        }
-        bool drags() const { return touches && friction.static_coefficient > 0; }
-        double follow(const glm::dvec3& aim) noexcept;
-    };
     struct Grips {
-        Grip tip, tail;
+        EndGrip tip, tail;
     };
     // A region known to be empty: the shaft is free while each end is within the radius of where it was.
     struct Clear {
@@ -128,7 +114,7 @@ private:
     void resolve(const EndsFriction& friction) noexcept;
     double solve(const Shaft& hand, Shaft& aim, Grips& grips) noexcept;
     Shaft clear_of_sides(const Shaft& to, EndsGive gives) const noexcept;
-    void take_hold(Grip& grip, const PointContact& end, const glm::dvec3& on_shaft) const noexcept;
+    void take_hold(EndGrip& grip, const PointContact& end, const glm::dvec3& on_shaft) const noexcept;
     bool drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept;
     bool move(Shaft to) noexcept;
     bool blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept;

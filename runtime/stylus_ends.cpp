@@ -13,13 +13,18 @@ using namespace shaft_tolerance;
 
 namespace {
 
-// Within which the ends are where they should be: two units, and this share of how far the hand is away.
-// An end that slips goes its way in a few goes, each as far as friction lets it: for it, this share.
-constexpr double settled = 2, settled_share = 1e-10, slipping_share = 1e-4;
+// Within which the ends are where they should be: two units, and this share of how far the hand is away. What friction
+// holds on a short lever is known less well: this share.
+constexpr double settled = 2, settled_share = 1e-10, dragged_share = 1e-4;
+// Of its limit. Where both ends drag none is free to make way for an edge: they have to be right within the gap.
+constexpr double friction_settled = 1e-6, both_settled = 1e-9;
 
 // A contact that slides off its edge does so by this many units and this share of its way, so that it is not found
 // there again, wherever the way bends.
 constexpr double beyond = 16, past_the_end = 0.05;
+
+// Share of the shaft: on a shorter lever an end does not make way. The edge is passing by the other end.
+constexpr double least_lever = 1e-4;
 
 // How often the directions of contacts follow the shaft that they turn.
 constexpr int turns_max = 48;
@@ -71,6 +76,8 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     Grips grips;
     grips.tip.friction = checked(friction.tip);
     grips.tail.friction = checked(friction.tail);
+    grips.tip.slides = tip_.proxy_.sliding;
+    grips.tail.slides = tail_.proxy_.sliding;
     for (; round < rounds_max && sweeps_left_ > 0; ++round) {
         Shaft aim, to = hand_;
         const double share = std::min(stride, solve(to, aim, grips));
@@ -78,9 +85,9 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
             to = {reached_.tip + share * (to.tip - reached_.tip), reached_.tail + share * (to.tail - reached_.tail)};
             solve(to, aim, grips);
         }
-        const bool slips = grips.tip.slips || grips.tail.slips;
+        const bool drags = grips.tip.drags() || grips.tail.drags();
         if (round > 0 && !stopped && share == 1 &&
-            farther(aim, aim_) <= settled + (slips ? slipping_share : settled_share) * farther(aim, hand_))
+            farther(aim, aim_) <= settled + (drags ? dragged_share : settled_share) * farther(aim, hand_))
             break;
         if (astray_) restart_ends();
         aim_ = aim;
@@ -98,6 +105,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
             tail_.go(grips.tail.of_walk(), &tail_path);
             tail_slides |= tail_.proxy_.sliding;
         };
+        // What friction drags goes first: a little off its aim, on a short lever that is far for the other end.
         if (grips.tail.drags() && !grips.tip.touches) {
             go_tail();
             clear.tail = tail_.proxy_.at;
@@ -134,8 +142,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         if (sides_[i].push == 0 && sides_[i].sign * passing_of(sides_[i], shaft_).height > 4 * rest_gap) drop(i);
 }
 
-// The end that gives makes way for the sides where friction has left the other elsewhere than it was to go: on a short
-// lever that is far.
+// With the end that gives where it clears the sides that push, the other being where it is.
 Shaft StylusContact::clear_of_sides(const Shaft& to, EndsGive gives) const noexcept
 {
     std::array<ShaftContact, shaft_contacts_max> contacts;
@@ -147,6 +154,7 @@ Shaft StylusContact::clear_of_sides(const Shaft& to, EndsGive gives) const noexc
             if (here.parallel || sides_[i].push == 0) continue;
             const glm::dvec3 normal = sides_[i].sign * here.normal;
             const double share = begin_ + here.on_shaft * (end_ - begin_);
+            if ((gives.tip ? 1 - share : share) < least_lever) continue;
             contacts[count++] = {normal, share, glm::dot(normal, here.edge_point) + rest_gap};
         }
         const auto push = pushes({contacts.data(), count}, to.tip, to.tail, gives);
@@ -162,35 +170,14 @@ Shaft StylusContact::clear_of_sides(const Shaft& to, EndsGive gives) const noexc
     return at;
 }
 
-// An end as it begins: it sticks where it is. One that went where the shaft could not follow comes back first.
-void StylusContact::take_hold(Grip& grip, const PointContact& end, const glm::dvec3& on_shaft) const noexcept
+// An end as it begins. One that went where the shaft could not follow comes back first.
+void StylusContact::take_hold(EndGrip& grip, const PointContact& end, const glm::dvec3& on_shaft) const noexcept
 {
     grip.touches = end.proxy_.touches();
     grip.normal = end.contact_.normal;
     grip.at = end.proxy_.at;
     if (astray_) grip.at = on_shaft + glm::dot(grip.normal, grip.at - on_shaft) * grip.normal;
-    grip.lag = glm::dvec3(0);
-    const bool slides = end.proxy_.sliding && !astray_;
-    grip.most = slides ? grip.friction.dynamic_coefficient : grip.friction.static_coefficient;
-    grip.sticks = grip.touches && side_count_ > 0 && !grip.slips && grip.most > 0;
-}
-
-// What friction does if the end is aimed there, as the walk has it; returns by how much that is news, lattice units.
-double StylusContact::Grip::follow(const glm::dvec3& aim) noexcept
-{
-    const glm::dvec3 from_aim = at - aim;
-    const double height = glm::dot(normal, from_aim), depth = std::max(0.0, height);
-    const glm::dvec3 back = from_aim - height * normal;
-    const double way = glm::length(back);
-    if (sticks) {
-        if (way <= most * depth) return 0;
-        sticks = false;
-        slips = true;
-        return HUGE_VAL;
-    }
-    const glm::dvec3 before =
-        std::exchange(lag, way > 0 ? friction.dynamic_coefficient * depth / way * back : glm::dvec3(0));
-    return glm::distance(lag, before);
+    grip.take_hold(side_count_ > 0);
 }
 
 // Where the ends are to be aimed for the sides to hold a hand; and the share of the way there on which each side that
@@ -198,10 +185,12 @@ double StylusContact::Grip::follow(const glm::dvec3& aim) noexcept
 double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips) noexcept
 {
     std::array<ShaftContact, shaft_contacts_max> contacts;
-    Grip &tip = grips.tip, &tail = grips.tail;
+    EndGrip &tip = grips.tip, &tail = grips.tail;
     take_hold(tip, tip_, shaft_.tip);
     take_hold(tail, tail_, shaft_.tail);
-    if (tip.sticks) tail.sticks = false; // one of them has to give
+    aim = hand;
+    if (side_count_ == 0) return 1;
+    if (tip.sticks) tail.sticks = false; // else no side could push; it may stay where it is for all that
 
     Shaft at = shaft_;
     for (int turn = 0; turn < turns_max; ++turn) {
@@ -215,14 +204,16 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips) noexcep
             contacts[i] = {side.normal, side.share, glm::dot(side.normal, side.point) + rest_gap};
         }
         uint32_t count = side_count_;
-        const auto add_end = [&](const Grip& grip, double share) {
+        const auto add_end = [&](const EndGrip& grip, double share) {
             if (grip.touches && !grip.sticks) contacts[count++] = {grip.normal, share, glm::dot(grip.normal, grip.at)};
         };
         add_end(tip, 0);
         add_end(tail, 1);
+        const std::span<const ShaftContact> all(contacts.data(), count);
+        const EndsGive gives{!tip.sticks, !tail.sticks};
         aim = hand;
-        Shaft held{tip.sticks ? tip.at : hand.tip + tip.lag, tail.sticks ? tail.at : hand.tail + tail.lag};
-        const auto push = pushes({contacts.data(), count}, held.tip, held.tail, {!tip.sticks, !tail.sticks});
+        Shaft held{gives.tip ? hand.tip + tip.lag : tip.at, gives.tail ? hand.tail + tail.lag : tail.at};
+        const auto push = pushes(all, held.tip, held.tail, gives);
         for (uint32_t i = 0; i < count; ++i) {
             const ShaftContact& contact = contacts[i];
             const glm::dvec3 by = push[i] * contact.normal;
@@ -231,15 +222,23 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips) noexcep
                 aim.tip += (1 - contact.share) * by;
                 aim.tail += contact.share * by;
             }
-            if (!tip.sticks) held.tip += (1 - contact.share) * by;
-            if (!tail.sticks) held.tail += contact.share * by;
+            if (gives.tip) held.tip += (1 - contact.share) * by;
+            if (gives.tail) held.tail += contact.share * by;
         }
         const Shaft next{held.at(begin_), held.at(end_)};
-        double change = farther(next, at);
+        bool agreed = farther(next, at) < 0.25;
         at = next;
-        if (tip.touches) change = std::max(change, tip.follow(aim.tip));
-        if (tail.touches) change = std::max(change, tail.follow(aim.tail));
-        if (side_count_ == 0 || change < 0.25) break;
+        double news = 0;
+        if (tip.drags()) news = tip.follow(aim.tip, held.tip, give_of(ShaftEnd::tip, all, push, gives));
+        if (tail.drags())
+            news = std::max(news, tail.follow(aim.tail, held.tail, give_of(ShaftEnd::tail, all, push, gives)));
+        agreed &= news < (tip.drags() && tail.drags() ? both_settled : friction_settled);
+        for (EndGrip* grip : {&tip, &tail}) {
+            if (!agreed || !grip->drags() || !grip->moves || grip->slides) continue;
+            grip->slides = true; // more than static friction holds: from here on dynamic friction does
+            agreed = false;
+        }
+        if (agreed) break;
     }
 
     double share = 1;
