@@ -1,5 +1,7 @@
 #include "tools/bench_tick.h"
 
+#include "tools/bench_times.h"
+
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -27,11 +29,6 @@ std::vector<Pair> pairs(const std::vector<bench::TickRow>& rows)
             if (made.first == &row && made.last != &row) found.push_back(made);
     }
     return found;
-}
-
-Json times(const bench::Times& of)
-{
-    return {{"median", of.median}, {"p99", of.p99}, {"p999", of.p999}};
 }
 
 } // namespace
@@ -77,13 +74,13 @@ Json to_json(const bench::TickRow& row)
             {"triangles", row.triangles},
             {"objects", row.objects},
             {"contact", row.contact},
-            {"tick_ns", times(row.tick_ns)},
-            {"ahead_ns", times(row.ahead_ns)},
-            {"tree_ns", times(row.tree_ns)},
+            {"tick_ns", to_json(row.tick_ns)},
+            {"ahead_ns", to_json(row.ahead_ns)},
+            {"tree_ns", to_json(row.tree_ns)},
             {"nodes", nullptr},
-            {"queries", times(row.queries)},
-            {"triangles_touched", times(row.triangles_touched)},
-            {"triangles_seen", times(row.triangles_seen)}};
+            {"queries", to_json(row.queries)},
+            {"triangles_touched", to_json(row.triangles_touched)},
+            {"triangles_seen", to_json(row.triangles_seen)}};
 }
 
 std::string growth_table(const std::vector<bench::TickRow>& rows)

@@ -2,11 +2,13 @@
 
 #include "jit/file_watch.h"
 
+#include <algorithm>
 #include <chrono>
 #include <fstream>
 #include <iterator>
 #include <poll.h>
 #include <set>
+#include <system_error>
 #include <utility>
 
 namespace haptel::tools {
@@ -20,6 +22,8 @@ constexpr auto look_interval = 50ms;
 constexpr auto look_unasked = 500ms; // where the system does not tell of changes
 // After the last sign of a change: who writes may not be done.
 constexpr auto settle_after_written = 20ms, settle_after_writing = 200ms;
+// Between deleting the old file and making the new one, some editors take a while.
+constexpr auto absence_forgiven = 500ms;
 
 std::string content_of(const std::filesystem::path& file)
 {
@@ -65,7 +69,8 @@ std::string ExploreScene::state() const
 void ExploreScene::watch()
 {
     jit::FileWatch files;
-    std::optional<Clock::time_point> due;
+    constexpr auto never = Clock::time_point::max();
+    Clock::time_point due = never, gone_since = never;
     Clock::time_point looked = Clock::now();
     while (!stop_.load(std::memory_order_relaxed)) {
         std::set<std::string> names = {file_.string()};
@@ -76,13 +81,33 @@ void ExploreScene::watch()
         const auto now = Clock::now();
         if (const auto change = files.take(); change != jit::FileWatch::Change::none)
             due = now + (change == jit::FileWatch::Change::written ? settle_after_written : settle_after_writing);
-        if (files.descriptor() < 0 && now - looked > look_unasked) due = now, looked = now;
-        if (due && now >= *due) {
-            due.reset();
-            load();
+        // Not of a file that comes back together with its folder.
+        const bool is_told = files.descriptor() >= 0 && !loaded_state_.empty();
+        if (!is_told && now - looked > look_unasked) due = now, looked = now;
+        if (now >= due) {
+            due = never;
+            std::error_code unknown;
+            if (std::filesystem::exists(file_, unknown)) {
+                gone_since = never;
+                load();
+            } else {
+                gone_since = std::min(gone_since, now);
+                if (now < gone_since + absence_forgiven)
+                    due = gone_since + absence_forgiven;
+                else
+                    tell_that_it_is_gone();
+            }
         }
         hands_.collect();
     }
+}
+
+// Once. Whatever is there later is loaded, also what was there before.
+void ExploreScene::tell_that_it_is_gone()
+{
+    if (loaded_state_.empty()) return;
+    loaded_state_.clear();
+    say(file_.filename().string() + ": the file is gone; what was felt stays, and the file is read when it is back\n");
 }
 
 void ExploreScene::load()

@@ -28,6 +28,7 @@ public:
 private:
     void watch();
     void load();
+    void tell_that_it_is_gone();
     std::string state() const; // of the files: what is the same needs no loading
     void say(const std::string& message);
 

@@ -178,8 +178,14 @@ MeshReadLimits limits_for(std::uintmax_t size_bytes)
     return {processor_s, 6 * processor_s};
 }
 
-MeshFileResult read_mesh(const std::filesystem::path& file, const std::string& extension)
+std::string extension_of(const std::filesystem::path& file)
 {
+    return lower_case(file.extension().string());
+}
+
+MeshFileResult read_mesh(const std::filesystem::path& file)
+{
+    const std::string extension = extension_of(file);
     const IndexListener listener;
     Assimp::Importer importer;
     constexpr unsigned steps = aiProcess_Triangulate | aiProcess_PreTransformVertices;
@@ -221,21 +227,21 @@ try {
     if (!std::filesystem::is_regular_file(file, ignored)) return failed("this is not a file");
     const std::uintmax_t size_bytes = std::filesystem::file_size(file, ignored);
     if (size_bytes == 0) return failed("the file is empty");
-    const std::string extension = lower_case(file.extension().string());
+    const std::string extension = extension_of(file);
     if (std::find(extensions.begin(), extensions.end(), extension) == extensions.end())
         return failed("expected a mesh of type .obj, .ply, .stl, .off, .3ds, .dae, .gltf or .glb, found " +
                       (extension.empty() ? "no type" : extension));
     MeshReading reading = read_in_own_process(
-        [&] {
+        [](const std::string& path) {
             try {
-                return read_mesh(file, extension);
+                return read_mesh(path);
             } catch (const std::bad_alloc&) {
                 throw;
             } catch (const std::exception& problem) {
                 return failed(unreadable + problem.what());
             }
         },
-        limits.value_or(limits_for(size_bytes)));
+        std::filesystem::absolute(file).string(), limits.value_or(limits_for(size_bytes)));
     if (!reading.gave_up.empty())
         return failed("the reader of " + extension + " files gave up: " + reading.gave_up +
                       "; the file may be damaged or cut off: export it again, or as OBJ or STL");

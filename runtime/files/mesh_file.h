@@ -22,8 +22,9 @@ struct MeshReadLimits {
 // Polygons are cut into triangles; points and lines are left out. Formats: OBJ, PLY, STL, OFF, 3DS, DAE, glTF.
 // Smoothing groups are those of an OBJ file with lines `s N` and `s off`; faces before the first of them are of none.
 //
-// The file is read in a process of its own, for which this one forks: one that is damaged is an error in words,
-// whatever its reader does about it. Limits: unless given, more the larger the file is.
+// The file is read in a process of its own: one that is damaged is an error in words, whatever its reader does about
+// it. The first time makes the process that forks for the others; load_scene() does that at once, and who does not call
+// it does well to call start_fork_server() before a servo runs. Limits: unless given, more the larger the file is.
 MeshFileResult load_mesh(const std::filesystem::path& file, std::optional<MeshReadLimits> limits = std::nullopt);
 
 } // namespace haptel::runtime

@@ -1,14 +1,15 @@
 #include "runtime/files/mesh_process.h"
 
+#include "runtime/files/fork_server.h"
+
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstring>
 #include <exception>
-#include <fcntl.h>
 #include <fstream>
 #include <new>
+#include <optional>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/time.h>
@@ -21,30 +22,11 @@ namespace {
 
 constexpr int exit_sent = 0, exit_memory = 1, exit_failed = 2;
 
-// One end of a pipe: all of it, or false.
-bool send_bytes(int pipe, const void* bytes, std::size_t size)
-{
-    for (const char* at = static_cast<const char*>(bytes); size > 0;) {
-        const ssize_t sent = write(pipe, at, size);
-        if (sent < 0 && errno == EINTR) continue;
-        if (sent <= 0) return false;
-        at += sent;
-        size -= static_cast<std::size_t>(sent);
-    }
-    return true;
-}
-
-bool receive_bytes(int pipe, void* bytes, std::size_t size)
-{
-    for (char* at = static_cast<char*>(bytes); size > 0;) {
-        const ssize_t received = read(pipe, at, size);
-        if (received < 0 && errno == EINTR) continue;
-        if (received <= 0) return false;
-        at += received;
-        size -= static_cast<std::size_t>(received);
-    }
-    return true;
-}
+// What comes before the reader's argument.
+struct Job {
+    MeshReader read;
+    MeshReadLimits limits;
+};
 
 template <typename Values>
 bool send_values(int pipe, const Values& values)
@@ -110,35 +92,22 @@ void limit_memory()
         lower(RLIMIT_AS, (pages_now + static_cast<rlim_t>(sysconf(_SC_PHYS_PAGES)) / 2) * page);
 }
 
-// Nothing of the program but its memory: not its handlers of signals, its terminal, its files or its devices. It ends
-// with the thread that waits for it, leaves no core, and is what goes first where memory ends.
-int strip(int pipe, const MeshReadLimits& limits)
+// Leaves no core, and is what goes first where memory ends.
+void limit(const MeshReadLimits& limits)
 {
-    for (int number = 1; number < NSIG; ++number) std::signal(number, SIG_DFL);
-    sigset_t none;
-    sigemptyset(&none);
-    pthread_sigmask(SIG_SETMASK, &none, nullptr);
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
     std::ofstream("/proc/self/oom_score_adj") << 1000;
     prctl(PR_SET_DUMPABLE, 0);
-
-    const int nowhere = open("/dev/null", O_RDWR);
-    constexpr int kept = 3;
-    const int safe = fcntl(pipe, F_DUPFD, kept + 1); // `nowhere` or the pipe may be what is about to be replaced
-    for (int standard = 0; standard < kept; ++standard) dup2(nowhere, standard);
-    dup2(safe, kept);
-    close_range(kept + 1, ~0U, 0);
-
     limit_memory();
     start_timer(ITIMER_PROF, limits.processor_s);
     start_timer(ITIMER_REAL, limits.wall_s);
-    return kept;
 }
 
-[[noreturn]] void be_the_reader(const std::function<MeshFileResult()>& read, int pipe, const MeshReadLimits& limits)
+void be_the_reader(const std::string& request, int pipe)
 try {
-    pipe = strip(pipe, limits);
-    _exit(send_result(pipe, read()) ? exit_sent : exit_failed);
+    Job job;
+    std::memcpy(&job, request.data(), sizeof job);
+    limit(job.limits);
+    _exit(send_result(pipe, job.read(request.substr(sizeof job))) ? exit_sent : exit_failed);
 } catch (const std::bad_alloc&) {
     _exit(exit_memory);
 } catch (...) {
@@ -167,37 +136,26 @@ std::string why_it_ended(int status, const MeshReadLimits& limits)
 
 } // namespace
 
-MeshReading read_in_own_process(const std::function<MeshFileResult()>& read, const MeshReadLimits& limits)
+MeshReading read_in_own_process(MeshReader read, const std::string& argument, const MeshReadLimits& limits)
 {
     const auto failed = [](const std::string& why) { return MeshReading{{{}, why}, {}}; };
-    int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) return failed(std::string("no pipe could be opened: ") + std::strerror(errno));
-    const auto [from, to] = ends;
-    fcntl(to, F_SETPIPE_SZ, 1 << 20); // fewer turns between the two, where it is granted
-    const pid_t reader = fork();
-    if (reader == 0) be_the_reader(read, to, limits);
-    const int fork_error = errno;
-    close(to);
-    if (reader < 0) {
-        close(from);
-        return failed(std::string("no process could be started: ") + std::strerror(fork_error));
-    }
+    const Job job{read, limits};
+    std::string request(reinterpret_cast<const char*>(&job), sizeof job);
+    request += argument;
+    ForkedProcess reader(be_the_reader, request);
+    if (!reader.error().empty()) return failed(reader.error());
     MeshReading reading;
     bool received = false;
     try {
-        received = receive_result(from, reading.result);
+        received = receive_result(reader.answer(), reading.result);
     } catch (const std::exception& problem) {
         reading = failed(problem.what());
         received = true;
     }
-    close(from); // a reader that still sends ends by that
-    int status = 0;
-    pid_t ended;
-    while ((ended = waitpid(reader, &status, 0)) < 0 && errno == EINTR) {
-    }
+    const std::optional<int> status = reader.wait();
     if (received) return reading;
-    // Where the program reaps its children itself, or has them ignored, nobody knows how this one ended.
-    return {{}, ended == reader ? why_it_ended(status, limits) : "it ended early"};
+    if (!reader.error().empty()) return failed(reader.error());
+    return {{}, status ? why_it_ended(*status, limits) : "it ended early"};
 }
 
 } // namespace haptel::runtime

@@ -4,7 +4,7 @@
 
 #include "runtime/files/mesh_file.h"
 
-#include <functional>
+#include <string>
 
 namespace haptel::runtime {
 
@@ -13,8 +13,11 @@ struct MeshReading {
     std::string gave_up;   // why `read` did not return, such as "it crashed (Segmentation fault)"; empty: it did
 };
 
-// `read` runs in a copy of this process that has this thread alone and no open file, with its limits: it must not wait
-// for another thread, or write anywhere. Memory: half of what the machine has. Never throws.
-MeshReading read_in_own_process(const std::function<MeshFileResult()>& read, const MeshReadLimits& limits);
+// In a process without this program's files, threads and later memory (see ForkedMain): all it knows is its argument. A
+// path is best absolute.
+using MeshReader = MeshFileResult (*)(const std::string& argument);
+
+// Memory: half of what the machine has. Never throws but for want of memory.
+MeshReading read_in_own_process(MeshReader read, const std::string& argument, const MeshReadLimits& limits);
 
 } // namespace haptel::runtime

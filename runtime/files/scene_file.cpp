@@ -2,6 +2,7 @@
 
 #include "runtime/files/device_reader.h"
 #include "runtime/files/effects_reader.h"
+#include "runtime/files/fork_server.h"
 #include "runtime/files/joining.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/files/table_reader.h"
@@ -386,6 +387,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
 LoadedScene load_scene(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
                        SurfaceCache* surfaces)
 {
+    start_fork_server(); // a mesh may come into the scene while a servo runs
     FileMessages messages(file);
     LoadedScene loaded;
     try {

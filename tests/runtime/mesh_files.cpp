@@ -1,4 +1,5 @@
 // Mesh files as they should not be: cut off, damaged, and what reads them crashing or never ending.
+#include "runtime/files/fork_server.h"
 #include "runtime/files/mesh_process.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"
@@ -25,7 +26,7 @@ using namespace haptel::runtime;
 
 namespace {
 
-constexpr MeshReadLimits hasty = {1, 20};
+constexpr MeshReadLimits hasty = {1, 20}, patient = {60, 60};
 
 std::size_t open_files()
 {
@@ -38,10 +39,11 @@ bool has_children()
     return waitpid(-1, nullptr, WNOHANG) >= 0 || errno != ECHILD;
 }
 
-std::string gave_up(const std::function<MeshFileResult()>& read, const MeshReadLimits& limits = hasty)
+std::string gave_up(MeshReader read, const MeshReadLimits& limits = hasty)
 {
+    start_fork_server();
     const std::size_t files = open_files();
-    const MeshReading reading = read_in_own_process(read, limits);
+    const MeshReading reading = read_in_own_process(read, "", limits);
     CHECK(reading.result.error.empty());
     CHECK(reading.result.mesh.triangles.empty());
     CHECK(open_files() == files);
@@ -56,21 +58,33 @@ std::string gave_up(const std::function<MeshFileResult()>& read, const MeshReadL
     std::abort();
 }
 
+MeshFileResult answer(const std::string& text)
+{
+    return {{}, text};
+}
+
+// Numbers of every kind.
+MeshFileResult random_mesh(const std::string& seed)
+{
+    std::mt19937_64 random(std::stoull(seed));
+    MeshFileResult result;
+    result.warning = "beware";
+    for (int i = 0; i < 1'200'000; ++i) { // more than one step of it
+        result.mesh.positions_m.emplace_back(std::ldexp(double(random()), int(random() % 2000) - 1060), -0.0,
+                                             std::numeric_limits<double>::quiet_NaN());
+        result.mesh.uv.emplace_back(double(random()), std::numeric_limits<double>::infinity());
+        result.mesh.triangles.push_back({uint32_t(random()), uint32_t(random()), uint32_t(random())});
+        result.mesh.smoothing_groups.push_back(uint32_t(random()));
+    }
+    return result;
+}
+
 } // namespace
 
 TEST_CASE("what is read in a process of its own arrives bit for bit")
 {
-    std::mt19937_64 random(1);
-    MeshFileResult sent;
-    sent.warning = "beware";
-    for (int i = 0; i < 1'200'000; ++i) { // more than one step of it
-        sent.mesh.positions_m.emplace_back(std::ldexp(double(random()), int(random() % 2000) - 1060), -0.0,
-                                           std::numeric_limits<double>::quiet_NaN());
-        sent.mesh.uv.emplace_back(double(random()), std::numeric_limits<double>::infinity());
-        sent.mesh.triangles.push_back({uint32_t(random()), uint32_t(random()), uint32_t(random())});
-        sent.mesh.smoothing_groups.push_back(uint32_t(random()));
-    }
-    const MeshReading reading = read_in_own_process([&] { return sent; }, hasty);
+    const MeshFileResult sent = random_mesh("1");
+    const MeshReading reading = read_in_own_process(random_mesh, "1", patient);
     CHECK(reading.gave_up.empty());
     CHECK(reading.result.error.empty());
     CHECK(reading.result.warning == "beware");
@@ -83,56 +97,29 @@ TEST_CASE("what is read in a process of its own arrives bit for bit")
     CHECK(same(mesh.triangles, sent.mesh.triangles));
     CHECK(same(mesh.smoothing_groups, sent.mesh.smoothing_groups));
 
-    const MeshReading refused = read_in_own_process([] { return MeshFileResult{{}, "not a mesh"}; }, hasty);
+    const MeshReading refused = read_in_own_process(answer, "not a mesh", hasty);
     CHECK(refused.result.error == "not a mesh");
     CHECK(refused.gave_up.empty());
 }
 
 TEST_CASE("a reader that crashes, stops, never ends or takes all memory ends alone, and it is told why")
 {
-    CHECK(gave_up([]() -> MeshFileResult { std::raise(SIGSEGV), for_ever(); }) == "it crashed (Segmentation fault)");
-    CHECK(gave_up([]() -> MeshFileResult { std::abort(); }) == "it crashed (Aborted)");
-    CHECK(gave_up([]() -> MeshFileResult { _exit(0); }) == "it ended early");
-    CHECK(gave_up([]() -> MeshFileResult { throw std::runtime_error("no"); }) == "it ended early");
-    CHECK(gave_up([]() -> MeshFileResult { for_ever(); }, {0.05, 60}) ==
+    CHECK(gave_up([](const std::string&) -> MeshFileResult { std::raise(SIGSEGV), for_ever(); }) ==
+          "it crashed (Segmentation fault)");
+    CHECK(gave_up([](const std::string&) -> MeshFileResult { std::abort(); }) == "it crashed (Aborted)");
+    CHECK(gave_up([](const std::string&) -> MeshFileResult { _exit(0); }) == "it ended early");
+    CHECK(gave_up([](const std::string&) -> MeshFileResult { throw std::runtime_error("no"); }) == "it ended early");
+    CHECK(gave_up([](const std::string&) -> MeshFileResult { for_ever(); }, {0.05, 60}) ==
           "it came to no end in 0.05 s of processor time");
-    CHECK(gave_up([]() -> MeshFileResult { std::this_thread::sleep_for(std::chrono::hours(1)), for_ever(); },
+    CHECK(gave_up([](const std::string&)
+                      -> MeshFileResult { std::this_thread::sleep_for(std::chrono::hours(1)), for_ever(); },
                   {60, 0.05}) == "it came to no end in 0.05 s");
-    CHECK(
-        gave_up([]() -> MeshFileResult { std::raise(SIGKILL), for_ever(); }).starts_with("it was ended from outside"));
-    CHECK(gave_up([]() -> MeshFileResult { throw std::bad_alloc(); }).starts_with("it asked for more memory"));
-}
-
-TEST_CASE("a reader has neither the files nor the terminal nor the signal handlers of the program")
-{
-    static volatile std::sig_atomic_t handled = 0;
-    const auto before = std::signal(SIGSEGV, [](int) { handled = 1; });
-    int ends[2];
-    REQUIRE(pipe(ends) == 0);
-    const MeshReading reading = read_in_own_process(
-        [&]() -> MeshFileResult {
-            const bool wrote = write(ends[1], "x", 1) == 1;
-            std::puts("on the terminal");
-            std::fflush(stdout);
-            if (wrote || isatty(0) || open_files() > 6) return {{}, "not alone"};
-            std::raise(SIGSEGV);
-            return {{}, "handled"};
-        },
-        hasty);
-    CHECK(reading.result.error == "");
-    CHECK(reading.gave_up == "it crashed (Segmentation fault)");
-    CHECK(handled == 0);
-    close(ends[0]);
-    close(ends[1]);
-    std::signal(SIGSEGV, before);
-}
-
-TEST_CASE("a program that ignores the ends of its children still reads meshes, and hears of a crash")
-{
-    const auto before = std::signal(SIGCHLD, SIG_IGN);
-    CHECK(read_in_own_process([] { return MeshFileResult{{}, "arrived"}; }, hasty).result.error == "arrived");
-    CHECK(read_in_own_process([]() -> MeshFileResult { std::abort(); }, hasty).gave_up == "it ended early");
-    std::signal(SIGCHLD, before);
+    CHECK(gave_up([](const std::string&) -> MeshFileResult {
+              std::raise(SIGKILL), for_ever();
+          }).starts_with("it was ended from outside"));
+    CHECK(gave_up([](const std::string&) -> MeshFileResult {
+              throw std::bad_alloc();
+          }).starts_with("it asked for more memory"));
 }
 
 TEST_CASE("threads read meshes at once")

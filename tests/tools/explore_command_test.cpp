@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fmt/format.h>
 #include <sstream>
 #include <sys/stat.h>
@@ -414,6 +415,26 @@ TEST_CASE("a scene or a mesh that is edited is felt without a restart; a broken 
     CHECK(before_n > 0.7);
     CHECK(after_n <= 0.5 + 1e-12);
     CHECK(after_n > 0.4);
+}
+
+TEST_CASE("a scene whose file goes is felt on, which is said once; it is taken up again when it is back")
+{
+    const Folder folder;
+    std::filesystem::create_directory(folder.path / "there");
+    const std::string path =
+        folder.write("there/scene.toml", "[device]\nstroke = \"press\"\n[[object]]\nshape = \"plane\"\n");
+    const std::string edits = "(cd " + folder.path.string() +
+                              "; cp there/scene.toml kept.toml; sleep 1.5; rm -r there; sleep 2"
+                              "; mkdir there; cp kept.toml there/scene.toml; sleep 1.2"
+                              "; rm there/scene.toml; sleep 0.1; cp kept.toml there/scene.toml) & ";
+    const Ran ran = run_command("explore " + path + " --seconds 6 --json", edits);
+    INFO(ran.err);
+    CHECK(ran.code == 0);
+    CHECK(json_of(ran)["scenes_swapped"] == 1);
+    const std::string gone =
+                          "scene.toml: the file is gone; what was felt stays, and the file is read when it is back\n",
+                      back = "scene.toml: reloaded; devices and workspaces stay as they were at the start\n";
+    CHECK(ran.err == gone + back); // nothing of the second time: an editor may save like that
 }
 
 TEST_CASE("a texture that is edited is felt without a restart; a broken edit is explained and not felt")
