@@ -32,6 +32,15 @@ void GripperContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) n
     count();
 }
 
+void GripperContact::reset() noexcept
+{
+    tip_.reset();
+    tail_.reset();
+    count_ = 0;
+    counters_ = {};
+    skipped_before_ = 0;
+}
+
 double GripperContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept
 {
     return std::min(tip_.gap_m(tip_m), tail_.gap_m(tail_m));

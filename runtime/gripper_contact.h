@@ -19,6 +19,8 @@ public:
     // One tick of a probe that is free and known to have met nothing on its way.
     void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
 
+    void reset() noexcept;
+
     // At least so far is it from a finger to the nearest triangle; 0: not known.
     double gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept;
 

@@ -66,6 +66,40 @@ void ProbeContact::follow(const ProbePose& pose) noexcept
     std::get_if<StylusContact>(&contact_)->follow(pose.tip_m, pose.tail_m);
 }
 
+void ProbeContact::reset() noexcept
+{
+    std::visit([](auto& contact) { contact.reset(); }, contact_);
+}
+
+std::span<const Contact> ProbeContact::contacts() const noexcept
+{
+    if (const auto* point = std::get_if<PointContact>(&contact_)) return any(point->contact());
+    if (const auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->contacts();
+    if (const auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->contacts();
+    return std::get_if<StylusContact>(&contact_)->contacts();
+}
+
+std::optional<ProbePose> ProbeContact::held(const ProbePose& hand, double off_m) const noexcept
+{
+    const std::span<const Contact> touching = contacts();
+    if (touching.empty()) return {};
+    ProbePose at = hand;
+    const auto* stylus = std::get_if<StylusContact>(&contact_);
+    const std::optional<Shaft> ideal = stylus ? stylus->ideal() : std::nullopt;
+    if (const auto* sphere = std::get_if<SphereContact>(&contact_))
+        at.tip_m = sphere->proxy_m();
+    else if (ideal)
+        at = {surface_->lattice.metres(ideal->tip), surface_->lattice.metres(ideal->tail)};
+    else
+        for (const Contact& contact : touching) (contact.along == 0 ? at.tip_m : at.tail_m) = contact.proxy_m;
+    for (const Contact& contact : touching) { // the least move of both ends that moves the place so far
+        const double tail = contact.along, tip = 1 - tail, squares = tip * tip + tail * tail;
+        at.tip_m += tip / squares * off_m * contact.normal;
+        at.tail_m += tail / squares * off_m * contact.normal;
+    }
+    return at;
+}
+
 // A ball keeps the faces around it by itself.
 uint32_t ProbeContact::read_ahead() const noexcept
 {

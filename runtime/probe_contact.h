@@ -46,6 +46,13 @@ public:
     // One tick of a probe that is free and known to have met nothing on its way.
     void follow(const ProbePose& pose) noexcept;
 
+    void reset() noexcept;
+
+    // Where it was held in the last tick, in which the hand was there: each place that touches by `off_m` off what it
+    // touches. Nothing if it touched nothing.
+    std::optional<ProbePose> held(const ProbePose& hand, double off_m) const noexcept;
+    std::size_t holds() const noexcept { return contacts().size(); } // at so many places
+
     // Brings what the next tick may need into the cache. Returns how many faces it looked at.
     uint32_t read_ahead() const noexcept;
 
@@ -54,6 +61,7 @@ public:
     const ContactCounters& counters() const noexcept;
 
 private:
+    std::span<const Contact> contacts() const noexcept; // of the last tick, undivided
     std::span<const Contact> touched(const ProbePose& pose, const EndsFriction& friction) noexcept;
 
     const Surface* surface_;

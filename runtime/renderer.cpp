@@ -114,7 +114,6 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     }
     if (effects_.act()) effects_.begin(pose.tip_m, result.time_s, periods);
 
-    felt_.reset();
     double way_m = 0;
     if (last_pose_)
         way_m = std::max(glm::distance(pose.tip_m, last_pose_->tip_m), glm::distance(pose.tail_m, last_pose_->tail_m));

@@ -17,6 +17,7 @@
 #include "runtime/surface_texture.h"
 #include "runtime/texture_slot.h"
 
+#include <array>
 #include <glm/glm.hpp>
 
 #include <cstdint>
@@ -66,10 +67,10 @@ public:
     // Of a scene that takes the place of `before`, at the same rate, while the hand is in it.
     Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand, const Scene& before);
     // Between two ticks: goes on where the renderer of `before` is, which is worth nothing afterwards. What is the same
-    // surface at the same place goes on touching the hand; on everything else the hand is put down from where it
-    // touched. The force that was on the hand fades out and the new one rises over force_rise_s, so without a step; if
-    // the scene waits for small forces and the new one differs by more from the old, it waits first. Allocates and
-    // frees nothing, and costs as much as the first tick of a scene.
+    // surface at the same place goes on touching the hand; on everything else the hand is put down from where the same
+    // objects held the probe. The force that was on the hand fades out and the new one rises over force_rise_s, so
+    // without a step; if the scene waits for small forces and the new one differs by more from the old, it waits first.
+    // Allocates and frees nothing, and costs as much as the first tick of a scene.
     void take_over(Renderer& before) noexcept;
 
     // Once per period with the pose of the hand, in the space of its device, as are the forces (once for several where
@@ -97,9 +98,9 @@ private:
         uint64_t serial_at_start;
         uint64_t texture_period = 0; // up to which its texture has faded
     };
-    struct Felt { // world frame
-        glm::dvec3 point_m{0}, normal{0, 0, 1};
-        double along = 0; // of a stylus: what of it touched
+    struct HeldBodies { // that hold the probe, the first so many
+        std::array<const Body*, 16> body{};
+        uint32_t count = 0;
     };
     struct ObjectForce {
         glm::dvec3 force_n{0}; // world frame
@@ -126,6 +127,7 @@ private:
     TickResult feel(const DevicePose& pose) noexcept;
     void touch(Body& body, const PartContacts& part, const DevicePose& pose, TickResult& result,
                Skipped& skipped) noexcept;
+    void put_down(Body& body, const Renderer& before, const HeldBodies& held) noexcept;
     void advance_texture(Touched& touched) noexcept;
     void advance_textures(const Body& body) noexcept;
     void wake(Body& body) noexcept;
@@ -163,7 +165,6 @@ private:
     // For who takes over, and after having taken over.
     OnHand sent_;                                // in the tick before, the scene's space
     glm::dvec3 computed_n_{0}, computed_n_m_{0}; // the same
-    std::optional<Felt> felt_;                   // what pressed most in the tick before
     std::vector<uint32_t> was_;                  // of each body: its number in the scene before
     bool swapped_ = false;                       // no tick since
     OnHand left_;                                // was on the hand then, and fades out

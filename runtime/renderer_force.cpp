@@ -46,7 +46,6 @@ void Renderer::touch(Body& body, const PartContacts& part, const DevicePose& pos
         }
         if (&contact != part.contacts.data()) continue;
         if (result.contacts > 1 && contact.depth_m <= result.depth_m) continue;
-        felt_ = {placement.to_world(contact.proxy_m), placement.direction_to_world(contact.normal), contact.along};
         result.depth_m = contact.depth_m;
         result.height_m = force.height_m;
         result.binding = touched.texture.to().serial;

@@ -1,6 +1,7 @@
 // One scene in the place of another while a hand is in it.
 #include "runtime/renderer.h"
 
+#include <algorithm>
 #include <limits>
 #include <unordered_map>
 #include <utility>
@@ -15,14 +16,23 @@ constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
 // that lies farther away is another one.
 constexpr double nudge_m = 1e-3;
 
-// Above the place that was touched, from where the hand is put down on what is there now.
-constexpr double lifted_m = 1e-5;
+// From the place where the probe was held, off what held it there, the least first: surfaces that are built anew round
+// otherwise, and may have grown or moved a little. Not farther: something else may be there.
+constexpr double off_m[] = {1e-5, 1e-4, 1e-3};
 
 double distance_m(const Placement& a, const Placement& b)
 {
     double sum = glm::distance(a.position_m, b.position_m);
     for (int i = 0; i < 3; ++i) sum += glm::distance(a.rotation[i], b.rotation[i]); // lever arms of a metre
     return sum;
+}
+
+bool share_an_object(const BodyObjects& a, const BodyObjects& b)
+{
+    const auto has = [&](uint32_t number) {
+        return std::find(b.numbers().begin(), b.numbers().end(), number) != b.numbers().end();
+    };
+    return std::any_of(a.numbers().begin(), a.numbers().end(), has);
 }
 
 } // namespace
@@ -70,38 +80,80 @@ void Renderer::take_over(Renderer& before) noexcept
     sent_ = before.sent_;
     computed_n_ = before.computed_n_;
     computed_n_m_ = before.computed_n_m_;
-    felt_ = before.felt_;
     swapped_ = true;
     for (Touched& touched : objects_) touched.texture_period = texture_period_;
     if (!last_pose_) return;
 
-    DevicePose lifted = *last_pose_;
-    if (before.felt_) { // where it was touched, a little above
-        const double lift_m = probe_.radius_m + lifted_m * hand_.workspace.scale;
-        const glm::dvec3 shaft = last_pose_->tail_m - last_pose_->tip_m;
-        const glm::dvec3 shift =
-            before.felt_->point_m + lift_m * before.felt_->normal - (last_pose_->tip_m + before.felt_->along * shaft);
-        lifted.tip_m += shift;
-        lifted.tail_m += shift;
-    }
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-        Body& body = bodies_[i];
-        if (body.motion) body.move(time_s());
-        Body* old = i < was_.size() && was_[i] != none ? &before.bodies_[was_[i]] : nullptr;
-        if (old && old->asleep) before.wake(*old);
+    HeldBodies held;
+    for (Body& body : before.bodies_)
+        if (held.count < held.body.size() && !body.asleep && body.contact.held(body.pose_of(*last_pose_), 0))
+            held.body[held.count++] = &body;
+    const auto goes_on = [&](const Body& body, const Body& old) {
         const auto moved_m = [&](const glm::dvec3& p) {
-            return glm::distance(body.placement.to_object(p), old->placement.to_object(p));
+            return glm::distance(body.placement.to_object(p), old.placement.to_object(p));
         };
         const double nudge = nudge_m * hand_.workspace.scale;
-        if (old && moved_m(last_pose_->tip_m) <= nudge && moved_m(last_pose_->tail_m) <= nudge) {
-            std::swap(body.contact, old->contact);
-            std::swap(body.velocity, old->velocity);
-            std::swap(body.tail_velocity, old->tail_velocity);
-            body.tip_friction = old->tip_friction;
-            body.tail_friction = old->tail_friction;
-        } else {
-            body.contact.update(body.pose_of(lifted), {});
+        return moved_m(last_pose_->tip_m) <= nudge && moved_m(last_pose_->tail_m) <= nudge;
+    };
+    was_.resize(bodies_.size(), none);                 // which allocates only for who was not made for this
+    for (std::size_t i = 0; i < bodies_.size(); ++i) { // the others first: they look at what the old bodies hold
+        Body& body = bodies_[i];
+        if (body.motion) body.move(time_s());
+        if (was_[i] != none && !goes_on(body, before.bodies_[was_[i]])) was_[i] = none;
+        if (was_[i] == none) put_down(body, before, held);
+    }
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (was_[i] == none) continue;
+        Body &body = bodies_[i], &old = before.bodies_[was_[i]];
+        if (old.asleep) before.wake(old);
+        std::swap(body.contact, old.contact);
+        std::swap(body.velocity, old.velocity);
+        std::swap(body.tail_velocity, old.tail_velocity);
+        body.tip_friction = old.tip_friction;
+        body.tail_friction = old.tail_friction;
+    }
+}
+
+// Each of the old bodies held the probe somewhere, on the free side of itself: from there the hand comes to what this
+// one is now. Objects that the new scene numbers alike count as the same ones: the place where one of them held the
+// probe may be inside another. Where none can hold it as it did the hand is put down where it is.
+void Renderer::put_down(Body& body, const Renderer& before, const HeldBodies& held) noexcept
+{
+    const ProbePose hand = body.pose_of(*last_pose_);
+    const double grown_m = std::max(0.0, probe_.radius_m - before.probe_.radius_m); // of a ball in place of another
+    body.contact.update(hand, {});
+    const double gap_m = body.contact.gap_m(hand);
+    const auto come_from = [&](const ProbePose& start, const Body& old) {
+        body.contact.reset();
+        body.contact.update(start, {});
+        return body.contact.update(hand, {old.tip_friction.mean, old.tail_friction.mean}).size();
+    };
+    std::size_t most = 0;
+    ProbePose best;
+    const Body* best_old = nullptr;
+    for (uint32_t i = 0; i < held.count; ++i) {
+        const Body& old = *held.body[i];
+        if (objects_.size() == before.objects_.size() && !share_an_object(body.objects, old.objects)) continue;
+        const ProbePose old_hand = old.pose_of(*last_pose_);
+        for (const double off : off_m) {
+            const auto at = old.contact.held(old_hand, grown_m + off * hand_.workspace.scale);
+            const ProbePose start =
+                body.pose_of({old.placement.to_world(at->tip_m), old.placement.to_world(at->tail_m)});
+            const double way_m =
+                std::max(glm::distance(start.tip_m, hand.tip_m), glm::distance(start.tail_m, hand.tail_m));
+            if (gap_m > way_m) break;
+            const std::size_t contacts = come_from(start, old);
+            if (contacts > most) most = contacts, best = start, best_old = &old;
+            if (contacts >= old.contact.holds()) break;
         }
+    }
+    if (best_old) {
+        come_from(best, *best_old);
+        body.tip_friction = best_old->tip_friction;
+        body.tail_friction = best_old->tail_friction;
+    } else {
+        body.contact.reset();
+        body.contact.update(hand, {});
     }
 }
 

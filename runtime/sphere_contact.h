@@ -38,6 +38,7 @@ public:
     // At least so far is it from the ball to the nearest triangle; 0: not known.
     double gap_m(const glm::dvec3& centre_m) const noexcept;
 
+    std::span<const Contact> contacts() const noexcept { return {contacts_, contact_count_}; } // of the last tick
     glm::dvec3 proxy_m() const noexcept { return surface_->lattice.metres(centre_); }
     const ContactCounters& counters() const noexcept { return counters_; }
     const Surface& surface() const noexcept { return *surface_; }
