@@ -46,8 +46,8 @@ bool solve(const Matrix& gram, const Vector& b, const std::array<uint32_t, n_max
 
 } // namespace
 
-std::array<double, n_max> pushes(std::span<const ShaftContact> contacts, const glm::dvec3& tip,
-                                 const glm::dvec3& tail) noexcept
+std::array<double, n_max> pushes(std::span<const ShaftContact> contacts, const glm::dvec3& tip, const glm::dvec3& tail,
+                                 EndsGive gives) noexcept
 {
     const uint32_t n = static_cast<uint32_t>(contacts.size() < n_max ? contacts.size() : n_max);
     Matrix gram{};
@@ -57,8 +57,9 @@ std::array<double, n_max> pushes(std::span<const ShaftContact> contacts, const g
         b[i] = a.offset - glm::dot(a.normal, (1 - a.share) * tip + a.share * tail);
         for (uint32_t j = 0; j <= i; ++j) {
             const ShaftContact& c = contacts[j];
-            gram[i][j] = gram[j][i] =
-                glm::dot(a.normal, c.normal) * ((1 - a.share) * (1 - c.share) + a.share * c.share);
+            const double by_tip = gives.tip ? (1 - a.share) * (1 - c.share) : 0;
+            const double by_tail = gives.tail ? a.share * c.share : 0;
+            gram[i][j] = gram[j][i] = glm::dot(a.normal, c.normal) * (by_tip + by_tail);
         }
     }
 
@@ -104,6 +105,40 @@ std::array<double, n_max> pushes(std::span<const ShaftContact> contacts, const g
         }
     }
     return push;
+}
+
+// Of both ends together, six coordinates, what the contacts leave free is what is at right angles to all of them.
+glm::dmat3 give_of(ShaftEnd end, std::span<const ShaftContact> contacts, std::span<const double> pushes,
+                   EndsGive gives) noexcept
+{
+    struct Ends {
+        glm::dvec3 tip, tail;
+        double dot(const Ends& e) const { return glm::dot(tip, e.tip) + glm::dot(tail, e.tail); }
+    };
+    std::array<Ends, n_max> held;
+    uint32_t count = 0;
+    glm::dmat3 give(1);
+    for (size_t i = 0; i < contacts.size() && i < n_max; ++i) {
+        if (!(pushes[i] > 0)) continue;
+        const ShaftContact& contact = contacts[i];
+        Ends way{(gives.tip ? 1 - contact.share : 0.0) * contact.normal,
+                 (gives.tail ? contact.share : 0.0) * contact.normal};
+        const double square = way.dot(way);
+        for (int twice = 0; twice < 2; ++twice) // once leaves the rounding of nearly equal ones
+            for (uint32_t k = 0; k < count; ++k) {
+                const double part = way.dot(held[k]);
+                way.tip -= part * held[k].tip;
+                way.tail -= part * held[k].tail;
+            }
+        const double left = way.dot(way);
+        if (!(left > independent * square)) continue;
+        const double scale = 1 / std::sqrt(left);
+        held[count] = {scale * way.tip, scale * way.tail};
+        const glm::dvec3& own = end == ShaftEnd::tip ? held[count].tip : held[count].tail;
+        give -= glm::outerProduct(own, own);
+        ++count;
+    }
+    return give;
 }
 
 } // namespace haptel::runtime

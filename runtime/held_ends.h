@@ -19,9 +19,19 @@ struct ShaftContact {
 
 inline constexpr uint32_t shaft_contacts_max = 6;
 
+// An end that does not give stays where it is, whatever pushes.
+struct EndsGive {
+    bool tip = true, tail = true;
+};
+
 // The pushes, each >= 0: the tip moves by the sum of push (1 - share) normal, the tail by that of push share normal.
 // Contacts that contradict each other within rounding are left out.
 std::array<double, shaft_contacts_max> pushes(std::span<const ShaftContact> contacts, const glm::dvec3& tip,
-                                              const glm::dvec3& tail) noexcept;
+                                              const glm::dvec3& tail, EndsGive gives = {}) noexcept;
+
+// How an end moves by what pulls it, while the contacts that push stay the same: by this matrix times the pull.
+enum class ShaftEnd : uint8_t { tip, tail };
+glm::dmat3 give_of(ShaftEnd end, std::span<const ShaftContact> contacts, std::span<const double> pushes,
+                   EndsGive gives = {}) noexcept;
 
 } // namespace haptel::runtime

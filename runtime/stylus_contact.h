@@ -17,11 +17,15 @@
 // on end.
 //
 // One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
-// sequence of poses. Everything is in the object's space, metres. Friction holds the ends; the shaft slides freely.
+// sequence of poses. Everything is in the object's space, metres. Friction holds the ends; the shaft slides freely. Its
+// pushes and what friction does to the ends are found together (stylus_friction.h): an end that friction keeps in its
+// place does not make way for an edge, so the other has to, and friction bears what the edge pushes the kept end with.
 #pragma once
 
 #include "runtime/contact.h"
+#include "runtime/held_ends.h"
 #include "runtime/shaft.h"
+#include "runtime/stylus_friction.h"
 #include "runtime/swept_tree.h"
 
 #include <array>
@@ -85,6 +89,9 @@ private:
         bool exact = false; // not met on the way, but crossed at the end of it
         double on_shaft = 0;
     };
+    struct Grips {
+        EndGrip tip, tail;
+    };
     // A region known to be empty: the shaft is free while each end is within the radius of where it was.
     struct Clear {
         Shaft at;
@@ -105,7 +112,9 @@ private:
     void restart_ends() noexcept;
 
     void resolve(const EndsFriction& friction) noexcept;
-    double solve(const Shaft& hand, Shaft& aim) noexcept;
+    double solve(const Shaft& hand, Shaft& aim, Grips& grips) noexcept;
+    Shaft clear_of_sides(const Shaft& to, EndsGive gives) const noexcept;
+    void take_hold(EndGrip& grip, const PointContact& end, const glm::dvec3& on_shaft) const noexcept;
     bool drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept;
     bool move(Shaft to) noexcept;
     bool blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept;

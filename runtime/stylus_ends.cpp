@@ -1,11 +1,11 @@
 // How the ends of a stylus and its shaft come to agree: the pushes of the shaft's contacts say where the ends are
 // aimed, the ends walk there, the shaft follows and meets new contacts.
-#include "runtime/held_ends.h"
 #include "runtime/stylus_contact.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace haptel::runtime {
 
@@ -13,12 +13,18 @@ using namespace shaft_tolerance;
 
 namespace {
 
-// Within which the ends are where they should be: two units, and this share of how far the hand is away.
-constexpr double settled = 2, settled_share = 1e-10;
+// Within which the ends are where they should be: two units, and this share of how far the hand is away. What friction
+// holds on a short lever is known less well: this share.
+constexpr double settled = 2, settled_share = 1e-10, dragged_share = 1e-4;
+// Of its limit. Where both ends drag none is free to make way for an edge: they have to be right within the gap.
+constexpr double friction_settled = 1e-6, both_settled = 1e-9;
 
 // A contact that slides off its edge does so by this many units and this share of its way, so that it is not found
 // there again, wherever the way bends.
 constexpr double beyond = 16, past_the_end = 0.05;
+
+// Share of the shaft: on a shorter lever an end does not make way. The edge is passing by the other end.
+constexpr double least_lever = 1e-4;
 
 // How often the directions of contacts follow the shaft that they turn.
 constexpr int turns_max = 48;
@@ -67,27 +73,51 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     double stride = 1; // share of the hand's way that is tried at once
     uint32_t round = 0;
     sweeps_left_ = sweeps_max;
+    Grips grips;
+    grips.tip.friction = checked(friction.tip);
+    grips.tail.friction = checked(friction.tail);
+    grips.tip.slides = tip_.proxy_.sliding;
+    grips.tail.slides = tail_.proxy_.sliding;
     for (; round < rounds_max && sweeps_left_ > 0; ++round) {
         Shaft aim, to = hand_;
-        const double share = std::min(stride, solve(to, aim));
+        const double share = std::min(stride, solve(to, aim, grips));
         if (share < 1) {
             to = {reached_.tip + share * (to.tip - reached_.tip), reached_.tail + share * (to.tail - reached_.tail)};
-            solve(to, aim);
+            solve(to, aim, grips);
         }
-        if (round > 0 && !stopped && share == 1 && farther(aim, aim_) <= settled + settled_share * farther(aim, hand_))
+        const bool drags = grips.tip.drags() || grips.tail.drags();
+        if (round > 0 && !stopped && share == 1 &&
+            farther(aim, aim_) <= settled + (drags ? dragged_share : settled_share) * farther(aim, hand_))
             break;
         if (astray_) restart_ends();
         aim_ = aim;
         tip_path.count = tail_path.count = 0;
-        if (begin_ == 0) {
-            tip_.aim(aim_.tip);
-            tip_.go(friction.tip, &tip_path);
+        Shaft clear = aim_;
+        const auto go_tip = [&] {
+            if (begin_ > 0) return;
+            tip_.aim(clear.tip);
+            tip_.go(grips.tip.of_walk(), &tip_path);
             tip_slides |= tip_.proxy_.sliding;
-        }
-        if (end_ == 1) {
-            tail_.aim(aim_.tail);
-            tail_.go(friction.tail, &tail_path);
+        };
+        const auto go_tail = [&] {
+            if (end_ < 1) return;
+            tail_.aim(clear.tail);
+            tail_.go(grips.tail.of_walk(), &tail_path);
             tail_slides |= tail_.proxy_.sliding;
+        };
+        // What friction drags goes first: a little off its aim, on a short lever that is far for the other end.
+        if (grips.tail.drags() && !grips.tip.touches) {
+            go_tail();
+            clear.tail = tail_.proxy_.at;
+            clear = clear_of_sides(clear, {true, false});
+            go_tip();
+        } else {
+            go_tip();
+            if (grips.tip.drags() && !grips.tail.touches) {
+                clear.tip = tip_.proxy_.at;
+                clear = clear_of_sides(clear, {false, true});
+            }
+            go_tail();
         }
         const uint32_t known = side_count_;
         astray_ = !drag(tip_path, tail_path);
@@ -112,19 +142,55 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         if (sides_[i].push == 0 && sides_[i].sign * passing_of(sides_[i], shaft_).height > 4 * rest_gap) drop(i);
 }
 
-// Where the ends are to be aimed for the sides to hold a hand; and the share of the way there on which each side that
-// pushes stays within its edge and the shaft.
-double StylusContact::solve(const Shaft& hand, Shaft& aim) noexcept
+// With the end that gives where it clears the sides that push, the other being where it is.
+Shaft StylusContact::clear_of_sides(const Shaft& to, EndsGive gives) const noexcept
 {
     std::array<ShaftContact, shaft_contacts_max> contacts;
-    uint32_t count = side_count_;
-    const auto add_end = [&](const PointContact& end, double share) {
-        if (!end.proxy_.touches()) return;
-        const glm::dvec3& normal = end.contact_.normal;
-        contacts[count++] = {normal, share, glm::dot(normal, end.proxy_.at)};
-    };
-    add_end(tip_, 0);
-    add_end(tail_, 1);
+    Shaft at = to;
+    for (int turn = 0; turn < turns_max; ++turn) {
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < side_count_; ++i) {
+            const Passing here = passing_of(sides_[i], {at.at(begin_), at.at(end_)});
+            if (here.parallel || sides_[i].push == 0) continue;
+            const glm::dvec3 normal = sides_[i].sign * here.normal;
+            const double share = begin_ + here.on_shaft * (end_ - begin_);
+            if ((gives.tip ? 1 - share : share) < least_lever) continue;
+            contacts[count++] = {normal, share, glm::dot(normal, here.edge_point) + rest_gap};
+        }
+        const auto push = pushes({contacts.data(), count}, to.tip, to.tail, gives);
+        Shaft next = to;
+        for (uint32_t i = 0; i < count; ++i) {
+            if (gives.tip) next.tip += (1 - contacts[i].share) * push[i] * contacts[i].normal;
+            if (gives.tail) next.tail += contacts[i].share * push[i] * contacts[i].normal;
+        }
+        const double change = farther(next, at);
+        at = next;
+        if (change < 0.25) break;
+    }
+    return at;
+}
+
+// An end as it begins. One that went where the shaft could not follow comes back first.
+void StylusContact::take_hold(EndGrip& grip, const PointContact& end, const glm::dvec3& on_shaft) const noexcept
+{
+    grip.touches = end.proxy_.touches();
+    grip.normal = end.contact_.normal;
+    grip.at = end.proxy_.at;
+    if (astray_) grip.at = on_shaft + glm::dot(grip.normal, grip.at - on_shaft) * grip.normal;
+    grip.take_hold(side_count_ > 0);
+}
+
+// Where the ends are to be aimed for the sides to hold a hand; and the share of the way there on which each side that
+// pushes stays within its edge and the shaft.
+double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips) noexcept
+{
+    std::array<ShaftContact, shaft_contacts_max> contacts;
+    EndGrip &tip = grips.tip, &tail = grips.tail;
+    take_hold(tip, tip_, shaft_.tip);
+    take_hold(tail, tail_, shaft_.tail);
+    aim = hand;
+    if (side_count_ == 0) return 1;
+    if (tip.sticks) tail.sticks = false; // else no side could push; it may stay where it is for all that
 
     Shaft at = shaft_;
     for (int turn = 0; turn < turns_max; ++turn) {
@@ -137,8 +203,17 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim) noexcept
             }
             contacts[i] = {side.normal, side.share, glm::dot(side.normal, side.point) + rest_gap};
         }
-        const auto push = pushes({contacts.data(), count}, hand.tip, hand.tail);
-        Shaft held = aim = hand;
+        uint32_t count = side_count_;
+        const auto add_end = [&](const EndGrip& grip, double share) {
+            if (grip.touches && !grip.sticks) contacts[count++] = {grip.normal, share, glm::dot(grip.normal, grip.at)};
+        };
+        add_end(tip, 0);
+        add_end(tail, 1);
+        const std::span<const ShaftContact> all(contacts.data(), count);
+        const EndsGive gives{!tip.sticks, !tail.sticks};
+        aim = hand;
+        Shaft held{gives.tip ? hand.tip + tip.lag : tip.at, gives.tail ? hand.tail + tail.lag : tail.at};
+        const auto push = pushes(all, held.tip, held.tail, gives);
         for (uint32_t i = 0; i < count; ++i) {
             const ShaftContact& contact = contacts[i];
             const glm::dvec3 by = push[i] * contact.normal;
@@ -147,13 +222,23 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim) noexcept
                 aim.tip += (1 - contact.share) * by;
                 aim.tail += contact.share * by;
             }
-            held.tip += (1 - contact.share) * by;
-            held.tail += contact.share * by;
+            if (gives.tip) held.tip += (1 - contact.share) * by;
+            if (gives.tail) held.tail += contact.share * by;
         }
         const Shaft next{held.at(begin_), held.at(end_)};
-        const double change = farther(next, at);
+        bool agreed = farther(next, at) < 0.25;
         at = next;
-        if (side_count_ == 0 || change < 0.25) break;
+        double news = 0;
+        if (tip.drags()) news = tip.follow(aim.tip, held.tip, give_of(ShaftEnd::tip, all, push, gives));
+        if (tail.drags())
+            news = std::max(news, tail.follow(aim.tail, held.tail, give_of(ShaftEnd::tail, all, push, gives)));
+        agreed &= news < (tip.drags() && tail.drags() ? both_settled : friction_settled);
+        for (EndGrip* grip : {&tip, &tail}) {
+            if (!agreed || !grip->drags() || !grip->moves || grip->slides) continue;
+            grip->slides = true; // more than static friction holds: from here on dynamic friction does
+            agreed = false;
+        }
+        if (agreed) break;
     }
 
     double share = 1;
