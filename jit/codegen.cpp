@@ -105,7 +105,7 @@ private:
     const ir::Function& source() const { return module.source.functions[index()]; }
     ValueForms entry_forms() const
     {
-        return module.forms(index(), {{}, {}, std::vector<bool>(source().body.yields.size())});
+        return module.forms(index(), {{}, {}, std::vector<bool>(source().body.yields.size()), {}});
     }
     std::vector<Form> results(Form form) const { return std::vector(source().body.yields.size(), form); }
 
@@ -150,14 +150,15 @@ private:
 } // namespace
 
 std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const EntryPoint> entries,
-                                       const Processor& processor, llvm::LLVMContext& context, KernelCalls* kernels)
+                                       const Processor& processor, llvm::LLVMContext& context, KernelCalls* kernels,
+                                       bool is_draft)
 {
     auto generated = std::make_unique<llvm::Module>("textures", context);
     std::map<std::pair<LaneForm, Precision>, ModuleEmitter> emitters;
     for (const EntryPoint& entry : entries) {
         const std::pair form{entry.lanes, entry.precision};
         ModuleEmitter& emitter =
-            emitters.try_emplace(form, module, *generated, processor, entry.lanes, entry.precision, kernels)
+            emitters.try_emplace(form, module, *generated, processor, entry.lanes, entry.precision, kernels, is_draft)
                 .first->second;
         if (!kernels && entry.lanes == LaneForm::points) emitter.called_by_batches = worth_a_kernel(module);
         entry.lanes == LaneForm::points ? EntryEmitter(emitter, entry).batch()

@@ -62,9 +62,10 @@ struct EntryPoint {
 class KernelCalls;
 
 // Data layout and triple are the caller's to set before optimisation. With `kernels`, what is worth a kernel is
-// declared and called (jit/kernels.h); without, the module is complete but for code_library().
+// declared and called (jit/kernels.h); without, the module is complete but for code_library(). A draft is quick to
+// compile and has the same bits.
 std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const EntryPoint> entries,
                                        const Processor& processor, llvm::LLVMContext& context,
-                                       KernelCalls* kernels = nullptr);
+                                       KernelCalls* kernels = nullptr, bool is_draft = false);
 
 } // namespace haptel::jit

@@ -193,6 +193,8 @@ void FunctionEmitter::emit(const ir::Instruction& made, const ir::Call& call)
     Signature signature;
     for (ir::Value operand : made.operands) signature.arguments.push_back(forms.is_varying(operand));
     for (ir::Value operand : made.operands) signature.in_lanes.push_back(forms[operand].in_lanes);
+    if (!forms.in_order.empty()) // else all of the points' form
+        for (ir::Value operand : made.operands) signature.in_order.push_back(forms.in_order[operand.index]);
     for (ir::Value result : made.results) signature.wide_results.push_back(forms.is_wide(result));
     const ModuleEmitter::Function& callee = module.function(call.function, signature);
     const std::vector<bool>& called = module.called_by_batches;

@@ -9,6 +9,7 @@
 
 #include "jit/codegen_module.h"
 
+#include <functional>
 #include <map>
 #include <set>
 #include <vector>
@@ -70,6 +71,8 @@ private:
     void emit(const ir::Instruction& made, const ir::If& choice);
     void emit(const ir::Instruction& made, const ir::For& loop);
     void emit_in_lanes(const ir::Instruction& made, const ir::Block& body, const LaneLoop& loop);
+    void emit_in_order(const ir::Instruction& made, const ir::Block& body, const LaneLoop& loop);
+    void repeat(llvm::Value* count, const std::function<void(llvm::PHINode*)>& body);
     void emit_ahead(const std::vector<const ir::Instruction*>& instructions);
     void emit_one_by_one(const ir::Block& body, const LaneLoop& loop, llvm::Value* count,
                          std::vector<llvm::Value*>& carried);

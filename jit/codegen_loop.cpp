@@ -1,36 +1,21 @@
 // Loops: one iteration after the other, or for one point several of them in the lanes of a register.
 #include "jit/codegen_function.h"
+#include "jit/codegen_progress.h"
 
-#include <bit>
 #include <numeric>
 
 namespace haptel::jit {
 
-namespace {
-
 using llvm::Value;
 using Kind = Carried::Kind;
-
-// Arithmetic on reals or on words, scalars or vectors.
-class Arithmetic {
-public:
-    Arithmetic(llvm::IRBuilder<>& to, llvm::Type* of) : builder(to), is_real(of->isFPOrFPVectorTy()) {}
-    Value* add(Value* a, Value* b) { return is_real ? builder.CreateFAdd(a, b) : builder.CreateAdd(a, b); }
-    Value* sub(Value* a, Value* b) { return is_real ? builder.CreateFSub(a, b) : builder.CreateSub(a, b); }
-    Value* mul(Value* a, Value* b) { return is_real ? builder.CreateFMul(a, b) : builder.CreateMul(a, b); }
-
-private:
-    llvm::IRBuilder<>& builder;
-    const bool is_real;
-};
-
-} // namespace
 
 void FunctionEmitter::emit(const ir::Instruction& made, const ir::For& loop)
 {
     const ir::Block& body = loop.body[0];
     if (const auto in_lanes = forms.loops.find(&loop); in_lanes != forms.loops.end())
         return emit_in_lanes(made, body, in_lanes->second);
+    if (const auto in_order = forms.ordered.find(&loop); in_order != forms.ordered.end())
+        return emit_in_order(made, body, in_order->second);
     Value* const count = value(made.operands[0]);
     const bool count_varies = forms[made.operands[0]].in_lanes;
     Value* const largest = count_varies ? builder.CreateIntMaxReduce(count, true) : count;
@@ -73,72 +58,6 @@ void FunctionEmitter::emit(const ir::Instruction& made, const ir::For& loop)
 }
 
 namespace {
-
-// A carried value that follows from the iteration's number: from what it is in the first of a group of lanes to what it
-// is in each, and in the first of the next group. Products go by doubling: three multiplications for eight lanes.
-class Progress {
-public:
-    // `by`: one value for all lanes, null where there is none. `lane`: the lane's number, not above the last iteration.
-    Progress(llvm::IRBuilder<>& to, Kind of, llvm::Type* element, Value* amount, uint32_t lane_count)
-        : builder(to), arithmetic(to, element), kind(of), by(amount), lanes(lane_count)
-    {
-        if (kind != Kind::factor) return;
-        for (uint32_t power = 1; power <= lanes; power *= 2) {
-            powers.push_back(amount);
-            amount = arithmetic.mul(amount, amount);
-        }
-    }
-    Value* in_lanes(Value* first, Value* lane, Value* is_first_group)
-    {
-        Value* all = builder.CreateVectorSplat(lanes, first);
-        switch (kind) {
-        case Kind::factor:
-            for (uint32_t bit = 0; 1u << bit < lanes; ++bit) {
-                Value* mask = builder.CreateAnd(lane, llvm::ConstantInt::get(lane->getType(), 1u << bit));
-                Value* has_bit = builder.CreateICmpNE(mask, llvm::Constant::getNullValue(lane->getType()));
-                Value* more = arithmetic.mul(all, builder.CreateVectorSplat(lanes, powers[bit]));
-                all = builder.CreateSelect(has_bit, more, all);
-            }
-            return all;
-        case Kind::step: return arithmetic.add(all, steps(lane));
-        case Kind::back: return arithmetic.sub(all, steps(lane));
-        case Kind::replaced: {
-            Value* is_first = builder.CreateICmpEQ(lane, llvm::Constant::getNullValue(lane->getType()));
-            is_first = builder.CreateAnd(is_first, builder.CreateVectorSplat(lanes, is_first_group));
-            return builder.CreateSelect(is_first, all, builder.CreateVectorSplat(lanes, by));
-        }
-        default: return first;
-        }
-    }
-    Value* in_next_group(Value* first)
-    {
-        switch (kind) {
-        case Kind::factor: return arithmetic.mul(first, powers.back());
-        case Kind::step: return arithmetic.add(first, arithmetic.mul(by, number(by->getType(), lanes)));
-        case Kind::back: return arithmetic.sub(first, arithmetic.mul(by, number(by->getType(), lanes)));
-        default: return first;
-        }
-    }
-
-private:
-    llvm::IRBuilder<>& builder;
-    Arithmetic arithmetic;
-    const Kind kind;
-    Value* const by;
-    const uint32_t lanes;
-    std::vector<Value*> powers; // by^1, by^2, by^4 ... by^lanes
-
-    static llvm::Constant* number(llvm::Type* type, uint32_t value)
-    {
-        return type->isFPOrFPVectorTy() ? llvm::ConstantFP::get(type, value) : llvm::ConstantInt::get(type, value);
-    }
-    Value* steps(Value* lane)
-    {
-        Value* all = builder.CreateVectorSplat(lanes, by);
-        if (all->getType()->isFPOrFPVectorTy()) lane = builder.CreateUIToFP(lane, all->getType());
-        return arithmetic.mul(all, lane);
-    }
-};
 
 // Halves onto halves: an order that does not depend on the code around.
 Value* sum_of_lanes(llvm::IRBuilder<>& builder, Value* lanes, uint32_t count)

@@ -5,6 +5,8 @@
 #include "jit/uniformity.h"
 
 #include <algorithm>
+#include <iterator>
+#include <utility>
 
 namespace haptel::jit {
 
@@ -13,6 +15,19 @@ namespace {
 bool any(const std::vector<bool>& flags)
 {
     return std::find(flags.begin(), flags.end(), true) != flags.end();
+}
+
+// A loop that is not split, and all of whose sums are f64.
+bool can_be_ordered(const ValueForms& forms, const LaneLoops::value_type& found)
+{
+    const auto& [loop, in_lanes] = found;
+    const std::vector<ir::Value>& parameters = loop->body[0].parameters;
+    bool can = in_lanes.waits.empty();
+    for (size_t i = 0; i < in_lanes.carried.size(); ++i) {
+        const bool is_single = forms.is_varying(parameters[i + 1]) && !forms.is_wide(parameters[i + 1]);
+        can = can && !(in_lanes.carried[i].kind == Carried::Kind::sum && is_single);
+    }
+    return can;
 }
 
 } // namespace
@@ -67,13 +82,21 @@ ValueForms ModuleEmitter::forms(uint32_t index, const Signature& signature) cons
 {
     const ir::Function& from = source.functions[index];
     ValueForms made{
-        from, varying_values(from, signature.arguments), {}, plan.wide_values(index, signature.wide_results), {}};
+        from, varying_values(from, signature.arguments), {}, plan.wide_values(index, signature.wide_results), {}, {},
+        {}};
     if (form == LaneForm::points) {
         made.in_lanes = made.varies;
         return made;
     }
-    if (form == LaneForm::iterations && !any(signature.in_lanes)) made.loops = lane_loops(from, made.varies);
+    if (form == LaneForm::iterations && !any(signature.in_lanes) && !any(signature.in_order))
+        made.loops = lane_loops(from, made.varies);
+    for (auto loop = made.loops.begin(); is_draft && loop != made.loops.end();)
+        if (const auto next = std::next(loop); can_be_ordered(made, *loop))
+            made.ordered.insert(made.loops.extract(std::exchange(loop, next)));
+        else
+            loop = next;
     made.in_lanes = varying_iterations(from, signature.in_lanes, made.loops);
+    made.in_order = varying_iterations(from, signature.in_order, made.ordered);
     return made;
 }
 
@@ -87,9 +110,9 @@ Form ModuleEmitter::result(const Key& key, size_t i) const
 
 std::string Signature::text() const
 {
-    static_assert(sizeof(Signature) == 3 * sizeof(std::vector<bool>), "what a signature gains belongs into its text");
+    static_assert(sizeof(Signature) == 4 * sizeof(std::vector<bool>), "what a signature gains belongs into its text");
     std::string bits;
-    for (const std::vector<bool>* flags : {&arguments, &in_lanes, &wide_results}) {
+    for (const std::vector<bool>* flags : {&arguments, &in_lanes, &wide_results, &in_order}) {
         for (bool flag : *flags) bits += flag ? '1' : '0';
         bits += ';';
     }

@@ -24,6 +24,7 @@ struct Signature {
     std::vector<bool> arguments;    // that vary between points
     std::vector<bool> in_lanes;     // arguments that differ between lanes
     std::vector<bool> wide_results; // that are f64
+    std::vector<bool> in_order;     // arguments that differ between iterations that lanes would hold, were it no draft
     auto operator<=>(const Signature&) const = default;
     std::string text() const; // all of it: equal texts, equal signatures
 };
@@ -32,7 +33,9 @@ struct Signature {
 struct ValueForms {
     const ir::Function& function;
     std::vector<bool> varies, in_lanes, wide;
-    LaneLoops loops; // whose iterations are lanes
+    LaneLoops loops;            // whose iterations are lanes
+    LaneLoops ordered;          // whose iterations follow one another, with the bits of lanes
+    std::vector<bool> in_order; // what differs between these iterations
 
     bool is_varying(ir::Value value) const { return varies[value.index]; }
     bool is_wide(ir::Value value) const { return wide[value.index]; }
@@ -49,9 +52,10 @@ void ask_ahead(llvm::IRBuilder<>& builder, llvm::Type* element, llvm::Value* arr
 
 class ModuleEmitter {
 public:
-    // With `kernel_calls`, what is worth a kernel is called and not written.
+    // With `kernel_calls`, what is worth a kernel is called and not written. A draft has the bits of lanes, but not
+    // the lanes where that takes long to compile.
     ModuleEmitter(const ir::Module& from, llvm::Module& to, const Processor& of, LaneForm of_lanes, Precision precision,
-                  KernelCalls* kernel_calls = nullptr)
+                  KernelCalls* kernel_calls, bool draft)
         : source(from)
         , target(to)
         , processor(of)
@@ -59,6 +63,7 @@ public:
         , lanes(of_lanes == LaneForm::points ? of.lanes : iteration_lanes)
         , plan(from, precision)
         , kernels(kernel_calls)
+        , is_draft(draft)
     {
     }
 
@@ -93,6 +98,7 @@ private:
     using Functions = std::map<Key, Function>;
     const PrecisionPlan plan;
     KernelCalls* const kernels; // null: everything is written
+    const bool is_draft;
     Functions functions;
     std::vector<Functions::const_iterator> unfinished;
     std::map<std::pair<uint32_t, bool>, llvm::GlobalVariable*> tables;

@@ -137,13 +137,15 @@ std::vector<SharedCode::Function> Engine::called(const ir::Module& module, const
 {
     std::vector<SharedCode::Function> functions;
     for (const auto& [name, kernel] : calls.used())
-        functions.push_back({name, name, [&, &symbol = name, &wanted = kernel](llvm::LLVMContext& context) {
-                                 return generate_kernel(module, symbol, wanted, processor, context);
-                             }});
+        functions.push_back(
+            {name, name, [&, &symbol = name, &wanted = kernel](llvm::LLVMContext& context, Effort effort) {
+                 return generate_kernel(module, symbol, wanted, processor, context, effort == Effort::draft);
+             }});
     for (const auto& [name, form] : calls.used_elementary())
-        functions.push_back({name, name + ";" + target, [&symbol = name, &wanted = form](llvm::LLVMContext& context) {
-                                 return generate_elementary(symbol, wanted, context);
-                             }});
+        functions.push_back(
+            {name, name + ";" + target, [&symbol = name, &wanted = form](llvm::LLVMContext& context, Effort) {
+                 return generate_elementary(symbol, wanted, context);
+             }});
     return functions;
 }
 
@@ -152,7 +154,7 @@ void Engine::prepare_kernels(const ir::Module& module, std::span<const EntryPoin
     if (!fault.empty()) return;
     KernelCalls calls(module, target);
     llvm::LLVMContext context;
-    generate(module, entries, processor, context, &calls);
+    generate(module, entries, processor, context, &calls, true);
     Addresses unused;
     Fetch(shared, called(module, calls), kernel_effort_max).finish(unused);
 }
@@ -192,7 +194,8 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     const std::string identity = identity_of(calls, entries);
     const auto generate_for = [&](Effort effort, llvm::LLVMContext& context) {
         const bool has_kernels = options.kernels && effort != Effort::full;
-        auto generated = generate(module, entries, processor, context, has_kernels ? &calls : nullptr);
+        auto generated =
+            generate(module, entries, processor, context, has_kernels ? &calls : nullptr, effort == Effort::draft);
         if (effort != Effort::full) make_replaceable(*generated, entries);
         return generated;
     };

@@ -70,7 +70,8 @@ struct CodeOptions {
 // `module` must be verified.
 CodeResult compile_code(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options = {});
 
-// Makes quick code of the kernels that such a program calls, in memory and on disk, where there are drafts or none.
+// Makes quick code of the kernels that a draft of such a program calls, in memory and on disk, where there are drafts
+// or none.
 void prepare_kernels(const ir::Module& module, std::span<const EntryPoint> entries);
 
 // Programs whose code is in memory now.

@@ -62,10 +62,10 @@ std::string KernelCalls::call(Kernel kernel)
 }
 
 std::unique_ptr<llvm::Module> generate_kernel(const ir::Module& module, const std::string& name, const Kernel& kernel,
-                                              const Processor& processor, llvm::LLVMContext& context)
+                                              const Processor& processor, llvm::LLVMContext& context, bool is_draft)
 {
     auto generated = std::make_unique<llvm::Module>(name, context);
-    ModuleEmitter emitter(module, *generated, processor, kernel.lanes, kernel.precision);
+    ModuleEmitter emitter(module, *generated, processor, kernel.lanes, kernel.precision, nullptr, is_draft);
     llvm::Function* code = emitter.function(kernel.function, kernel.signature).code;
     code->setLinkage(llvm::GlobalValue::ExternalLinkage);
     code->setName(name);

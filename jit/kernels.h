@@ -53,6 +53,6 @@ private:
 
 // A module with that kernel alone, under its name.
 std::unique_ptr<llvm::Module> generate_kernel(const ir::Module& module, const std::string& name, const Kernel& kernel,
-                                              const Processor& processor, llvm::LLVMContext& context);
+                                              const Processor& processor, llvm::LLVMContext& context, bool is_draft);
 
 } // namespace haptel::jit

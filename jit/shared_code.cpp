@@ -50,7 +50,7 @@ std::string SharedCode::link(const Function& function, Effort effort, llvm::orc:
     if (object.bytes.empty() || !linker.link(object.bytes, {}, wanted).place) {
         CompileTimes unused;
         llvm::LLVMContext context;
-        object = compilers.make(*function.generate(context), effort, unused);
+        object = compilers.make(*function.generate(context, effort), effort, unused);
         if (!object.error.empty()) return object.error;
         if (effort != Effort::draft) keep(object, function.identity);
         if (Linker::Linked made = linker.link(object.bytes, {}, wanted); !made.place) return made.error;

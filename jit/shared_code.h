@@ -15,7 +15,7 @@
 
 namespace haptel::jit {
 
-using Generate = std::function<std::unique_ptr<llvm::Module>(llvm::LLVMContext&)>;
+using Generate = std::function<std::unique_ptr<llvm::Module>(llvm::LLVMContext&, Effort)>;
 
 // On disk, of that effort or a greater one; no bytes: there is none.
 Object found_object(const std::string& identity, Effort effort);

@@ -16,10 +16,6 @@ constexpr double rounding = 1;
 // Faces that follow each other here are far apart in memory: each is asked for so many ahead.
 constexpr std::size_t lookahead = 8;
 
-// Of the reach, ahead of the ball: a plane laid from elsewhere is good enough farther than this. Should it come to hold
-// the ball after all, it is laid anew then.
-constexpr double likely_met = 0.25;
-
 } // namespace
 
 NearFaces::NearFaces(const Surface& surface) : surface_(&surface)
@@ -74,7 +70,7 @@ void NearFaces::pick(const glm::dvec3& centre, double radius, double reach) noex
     const double near = radius + reach + rounding;
     for (std::size_t place = 0; place < planes_.size(); ++place) {
         if (ahead(planes_[place]) > near) continue;
-        if (laid_[place] != centres_ && ahead(planes_[place]) <= radius + rounding + likely_met * reach) lay(place);
+        if (laid_[place] != centres_) lay(place);
         if (ahead(planes_[place]) > near) continue;
         picked_.push_back({planes_[place].normal, planes_[place].offset + radius});
         place_of_.push_back(static_cast<uint32_t>(place));

@@ -28,8 +28,8 @@ public:
     std::size_t count() const noexcept { return faces_.size(); }
     std::size_t boxes() const noexcept { return boxes_; } // that the tree delivered
 
-    // Picks all that a ball of this radius may meet within `reach` of the centre, and some others. The planes of those
-    // it is likely to meet are laid as seen from there; none is in the ball unless its triangle is.
+    // Picks those that a ball of this radius may meet within `reach` of the centre, their planes laid as seen from
+    // there.
     void pick(const glm::dvec3& centre, double radius, double reach) noexcept;
     // Where its centre may be: in front of each of them by the radius.
     std::span<const HalfSpace> picked() const noexcept { return picked_; }

@@ -18,6 +18,9 @@ double far_enough_m(const DevicePose& pose, double way_m)
     return std::max({1e-6, 8 * way_m, 1e-6 * std::max({farthest.x, farthest.y, farthest.z})});
 }
 
+// Forces of effects have no spring. Where they are left over by a scene that is gone they fade like those of this one.
+constexpr double effect_stiffness_n_per_m = 1000;
+
 } // namespace
 
 Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
@@ -114,6 +117,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     }
     if (effects_.act()) effects_.begin(pose.tip_m, result.time_s, periods);
 
+    held_j_ = 0;
     double way_m = 0;
     if (last_pose_)
         way_m = std::max(glm::distance(pose.tip_m, last_pose_->tip_m), glm::distance(pose.tail_m, last_pose_->tail_m));
@@ -150,6 +154,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         }
         for (const PartContacts& part : parts) touch(body, part, pose, result, skipped);
     }
+    const double left_work_j = last_pose_ ? work_j(swapped_ ? sent_ : left_, *last_pose_, pose) : 0.0;
     last_pose_ = pose;
     skipped_.free_space += skipped.query;
     skipped_.texture += skipped.texture;
@@ -158,20 +163,34 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     if (effects_.act()) {
         const glm::dvec3 effects_n = effects_.force_n(); // once: its medium lives a tick
         result.unlimited_force_n += effects_n;
+        held_j_ += glm::dot(effects_n, effects_n) * hand_.workspace.scale / (2 * effect_stiffness_n_per_m);
         if (has_tail) result.unlimited_torque_n_m += torque_about(grip_m, pose.tip_m, effects_n);
     }
-    send(result, std::max(glm::distance(pose.tip_m, grip_m), glm::distance(pose.tail_m, grip_m)));
+    send(result, std::max(glm::distance(pose.tip_m, grip_m), glm::distance(pose.tail_m, grip_m)), left_work_j);
     return result;
+}
+
+// Of a force that does not change, on a hand that goes from one pose to another.
+double Renderer::work_j(const OnHand& on_hand, const DevicePose& from, const DevicePose& to) const noexcept
+{
+    if (!probe_.has_tail()) return glm::dot(on_hand.n, to.tip_m - from.tip_m);
+    const glm::dvec3 before = from.tail_m - from.tip_m, now = to.tail_m - to.tip_m;
+    const double before_m = glm::length(before), now_m = glm::length(now);
+    const glm::dvec3 way = probe_.grip_of(to.tip_m, to.tail_m) - probe_.grip_of(from.tip_m, from.tail_m);
+    double work = glm::dot(on_hand.n, way) + on_hand.grip_n * (now_m - before_m);
+    if (before_m > 0 && now_m > 0) work += glm::dot(on_hand.n_m, glm::cross(before, now)) / (before_m * now_m);
+    return work;
 }
 
 // What of the force and the torque goes to the hand. `lever_m`: of the end that is farther from the grip. Contacts that
 // push against each other may add up to a torque without a force: it is limited by what the largest force has there.
-void Renderer::send(TickResult& result, double lever_m) noexcept
+// `left_work_j`: of what is left over from another scene, in this tick and had it not faded.
+void Renderer::send(TickResult& result, double lever_m, double left_work_j) noexcept
 {
     if (!finite(result.unlimited_force_n) || !finite(result.unlimited_torque_n_m) ||
         !std::isfinite(result.grip_force_n)) {
         result.unlimited_force_n = result.unlimited_torque_n_m = glm::dvec3(0);
-        result.grip_force_n = 0;
+        result.grip_force_n = held_j_ = 0;
         result.faults |= fault_force_not_finite;
         interrupted_ = true;
     }
@@ -182,6 +201,7 @@ void Renderer::send(TickResult& result, double lever_m) noexcept
     if (std::exchange(swapped_, false)) {
         rise_period_ = left_period_ = period_;
         left_ = interrupted_ ? OnHand() : sent_;
+        left_work_j_ = left_work_max_j_ = 0;
         waiting_ = waiting_ || (small_n > 0 && !small(result.unlimited_force_n - computed_n_,
                                                       result.unlimited_torque_n_m - computed_n_m_));
     }
@@ -199,9 +219,16 @@ void Renderer::send(TickResult& result, double lever_m) noexcept
     };
     const double risen = waiting_ ? 0.0 : risen_since(rise_period_);
     glm::dvec3 force_n = risen * result.unlimited_force_n, torque_n_m = risen * result.unlimited_torque_n_m;
-    double grip_n = risen * result.grip_force_n;
+    double grip_n = risen * result.grip_force_n, held_j = risen * held_j_;
     if (left_ != OnHand()) {
-        const double left = 1 - risen_since(left_period_);
+        // A spring that has given w of the 2 E that its force would give on the way on which it slackens, pushes by
+        // 1 - w / 2E of that force and holds the square of it. It is not stretched again.
+        left_work_j_ += left_work_j;
+        left_work_max_j_ = std::max(left_work_max_j_, left_work_j_);
+        const double unfaded = 1 - risen_since(left_period_);
+        const double stretched = left_work_max_j_ > 0 ? std::max(0.0, 1 - left_work_max_j_ / (2 * left_.held_j)) : 1.0;
+        const double left = unfaded * stretched;
+        held_j += left * stretched * left_.held_j;
         force_n += left * left_.n;
         torque_n_m += left * left_.n_m;
         grip_n += left * left_.grip_n;
@@ -215,7 +242,10 @@ void Renderer::send(TickResult& result, double lever_m) noexcept
         const double sent = glm::length(result.torque_n_m), most = force_limit_n_ * lever_m;
         if (sent > most) result.force_n *= most / sent, result.torque_n_m *= most / sent;
     }
-    sent_ = {result.force_n, result.torque_n_m, result.grip_force_n};
+    const auto share = [](double of, double all) { return of < all ? of / all : 1.0; };
+    const double limit = std::min(share(glm::length(result.force_n), glm::length(force_n)),
+                                  share(std::abs(result.grip_force_n), std::abs(grip_n)));
+    sent_ = {result.force_n, result.torque_n_m, result.grip_force_n, limit * limit * held_j};
 }
 
 ContactWork Renderer::work() const noexcept

@@ -69,8 +69,9 @@ public:
     // Between two ticks: goes on where the renderer of `before` is, which is worth nothing afterwards. What is the same
     // surface at the same place goes on touching the hand; on everything else the hand is put down from where the same
     // objects held the probe. The force that was on the hand fades out and the new one rises over force_rise_s, so
-    // without a step; if the scene waits for small forces and the new one differs by more from the old, it waits first.
-    // Allocates and frees nothing, and costs as much as the first tick of a scene.
+    // without a step; to a hand that gives way to it, it is the spring that it was, and gives no more than that held.
+    // If the scene waits for small forces and the new one differs by more from the old, it waits first. Allocates and
+    // frees nothing, and costs as much as the first tick of a scene.
     void take_over(Renderer& before) noexcept;
 
     // Once per period with the pose of the hand, in the space of its device, as are the forces (once for several where
@@ -108,6 +109,7 @@ private:
         // What the texture leaves of the friction coefficients: its own scale, times the share of the depth below the
         // base surface that is also below the texture.
         double friction_share = 0;
+        double held_j = 0; // in the springs of the surface and of friction
         uint32_t faults = 0;
         bool textured = false, band_limited = false; // a texture was evaluated, with less detail than it has
         bool unmapped = false;                       // coordinates or the turning of normals were left out
@@ -118,6 +120,7 @@ private:
     struct OnHand {
         glm::dvec3 n{0}, n_m{0};
         double grip_n = 0;
+        double held_j = 0; // by the springs that push so: the most that they give to a hand that leaves
         bool operator==(const OnHand&) const = default;
     };
 
@@ -139,7 +142,8 @@ private:
                          const Contact& contact) const noexcept;
     double damping_n(const Body& body, const Material& material, const Placement& placement, const Contact& contact,
                      const glm::dvec3& normal, double depth_m, double stiffness_n_per_m) const noexcept;
-    void send(TickResult& result, double lever_m) noexcept;
+    double work_j(const OnHand& on_hand, const DevicePose& from, const DevicePose& to) const noexcept;
+    void send(TickResult& result, double lever_m, double left_work_j) noexcept;
     double time_s() const noexcept { return static_cast<double>(period_) * period_s_; }
 
     std::shared_ptr<const Scene> scene_;
@@ -157,6 +161,7 @@ private:
     uint64_t rise_period_ = 0;    // the force rises from this one on
     bool interrupted_ = false;    // the tick before sent no force, for a fault
     bool waiting_;                // for a small force
+    double held_j_ = 0;           // by what pushes in this tick, before rise and limits
     SkippedStages skipped_;
     ContactWork work_;
     std::optional<DevicePose> last_pose_;   // that was finite
@@ -169,6 +174,8 @@ private:
     bool swapped_ = false;                       // no tick since
     OnHand left_;                                // was on the hand then, and fades out
     uint64_t left_period_ = 0;                   // from this one on
+    double left_work_j_ = 0;                     // what it would have done on the hand since, had it not faded,
+    double left_work_max_j_ = 0;                 // and the most of that
     uint64_t reloads_before_ = 0;
 
     ContactsByPart by_part_;

@@ -35,6 +35,7 @@ void Renderer::touch(Body& body, const PartContacts& part, const DevicePose& pos
         if (probe_.kind == ProbeKind::gripper)
             result.grip_force_n += (contact.along - 0.5) * along_fingers(pose, force.force_n);
         result.faults |= force.faults;
+        held_j_ += force.held_j;
         skipped.texture = skipped.texture && !force.textured;
         skipped.octaves = skipped.octaves || force.band_limited;
         skipped.mapping = skipped.mapping || force.unmapped;
@@ -98,6 +99,7 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, const Touched& touche
                                                                           contact.normal, contact.depth_m, stiffness)) *
                                  contact.normal;
         result.force_n = placement.direction_to_world(force);
+        result.held_j = stiffness * contact.depth_m * contact.depth_m / 2;
         return result;
     }
 
@@ -136,6 +138,7 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, const Touched& touche
         damping_n(body, object.material, placement, contact, at.shading.normal, elastic.depth_m, stiffness);
     const glm::dvec3 force = elastic.force_n + stiffness * contact.lag_m + damping * at.shading.normal;
     result.force_n = placement.direction_to_world(force);
+    result.held_j = stiffness * (elastic.depth_m * elastic.depth_m + glm::dot(contact.lag_m, contact.lag_m)) / 2;
     return result;
 }
 

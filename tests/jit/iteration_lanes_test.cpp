@@ -3,6 +3,7 @@
 #include "jit/uniformity.h"
 #include "tests/jit/samples.h"
 
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <random>
@@ -152,10 +153,12 @@ const std::vector<Case>& cases()
     return all;
 }
 
-std::string source(const Case& one)
+std::string source(const std::string& body)
 {
-    return std::string("float term(vec3 q, float k) { return (q.x - k) * (q.y - k) - k; }\nfloat f(vec3 p, int n) { ") +
-           one.body + " }\ntexture t(int n = 0 in 0 .. 100) { return 1m * f(p / 1m, n); }";
+    return "float term(vec3 q, float k) { return (q.x - k) * (q.y - k) - k; }\n"
+           "float sum(vec3 q, float k) { float s = 0.1; float f = 0.7; for (int i = 0; i < 11; ++i) "
+           "{ s += term(q, k) * f; f *= 0.9; } return s; }\nfloat f(vec3 p, int n) { " +
+           body + " }\ntexture t(int n = 0 in 0 .. 100) { return 1m * f(p / 1m, n); }";
 }
 
 size_t loops_in_lanes(const ir::Module& module, const std::string& name_part)
@@ -171,11 +174,13 @@ size_t loops_in_lanes(const ir::Module& module, const std::string& name_part)
 TEST_CASE("loops whose iterations need not wait for one another run in lanes and give the same numbers", "[code]")
 {
     const jit::Precision precision = GENERATE(jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32);
+    const jit::Effort effort = GENERATE(jit::Effort::draft, jit::Effort::quick);
     for (const Case& one : cases()) {
         jit::TextureOptions options;
         options.precision = precision;
+        options.effort = effort;
         options.iterations_in_lanes = true;
-        const jit::CompiledTextures compiled = jit::compile_texture(source(one), options);
+        const jit::CompiledTextures compiled = jit::compile_texture(source(one.body), options);
         INFO(one.name << "\n" << compiled.rendered());
         REQUIRE(compiled.program);
         CHECK(loops_in_lanes(compiled.program->module(), "f(") == (one.in_lanes ? 1 : 0));
@@ -242,4 +247,82 @@ TEST_CASE("iterations in lanes: every texture's height is the same with and with
             }
         }
     CHECK(in_another_order > 10);
+}
+
+// Bits, not numbers: no sum here is exact, so that any other order of operations would show.
+TEST_CASE("a draft, which has no lanes, gives the bits of lanes", "[code]")
+{
+    const jit::Precision precision = GENERATE(jit::Precision::f64, jit::Precision::mixed);
+    std::vector<std::string> texts, files;
+    for (const Case& one : cases()) texts.push_back(source(one.body));
+    for (const char* body : {
+             "float s = 0.1; float f = 1.3; float a = 0.3; float b = 2.0; for (int i = 0; i < min(n, 40); ++i) "
+             "{ s += sin(p.x * f) * a - b; f *= 1.07; a += 0.13; b = b - 0.77; } return s;",
+             "float s = p.x; float t = 0.3; float w = 0.9; for (int i = 0; i < min(n, 40); ++i) { if (i % 3 == 1) "
+             "{ s += p.y * w; s += 0.2; } else { t -= exp(w * p.z) / 3.0; } w = 0.31; } return s * t;",
+             "float s = 0.0; float f = 1.0; for (int i = 0; i < min(n, 20); ++i) { s += sum(p, 0.3) * f; f *= 0.8; } "
+             "return s;",
+             "float s = 0.0; float f = 1.0; for (int i = 0; i < min(n, 20); ++i) { s += sum(p * f, f); f *= 0.8; } "
+             "return s + sum(p, 0.1);",
+             "float s = 0.0; float f = 1.0; for (int i = 0; i < min(n, 20); ++i) { s += fbm(p * f, 5); f *= 0.8; } "
+             "return s + fbm(p, 9);",
+             "float s = 0.0; float f = 1.0; for (int i = 0; i < min(n, 20); ++i) { s += fbm(p, 5) / f; f *= 0.8; } "
+             "return s;",
+             "float s = 0.0; for (int j = 0; j < 3; ++j) { float t = 0.0; float f = s + 0.1; for (int i = 0; i < "
+             "min(n, 20); ++i) { t += p.x * f; f *= 0.7; } s = s * t + sin(t); } return s;",
+         })
+        texts.push_back(source(body));
+    for (const char* folder : {"/stdlib/tests", "/examples/textures"})
+        for (const auto& file : std::filesystem::directory_iterator(HAPTEL_SOURCE_DIR + std::string(folder)))
+            if (file.path().extension() == ".haptel") files.push_back(file.path());
+
+    std::mt19937_64 random(9);
+    std::uniform_real_distribution<double> place(-3, 3);
+    const size_t text_count = texts.size();
+    texts.insert(texts.end(), files.begin(), files.end());
+    for (size_t t = 0; t < texts.size(); ++t) {
+        const bool has_n = t < text_count; // else a file
+        if (!has_n && precision != jit::Precision::f64) continue;
+        const auto compile = [&](const jit::TextureOptions& options) {
+            return has_n ? jit::compile_texture(texts[t], options) : jit::compile_texture_file(texts[t], options);
+        };
+        INFO(texts[t]);
+        jit::TextureOptions options;
+        options.precision = precision;
+        options.iterations_in_lanes = true;
+        options.kernels = false;
+        options.effort = jit::Effort::quick;
+        const jit::CompiledTextures lanes = compile(options);
+        REQUIRE(lanes.program);
+        options.effort = jit::Effort::draft;
+        for (const bool kernels : {false, true}) {
+            if (!has_n && !kernels) continue;
+            options.kernels = kernels;
+            const jit::CompiledTextures draft = compile(options);
+            REQUIRE(draft.program);
+            for (size_t i = 0; i < lanes.program->textures().size(); ++i) {
+                const haptel_texture &a = lanes.program->textures()[i], &b = draft.program->textures()[i];
+                for (const int n : {0, 1, 3, 8, 9, 16, 20, 40}) {
+                    TextureRequest request = test::request_over(6);
+                    if (has_n) request.parameters = {{"n", std::to_string(n)}};
+                    if (n > 0 && !has_n) continue;
+                    const TextureResult bound =
+                        jit::make_binding(lanes.program, a.name, request, jit::Unbounded::allowed);
+                    INFO(a.name << ", n " << n << "\n" << bound.diagnostics);
+                    REQUIRE(bound.binding);
+                    size_t unequal = 0;
+                    for (int k = 0; k < 20; ++k) {
+                        const double scale = k < 10 ? 1 : 0.01;
+                        const haptel_point point{
+                            {scale * place(random), scale * place(random), place(random)}, {0, 0, 1}, {}, 0, {}, {}};
+                        haptel_sample of_lanes{}, of_draft{};
+                        a.height_gradient(&point, bound.binding->block, &of_lanes);
+                        b.height_gradient(&point, bound.binding->block, &of_draft);
+                        unequal += std::memcmp(&of_lanes, &of_draft, sizeof of_lanes) != 0;
+                    }
+                    CHECK(unequal == 0);
+                }
+            }
+        }
+    }
 }

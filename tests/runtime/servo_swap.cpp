@@ -185,6 +185,102 @@ TEST_CASE("whatever a new scene holds, the force changes no faster than by the r
     }
 }
 
+TEST_CASE("a hand that leaves does not feel a scene that changes nothing, however often it comes")
+{
+    for (const int every : {1, 20, 1000}) {
+        const auto scene = shared(plane_scene(800));
+        Stage stage(scene);
+        stage.press(1e-3, 1);
+        stage.press(-6e-3, 200);
+        for (int i = 0; i < 60; ++i) {
+            if (i % every == 0) stage.slot.publish(shared(same_as(*scene)));
+            const double z = -6e-3 + 0.15e-3 * i;
+            CHECK(std::abs(stage.press(z, 1).force_n.z - 800 * std::max(0.0, -z)) < 1e-8);
+        }
+    }
+}
+
+TEST_CASE("what a scene that is gone leaves on the hand gives no more than its springs held")
+{
+    // Work of the forces sent, each held for a tick, on a hand that leaves where nothing is any more.
+    const auto gone = [](const Scene& scene) {
+        Scene without = same_as(scene);
+        without.objects[0].surface = build_surface(plane_mesh(0.1, 3)).surface;
+        without.objects[0].placement.position_m = {0, 0, -0.5};
+        return without;
+    };
+    for (const double stiffness : {300.0, 800.0, 3000.0})
+        for (const double limit_n : {7.0, 1.5})
+            for (const double m_per_s : {0.001, 0.02, 0.1, 0.3, 1.0, 10.0})
+                for (const int swaps : {1, 50}) {
+                    Scene first = plane_scene(stiffness);
+                    first.servo.force_limit_n = limit_n;
+                    const auto scene = shared(first);
+                    Stage stage(scene);
+                    stage.press(1e-3, 1);
+                    double z = -2e-3, last_n = stage.press(z, 200).force_n.z;
+                    const double held_j = last_n * last_n / (2 * stiffness);
+                    double given_j = 0;
+                    for (int i = 0; i < 400; ++i) {
+                        if (i < swaps) stage.slot.publish(shared(gone(*scene)));
+                        z += m_per_s * 1e-3;
+                        const double force_n = stage.press(z, 1).force_n.z;
+                        CHECK(force_n >= 0);
+                        CHECK(force_n <= last_n);
+                        given_j += force_n * m_per_s * 1e-3;
+                        last_n = force_n;
+                    }
+                    CAPTURE(stiffness, limit_n, m_per_s, swaps);
+                    CHECK(given_j <= held_j * (1 + 1e-3));
+                    if (m_per_s == 0.1 && swaps == 1 && stiffness == 800) CHECK(given_j > 0.7 * held_j); // no step
+                }
+}
+
+TEST_CASE("what presses a gripper open or turns a stylus is gone when the hand has given way to it")
+{
+    Mesh box = make_box();
+    scale_to_size(box, 0.02);
+    Scene held = bare_scene(box);
+    held.probe.kind = ProbeKind::gripper;
+    held.servo.force_rise_s = rise_s;
+    Scene without = held;
+    without.objects[0].placement.position_m = {0, 0, -0.5};
+    const auto fingers = [](double apart_m) { return DevicePose{{-apart_m, 0, 0}, {apart_m, 0, 0}}; };
+    Stage gripper(shared(std::move(held)));
+    gripper.tick(fingers(0.02));
+    for (int i = 0; i < 200; ++i) gripper.tick(fingers(0.009)); // 1 mm and 1 N each: 0.5 mJ at 1000 N/m, twice
+    gripper.slot.publish(shared(std::move(without)));
+    double given_j = 0;
+    for (int i = 1; i <= 60; ++i)
+        given_j += gripper.tick(fingers(0.009 + 0.05e-3 * i)).grip_force_n * 0.1e-3; // both fingers
+    CHECK(given_j <= 1e-3);
+    CHECK(given_j > 0.7e-3);
+    CHECK(gripper.tick(fingers(0.012)).grip_force_n == 0);
+
+    Scene first = plane_scene();
+    first.probe = {ProbeKind::stylus, 0.1};
+    const auto scene = shared(std::move(first));
+    Scene empty = same_as(*scene);
+    empty.objects[0].placement.position_m = {0, 0, -0.5};
+    Stage stylus(scene);
+    const auto leaning = [](double angle, double z) { // about its grip, which stays where it is
+        const glm::dvec3 grip(0.06, 0, z + 0.08), along = 0.1 * glm::dvec3(std::sin(angle), 0, std::cos(angle));
+        return DevicePose{grip - along, grip};
+    };
+    const double lean = std::acos(0.8);
+    stylus.tick(leaning(lean, 1e-3));
+    TickResult before;
+    for (int i = 0; i < 200; ++i) before = stylus.tick(leaning(lean, -1e-3)); // 1 mm and 1 N
+    REQUIRE(glm::length(before.torque_n_m) > 0.01);
+    const double turn = before.torque_n_m.y > 0 ? 1e-4 : -1e-4; // the way the torque pushes
+    stylus.slot.publish(shared(std::move(empty)));
+    given_j = 0;
+    for (int i = 1; i <= 300; ++i)
+        given_j += glm::length(stylus.tick(leaning(lean + turn * i, -1e-3)).torque_n_m) * 1e-4;
+    CHECK(given_j <= 0.5e-3);
+    CHECK(given_j > 0.2e-3);
+}
+
 TEST_CASE("friction holds where it held, and a moving object moves on")
 {
     Scene first = plane_scene();
