@@ -195,20 +195,21 @@ void Renderer::send(TickResult& result, double lever_m, double left_work_j) noex
         interrupted_ = true;
     }
     const double small_n = scene_->servo.wait_for_small_force_n;
-    const auto small = [&](const glm::dvec3& force_n, const glm::dvec3& torque_n_m) {
-        return glm::length(force_n) <= small_n && glm::length(torque_n_m) <= small_n * lever_m;
+    const auto small = [&](const OnHand& of) {
+        return glm::length(of.n) <= small_n && glm::length(of.n_m) <= small_n * lever_m &&
+               std::abs(of.grip_n) <= small_n;
     };
+    const OnHand computed{result.unlimited_force_n, result.unlimited_torque_n_m, result.grip_force_n};
     if (std::exchange(swapped_, false)) {
         rise_period_ = left_period_ = period_;
         left_ = interrupted_ ? OnHand() : sent_;
         left_work_j_ = left_work_max_j_ = 0;
-        waiting_ = waiting_ || (small_n > 0 && !small(result.unlimited_force_n - computed_n_,
-                                                      result.unlimited_torque_n_m - computed_n_m_));
+        waiting_ = waiting_ || (small_n > 0 && !small({computed.n - computed_.n, computed.n_m - computed_.n_m,
+                                                       computed.grip_n - computed_.grip_n}));
     }
-    computed_n_ = result.unlimited_force_n;
-    computed_n_m_ = result.unlimited_torque_n_m;
+    computed_ = computed;
     if (waiting_) {
-        waiting_ = !small(result.unlimited_force_n, result.unlimited_torque_n_m) || interrupted_;
+        waiting_ = !small(computed) || interrupted_;
         rise_period_ = period_;
         result.waiting = waiting_;
     }

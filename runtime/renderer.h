@@ -168,14 +168,14 @@ private:
     HandVelocity velocity_, tail_velocity_; // world frame
 
     // For who takes over, and after having taken over.
-    OnHand sent_;                                // in the tick before, the scene's space
-    glm::dvec3 computed_n_{0}, computed_n_m_{0}; // the same
-    std::vector<uint32_t> was_;                  // of each body: its number in the scene before
-    bool swapped_ = false;                       // no tick since
-    OnHand left_;                                // was on the hand then, and fades out
-    uint64_t left_period_ = 0;                   // from this one on
-    double left_work_j_ = 0;                     // what it would have done on the hand since, had it not faded,
-    double left_work_max_j_ = 0;                 // and the most of that
+    OnHand sent_;                // in the tick before, the scene's space
+    OnHand computed_;            // the same, before rise and limits
+    std::vector<uint32_t> was_;  // of each body: its number in the scene before
+    bool swapped_ = false;       // no tick since
+    OnHand left_;                // was on the hand then, and fades out
+    uint64_t left_period_ = 0;   // from this one on
+    double left_work_j_ = 0;     // what it would have done on the hand since, had it not faded,
+    double left_work_max_j_ = 0; // and the most of that
     uint64_t reloads_before_ = 0;
 
     ContactsByPart by_part_;

@@ -78,8 +78,7 @@ void Renderer::take_over(Renderer& before) noexcept
     velocity_ = before.velocity_;
     tail_velocity_ = before.tail_velocity_;
     sent_ = before.sent_;
-    computed_n_ = before.computed_n_;
-    computed_n_m_ = before.computed_n_m_;
+    computed_ = before.computed_;
     swapped_ = true;
     for (Touched& touched : objects_) touched.texture_period = texture_period_;
     if (!last_pose_) return;

@@ -349,6 +349,42 @@ TEST_CASE("a scene that jumps waits for a small force where it says so, and one 
     CHECK(std::abs(stage.press(-1e-3, 1).force_n.z - 4) < 1e-8);
 }
 
+TEST_CASE("the force between a gripper's fingers is waited for like any other")
+{
+    Mesh box = make_box();
+    scale_to_size(box, 0.02);
+    Scene first = bare_scene(box);
+    first.probe.kind = ProbeKind::gripper;
+    first.servo.force_rise_s = rise_s;
+    first.servo.wait_for_small_force_n = 0.5;
+    const auto fingers = [](double apart_m) { return DevicePose{{-apart_m, 0, 0}, {apart_m, 0, 0}}; };
+    Scene little = first, much = first;
+    little.objects[0].material.stiffness_n_per_m = 1300;
+    much.objects[0].material.stiffness_n_per_m = 4000;
+    Stage stage(shared(std::move(first)));
+    const auto squeeze = [&](double apart_m, int ticks) {
+        TickResult result;
+        for (int i = 0; i < ticks; ++i) result = stage.tick(fingers(apart_m));
+        return result;
+    };
+    squeeze(0.02, 200);
+    CHECK(std::abs(squeeze(0.009, 200).grip_force_n - 1) < 1e-8);
+    DevicePose anew = fingers(0.009);
+    anew.interrupted = true;
+    CHECK(stage.tick(anew).waiting);
+    CHECK(squeeze(0.009, 300).grip_force_n == 0);
+    CHECK_FALSE(squeeze(0.0096, 1).waiting); // 0.4 N
+    squeeze(0.0096, 100);
+    CHECK(std::abs(squeeze(0.009, 1).grip_force_n - 1) < 1e-8);
+
+    stage.slot.publish(shared(same_as(little)));
+    CHECK_FALSE(squeeze(0.009, 1).waiting);
+    CHECK(std::abs(squeeze(0.009, 200).grip_force_n - 1.3) < 1e-8);
+    stage.slot.publish(shared(same_as(much)));
+    CHECK(squeeze(0.009, 1).waiting);
+    CHECK(squeeze(0.009, 300).grip_force_n == 0);
+}
+
 TEST_CASE("a scene that was never ticked hands on where the hand touched")
 {
     // As while a device is not ready: two other planes, one after the other, in the place of the one that is pressed.
