@@ -37,6 +37,11 @@ std::optional<Placement> SteadyMotion::at(double time_s) const noexcept
     return now;
 }
 
+double SteadyMotion::speed_max_m_per_s(double radius_m) const noexcept
+{
+    return two_pi * figures_.swing_hz * glm::length(figures_.swing_m) + std::fabs(figures_.spin_rad_per_s) * radius_m;
+}
+
 LivePlacement::LivePlacement(const Placement& start)
 {
     store(start);

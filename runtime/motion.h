@@ -19,6 +19,9 @@ public:
     virtual ~Motion() = default;
     // Nothing: the object stays where it was.
     virtual std::optional<Placement> at(double time_s) const noexcept = 0;
+    // No point of the object that far from its origin goes faster: textures have no finer detail than a tick passes. 0:
+    // not known, and not counted.
+    virtual double speed_max_m_per_s(double /*radius_m*/) const noexcept { return 0; }
 };
 
 // Turns about an axis through the object's origin while its origin swings along a line: what a scene file can say.
@@ -33,13 +36,16 @@ public:
     };
     SteadyMotion(const Placement& start, const Figures& figures);
     std::optional<Placement> at(double time_s) const noexcept override;
+    double speed_max_m_per_s(double radius_m) const noexcept override;
 
 private:
     Placement start_;
     Figures figures_;
 };
 
-// A pose that an application sets whenever it likes, such as that of a simulated body. One writer at a time.
+// A pose that an application sets whenever it likes, such as that of a simulated body. One writer at a time. The object
+// goes straight from pose to pose and takes along what is in its way: one that is to be elsewhere, and meet nothing on
+// its way there, comes with another scene (ServoThread::publish).
 class LivePlacement final : public Motion {
 public:
     explicit LivePlacement(const Placement& start);

@@ -5,6 +5,7 @@
 #include "runtime/files/fork_server.h"
 #include "runtime/files/joining.h"
 #include "runtime/files/mesh_file.h"
+#include "runtime/files/motion_reader.h"
 #include "runtime/files/table_reader.h"
 #include "runtime/shading.h"
 #include "runtime/shapes.h"
@@ -84,26 +85,6 @@ Material read_material(TableReader& table, FileMessages& messages)
     return material;
 }
 
-// Steady motion from where the object starts, or none.
-std::shared_ptr<const Motion> read_motion(TableReader& table, const Placement& start, FileMessages& messages)
-{
-    glm::dvec3 spin_deg_per_s(0);
-    SteadyMotion::Figures figures;
-    table.three_numbers("spin_deg_per_s", spin_deg_per_s, Quantity::number, {-36'000, 36'000});
-    table.three_numbers("swing_m", figures.swing_m, Quantity::length, {-1000, 1000});
-    table.number("swing_hz", figures.swing_hz, Quantity::frequency, {0, 1000, true});
-    if (table.has("swing_m") != table.has("swing_hz"))
-        messages.error(table.where(table.has("swing_m") ? "swing_m" : "swing_hz"),
-                       "an object swings by `swing_m = [x, y, z]` at `swing_hz`: write both");
-    const double rate_deg_per_s = glm::length(spin_deg_per_s);
-    if (rate_deg_per_s > 0) {
-        figures.axis = spin_deg_per_s / rate_deg_per_s;
-        figures.spin_rad_per_s = glm::radians(rate_deg_per_s);
-    }
-    if (rate_deg_per_s == 0 && figures.swing_m == glm::dvec3(0)) return nullptr;
-    return std::make_shared<SteadyMotion>(start, figures);
-}
-
 ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& messages)
 {
     ObjectText text;
@@ -123,7 +104,7 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
     text.own_crease = table.has("crease_deg");
 
     text.object.placement = read_placement(table);
-    text.object.motion = read_motion(table, text.object.placement, messages);
+    text.object.motion = read_motion(table, text.object.placement, rate_hz, messages);
     table.yes_or_no("joined", text.joined);
     if (table.has("joined") && text.joined && text.object.motion)
         messages.error(table.where("joined"), "an object that moves cannot be joined to what it meets");
@@ -227,6 +208,16 @@ double largest_scale(const SceneText& scene)
     return scale;
 }
 
+// A mesh of which only parts have coordinates has 0 at the corners of the others.
+std::size_t faces_without_uv(const Surface& surface)
+{
+    if (surface.uv.empty()) return surface.faces.size();
+    const auto none = [](const std::array<glm::dvec2, 3>& uv) {
+        return std::all_of(uv.begin(), uv.end(), [](const glm::dvec2& corner) { return corner == glm::dvec2(0); });
+    };
+    return static_cast<std::size_t>(std::count_if(surface.uv.begin(), surface.uv.end(), none));
+}
+
 void load_texture(ObjectText& text, const SceneText& scene, const std::filesystem::path& folder,
                   const TextureResolver& textures, FileMessages& messages)
 {
@@ -248,7 +239,11 @@ void load_texture(ObjectText& text, const SceneText& scene, const std::filesyste
         request.box_minimum_m[i] = text.object.surface->box_minimum_m[i];
         request.box_maximum_m[i] = text.object.surface->box_maximum_m[i];
     }
-    request.footprint_m = 2 * largest_scale(scene) * scene.servo.v_max_m_per_s / scene.servo.rate_hz;
+    const Surface& surface = *text.object.surface;
+    const glm::dvec3 farthest = glm::max(glm::abs(surface.box_minimum_m), glm::abs(surface.box_maximum_m));
+    double speed_m_per_s = largest_scale(scene) * scene.servo.v_max_m_per_s;
+    if (text.object.motion) speed_m_per_s += text.object.motion->speed_max_m_per_s(glm::length(farthest));
+    request.footprint_m = 2 * speed_m_per_s / scene.servo.rate_hz;
     request.normal_turn_max_per_m = text.object.surface->normal_turn_max_per_m;
     request.uv = uv_figures(*text.object.surface);
     request.servo_period_s = 1 / scene.servo.rate_hz;
@@ -258,8 +253,16 @@ void load_texture(ObjectText& text, const SceneText& scene, const std::filesyste
     if (!result.binding || !fault.empty())
         messages.error(text.texture_at,
                        "texture `" + text.texture + "` cannot be used" + (fault.empty() ? "" : ": " + fault));
-    else
+    else {
+        const std::size_t undrawn = !(result.binding->texture->reads & HAPTEL_READS_UV) ? 0 : faces_without_uv(surface);
+        if (undrawn > 0)
+            messages.warning(text.texture_at, "texture `" + text.texture + "` reads `uv`, but `" + text.object.name +
+                                                  "` has no coordinates" +
+                                                  (undrawn < surface.faces.size() ? " on some of its faces" : "") +
+                                                  ": there `uv` is 0, and it is felt as flat. Give the mesh "
+                                                  "coordinates, or map `p` in the texture (`sphere_map`, `triplanar`)");
         text.object.texture = std::make_shared<TextureSlot>(std::move(*result.binding));
+    }
     messages.add(result.diagnostics);
     text.object.request = std::move(request);
 }

@@ -71,6 +71,9 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "scene.toml:4:21: error: `stiffness_n_per_m` must be above 0 up to 1000000, found inf\n"},
         {"[[object]]\nshape = \"plane\"\nswing_m = [0, 0, 0.01]\n",
          "scene.toml:3:11: error: an object swings by `swing_m = [x, y, z]` at `swing_hz`: write both\n"},
+        {"[servo]\nrate_hz = 500\n[[object]]\nshape = \"plane\"\nswing_m = [0, 0, 0.01]\nswing_hz = 250\n",
+         "scene.toml:6:12: error: `swing_hz` must be below half of the servo's `rate_hz`, so below 250: at that rate "
+         "faster swings are felt as slower ones. Lower it, or raise `rate_hz`\n"},
         {"[[object]]\nshape = \"plane\"\nposition_m = [0, 1]\nrotation_deg = 3\n",
          "scene.toml:3:14: error: expected three numbers, such as [0, 0, 0], for `position_m`, found a list of 2\n"
          "scene.toml:4:16: error: expected three numbers, such as [0, 0, 0], for `rotation_deg`, found 3\n"},

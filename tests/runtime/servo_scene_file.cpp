@@ -127,6 +127,48 @@ shape = "icosphere"
     CHECK(glm::length(device->box_maximum_m - glm::dvec3(1, 0.24, 3.03)) < 1e-9);
 }
 
+TEST_CASE("of an object that moves no detail is kept that passes the hand within a tick")
+{
+    const auto footprint_m = [](const std::string& motion) {
+        const Folder folder;
+        double found = 0;
+        load(folder,
+             "[servo]\nv_max_m_per_s = 0.5\n[[object]]\nshape = \"box\"\nsize_m = 0.1\ntexture = \"a:b\"\n" + motion,
+             [&](const TextureRequest& request) {
+                 found = request.footprint_m;
+                 return TextureResult{flat_texture(0), ""};
+             });
+        return found;
+    };
+    CHECK(footprint_m("") == 2 * 0.5 / 1000);
+    const double corner_m = 0.05 * std::sqrt(3), turn = 2 * 3.14159265358979323846;
+    CHECK(std::abs(footprint_m("spin_deg_per_s = [0, 720, 0]") - 2e-3 * (0.5 + 2 * turn * corner_m)) < 1e-12);
+    CHECK(std::abs(footprint_m("swing_m = [0.03, 0, 0.04]\nswing_hz = 3") - 2e-3 * (0.5 + 3 * turn * 0.05)) < 1e-12);
+}
+
+TEST_CASE("a texture that reads coordinates on a mesh without any is told, and so is one with a few")
+{
+    const auto said = [](const char* mesh, uint32_t reads) {
+        const Folder folder;
+        folder.write("mesh.obj", mesh);
+        const std::string text =
+            load(folder, "[[object]]\nmesh = \"mesh.obj\"\ntexture = \"a:b\"\n", [&](const TextureRequest&) {
+                return TextureResult{lambda_texture([](const haptel_point&, glm::dvec3&) { return 0.0; }, 0, 0, reads),
+                                     ""};
+            }).diagnostics;
+        const std::size_t begin = text.find("texture `");
+        return begin == std::string::npos ? "" : text.substr(begin, text.find(": there", begin) - begin);
+    };
+    const std::string corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n", drawn = corners + "vt 0 0\nvt 1 0\nvt 0 1\n";
+    const std::string none = corners + "f 1 2 3\nf 2 4 3\n", all = drawn + "f 1/1 2/2 3/3\nf 2/2 4/1 3/3\n",
+                      some = drawn + "f 1/1 2/2 3/3\nf 2 4 3\n";
+    CHECK(said(none.c_str(), HAPTEL_READS_UV) == "texture `a:b` reads `uv`, but `mesh.obj` has no coordinates");
+    CHECK(said(some.c_str(), HAPTEL_READS_UV) ==
+          "texture `a:b` reads `uv`, but `mesh.obj` has no coordinates on some of its faces");
+    CHECK(said(all.c_str(), HAPTEL_READS_UV).empty());
+    CHECK(said(none.c_str(), HAPTEL_READS_POINT).empty());
+}
+
 TEST_CASE("objects turn and swing as the scene says, and equal ones share their surface")
 {
     const Folder folder;

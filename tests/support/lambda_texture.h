@@ -72,7 +72,7 @@ inline TextureBinding lambda_texture(HeightFunction function, double minimum_m, 
 
 inline TextureBinding flat_texture(double height_m)
 {
-    return lambda_texture([height_m](const haptel_point&, glm::dvec3&) { return height_m; }, height_m, height_m);
+    return lambda_texture([height_m](const haptel_point&, glm::dvec3&) { return height_m; }, height_m, height_m, 0);
 }
 
 // A sin(2 pi x / wavelength), along x.

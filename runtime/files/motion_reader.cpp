@@ -1,0 +1,29 @@
+#include "runtime/files/motion_reader.h"
+
+namespace haptel::runtime {
+
+std::shared_ptr<const Motion> read_motion(TableReader& table, const Placement& start, double rate_hz,
+                                          FileMessages& messages)
+{
+    glm::dvec3 spin_deg_per_s(0);
+    SteadyMotion::Figures figures;
+    table.three_numbers("spin_deg_per_s", spin_deg_per_s, Quantity::number, {-36'000, 36'000});
+    table.three_numbers("swing_m", figures.swing_m, Quantity::length, {-1000, 1000});
+    table.number("swing_hz", figures.swing_hz, Quantity::frequency, {0, 1000, true});
+    if (table.has("swing_m") != table.has("swing_hz"))
+        messages.error(table.where(table.has("swing_m") ? "swing_m" : "swing_hz"),
+                       "an object swings by `swing_m = [x, y, z]` at `swing_hz`: write both");
+    if (figures.swing_hz >= rate_hz / 2)
+        messages.error(table.where("swing_hz"),
+                       "`swing_hz` must be below half of the servo's `rate_hz`, so below " + shortest(rate_hz / 2) +
+                           ": at that rate faster swings are felt as slower ones. Lower it, or raise `rate_hz`");
+    const double rate_deg_per_s = glm::length(spin_deg_per_s);
+    if (rate_deg_per_s > 0) {
+        figures.axis = spin_deg_per_s / rate_deg_per_s;
+        figures.spin_rad_per_s = glm::radians(rate_deg_per_s);
+    }
+    if (rate_deg_per_s == 0 && figures.swing_m == glm::dvec3(0)) return nullptr;
+    return std::make_shared<SteadyMotion>(start, figures);
+}
+
+} // namespace haptel::runtime
