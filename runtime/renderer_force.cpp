@@ -17,6 +17,17 @@ double along_fingers(const DevicePose& pose, const glm::dvec3& force_n)
     return along == glm::dvec3(0) ? 0.0 : glm::dot(force_n, glm::normalize(along));
 }
 
+// What one of a ball's contacts holds, of how deep the hand is below what is touched there: two walls at right angles
+// hold all of it each, several facets nearly in one plane hold it together. Along the way from the hand to the proxy
+// the shares of damping add up to 1, whatever the angles.
+double share_of(const Contact& contact, std::span<const Contact> contacts)
+{
+    glm::dvec3 way_m(0);
+    for (const Contact& other : contacts) way_m += other.depth_m * other.normal;
+    const double below_m = glm::dot(way_m, contact.normal);
+    return contact.depth_m < below_m ? contact.depth_m / below_m : 1.0;
+}
+
 } // namespace
 
 // One object.
@@ -27,7 +38,14 @@ void Renderer::touch(Body& body, const PartContacts& part, const DevicePose& pos
     const Placement& placement = body.placement_of(*touched.object);
     ++result.contacts;
     for (const Contact& contact : part.contacts) { // what presses most first, of a stylus its tip
-        const ObjectForce force = force_of(body, touched, placement, contact);
+        const bool shared = probe_.kind == ProbeKind::sphere && part.contacts.size() > 1 && contact.depth_m > 0;
+        const double share = shared ? share_of(contact, part.contacts) : 1.0;
+        Contact whole = contact; // as if it held all of it
+        whole.depth_m /= share;
+        whole.lag_m /= share;
+        ObjectForce force = force_of(body, touched, placement, whole);
+        force.force_n *= share;
+        force.held_j *= share;
         result.unlimited_force_n += force.force_n;
         if (probe_.has_tail())
             result.unlimited_torque_n_m +=
