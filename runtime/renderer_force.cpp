@@ -39,13 +39,18 @@ void Renderer::touch(Body& body, const PartContacts& part, const DevicePose& pos
     ++result.contacts;
     for (const Contact& contact : part.contacts) { // what presses most first, of a stylus its tip
         const bool shared = probe_.kind == ProbeKind::sphere && part.contacts.size() > 1 && contact.depth_m > 0;
-        const double share = shared ? share_of(contact, part.contacts) : 1.0;
-        Contact whole = contact; // as if it held all of it
-        whole.depth_m /= share;
-        whole.lag_m /= share;
-        ObjectForce force = force_of(body, touched, placement, whole);
-        force.force_n *= share;
-        force.held_j *= share;
+        ObjectForce force;
+        if (shared) {
+            const double share = share_of(contact, part.contacts);
+            Contact whole = contact; // as if it held all of it
+            whole.depth_m /= share;
+            whole.lag_m /= share;
+            force = force_of(body, touched, placement, whole);
+            force.force_n *= share;
+            force.held_j *= share;
+        } else {
+            force = force_of(body, touched, placement, contact);
+        }
         result.unlimited_force_n += force.force_n;
         if (probe_.has_tail())
             result.unlimited_torque_n_m +=
