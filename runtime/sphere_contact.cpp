@@ -139,15 +139,14 @@ NearestInHalfSpaces SphereContact::approach(double step_max) noexcept
     return found;
 }
 
-void SphereContact::move(const Friction& friction) noexcept
+// Toward the hand, as near as it can slide, or to where it touches.
+SphereContact::Way SphereContact::go(bool until_it_touches) noexcept
 {
     path_length_ = 0;
     if (contact_count_ > 0) path_[path_length_++] = centre_;
-    NearestInHalfSpaces found;
-    uint32_t round = 0;
+    Way done;
+    auto& [found, round, cut, on_the_way, blind] = done;
     double stride = stride_of_hand * glm::distance(hand_, hand_before_) + lag_;
-    bool on_the_way = false; // the last step was as long as it might be
-    bool cut = false;
     const uint64_t seen = counters_.triangles_tested;
     for (;; ++round) {
         const double want = glm::distance(hand_, centre_);
@@ -161,8 +160,8 @@ void SphereContact::move(const Friction& friction) noexcept
             }
             const double most = std::max(margin_, margin_most * radius_);
             if (!look_around(std::clamp(2 * want, margin_least * radius_, most))) {
-                ++counters_.walks_cut; // too much at once: what is touched stays touched
-                return;
+                blind = true;
+                return done;
             }
         }
         const double open = std::min(want, around_.room(centre_));
@@ -174,6 +173,7 @@ void SphereContact::move(const Friction& friction) noexcept
         const glm::dvec3 before = centre_;
         const double step_max = std::min(open, close_.room(centre_));
         found = approach(step_max);
+        if (until_it_touches && path_length_ > 0) break;
         if (found.count == 0) path_length_ = 0;
         if (path_length_ > 0 && path_length_ <= rounds_max) path_[path_length_++] = centre_;
         const double step = glm::distance(before, centre_);
@@ -181,6 +181,28 @@ void SphereContact::move(const Friction& friction) noexcept
         on_the_way = step > 0.5 * open;
         stride = (step > 0.9 * step_max ? stride_of_end : stride_of_step) * step;
     }
+    return done;
+}
+
+void SphereContact::move(const Friction& friction) noexcept
+{
+    const bool in_air = contact_count_ == 0;
+    const glm::dvec3 start = centre_;
+    Way way = go(in_air);
+    // How far it had looked around before decides how its way is cut into steps, and friction feels them: where it
+    // comes to touch it goes there once more, knowing nothing. Whoever comes the same way then feels the same.
+    if (in_air && !way.blind && (way.cut || path_length_ > 0)) {
+        centre_ = start;
+        around_ = close_ = {};
+        margin_ = 0;
+        way = go(false);
+    }
+    if (way.blind) {
+        ++counters_.walks_cut; // too much at once: what is touched stays touched
+        return;
+    }
+    const auto& [found, round, cut, on_the_way, blind] = way;
+    if (in_air && found.count == 0 && glm::distance(centre_, hand_) <= rounding) centre_ = hand_;
     counters_.walk_steps += round;
     counters_.walk_steps_max = std::max<uint64_t>(counters_.walk_steps_max, round);
     counters_.walks_cut += cut;

@@ -54,9 +54,19 @@ private:
         double room(const glm::dvec3& from) const { return margin - glm::distance(from, centre); }
     };
 
+    // What became of a tick's way.
+    struct Way {
+        NearestInHalfSpaces found; // that holds the ball where it is
+        uint32_t round = 0;
+        bool cut = false;        // there is more of it than a tick may take
+        bool on_the_way = false; // the last step was as long as it might be
+        bool blind = false;      // there is too much around to be looked at
+    };
+
     void place() noexcept;
     bool look_around(double margin) noexcept;
     NearestInHalfSpaces approach(double step_max) noexcept;
+    Way go(bool until_it_touches) noexcept;
     void move(const Friction& friction) noexcept;
     void hold_by_friction(const Friction& friction) noexcept;
     void describe(const NearestInHalfSpaces& found, const glm::dvec3& nearest) noexcept;
