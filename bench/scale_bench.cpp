@@ -136,7 +136,7 @@ std::pair<BuildRow, SharedSurface> build(uint32_t subdivisions)
 
 Scale bench_scale(bool quick, const std::function<void(double)>& progress)
 {
-    const int ticks = quick ? 10'000 : 100'000, passes = quick ? 2 : 5;
+    const int ticks = quick ? 10'000 : 100'000, passes = quick ? 1 : 5;
     const TextureBinding texture = bound_over_ball("texture stone() { return 60um * fbm(p / 2mm, 4); }", "stone");
     Scale scale;
     std::map<uint32_t, SharedSurface> balls; // by subdivisions

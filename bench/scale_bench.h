@@ -18,7 +18,7 @@ struct ScaleRow {
     bool friction = true;
     uint64_t triangles = 0, objects = 1;
     double contacts = 0; // mean
-    // The clock's own time taken off. The same ticks are run five times (twice if quick): `tick_ns` is of the least
+    // The clock's own time taken off. The same ticks are run five times (once if quick): `tick_ns` is of the least
     // time of each, what the tick itself costs; `once_ns` is of the first run, with whatever else the machine did
     // meanwhile.
     Times tick_ns, once_ns;
