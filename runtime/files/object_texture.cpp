@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <sstream>
 
 namespace haptel::runtime {
 
@@ -38,10 +39,28 @@ TextureRequest request_of(const SceneObject& object, const HandLimits& hands)
     return request;
 }
 
+// The bounds count and not the heights that occur: from the upper one on the hand sinks in before it is held.
+std::string warning_of_depth(const haptel_facts& facts, const SceneObject& object)
+{
+    glm::dvec3 sides_m = object.surface->box_maximum_m - object.surface->box_minimum_m;
+    std::sort(&sides_m[0], &sides_m[0] + 3);
+    const double depth_m = facts.height_max_m - facts.height_min_m, width_m = sides_m[1];
+    if (depth_m <= width_m / 2) return {};
+    std::ostringstream text;
+    text.precision(3);
+    text
+        << "has heights from " << facts.height_min_m << " to " << facts.height_max_m << " m, " << depth_m
+        << " m deep, but `" << object.name << "` is only " << width_m
+        << " m wide: a hand may sink in that far. Is a unit wrong (`depth = \"60um\"` of its `parameters`, `size_m` of "
+           "the object)? If not, bound the height with clamp()";
+    return text.str();
+}
+
 // Of a texture that can be felt, but hardly as it is meant.
 void warn_of_texture(const TextureBinding& binding, const TextureText& text, const SceneObject& object,
                      FileMessages& messages)
 {
+    if (!binding.texture) return; // flat
     const Surface& surface = *object.surface;
     const std::size_t undrawn = !(binding.texture->reads & HAPTEL_READS_UV) ? 0 : faces_without_uv(surface);
     if (undrawn > 0)
@@ -50,6 +69,8 @@ void warn_of_texture(const TextureBinding& binding, const TextureText& text, con
                                       (undrawn < surface.faces.size() ? " on some of its faces" : "") +
                                       ": there `uv` is 0, and it is felt as flat. Give the mesh "
                                       "coordinates, or map `p` in the texture (`sphere_map`, `triplanar`)");
+    if (const std::string warning = warning_of_depth(binding.facts, object); !warning.empty())
+        messages.warning(text.at, "texture `" + text.reference + "` " + warning);
 }
 
 } // namespace
