@@ -6,12 +6,12 @@
 #include "runtime/files/joining.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/files/motion_reader.h"
+#include "runtime/files/object_texture.h"
 #include "runtime/files/table_reader.h"
 #include "runtime/shading.h"
 #include "runtime/shapes.h"
 
 #include <algorithm>
-#include <array>
 #include <exception>
 #include <fstream>
 #include <iterator>
@@ -29,15 +29,15 @@ constexpr double default_shape_size_m = 0.1;
 
 // What a scene file says, before anything else is opened.
 struct ObjectText {
-    std::string mesh, shape, texture;
+    std::string mesh, shape;
     double size_m = 0; // 0: as it is
     double crease_deg = default_crease_deg;
     bool own_crease = false; // it was written: the mesh's smoothing groups do not count
     bool joined = true;      // with what it meets
     std::string surface_key;
     SceneObject object;
-    std::vector<std::pair<std::string, std::string>> parameters;
-    toml::source_region mesh_at, texture_at, reach_at;
+    TextureText texture;
+    toml::source_region mesh_at, reach_at;
 };
 
 struct SceneText {
@@ -111,11 +111,7 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
     text.object.material = read_material(table, messages);
     text.object.effects = read_object_effects(table, rate_hz, messages);
     text.reach_at = farthest_reach_at(source, text.object.effects);
-    table.text("texture", text.texture);
-    text.texture_at = table.where("texture");
-    text.parameters = table.values_as_written("parameters");
-    if (!text.parameters.empty() && text.texture.empty() && !table.has("texture"))
-        messages.error(table.where("parameters"), "`parameters` belong to a `texture`, but this object has none");
+    text.texture = read_texture(table, messages);
     table.report_unknown_keys();
     return text;
 }
@@ -200,71 +196,12 @@ void check_reach(const ObjectText& text, const std::vector<DeviceText>& devices,
                                           "`[[region]]`");
 }
 
-// The scene's speeds are those of the hand times this.
-double largest_scale(const SceneText& scene)
+// How fast hands move in the scene: its speeds are those of the hand times the scale.
+double hand_speed_max_m_per_s(const SceneText& scene)
 {
     double scale = 0;
     for (const DeviceText& device : scene.devices) scale = std::max(scale, device.hand.workspace.scale);
-    return scale;
-}
-
-// A mesh of which only parts have coordinates has 0 at the corners of the others.
-std::size_t faces_without_uv(const Surface& surface)
-{
-    if (surface.uv.empty()) return surface.faces.size();
-    const auto none = [](const std::array<glm::dvec2, 3>& uv) {
-        return std::all_of(uv.begin(), uv.end(), [](const glm::dvec2& corner) { return corner == glm::dvec2(0); });
-    };
-    return static_cast<std::size_t>(std::count_if(surface.uv.begin(), surface.uv.end(), none));
-}
-
-void load_texture(ObjectText& text, const SceneText& scene, const std::filesystem::path& folder,
-                  const TextureResolver& textures, FileMessages& messages)
-{
-    if (text.texture.empty() || !textures) return;
-    const std::size_t colon = text.texture.rfind(':');
-    if (colon == std::string::npos || colon == 0 || colon + 1 == text.texture.size()) {
-        messages.error(
-            text.texture_at,
-            "expected a file, a colon and the name of a texture in it, such as \"rock.haptel:rock\", found \"" +
-                text.texture + "\"");
-        return;
-    }
-    TextureRequest request;
-    request.reference = std::filesystem::absolute(folder / text.texture.substr(0, colon)).lexically_normal().string() +
-                        text.texture.substr(colon);
-    request.parameters = text.parameters;
-    request.folder = std::filesystem::absolute(folder).lexically_normal().string();
-    for (int i = 0; i < 3; ++i) {
-        request.box_minimum_m[i] = text.object.surface->box_minimum_m[i];
-        request.box_maximum_m[i] = text.object.surface->box_maximum_m[i];
-    }
-    const Surface& surface = *text.object.surface;
-    const glm::dvec3 farthest = glm::max(glm::abs(surface.box_minimum_m), glm::abs(surface.box_maximum_m));
-    double speed_m_per_s = largest_scale(scene) * scene.servo.v_max_m_per_s;
-    if (text.object.motion) speed_m_per_s += text.object.motion->speed_max_m_per_s(glm::length(farthest));
-    request.footprint_m = 2 * speed_m_per_s / scene.servo.rate_hz;
-    request.normal_turn_max_per_m = text.object.surface->normal_turn_max_per_m;
-    request.uv = uv_figures(*text.object.surface);
-    request.servo_period_s = 1 / scene.servo.rate_hz;
-
-    TextureResult result = textures(request);
-    const std::string fault = result.binding ? binding_fault(*result.binding) : "";
-    if (!result.binding || !fault.empty())
-        messages.error(text.texture_at,
-                       "texture `" + text.texture + "` cannot be used" + (fault.empty() ? "" : ": " + fault));
-    else {
-        const std::size_t undrawn = !(result.binding->texture->reads & HAPTEL_READS_UV) ? 0 : faces_without_uv(surface);
-        if (undrawn > 0)
-            messages.warning(text.texture_at, "texture `" + text.texture + "` reads `uv`, but `" + text.object.name +
-                                                  "` has no coordinates" +
-                                                  (undrawn < surface.faces.size() ? " on some of its faces" : "") +
-                                                  ": there `uv` is 0, and it is felt as flat. Give the mesh "
-                                                  "coordinates, or map `p` in the texture (`sphere_map`, `triplanar`)");
-        text.object.texture = std::make_shared<TextureSlot>(std::move(*result.binding));
-    }
-    messages.add(result.diagnostics);
-    text.object.request = std::move(request);
+    return scale * scene.servo.v_max_m_per_s;
 }
 
 // First hit of a line along the hand's -z, raised by the radius of a probe that lies there. The hand's space.
@@ -347,7 +284,9 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
         if (object->object.surface) check_reach(*object, text.devices, messages);
     }
     if (messages.any_error()) return loaded;
-    for (ObjectText& object : text.objects) load_texture(object, text, folder, textures, messages);
+    const HandLimits hands{hand_speed_max_m_per_s(text), text.servo.rate_hz};
+    for (ObjectText& object : text.objects)
+        load_texture(object.object, object.texture, hands, folder, textures, messages);
     if (messages.any_error()) return loaded;
 
     auto scene = std::make_shared<Scene>();

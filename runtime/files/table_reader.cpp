@@ -127,7 +127,7 @@ std::string FileMessages::text() const
 
 void FileMessages::error(const toml::source_region& where, const std::string& message)
 {
-    any_error_ = true;
+    ++errors_;
     write(where.begin, "error", message);
 }
 
