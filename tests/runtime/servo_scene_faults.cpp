@@ -74,6 +74,15 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
         {"[servo]\nrate_hz = 500\n[[object]]\nshape = \"plane\"\nswing_m = [0, 0, 0.01]\nswing_hz = 250\n",
          "scene.toml:6:12: error: `swing_hz` must be below half of the servo's `rate_hz`, so below 250: at that rate "
          "faster swings are felt as slower ones. Lower it, or raise `rate_hz`\n"},
+        {"[servo]\nrate_hz = 100\n[[object]]\nshape = \"plane\"\nspin_deg_per_s = [0, 0, 18000]\n",
+         "scene.toml:5:18: error: `spin_deg_per_s` must be below half a turn in a tick at the servo's `rate_hz`, so "
+         "below 18000 about all axes together: at that rate faster turns are felt as slower ones. Lower it, or raise "
+         "`rate_hz`\n"},
+        {"[servo]\nrate_hz = 100\n[[object]]\nshape = \"plane\"\nspin_deg_per_s = [0, -10800, 14400]\n",
+         "scene.toml:5:18: error: `spin_deg_per_s` must be below half a turn in a tick at the servo's `rate_hz`, so "
+         "below 18000 about all axes together: at that rate faster turns are felt as slower ones. Lower it, or raise "
+         "`rate_hz`\n"},
+        {"[servo]\nrate_hz = 100\n[[object]]\nshape = \"box\"\nspin_deg_per_s = [0, 0, -17999]\n", ""},
         {"[[object]]\nshape = \"plane\"\nposition_m = [0, 1]\nrotation_deg = 3\n",
          "scene.toml:3:14: error: expected three numbers, such as [0, 0, 0], for `position_m`, found a list of 2\n"
          "scene.toml:4:16: error: expected three numbers, such as [0, 0, 0], for `rotation_deg`, found 3\n"},
