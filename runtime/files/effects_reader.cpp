@@ -1,5 +1,7 @@
 #include "runtime/files/effects_reader.h"
 
+#include "runtime/files/tick_limit.h"
+
 #include <algorithm>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -45,7 +47,6 @@ Magnet read_magnet(TableReader& object, FileMessages& messages)
     return magnet;
 }
 
-// The rate is that of the servo: faster swings than half of it are slower ones to the hand.
 Vibration read_vibration(const toml::table& source, double rate_hz, double* reach_m, FileMessages& messages)
 {
     Vibration vibration;
@@ -54,10 +55,7 @@ Vibration read_vibration(const toml::table& source, double rate_hz, double* reac
     table.number("force_n", vibration.force_n, Quantity::force, forces_n);
     need(table, "force_n", "a vibration needs its amplitude: write `force_n = 0.5`", messages);
     table.number("frequency_hz", vibration.frequency_hz, Quantity::frequency, {0, 100'000, true});
-    if (vibration.frequency_hz >= rate_hz / 2)
-        messages.error(table.where("frequency_hz"),
-                       "`frequency_hz` must be below half of the servo's `rate_hz`, so below " + shortest(rate_hz / 2) +
-                           ": at that rate faster swings are felt as slower ones. Lower it, or raise `rate_hz`");
+    need_slower_than_ticks(table, "frequency_hz", vibration.frequency_hz, Rounds::swings, rate_hz, messages);
     table.three_numbers("direction", vibration.direction, Quantity::number, {-1e6, 1e6});
     const double length = glm::length(vibration.direction);
     if (length == 0)

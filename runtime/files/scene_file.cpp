@@ -8,6 +8,7 @@
 #include "runtime/files/motion_reader.h"
 #include "runtime/files/object_texture.h"
 #include "runtime/files/table_reader.h"
+#include "runtime/files/toml_syntax.h"
 #include "runtime/shading.h"
 #include "runtime/shapes.h"
 
@@ -247,6 +248,11 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
 {
     LoadedScene loaded;
     std::error_code unknown;
+    if (file.extension().string().starts_with(".haptel")) { // with or without ":NAME" behind it
+        messages.error("this is a texture, and a scene is needed: a TOML file with an `[[object]]` that has this "
+                       "`texture`");
+        return loaded;
+    }
     if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown)) {
         // A pipe may never end, and a folder is no text.
         messages.error(std::filesystem::is_directory(file, unknown) ? "this is a folder: name the scene file in it"
@@ -264,7 +270,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
     try {
         text = read_scene(toml::parse(source), folder, messages);
     } catch (const toml::parse_error& problem) {
-        messages.error(problem.source(), std::string(problem.description()));
+        messages.error(problem.source(), said_of_syntax(problem));
     }
     if (messages.any_error()) return loaded;
 
