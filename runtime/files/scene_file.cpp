@@ -17,6 +17,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <sstream>
 #include <utility>
 
 namespace haptel::runtime {
@@ -58,7 +59,8 @@ ServoSettings read_servo(const toml::table& root, FileMessages& messages)
         servo.force.model = static_cast<ForceModel>(*model);
     table.number("lateral_depth_m", servo.force.lateral_depth_m, Quantity::length, {0, 1, true});
     if (table.has("lateral_depth_m") && servo.force.model != ForceModel::lateral)
-        messages.error(table.where("lateral_depth_m"), "`lateral_depth_m` is for `force_model = \"lateral\"` alone");
+        messages.error(table.where("lateral_depth_m"),
+                       "`lateral_depth_m` is for `force_model = \"lateral\"` alone: write that, or leave it out");
     table.number("force_limit_n", servo.force_limit_n, Quantity::force, {0, 100, true});
     table.number("v_max_m_per_s", servo.v_max_m_per_s, Quantity::speed, {0, 10, true});
     table.number("force_rise_s", servo.force_rise_s, Quantity::time, {0, 10});
@@ -180,6 +182,24 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, Surfac
     if (surfaces && text.object.surface) surfaces->keep(key, text.object.surface);
 }
 
+// Mesh files do not say their unit. No hand reaches round something this large.
+constexpr double hand_reach_m = 5;
+
+void check_unit(const ObjectText& text, const std::vector<DeviceText>& devices, FileMessages& messages)
+{
+    double reach_m = 0;
+    for (const DeviceText& device : devices) reach_m = std::max(reach_m, hand_reach_m * device.hand.workspace.scale);
+    const glm::dvec3 sides_m = text.object.surface->box_maximum_m - text.object.surface->box_minimum_m;
+    const double largest_m = std::max({sides_m.x, sides_m.y, sides_m.z});
+    if (text.mesh.empty() || text.size_m > 0 || largest_m <= reach_m) return;
+    std::ostringstream size;
+    size << largest_m; // to 6 digits
+    messages.warning(text.mesh_at, "mesh `" + text.mesh + "` is " + size.str() +
+                                       " m large, as its numbers are taken for metres: if they are millimetres write "
+                                       "`size_m = \"" +
+                                       size.str() + "mm\"`, else `size_m = \"" + size.str() + "m\"`");
+}
+
 // What reaches farther than the object is large is not looked for.
 void check_reach(const ObjectText& text, const std::vector<DeviceText>& devices, FileMessages& messages)
 {
@@ -287,6 +307,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
             object->object.surface = same->object.surface;
             object->surface_key = same->surface_key;
         }
+        if (object->object.surface && same == object) check_unit(*object, text.devices, messages);
         if (object->object.surface) check_reach(*object, text.devices, messages);
     }
     if (messages.any_error()) return loaded;
