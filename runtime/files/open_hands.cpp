@@ -52,10 +52,29 @@ void describe_object(DeviceText& device, const std::shared_ptr<const Scene>& sce
     };
 }
 
+// What a device holds still grows with the rate. Its figure is a recommendation: what it holds depends on the hand,
+// too, and twice as much is still taken without a word.
+void warn_of_stiffness(const DeviceInfo& info, const Scene& scene, std::span<const toml::source_region> stiffness_at,
+                       FileMessages& messages)
+{
+    const double recommended_n_per_m = info.stiffness_max_n_per_m * scene.servo.rate_hz / 1000;
+    if (recommended_n_per_m <= 0) return; // not known
+    for (std::size_t i = 0; i < scene.objects.size(); ++i)
+        if (const double stiffness_n_per_m = scene.objects[i].material.stiffness_n_per_m;
+            stiffness_n_per_m > 2 * recommended_n_per_m)
+            messages.warning(stiffness_at[i], "`" + scene.objects[i].name + "` has a stiffness of " +
+                                                  shortest(stiffness_n_per_m) + " N/m, but `" + info.name +
+                                                  "` is made for up to " + shortest(recommended_n_per_m) + " N/m at " +
+                                                  shortest(scene.servo.rate_hz) +
+                                                  " Hz: a touch may hum or kick. Lower `stiffness_n_per_m`, or raise "
+                                                  "`rate_hz`");
+}
+
 } // namespace
 
 std::vector<LoadedHand> open_hands(std::vector<DeviceText>& texts, const std::shared_ptr<const Scene>& scene,
-                                   const DeviceFactory& devices, FileMessages& messages)
+                                   std::span<const toml::source_region> stiffness_at, const DeviceFactory& devices,
+                                   FileMessages& messages)
 {
     std::vector<LoadedHand> hands;
     for (DeviceText& device : texts) {
@@ -69,6 +88,7 @@ std::vector<LoadedHand> open_hands(std::vector<DeviceText>& texts, const std::sh
         }
         if (!opened.warning.empty()) messages.warning(device.at, name + opened.warning);
         device.hand.force_max_n = opened.device->info().force_max_n;
+        warn_of_stiffness(opened.device->info(), *scene, stiffness_at, messages);
         hands.push_back({std::move(opened.device), std::move(device.hand)});
     }
     return hands;

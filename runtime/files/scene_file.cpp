@@ -38,7 +38,7 @@ struct ObjectText {
     std::string surface_key;
     SceneObject object;
     TextureText texture;
-    toml::source_region mesh_at, reach_at;
+    toml::source_region mesh_at, stiffness_at, reach_at;
 };
 
 struct SceneText {
@@ -111,6 +111,7 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
     if (table.has("joined") && text.joined && text.object.motion)
         messages.error(table.where("joined"), "an object that moves cannot be joined to what it meets");
     text.object.material = read_material(table, messages);
+    text.stiffness_at = table.where("stiffness_n_per_m");
     text.object.effects = read_object_effects(table, rate_hz, messages);
     text.reach_at = farthest_reach_at(source, text.object.effects);
     text.texture = read_texture(table, messages);
@@ -291,7 +292,9 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
     warn_of_doubles(*scene, at_rest, messages);
     join_objects(*scene, std::move(at_rest), surfaces, messages);
 
-    loaded.hands = open_hands(text.devices, scene, devices, messages);
+    std::vector<toml::source_region> stiffness_at;
+    for (const ObjectText& object : text.objects) stiffness_at.push_back(object.stiffness_at);
+    loaded.hands = open_hands(text.devices, scene, stiffness_at, devices, messages);
     if (messages.any_error()) {
         loaded.hands.clear();
         return loaded;
