@@ -195,6 +195,12 @@ TEST_CASE("picture: a file that is cut off anywhere is an error in words, or wha
     }
 }
 
+TEST_CASE("picture: a PNG that ends in its texels is told in words for people")
+{
+    const std::string whole = png(width, height, 16, smooth);
+    CHECK(decoded(whole.substr(0, whole.size() / 2)).error == "is damaged: Corrupt PNG");
+}
+
 TEST_CASE("picture: damaged files end in a picture or in words, and never in more memory than a picture may have")
 {
     std::mt19937_64 random(1);

@@ -69,6 +69,9 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
         {"[[object]]\nshape = \"plane\"\nsize_m = nan\nstiffness_n_per_m = inf\n",
          "scene.toml:3:10: error: `size_m` must be above 0 up to 1000, found nan\n"
          "scene.toml:4:21: error: `stiffness_n_per_m` must be above 0 up to 1000000, found inf\n"},
+        {"[[object]]\nshape = \"plane\"\nstiffness_n_per_m = 9223372036854775807\ntexture = \"\"\n",
+         "scene.toml:3:21: error: `stiffness_n_per_m` must be above 0 up to 1000000, found 9223372036854775807\n"
+         "scene.toml:4:11: error: `texture` is empty: name something, or leave the key out\n"},
         {"[[object]]\nshape = \"plane\"\nswing_m = [0, 0, 0.01]\n",
          "scene.toml:3:11: error: an object swings by `swing_m = [x, y, z]` at `swing_hz`: write both\n"},
         {"[servo]\nrate_hz = 500\n[[object]]\nshape = \"plane\"\nswing_m = [0, 0, 0.01]\nswing_hz = 250\n",

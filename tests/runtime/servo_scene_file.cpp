@@ -287,7 +287,8 @@ TEST_CASE("a scene of one line has the defaults of the documentation")
 TEST_CASE("force models, creases and the turning of normals reach the scene")
 {
     CHECK(diagnostics_of("[servo]\nlateral_depth_m = 0.1\n[[object]]\nshape = \"plane\"\n") ==
-          "scene.toml:2:19: error: `lateral_depth_m` is for `force_model = \"lateral\"` alone\n");
+          "scene.toml:2:19: error: `lateral_depth_m` is for `force_model = \"lateral\"` alone: write that, or leave it "
+          "out\n");
     const Folder folder;
     for (const ForceModel model :
          {ForceModel::displaced, ForceModel::paper, ForceModel::paper_unit, ForceModel::ho99, ForceModel::lateral}) {
