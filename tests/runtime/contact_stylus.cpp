@@ -330,6 +330,13 @@ TEST_CASE("a stylus is held through poses that are no numbers, and far away it i
     // It comes back from beyond the workspace as if put down: from above it is held again.
     drive(stylus, moved(hand, {0, 0, 1}), hand, 50);
     CHECK(near(wrench(stylus, hand), held, 1e-9));
+    // Where one end is so far out that the shaft has no direction there is none, and nothing of it stays.
+    for (const double far_m : {1e160, 1e300, 1e308}) {
+        stylus.update({far_m, 0, 0}, hand.tail);
+        stylus.update(hand.tip, {far_m, -far_m, 0});
+        drive(stylus, moved(hand, {0, 0, 1}), hand, 50);
+        CHECK(near(wrench(stylus, hand), held, 1e-9));
+    }
     // A tail that is no number is none: the tip is a point.
     stylus.update(hand.tip, {0, INFINITY, 0});
     CHECK(stylus.contacts().empty());
