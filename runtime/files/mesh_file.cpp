@@ -160,14 +160,20 @@ std::string warning_of_rounding(const Mesh& mesh)
     return text.str();
 }
 
-const std::string unreadable = "the file could not be read: ",
-                  no_triangle = "the file holds no triangle: points or lines only, or it is cut off before its faces";
+const std::string no_triangle = "the file holds no triangle: points or lines only, or it is cut off before its faces";
 
 MeshFileResult failed(std::string why)
 {
     MeshFileResult result;
     result.error = std::move(why);
     return result;
+}
+
+// Why in the words of others, or close to them.
+MeshFileResult unreadable(const std::string& why)
+{
+    return failed("the file could not be read: " + why +
+                  "; is it damaged or cut off? Export it again, or as OBJ or STL");
 }
 
 // A machine that is slow, and a build that checks everything, read a megabyte in this time.
@@ -194,7 +200,11 @@ std::string did_you_mean(const std::filesystem::path& file)
         if (std::find(extensions.begin(), extensions.end(), extension_of(entry->path())) != extensions.end())
             names.push_back(entry->path().filename().string());
     std::sort(names.begin(), names.end()); // a folder has no order
-    const auto nearest = nearest_word(file.filename().string(), names);
+    const std::string sought = file.filename().string();
+    const auto same_letters = std::find_if(
+        names.begin(), names.end(), [&](const std::string& name) { return lower_case(name) == lower_case(sought); });
+    const std::optional<std::string> nearest =
+        same_letters != names.end() ? std::optional(*same_letters) : nearest_word(sought, names);
     return nearest ? ": did you mean `" + *nearest + "`?" : ": paths start from the scene's folder";
 }
 
@@ -213,12 +223,13 @@ MeshFileResult read_mesh(const std::filesystem::path& file)
     if (!scene) {
         const std::string why = importer.GetErrorString();
         if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
-        // How assimp says that a file is shorter than its number of triangles asks for, and that it holds points only.
-        if (why.find("STL storage") != std::string::npos)
-            return failed(unreadable + "it is no STL, or it is cut off: export it again");
-        return failed(why.starts_with("No output meshes") ? no_triangle : unreadable + why);
+        // How assimp says that a file holds points only; that its content is of no kind it knows, an STL cut off
+        // included.
+        if (why.starts_with("No output meshes")) return failed(no_triangle);
+        const bool unknown = why.find("STL storage") != std::string::npos || why.starts_with("No suitable reader");
+        return unreadable(unknown ? "its content is not that of a whole " + extension + " file" : why);
     }
-    if (!listener.heard().empty()) return failed(unreadable + listener.heard());
+    if (!listener.heard().empty()) return unreadable(listener.heard());
 
     MeshFileResult result;
     bool with_uv = scene->mNumMeshes > 0;
@@ -255,7 +266,7 @@ try {
             } catch (const std::bad_alloc&) {
                 throw;
             } catch (const std::exception& problem) {
-                return failed(unreadable + problem.what());
+                return unreadable(problem.what());
             }
         },
         std::filesystem::absolute(file).string(), limits.value_or(limits_for(size_bytes)));
@@ -264,7 +275,7 @@ try {
                       "; the file may be damaged or cut off: export it again, or as OBJ or STL");
     return std::move(reading.result);
 } catch (const std::exception& problem) {
-    return failed(unreadable + problem.what());
+    return unreadable(problem.what());
 }
 
 } // namespace haptel::runtime

@@ -10,6 +10,7 @@
 #include <fstream>
 #include <new>
 #include <optional>
+#include <sstream>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/time.h>
@@ -116,10 +117,10 @@ try {
 
 std::string seconds(double number)
 {
-    std::string text = std::to_string(number);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.ends_with('.')) text.pop_back();
-    return text + " s";
+    std::ostringstream text;
+    text.precision(3);
+    text << number << " s";
+    return text.str();
 }
 
 std::string why_it_ended(int status, const MeshReadLimits& limits)

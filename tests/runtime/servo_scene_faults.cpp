@@ -116,14 +116,16 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "scene.toml:2:8: error: mesh `nan.obj`: the mesh has no triangle to touch: "
          "dropped triangles: 1 with a coordinate that is not finite (of 1)\n"},
         {"[[object]]\nmesh = \"beyond.obj\"\n",
-         "scene.toml:2:8: error: mesh `beyond.obj`: the file could not be read: OBJ: vertex index out of range\n"},
+         "scene.toml:2:8: error: mesh `beyond.obj`: the file could not be read: OBJ: vertex index out of range; is it "
+         "damaged or cut off? Export it again, or as OBJ or STL\n"},
         {"[[object]]\nmesh = \"beyond.ply\"\n",
          "scene.toml:2:8: warning: mesh `beyond.ply`: dropped triangles: 1 with a vertex index that does not exist (of "
          "2)\n"
          "scene.toml:2:8: note: mesh `beyond.ply`: open mesh: 3 border edges, past which a hand gets behind the "
          "surface\n"},
         {"[[object]]\nmesh = \"beyond.off\"\n",
-         "scene.toml:2:8: error: mesh `beyond.off`: the file could not be read: OFF: Vertex index is out of range\n"},
+         "scene.toml:2:8: error: mesh `beyond.off`: the file could not be read: OFF: Vertex index is out of range; is "
+         "it damaged or cut off? Export it again, or as OBJ or STL\n"},
         {"[[object]]\nmesh = \"garbage.obj\"\n", nullptr},
         {"[[object]]\nmesh = \"note.txt\"\n",
          "scene.toml:2:8: error: mesh `note.txt`: expected a mesh of type .obj, .ply, .stl, .off, .3ds, .dae, .gltf or "

@@ -122,6 +122,7 @@ TEST_CASE("a mesh that is not there is told with what is, and one that is cut of
     const Folder folder;
     folder.write("bunny.obj", triangle_obj);
     folder.write("bunny.txt", "");
+    folder.write("no.gltf", "{}");
     folder.write("short.stl", std::string(80, ' ') + std::string("\xe8\x03\0\0", 4) + std::string(150, '\0'));
     const auto said = [&](const std::string& mesh) {
         const LoadedScene loaded = load_scene(folder.write("scene.toml", "[[object]]\nmesh = \"" + mesh + "\"\n"),
@@ -132,11 +133,14 @@ TEST_CASE("a mesh that is not there is told with what is, and one that is cut of
     };
     CHECK(said("buny.obj") == ": error: mesh `buny.obj`: there is no such file (looked for " + folder.file("buny.obj") +
                                   "): did you mean `bunny.obj`?\n");
+    CHECK(said("BUNNY.OBJ").ends_with("did you mean `bunny.obj`?\n"));
     CHECK(said("teapot.ply") == ": error: mesh `teapot.ply`: there is no such file (looked for " +
                                     folder.file("teapot.ply") + "): paths start from the scene's folder\n");
     CHECK(said("no/bunny.obj").ends_with("no/bunny.obj): paths start from the scene's folder\n"));
-    CHECK(said("short.stl") == ": error: mesh `short.stl`: the file could not be read: it is no STL, or it is cut off: "
-                               "export it again\n");
+    CHECK(said("short.stl") ==
+          ": error: mesh `short.stl`: the file could not be read: its content is not that of a whole "
+          ".stl file; is it damaged or cut off? Export it again, or as OBJ or STL\n");
+    CHECK(said("no.gltf").find("its content is not that of a whole .gltf file; is it damaged") != std::string::npos);
 }
 
 TEST_CASE("a mesh in millimetres is told, as far as its size and the workspace show it")
