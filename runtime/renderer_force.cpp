@@ -19,7 +19,7 @@ double along_fingers(const DevicePose& pose, const glm::dvec3& force_n)
 
 // What one of a ball's contacts holds, of how deep the hand is below what is touched there: two walls at right angles
 // hold all of it each, several facets nearly in one plane hold it together. Along the way from the hand to the proxy
-// the shares of damping add up to 1, whatever the angles.
+// the shares of damping add up to 1, but in grooves narrower than a right angle: more than all of it is held by none.
 double share_of(const Contact& contact, std::span<const Contact> contacts)
 {
     glm::dvec3 way_m(0);

@@ -102,7 +102,9 @@ bool StylusContact::take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noex
     const Lattice& lattice = surface().lattice;
     has_tail_ = finite(tail_m);
     if (!has_tail_) return false;
-    hand_ = {lattice.units(tip_m), lattice.units(tail_m)};
+    const Shaft hand{lattice.units(tip_m), lattice.units(tail_m)};
+    if (!std::isfinite(glm::length(hand.tail - hand.tip))) return false; // too far out to have a direction
+    hand_ = hand;
     if (tip_.proxy_.touches()) hand_.tip = Lattice::snap_units(hand_.tip); // it does not let go of a hand that is far
     const glm::dvec3 along = hand_.tail - hand_.tip;
     begin_ = 0, end_ = 1;

@@ -344,6 +344,25 @@ TEST_CASE("a stylus is held through poses that are no numbers, and far away it i
     CHECK(near(wrench(large, long_hand), pulled(long_hand, on_edge(long_hand, corner, {0, 1, 0})), 1e-12));
 }
 
+TEST_CASE("a stylus with an end so far out that it has no direction has no shaft, and nothing of it stays")
+{
+    const auto surface = surface_of(make_box());
+    const Pose hand{{0.35, 0.03, 0.535}, {0.85, 0.1, 0.36}}, above = moved(hand, {0, 0, 0.1});
+    for (const double far_m : {1e160, 1e300, 1e308})
+        for (const Pose& far :
+             {Pose{{far_m, -0.88, -0.41}, {-0.34, 0.44, -1.4}}, Pose{{0.5, -0.8, 0}, {far_m, far_m, 1}}}) {
+            StylusContact stylus(surface), clean(surface);
+            stylus.update(far.tip, far.tail);
+            CHECK(!stylus.ideal());
+            for (StylusContact* each : {&stylus, &clean}) {
+                each->update(above.tip, above.tail);
+                drive(*each, above, hand, 20);
+            }
+            CHECK(near(wrench(stylus, hand), wrench(clean, hand), 1e-9));
+            CHECK(clean.contacts().size() > 0);
+        }
+}
+
 TEST_CASE("a shaft that jumps past a thin pole in one tick is caught by it, at any speed")
 {
     Mesh pole = make_box({1e-4, 1e-4, 1}); // metres: as thin as a hair
