@@ -1,11 +1,8 @@
 #include "bench/scale_bench.h"
 
 #include "bench/bumpy_ball.h"
-#include "runtime/renderer.h"
+#include "bench/repeated_ticks.h"
 
-#include <algorithm>
-#include <chrono>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <fstream>
@@ -40,6 +37,7 @@ public:
     Rendered(std::string axis, const char* name, const ProbeSettings& probe, const std::shared_ptr<const Scene>& scene,
              int passes)
         : offset_m_((probe.kind == ProbeKind::sphere ? probe.radius_m : 0) - depth_m)
+        , ticks_(scene, passes, place_on_stroke(0, 0.02))
     {
         row_.axis = std::move(axis);
         row_.probe = name;
@@ -47,49 +45,28 @@ public:
         row_.friction = scene->objects[0].material.static_friction > 0;
         row_.triangles = scene->objects[0].surface->faces.size();
         row_.objects = scene->objects.size();
-        const glm::dvec3 start = place_on_stroke(0, 0.02);
-        while (passes--) {
-            passes_.push_back(std::make_unique<Renderer>(scene));
-            passes_.back()->tick({start, 1.5 * start});
-        }
     }
 
-    // The same ticks in each pass, one pass after the other.
     void turn(int first, int end, double clock_ns)
     {
-        for (auto& pass : passes_)
-            for (int number = first; number < end; ++number) {
-                const glm::dvec3 hand = place_on_stroke(number, offset_m_);
-                const auto begin = std::chrono::steady_clock::now();
-                const TickResult felt = pass->tick({hand, 1.5 * hand});
-                const auto took = std::chrono::steady_clock::now() - begin;
-                pass->between_ticks();
-                const double ns = std::max(0.0, std::chrono::duration<double, std::nano>(took).count() - clock_ns);
-                if (pass == passes_.front()) {
-                    tick_ns_.push_back(ns);
-                    once_ns_.push_back(ns);
-                    contacts_ += felt.contacts;
-                } else {
-                    double& least = tick_ns_[static_cast<std::size_t>(number)];
-                    least = std::min(least, ns);
-                }
-            }
+        ticks_.turn(
+            first, end, clock_ns, [&](int tick) { return place_on_stroke(tick, offset_m_); },
+            [&](const TickLook& look) { contacts_ += look.felt.contacts; });
     }
 
     ScaleRow row() const
     {
         ScaleRow row = row_;
-        row.contacts = static_cast<double>(contacts_) / static_cast<double>(tick_ns_.size());
-        row.tick_ns = summary(tick_ns_);
-        row.once_ns = summary(once_ns_);
+        row.contacts = static_cast<double>(contacts_) / static_cast<double>(ticks_.count());
+        row.tick_ns = ticks_.least_ns();
+        row.once_ns = ticks_.once_ns();
         return row;
     }
 
 private:
     double offset_m_;
     ScaleRow row_;
-    std::vector<std::unique_ptr<Renderer>> passes_;
-    std::vector<double> tick_ns_, once_ns_; // by tick: the least of all passes, the first pass
+    RepeatedTicks ticks_;
     uint64_t contacts_ = 0;
 };
 

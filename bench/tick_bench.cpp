@@ -1,12 +1,12 @@
 #include "bench/tick_bench.h"
 
 #include "bench/bumpy_ball.h"
-#include "runtime/renderer.h"
+#include "bench/repeated_ticks.h"
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <memory>
-#include <optional>
 
 namespace haptel::bench {
 namespace {
@@ -24,51 +24,31 @@ struct Kind {
 class Rendered {
 public:
     Rendered(const Kind& kind, const std::shared_ptr<const Surface>& surface, uint64_t objects,
-             const TextureBinding& texture)
-        : kind_(kind), surface_(surface)
+             const TextureBinding& texture, int passes)
+        : kind_(kind)
+        , surface_(surface)
+        , ticks_(balls_on_a_grid(surface, objects, kind.textured ? texture : TextureBinding{}, kind.probe), passes,
+                 place(0, 0.02))
+        , before_(place(0, 0.02))
     {
-        auto scene = balls_on_a_grid(surface, objects, kind.textured ? texture : TextureBinding{}, kind.probe);
         row_.scene = kind.scene;
         row_.objects = objects;
         row_.triangles = surface->faces.size();
-        renderer_.emplace(std::move(scene));
-        const glm::dvec3 start = place(0, 0.02);
-        renderer_->tick({start, 1.5 * start});
-        before_ = start;
     }
 
-    void tick(int number, double clock_ns)
+    void turn(int first, int end, double clock_ns)
     {
-        const glm::dvec3 hand = place(number, kind_.height_m);
-        const ContactWork before = renderer_->work();
-        const auto begin = std::chrono::steady_clock::now();
-        const TickResult felt = renderer_->tick({hand, 1.5 * hand});
-        const auto end = std::chrono::steady_clock::now();
-        renderer_->between_ticks();
-        const auto ahead = std::chrono::steady_clock::now();
-        const auto hit = surface_->first_hit(before_, hand);
-        const auto walked = std::chrono::steady_clock::now();
-        found_ += hit.has_value();
-        before_ = hand;
-        const ContactWork after = renderer_->work();
-        const uint64_t touched = after.triangles - before.triangles + after.steps - before.steps;
-        touching_ += felt.contacts > 0;
-        const auto ns = [&](auto from, auto to) {
-            return std::max(0.0, std::chrono::duration<double, std::nano>(to - from).count() - clock_ns);
-        };
-        tick_ns_.push_back(ns(begin, end));
-        ahead_ns_.push_back(ns(end, ahead));
-        tree_ns_.push_back(ns(ahead, walked));
-        queries_.push_back(static_cast<double>(after.queries - before.queries));
-        touched_.push_back(static_cast<double>(touched));
-        seen_.push_back(static_cast<double>(touched + after.read_ahead - before.read_ahead));
+        ticks_.turn(
+            first, end, clock_ns, [&](int tick) { return place(tick, kind_.height_m); },
+            [&](const TickLook& look) { take_in(look, clock_ns); });
     }
 
     TickRow row() const
     {
         TickRow row = row_;
-        row.contact = static_cast<double>(touching_) / static_cast<double>(tick_ns_.size());
-        row.tick_ns = summary(tick_ns_);
+        row.contact = static_cast<double>(touching_) / static_cast<double>(ticks_.count());
+        row.tick_ns = ticks_.least_ns();
+        row.once_ns = ticks_.once_ns();
         row.ahead_ns = summary(ahead_ns_);
         row.tree_ns = summary(tree_ns_);
         row.queries = summary(queries_);
@@ -78,6 +58,22 @@ public:
     }
 
 private:
+    void take_in(const TickLook& look, double clock_ns)
+    {
+        const auto begin = std::chrono::steady_clock::now();
+        const auto hit = surface_->first_hit(before_, look.hand_m);
+        const auto walked = std::chrono::steady_clock::now();
+        found_ += hit.has_value();
+        before_ = look.hand_m;
+        touching_ += look.felt.contacts > 0;
+        const uint64_t touched = look.work.triangles + look.work.steps;
+        ahead_ns_.push_back(look.ahead_ns);
+        tree_ns_.push_back(std::max(0.0, std::chrono::duration<double, std::nano>(walked - begin).count() - clock_ns));
+        queries_.push_back(static_cast<double>(look.work.queries));
+        touched_.push_back(static_cast<double>(touched));
+        seen_.push_back(static_cast<double>(touched + look.work.read_ahead));
+    }
+
     // What lies on the ball lies its own radius higher.
     glm::dvec3 place(int number, double height_m) const
     {
@@ -87,9 +83,9 @@ private:
     Kind kind_;
     std::shared_ptr<const Surface> surface_;
     TickRow row_;
-    std::optional<Renderer> renderer_;
-    glm::dvec3 before_{0};
-    std::vector<double> tick_ns_, ahead_ns_, tree_ns_, queries_, touched_, seen_;
+    RepeatedTicks ticks_;
+    glm::dvec3 before_; // where the hand was in the tick before
+    std::vector<double> ahead_ns_, tree_ns_, queries_, touched_, seen_;
     uint64_t touching_ = 0, found_ = 0;
 };
 
@@ -101,22 +97,23 @@ std::vector<TickRow> bench_tick(bool quick, const std::function<void(double)>& p
     const Kind textured{"fbm4", {}}, bare{"no texture", {}, false}, free{"free", {}, true, 2e-3};
     const Kind stylus{"stylus, fbm4", {ProbeKind::stylus}},
         ball{"ball of 2.5 mm, fbm4", {ProbeKind::sphere, 0, 2.5e-3}};
-    std::vector<Rendered> all;
+    const int ticks = quick ? 10'000 : 100'000, passes = quick ? 2 : 5;
+    std::deque<Rendered> all;
     std::shared_ptr<const Surface> middle;
     for (const uint32_t subdivisions : {3u, 5u, 6u, 7u}) {
         const auto surface = build_surface(bumpy_ball(subdivisions)).surface;
         if (subdivisions == 5) middle = surface;
-        for (const Kind& kind : {textured, bare, free, stylus, ball}) all.emplace_back(kind, surface, 1, texture);
+        for (const Kind& kind : {textured, bare, free, stylus, ball})
+            all.emplace_back(kind, surface, 1, texture, passes);
     }
-    for (const uint64_t objects : {uint64_t{30}, uint64_t{1000}}) all.emplace_back(textured, middle, objects, texture);
+    for (const uint64_t objects : {uint64_t{30}, uint64_t{1000}})
+        all.emplace_back(textured, middle, objects, texture, passes);
 
-    const int ticks = quick ? 10'000 : 100'000;
     const double clock = clock_reading_ns();
     constexpr int turn = 5000; // ticks of one row before the next: caches are warm, as in a servo
     for (int first = 0; first < ticks; first += turn) {
         progress(static_cast<double>(first) / ticks);
-        for (Rendered& row : all)
-            for (int tick = first; tick < first + turn; ++tick) row.tick(tick, clock);
+        for (Rendered& row : all) row.turn(first, first + turn, clock);
     }
     progress(1);
     std::vector<TickRow> rows;

@@ -13,8 +13,10 @@ namespace haptel::bench {
 struct TickRow {
     std::string scene; // what is felt, in a word or two
     uint64_t triangles = 0, objects = 1;
-    double contact = 0;      // share of the ticks that touch
-    Times tick_ns;           // the clock's own time taken off
+    double contact = 0; // share of the ticks that touch
+    // The clock's own time taken off. The same ticks are run five times (twice if quick): the least time of each, and
+    // those of the first run.
+    Times tick_ns, once_ns;
     Times ahead_ns;          // after the tick: what the next may need, brought into the cache
     Times tree_ns;           // a walk through the tree of boxes for the same way of the hand, in the same run
     Times queries;           // per tick: walks through trees

@@ -141,7 +141,7 @@ DeviceResult open_device(const DeviceRequest& request)
     const auto [name, variant] = split(request.name);
     for (const Driver& driver : drivers)
         if (driver.name == name) return driver.open(variant, request);
-    return refused(unknown("device", name, names_of(drivers)));
+    return refused(unknown("device", name, names_of(drivers)) + "; write simulated:premium, or replay:trace.csv");
 }
 
 std::vector<std::string> device_names()

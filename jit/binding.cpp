@@ -47,10 +47,10 @@ std::string did_you_mean(std::string_view name, const Items& items, const std::s
 {
     std::vector<std::string_view> names;
     for (const auto& item : items) names.push_back(item.name);
-    if (names.empty()) return "it has no " + kind;
+    if (names.empty()) return "it has none";
     const std::string_view nearest = lang::nearest_name(name, names);
     if (!nearest.empty()) return "did you mean '" + std::string(nearest) + "'?";
-    return "it has " + kind + " " + list_of(items);
+    return "it has the " + kind + " " + list_of(items);
 }
 
 const haptel_texture* choose(const CompiledProgram& program, std::string_view name, Complaints& complaints)
@@ -64,7 +64,7 @@ const haptel_texture* choose(const CompiledProgram& program, std::string_view na
     const haptel_texture* texture = program.find(name);
     if (!texture)
         complaints.add("this file has no texture '" + lang::printable(name) + "'",
-                       did_you_mean(name, program.textures(), "the textures"));
+                       did_you_mean(name, program.textures(), "textures"));
     return texture;
 }
 
@@ -78,7 +78,7 @@ std::vector<double> values_of(const ir::Texture& texture, const TextureRequest& 
         while (i < values.size() && texture.parameters[i].name != name) ++i;
         if (i == values.size()) {
             complaints.add("texture '" + texture.name + "' has no parameter '" + lang::printable(name) + "'",
-                           did_you_mean(name, texture.parameters, "the parameters"));
+                           did_you_mean(name, texture.parameters, "parameters"));
             continue;
         }
         const lang::ParameterValue parsed = lang::parse_value(text, texture.parameters[i]);

@@ -172,10 +172,12 @@ void LiveTexture::Client::make_and_publish(const CompiledTextures& compiled)
     std::string said = compiled.rendered();
     const TextureRequest fitting = request_for(*compiled.program, said);
     TextureResult result = make_binding(compiled.program, reference.texture, fitting);
-    if (!result.binding) return report(said + lang::printable(reference.file) + ": " + result.diagnostics);
+    said += about_file(reference.file, result.diagnostics);
+    if (!result.binding) return report(std::move(said));
     if (const std::string slow = too_slow(*compiled.program, *result.binding, request); !slow.empty())
-        return report(said + lang::printable(reference.file) + ": error: " + slow +
-                      "; the old texture stays\n  hint: fewer octaves or terms\n");
+        return report(
+            said +
+            about_file(reference.file, "error: " + slow + "; the old texture stays\n  hint: fewer octaves or terms\n"));
     callbacks.publish(std::move(*result.binding));
     report(std::move(said));
 }

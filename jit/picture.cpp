@@ -9,6 +9,7 @@
 #define STBI_ONLY_TGA
 #define STBI_ONLY_PNM
 #define STBI_NO_STDIO
+#define STBI_FAILURE_USERMSG
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #include <stb/stb_image.h>

@@ -1,5 +1,6 @@
 #include "jit/picture.h"
 
+#include <Imath/half.h>
 #include <tiffio.h>
 
 #include <algorithm>
@@ -12,6 +13,8 @@
 namespace haptel::jit {
 
 namespace {
+
+constexpr const char* readable = "TIFF of 8, 16 or 32 bits, gray or RGB, whole numbers or real ones";
 
 constexpr tmsize_t memory_max = tmsize_t{1} << 30; // of one allocation that a file asks for
 
@@ -108,22 +111,34 @@ struct Layout {
         const bool whole =
             (format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_INT) && (bits == 8 || bits == 16 || bits == 32);
         const bool gray = !has_meaning || meaning == PHOTOMETRIC_MINISBLACK || meaning == PHOTOMETRIC_MINISWHITE;
-        return samples >= 1 && (whole || (is_real() && (bits == 32 || bits == 64))) && (gray || is_rgb());
+        return samples >= 1 && (whole || (is_real() && (bits == 16 || bits == 32 || bits == 64))) && (gray || is_rgb());
     }
 };
 
 template <class Number>
-double number_at(const std::byte* at, double unit)
+Number bits_at(const std::byte* at)
 {
     Number value;
     std::memcpy(&value, at, sizeof value);
-    return static_cast<double>(value) / unit;
+    return value;
+}
+
+template <class Number>
+double number_at(const std::byte* at, double unit)
+{
+    return static_cast<double>(bits_at<Number>(at)) / unit;
 }
 
 double sample_at(const Layout& layout, const std::byte* at)
 {
     const bool is_signed = layout.format == SAMPLEFORMAT_INT;
-    if (layout.is_real()) return layout.bits == 32 ? number_at<float>(at, 1) : number_at<double>(at, 1);
+    if (layout.is_real()) {
+        switch (layout.bits) {
+        case 16: return static_cast<double>(imath_half_to_float(bits_at<uint16_t>(at)));
+        case 32: return number_at<float>(at, 1);
+        default: return number_at<double>(at, 1);
+        }
+    }
     switch (layout.bits) {
     case 8: return is_signed ? number_at<int8_t>(at, INT8_MAX) : number_at<uint8_t>(at, UINT8_MAX);
     case 16: return is_signed ? number_at<int16_t>(at, INT16_MAX) : number_at<uint16_t>(at, UINT16_MAX);
@@ -193,13 +208,8 @@ bool read_plain(TIFF* tiff, const Layout& layout, Picture& made)
 }
 
 // What is packed, indexed or compressed as colours, in 8 bits.
-bool read_converted(TIFF* tiff, const Layout& layout, Picture& made, std::string& why)
+bool read_converted(TIFF* tiff, const Layout& layout, Picture& made)
 {
-    char reason[1024] = "";
-    if (!TIFFRGBAImageOK(tiff, reason)) {
-        why = reason;
-        return false;
-    }
     std::vector<uint32_t> pixels(made.gray.size());
     if (!TIFFReadRGBAImageOriented(tiff, layout.width, layout.height, pixels.data(), ORIENTATION_BOTLEFT, 1))
         return false;
@@ -222,16 +232,19 @@ Picture read_tiff(std::string_view bytes)
     Source source{bytes, 0, {}};
     const Tiff tiff = open(source);
     const auto damaged = [&] {
-        return no_picture("is damaged" + (source.said.empty() ? "" : ": " + source.said),
-                          "TIFF of 8, 16 or 32 bits, gray or RGB, or of 32 bits and real");
+        return no_picture("is damaged" + (source.said.empty() ? "" : ": " + source.said), readable);
     };
     if (!tiff) return damaged();
     const Layout layout(tiff.get());
     Picture made = picture_of(layout.width, layout.height);
     if (!made.error.empty()) return made;
-    const bool read = layout.is_plain() ? read_plain(tiff.get(), layout, made)
-                                        : read_converted(tiff.get(), layout, made, source.said);
-    return read ? made : damaged();
+    if (layout.is_plain()) return read_plain(tiff.get(), layout, made) ? made : damaged();
+    char reason[1024] = "";
+    if (!TIFFRGBAImageOK(tiff.get(), reason))
+        return no_picture("is a TIFF of a kind that is not read, of " + std::to_string(layout.bits) +
+                              " bits a sample, " + (layout.is_real() ? "real" : "whole") + ": " + reason,
+                          readable);
+    return read_converted(tiff.get(), layout, made) ? made : damaged();
 }
 
 } // namespace haptel::jit

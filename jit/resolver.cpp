@@ -15,10 +15,10 @@ TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache, Unbounded unb
         TextureResult result = make_binding(compiled->program, reference.texture, request, unbounded);
         if (const std::string slow = result.binding ? too_slow(*compiled->program, *result.binding, request) : "";
             !slow.empty())
-            return {std::nullopt, said + lang::printable(reference.file) + ": error: " + slow +
-                                      "\n  hint: fewer octaves or terms, or a lower rate_hz\n"};
-        if (!result.diagnostics.empty()) said += lang::printable(reference.file) + ": " + result.diagnostics;
-        result.diagnostics = std::move(said);
+            return {std::nullopt, said + about_file(reference.file, "error: " + slow +
+                                                                        "\n  hint: fewer octaves or terms, or a lower "
+                                                                        "rate_hz\n")};
+        result.diagnostics = said + about_file(reference.file, result.diagnostics);
         return result;
     };
 }

@@ -2,6 +2,7 @@
 
 #include "lang/diagnostic.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
@@ -73,6 +74,18 @@ TextureReference split_reference(std::string_view reference)
     const size_t colon = reference.rfind(':');
     if (colon == reference.npos || !is_name(reference.substr(colon + 1))) return {std::string(reference), {}};
     return {std::string(reference.substr(0, colon)), std::string(reference.substr(colon + 1))};
+}
+
+std::string about_file(const std::string& file, std::string_view messages)
+{
+    std::string told;
+    while (!messages.empty()) {
+        const std::string_view line = messages.substr(0, messages.find('\n'));
+        if (!line.starts_with(' ')) told += lang::printable(file) + ": ";
+        told.append(line).append("\n");
+        messages.remove_prefix(std::min(messages.size(), line.size() + 1));
+    }
+    return told;
 }
 
 } // namespace haptel::jit

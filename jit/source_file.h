@@ -28,4 +28,7 @@ struct TextureReference {
 };
 TextureReference split_reference(std::string_view reference);
 
+// Messages of a line each, and hints set in below them, as messages about that file.
+std::string about_file(const std::string& file, std::string_view messages);
+
 } // namespace haptel::jit

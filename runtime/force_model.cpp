@@ -54,7 +54,9 @@ glm::dvec3 gradient_at_depth(const glm::dvec3& gradient, const glm::dmat3& norma
 
 glm::dvec3 limited(const glm::dvec3& force_n, double limit_n) noexcept
 {
-    // Scaled by the largest component first: squares of huge forces would overflow to infinity.
+    // Far below, which is nearly always, squares say so; those of huge forces may be infinite.
+    if (glm::dot(force_n, force_n) < 0.99 * limit_n * limit_n) return force_n;
+    // Scaled by the largest component first, so that no square overflows.
     const glm::dvec3 size = glm::abs(force_n);
     const double largest = std::max({size.x, size.y, size.z});
     if (largest == 0) return force_n;

@@ -119,8 +119,10 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
 
     held_j_ = 0;
     double way_m = 0;
-    if (last_pose_)
-        way_m = std::max(glm::distance(pose.tip_m, last_pose_->tip_m), glm::distance(pose.tail_m, last_pose_->tail_m));
+    if (last_pose_) {
+        const glm::dvec3 tip_way = pose.tip_m - last_pose_->tip_m, tail_way = pose.tail_m - last_pose_->tail_m;
+        way_m = std::sqrt(std::max(glm::dot(tip_way, tip_way), glm::dot(tail_way, tail_way)));
+    }
     const double near_m = far_enough_m(pose, way_m);
     reach_.go(way_m, pose.tip_m, pose.tail_m, near_m);
     Skipped skipped;
@@ -244,8 +246,8 @@ void Renderer::send(TickResult& result, double lever_m, double left_work_j) noex
         if (sent > most) result.force_n *= most / sent, result.torque_n_m *= most / sent;
     }
     const auto share = [](double of, double all) { return of < all ? of / all : 1.0; };
-    const double limit = std::min(share(glm::length(result.force_n), glm::length(force_n)),
-                                  share(std::abs(result.grip_force_n), std::abs(grip_n)));
+    const double of_force = result.force_n == force_n ? 1.0 : share(glm::length(result.force_n), glm::length(force_n));
+    const double limit = std::min(of_force, share(std::abs(result.grip_force_n), std::abs(grip_n)));
     sent_ = {result.force_n, result.torque_n_m, result.grip_force_n, limit * limit * held_j};
 }
 

@@ -58,28 +58,27 @@ Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::d
     const bool turns = what.normal_dp && length > Surface::least_normal, drawn = what.uv && !surface.uv.empty();
     if (!turns && !drawn) return shading;
 
-    // The weight of corner i grows by 1 over the altitude from its opposite edge.
-    glm::dvec3 weight_dp[3];
-    const glm::dvec3 normal = surface.facet_normal(face);
+    // The weight of a corner grows by 1 over the altitude from its opposite edge; that of the first, as the others
+    // lose.
     const auto& v = surface.faces[face].vertex;
-    for (uint32_t i = 0; i < 3; ++i) {
-        const glm::dvec3& from = surface.vertices[v[(i + 1) % 3]];
-        const glm::dvec3 inward = glm::cross(normal, surface.vertices[v[(i + 2) % 3]] - from);
-        const double twice_area = glm::dot(inward, surface.vertices[v[i]] - from);
-        weight_dp[i] = inward / (twice_area * surface.lattice.unit_m);
-    }
+    const glm::dvec3 &a = surface.vertices[v[0]], &b = surface.vertices[v[1]], &c = surface.vertices[v[2]];
+    const glm::dvec3 normal = surface.facet_normal(face);
+    const glm::dvec3 from_ca = glm::cross(normal, a - c), from_ab = glm::cross(normal, b - a);
+    const double per_m = 1 / (glm::dot(from_ab, c - a) * surface.lattice.unit_m);
+    const glm::dvec3 second_dp = per_m * from_ca, third_dp = per_m * from_ab;
 
-    for (int j = 0; j < 3; ++j) {
-        if (turns) {
-            glm::dvec3 change{0};
-            for (int i = 0; i < 3; ++i) change += corners.n[i] * weight_dp[i][j];
-            shading.normal_dp[j] = (change - glm::dot(change, shading.normal) * shading.normal) / length;
-        }
-        if (drawn)
-            for (int i = 0; i < 3; ++i) shading.uv_dp[j] += surface.uv[face][size_t(i)] * weight_dp[i][j];
+    if (turns) {
+        // The part of a change across the normal, over the sum's length.
+        const auto turn = [&](const glm::dvec3& change) {
+            return (change - glm::dot(change, shading.normal) * shading.normal) / length;
+        };
+        shading.normal_dp = glm::outerProduct(turn(corners.n[1] - corners.n[0]), second_dp) +
+                            glm::outerProduct(turn(corners.n[2] - corners.n[0]), third_dp);
     }
-    if (drawn)
-        for (int i = 0; i < 3; ++i) shading.uv += surface.uv[face][size_t(i)] * barycentric[i];
+    if (!drawn) return shading;
+    const auto& uv = surface.uv[face];
+    shading.uv_dp = glm::outerProduct(uv[1] - uv[0], second_dp) + glm::outerProduct(uv[2] - uv[0], third_dp);
+    for (int i = 0; i < 3; ++i) shading.uv += uv[size_t(i)] * barycentric[i];
     return shading;
 }
 

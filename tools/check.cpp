@@ -216,6 +216,12 @@ ExitCode run(const CheckOptions& options)
         say_error("check needs a texture file: haptel check FILE...");
         return ExitCode::misuse;
     }
+    for (const std::string& path : options.files)
+        if (path.ends_with(".toml")) {
+            say_error("check reads texture files, and " + lang::printable(path) +
+                      " is a scene: haptel explore feels it, and says what is wrong with it");
+            return ExitCode::misuse;
+        }
     CheckRun checks(options);
     for (const std::string& path : options.files) checks.check(path);
     checks.report_unknown_parameters();

@@ -1,5 +1,7 @@
 #include "runtime/files/effects_reader.h"
 
+#include "runtime/files/tick_limit.h"
+
 #include <algorithm>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -19,32 +21,41 @@ void need(TableReader& table, const char* key, const char* why, FileMessages& me
     if (!table.has(key)) messages.error(table.where(key), std::string(why));
 }
 
+// One that is written and does nothing is probably not meant so. `errors` were told before it was read: what is wrong
+// in it is said already.
+void warn_if_idle(TableReader& table, bool acts, const char* strength, const char* effect, std::size_t errors,
+                  FileMessages& messages)
+{
+    if (acts || messages.errors() > errors) return;
+    messages.warning(table.where(strength), "`" + std::string(strength) + "` is 0, so that this " + effect +
+                                                " is not felt: write more than 0, or leave the " + effect + " out");
+}
+
 Magnet read_magnet(TableReader& object, FileMessages& messages)
 {
     Magnet magnet;
     const toml::table* source = object.table("magnet", "{ force_n = 1, reach_m = \"5mm\" }");
     if (!source) return magnet;
+    const std::size_t errors = messages.errors();
     TableReader table(*source, "`magnet`", messages);
     table.number("force_n", magnet.force_n, Quantity::force, forces_n);
     table.number("reach_m", magnet.reach_m, Quantity::length, reaches_m);
     need(table, "force_n", "a magnet needs its largest pull: write `force_n = 1`", messages);
     need(table, "reach_m", "a magnet needs the distance from which on it pulls: write `reach_m = \"5mm\"`", messages);
     table.report_unknown_keys();
+    warn_if_idle(table, magnet.acts(), "force_n", "magnet", errors, messages);
     return magnet;
 }
 
-// The rate is that of the servo: faster swings than half of it are slower ones to the hand.
 Vibration read_vibration(const toml::table& source, double rate_hz, double* reach_m, FileMessages& messages)
 {
     Vibration vibration;
+    const std::size_t errors = messages.errors();
     TableReader table(source, "`vibration`", messages);
     table.number("force_n", vibration.force_n, Quantity::force, forces_n);
     need(table, "force_n", "a vibration needs its amplitude: write `force_n = 0.5`", messages);
     table.number("frequency_hz", vibration.frequency_hz, Quantity::frequency, {0, 100'000, true});
-    if (vibration.frequency_hz >= rate_hz / 2)
-        messages.error(table.where("frequency_hz"),
-                       "`frequency_hz` must be below half of the servo's `rate_hz`, so below " + shortest(rate_hz / 2) +
-                           ": at that rate faster swings are felt as slower ones. Lower it, or raise `rate_hz`");
+    need_slower_than_ticks(table, "frequency_hz", vibration.frequency_hz, Rounds::swings, rate_hz, messages);
     table.three_numbers("direction", vibration.direction, Quantity::number, {-1e6, 1e6});
     const double length = glm::length(vibration.direction);
     if (length == 0)
@@ -53,6 +64,7 @@ Vibration read_vibration(const toml::table& source, double rate_hz, double* reac
         vibration.direction /= length;
     if (reach_m) table.number("reach_m", *reach_m, Quantity::length, {0, 1000});
     table.report_unknown_keys();
+    warn_if_idle(table, vibration.acts(), "force_n", "vibration", errors, messages);
     return vibration;
 }
 
@@ -61,6 +73,7 @@ constexpr const char* vibration_example = "{ force_n = 0.5, frequency_hz = 80, d
 Region read_region(const toml::table& source, double rate_hz, FileMessages& messages)
 {
     Region region;
+    const std::size_t errors = messages.errors();
     TableReader table(source, "[[region]]", messages);
     const auto shape = table.word("shape", {"space", "ball", "box"});
     if (shape)
@@ -96,6 +109,10 @@ Region read_region(const toml::table& source, double rate_hz, FileMessages& mess
     if (const toml::table* vibration = table.table("vibration", vibration_example))
         region.vibration = read_vibration(*vibration, rate_hz, nullptr, messages);
     table.report_unknown_keys();
+    if (region.damping_n_s_per_m == 0 && !table.has("vibration") && messages.errors() == errors)
+        messages.warning(source.source(), "nothing is felt in this region: give it a medium, such as "
+                                          "`damping_n_s_per_m = 3`, or a `vibration = { force_n = 0.1 }`, or leave it "
+                                          "out");
     return region;
 }
 
@@ -122,6 +139,7 @@ ObjectEffects read_object_effects(TableReader& object, double rate_hz, FileMessa
     ObjectEffects effects;
     effects.magnet = read_magnet(object, messages);
     if (const toml::table* source = object.table("viscosity", "{ damping_n_s_per_m = 2, reach_m = \"5mm\" }")) {
+        const std::size_t errors = messages.errors();
         TableReader table(*source, "`viscosity`", messages);
         table.number("damping_n_s_per_m", effects.damping_n_s_per_m, Quantity::damping, dampings_n_s_per_m);
         table.number("reach_m", effects.damping_reach_m, Quantity::length, reaches_m);
@@ -129,6 +147,7 @@ ObjectEffects read_object_effects(TableReader& object, double rate_hz, FileMessa
              messages);
         need(table, "reach_m", "a viscous medium needs to end somewhere: write `reach_m = \"5mm\"`", messages);
         table.report_unknown_keys();
+        warn_if_idle(table, effects.damping_n_s_per_m > 0, "damping_n_s_per_m", "viscosity", errors, messages);
     }
     if (const toml::table* source = object.table("vibration", vibration_example))
         effects.vibration = read_vibration(*source, rate_hz, &effects.vibration_reach_m, messages);

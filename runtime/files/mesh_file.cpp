@@ -1,4 +1,5 @@
 #include "runtime/files/mesh_process.h"
+#include "runtime/files/table_reader.h"
 
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/Importer.hpp>
@@ -183,6 +184,20 @@ std::string extension_of(const std::filesystem::path& file)
     return lower_case(file.extension().string());
 }
 
+// A file of nearly that name in the same folder.
+std::string did_you_mean(const std::filesystem::path& file)
+{
+    std::vector<std::string> names;
+    std::error_code error;
+    const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+    for (std::filesystem::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+        if (std::find(extensions.begin(), extensions.end(), extension_of(entry->path())) != extensions.end())
+            names.push_back(entry->path().filename().string());
+    std::sort(names.begin(), names.end()); // a folder has no order
+    const auto nearest = nearest_word(file.filename().string(), names);
+    return nearest ? ": did you mean `" + *nearest + "`?" : ": paths start from the scene's folder";
+}
+
 MeshFileResult read_mesh(const std::filesystem::path& file)
 {
     const std::string extension = extension_of(file);
@@ -198,7 +213,9 @@ MeshFileResult read_mesh(const std::filesystem::path& file)
     if (!scene) {
         const std::string why = importer.GetErrorString();
         if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
-        // How assimp says that a file holds points only.
+        // How assimp says that a file is shorter than its number of triangles asks for, and that it holds points only.
+        if (why.find("STL storage") != std::string::npos)
+            return failed(unreadable + "it is no STL, or it is cut off: export it again");
         return failed(why.starts_with("No output meshes") ? no_triangle : unreadable + why);
     }
     if (!listener.heard().empty()) return failed(unreadable + listener.heard());
@@ -223,7 +240,7 @@ MeshFileResult load_mesh(const std::filesystem::path& file, std::optional<MeshRe
 try {
     std::error_code ignored;
     if (!std::filesystem::exists(file, ignored))
-        return failed("there is no such file (looked for " + file.string() + ")");
+        return failed("there is no such file (looked for " + file.string() + ")" + did_you_mean(file));
     if (!std::filesystem::is_regular_file(file, ignored)) return failed("this is not a file");
     const std::uintmax_t size_bytes = std::filesystem::file_size(file, ignored);
     if (size_bytes == 0) return failed("the file is empty");

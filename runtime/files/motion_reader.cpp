@@ -1,5 +1,7 @@
 #include "runtime/files/motion_reader.h"
 
+#include "runtime/files/tick_limit.h"
+
 namespace haptel::runtime {
 
 std::shared_ptr<const Motion> read_motion(TableReader& table, const Placement& start, double rate_hz,
@@ -13,11 +15,9 @@ std::shared_ptr<const Motion> read_motion(TableReader& table, const Placement& s
     if (table.has("swing_m") != table.has("swing_hz"))
         messages.error(table.where(table.has("swing_m") ? "swing_m" : "swing_hz"),
                        "an object swings by `swing_m = [x, y, z]` at `swing_hz`: write both");
-    if (figures.swing_hz >= rate_hz / 2)
-        messages.error(table.where("swing_hz"),
-                       "`swing_hz` must be below half of the servo's `rate_hz`, so below " + shortest(rate_hz / 2) +
-                           ": at that rate faster swings are felt as slower ones. Lower it, or raise `rate_hz`");
+    need_slower_than_ticks(table, "swing_hz", figures.swing_hz, Rounds::swings, rate_hz, messages);
     const double rate_deg_per_s = glm::length(spin_deg_per_s);
+    need_slower_than_ticks(table, "spin_deg_per_s", rate_deg_per_s, Rounds::turns, rate_hz, messages);
     if (rate_deg_per_s > 0) {
         figures.axis = spin_deg_per_s / rate_deg_per_s;
         figures.spin_rad_per_s = glm::radians(rate_deg_per_s);

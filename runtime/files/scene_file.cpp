@@ -6,38 +6,39 @@
 #include "runtime/files/joining.h"
 #include "runtime/files/mesh_file.h"
 #include "runtime/files/motion_reader.h"
+#include "runtime/files/object_texture.h"
+#include "runtime/files/open_hands.h"
 #include "runtime/files/table_reader.h"
+#include "runtime/files/toml_syntax.h"
 #include "runtime/shading.h"
 #include "runtime/shapes.h"
 
 #include <algorithm>
-#include <array>
 #include <exception>
 #include <fstream>
 #include <iterator>
-#include <limits>
+#include <optional>
+#include <sstream>
 #include <utility>
 
 namespace haptel::runtime {
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // Side of a built-in shape whose size the scene does not say, metres.
 constexpr double default_shape_size_m = 0.1;
 
 // What a scene file says, before anything else is opened.
 struct ObjectText {
-    std::string mesh, shape, texture;
+    std::string mesh, shape;
     double size_m = 0; // 0: as it is
     double crease_deg = default_crease_deg;
     bool own_crease = false; // it was written: the mesh's smoothing groups do not count
     bool joined = true;      // with what it meets
     std::string surface_key;
     SceneObject object;
-    std::vector<std::pair<std::string, std::string>> parameters;
-    toml::source_region mesh_at, texture_at, reach_at;
+    TextureText texture;
+    toml::source_region mesh_at, stiffness_at, reach_at;
 };
 
 struct SceneText {
@@ -57,7 +58,8 @@ ServoSettings read_servo(const toml::table& root, FileMessages& messages)
         servo.force.model = static_cast<ForceModel>(*model);
     table.number("lateral_depth_m", servo.force.lateral_depth_m, Quantity::length, {0, 1, true});
     if (table.has("lateral_depth_m") && servo.force.model != ForceModel::lateral)
-        messages.error(table.where("lateral_depth_m"), "`lateral_depth_m` is for `force_model = \"lateral\"` alone");
+        messages.error(table.where("lateral_depth_m"),
+                       "`lateral_depth_m` is for `force_model = \"lateral\"` alone: write that, or leave it out");
     table.number("force_limit_n", servo.force_limit_n, Quantity::force, {0, 100, true});
     table.number("v_max_m_per_s", servo.v_max_m_per_s, Quantity::speed, {0, 10, true});
     table.number("force_rise_s", servo.force_rise_s, Quantity::time, {0, 10});
@@ -109,13 +111,10 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
     if (table.has("joined") && text.joined && text.object.motion)
         messages.error(table.where("joined"), "an object that moves cannot be joined to what it meets");
     text.object.material = read_material(table, messages);
+    text.stiffness_at = table.where("stiffness_n_per_m");
     text.object.effects = read_object_effects(table, rate_hz, messages);
     text.reach_at = farthest_reach_at(source, text.object.effects);
-    table.text("texture", text.texture);
-    text.texture_at = table.where("texture");
-    text.parameters = table.values_as_written("parameters");
-    if (!text.parameters.empty() && text.texture.empty() && !table.has("texture"))
-        messages.error(table.where("parameters"), "`parameters` belong to a `texture`, but this object has none");
+    text.texture = read_texture(table, messages);
     table.report_unknown_keys();
     return text;
 }
@@ -183,6 +182,24 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, Surfac
     if (surfaces && text.object.surface) surfaces->keep(key, text.object.surface);
 }
 
+// Mesh files do not say their unit. No hand reaches round something this large.
+constexpr double hand_reach_m = 5;
+
+void check_unit(const ObjectText& text, const std::vector<DeviceText>& devices, FileMessages& messages)
+{
+    double reach_m = 0;
+    for (const DeviceText& device : devices) reach_m = std::max(reach_m, hand_reach_m * device.hand.workspace.scale);
+    const glm::dvec3 sides_m = text.object.surface->box_maximum_m - text.object.surface->box_minimum_m;
+    const double largest_m = std::max({sides_m.x, sides_m.y, sides_m.z});
+    if (text.mesh.empty() || text.size_m > 0 || largest_m <= reach_m) return;
+    std::ostringstream size;
+    size << largest_m; // to 6 digits
+    messages.warning(text.mesh_at, "mesh `" + text.mesh + "` is " + size.str() +
+                                       " m large, as its numbers are taken for metres: if they are millimetres write "
+                                       "`size_m = \"" +
+                                       size.str() + "mm\"`, else `size_m = \"" + size.str() + "m\"`");
+}
+
 // What reaches farther than the object is large is not looked for.
 void check_reach(const ObjectText& text, const std::vector<DeviceText>& devices, FileMessages& messages)
 {
@@ -200,109 +217,12 @@ void check_reach(const ObjectText& text, const std::vector<DeviceText>& devices,
                                           "`[[region]]`");
 }
 
-// The scene's speeds are those of the hand times this.
-double largest_scale(const SceneText& scene)
+// How fast hands move in the scene: its speeds are those of the hand times the scale.
+double hand_speed_max_m_per_s(const SceneText& scene)
 {
     double scale = 0;
     for (const DeviceText& device : scene.devices) scale = std::max(scale, device.hand.workspace.scale);
-    return scale;
-}
-
-// A mesh of which only parts have coordinates has 0 at the corners of the others.
-std::size_t faces_without_uv(const Surface& surface)
-{
-    if (surface.uv.empty()) return surface.faces.size();
-    const auto none = [](const std::array<glm::dvec2, 3>& uv) {
-        return std::all_of(uv.begin(), uv.end(), [](const glm::dvec2& corner) { return corner == glm::dvec2(0); });
-    };
-    return static_cast<std::size_t>(std::count_if(surface.uv.begin(), surface.uv.end(), none));
-}
-
-void load_texture(ObjectText& text, const SceneText& scene, const std::filesystem::path& folder,
-                  const TextureResolver& textures, FileMessages& messages)
-{
-    if (text.texture.empty() || !textures) return;
-    const std::size_t colon = text.texture.rfind(':');
-    if (colon == std::string::npos || colon == 0 || colon + 1 == text.texture.size()) {
-        messages.error(
-            text.texture_at,
-            "expected a file, a colon and the name of a texture in it, such as \"rock.haptel:rock\", found \"" +
-                text.texture + "\"");
-        return;
-    }
-    TextureRequest request;
-    request.reference = std::filesystem::absolute(folder / text.texture.substr(0, colon)).lexically_normal().string() +
-                        text.texture.substr(colon);
-    request.parameters = text.parameters;
-    request.folder = std::filesystem::absolute(folder).lexically_normal().string();
-    for (int i = 0; i < 3; ++i) {
-        request.box_minimum_m[i] = text.object.surface->box_minimum_m[i];
-        request.box_maximum_m[i] = text.object.surface->box_maximum_m[i];
-    }
-    const Surface& surface = *text.object.surface;
-    const glm::dvec3 farthest = glm::max(glm::abs(surface.box_minimum_m), glm::abs(surface.box_maximum_m));
-    double speed_m_per_s = largest_scale(scene) * scene.servo.v_max_m_per_s;
-    if (text.object.motion) speed_m_per_s += text.object.motion->speed_max_m_per_s(glm::length(farthest));
-    request.footprint_m = 2 * speed_m_per_s / scene.servo.rate_hz;
-    request.normal_turn_max_per_m = text.object.surface->normal_turn_max_per_m;
-    request.uv = uv_figures(*text.object.surface);
-    request.servo_period_s = 1 / scene.servo.rate_hz;
-
-    TextureResult result = textures(request);
-    const std::string fault = result.binding ? binding_fault(*result.binding) : "";
-    if (!result.binding || !fault.empty())
-        messages.error(text.texture_at,
-                       "texture `" + text.texture + "` cannot be used" + (fault.empty() ? "" : ": " + fault));
-    else {
-        const std::size_t undrawn = !(result.binding->texture->reads & HAPTEL_READS_UV) ? 0 : faces_without_uv(surface);
-        if (undrawn > 0)
-            messages.warning(text.texture_at, "texture `" + text.texture + "` reads `uv`, but `" + text.object.name +
-                                                  "` has no coordinates" +
-                                                  (undrawn < surface.faces.size() ? " on some of its faces" : "") +
-                                                  ": there `uv` is 0, and it is felt as flat. Give the mesh "
-                                                  "coordinates, or map `p` in the texture (`sphere_map`, `triplanar`)");
-        text.object.texture = std::make_shared<TextureSlot>(std::move(*result.binding));
-    }
-    messages.add(result.diagnostics);
-    text.object.request = std::move(request);
-}
-
-// First hit of a line along the hand's -z, raised by the radius of a probe that lies there. The hand's space.
-std::optional<SurfaceHit> surface_below(const SceneObject& object, const Workspace& workspace,
-                                        const glm::dvec3& above_m, const glm::dvec3& below_m, double radius_m)
-{
-    const Placement& placement = object.placement;
-    const auto hit = object.surface->first_hit(placement.to_object(workspace.to_scene(above_m)),
-                                               placement.to_object(workspace.to_scene(below_m)));
-    if (!hit) return std::nullopt;
-    const glm::dvec3 normal = placement.direction_to_world(hit->facet_normal);
-    return SurfaceHit{workspace.to_hand(placement.to_world(hit->point_m) + radius_m * normal),
-                      workspace.direction_to_hand(normal)};
-}
-
-// What the driver needs to know of the object that is explored, the first one, as its hand sees it.
-void describe_object(DeviceText& device, const std::shared_ptr<const Scene>& scene)
-{
-    const SceneObject& object = scene->objects.front();
-    const Workspace& workspace = device.hand.workspace;
-    DeviceRequest& request = device.request;
-    request.rate_hz = scene->servo.rate_hz;
-    request.stylus_length_m = device.probe.has_tail() ? device.probe.length_m / workspace.scale : 0;
-    request.gripper = device.probe.kind == ProbeKind::gripper;
-    request.box_minimum_m = glm::dvec3(infinity);
-    request.box_maximum_m = glm::dvec3(-infinity);
-    for (const glm::dvec3& vertex : object.surface->vertices) {
-        const glm::dvec3 p = workspace.to_hand(object.placement.to_world(object.surface->lattice.metres(vertex)));
-        request.box_minimum_m = glm::min(request.box_minimum_m, p);
-        request.box_maximum_m = glm::max(request.box_maximum_m, p);
-    }
-    const glm::dvec3 sides = request.box_maximum_m - request.box_minimum_m;
-    const double margin_m = 0.01 * std::max({sides.x, sides.y, sides.z});
-    const double radius_m = device.probe.kind == ProbeKind::sphere ? device.probe.radius_m : 0;
-    request.surface_below = [scene, workspace, radius_m, above_m = request.box_maximum_m.z + margin_m,
-                             below_m = request.box_minimum_m.z - margin_m](double x_m, double y_m) {
-        return surface_below(scene->objects.front(), workspace, {x_m, y_m, above_m}, {x_m, y_m, below_m}, radius_m);
-    };
+    return scale * scene.servo.v_max_m_per_s;
 }
 
 LoadedScene load(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
@@ -310,6 +230,11 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
 {
     LoadedScene loaded;
     std::error_code unknown;
+    if (file.extension().string().starts_with(".haptel")) { // with or without ":NAME" behind it
+        messages.error("this is a texture, and a scene is needed: a TOML file with an `[[object]]` that has this "
+                       "`texture`");
+        return loaded;
+    }
     if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown)) {
         // A pipe may never end, and a folder is no text.
         messages.error(std::filesystem::is_directory(file, unknown) ? "this is a folder: name the scene file in it"
@@ -327,7 +252,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
     try {
         text = read_scene(toml::parse(source), folder, messages);
     } catch (const toml::parse_error& problem) {
-        messages.error(problem.source(), std::string(problem.description()));
+        messages.error(problem.source(), said_of_syntax(problem));
     }
     if (messages.any_error()) return loaded;
 
@@ -344,10 +269,13 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
             object->object.surface = same->object.surface;
             object->surface_key = same->surface_key;
         }
+        if (object->object.surface && same == object) check_unit(*object, text.devices, messages);
         if (object->object.surface) check_reach(*object, text.devices, messages);
     }
     if (messages.any_error()) return loaded;
-    for (ObjectText& object : text.objects) load_texture(object, text, folder, textures, messages);
+    const HandLimits hands{hand_speed_max_m_per_s(text), text.servo.rate_hz};
+    for (ObjectText& object : text.objects)
+        load_texture(object.object, object.texture, hands, folder, textures, messages);
     if (messages.any_error()) return loaded;
 
     auto scene = std::make_shared<Scene>();
@@ -364,19 +292,9 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
     warn_of_doubles(*scene, at_rest, messages);
     join_objects(*scene, std::move(at_rest), surfaces, messages);
 
-    for (DeviceText& device : text.devices) {
-        if (!devices) break;
-        describe_object(device, scene);
-        DeviceResult opened = devices(device.request);
-        const std::string name = "device `" + device.request.name + "`: ";
-        if (!opened.device) {
-            messages.error(device.at, name + opened.error);
-            continue;
-        }
-        if (!opened.warning.empty()) messages.warning(device.at, name + opened.warning);
-        device.hand.force_max_n = opened.device->info().force_max_n;
-        loaded.hands.push_back({std::move(opened.device), std::move(device.hand)});
-    }
+    std::vector<toml::source_region> stiffness_at;
+    for (const ObjectText& object : text.objects) stiffness_at.push_back(object.stiffness_at);
+    loaded.hands = open_hands(text.devices, scene, stiffness_at, devices, messages);
     if (messages.any_error()) {
         loaded.hands.clear();
         return loaded;

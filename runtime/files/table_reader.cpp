@@ -127,7 +127,7 @@ std::string FileMessages::text() const
 
 void FileMessages::error(const toml::source_region& where, const std::string& message)
 {
-    any_error_ = true;
+    ++errors_;
     write(where.begin, "error", message);
 }
 
@@ -180,8 +180,10 @@ std::optional<double> TableReader::number_in(const toml::node& node, std::string
     std::optional<double> value;
     if (node.is_string())
         value = parse_quantity(*node.value<std::string_view>(), quantity);
-    else if (node.is_number())
-        value = node.value<double>();
+    else if (const auto whole = node.value_exact<int64_t>())
+        value = static_cast<double>(*whole); // also one with more digits than a double has
+    else
+        value = node.value_exact<double>();
     if (!value) {
         const std::string units = units_of(quantity);
         messages_.error(node.source(),
@@ -223,7 +225,9 @@ void TableReader::text(std::string_view key, std::string& value)
     const toml::node* node = find(key);
     if (!node) return;
     const auto text = node->value<std::string_view>();
-    if (!node->is_string() || text->empty())
+    if (node->is_string() && text->empty())
+        messages_.error(node->source(), "`" + std::string(key) + "` is empty: name something, or leave the key out");
+    else if (!node->is_string())
         messages_.error(node->source(),
                         "expected text in quotes for `" + std::string(key) + "`, found " + kind_of(*node));
     else

@@ -30,7 +30,8 @@ public:
     void note(const toml::source_region& where, const std::string& message);
     void add(std::string_view text); // of somebody else, as it is, after all others
 
-    bool any_error() const { return any_error_; }
+    bool any_error() const { return errors_ > 0; }
+    std::size_t errors() const { return errors_; } // so far
     std::string text() const;
 
 private:
@@ -43,7 +44,7 @@ private:
     std::filesystem::path file_;
     std::vector<Message> messages_;
     std::string added_;
-    bool any_error_ = false;
+    std::size_t errors_ = 0;
 };
 
 // Closed at both ends, or open at the lower one.

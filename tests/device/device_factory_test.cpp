@@ -44,7 +44,8 @@ TEST_CASE("unknown names are answered with what was meant, or with what there is
     CHECK(contains(error_of(request_on_plane("simulated:premum")), "did you mean 'premium'?"));
     CHECK(contains(error_of(request_on_plane("simulated:premium:frm")), "did you mean 'firm'?"));
     CHECK(contains(error_of(request_on_plane("simulated:premium", "circle")), "did you mean 'circles'?"));
-    CHECK(contains(error_of(request_on_plane("teapot")), "there are simulated, replay"));
+    CHECK(contains(error_of(request_on_plane("teapot")),
+                   "there are simulated, replay; write simulated:premium, or replay:trace.csv"));
     CHECK(contains(error_of(request_on_plane("")), "there are simulated, replay"));
     CHECK(contains(error_of(request_on_plane("replay:")), "replay:trace.csv"));
     CHECK(error_of(request_on_plane(std::string(1'000'000, 'x'))).size() < 300);

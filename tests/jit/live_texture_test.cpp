@@ -199,6 +199,16 @@ TEST_CASE("a file that is broken or gone leaves the old texture and says why")
     CHECK(follower.comes_to(2));
 }
 
+TEST_CASE("what a scene is warned of is told when it is reloaded, too")
+{
+    const test::Folder folder;
+    folder.write("t.haptel", constant("1"));
+    Follower follower(folder);
+    folder.replace("t.haptel", "texture t(image picture) { return 1mm * sample(picture, p.xy / 1mm); }");
+    CHECK(follower.comes_to(0));
+    CHECK(follower.says("t.haptel: warning: parameter 'picture' of texture 't' has no picture and is flat"));
+}
+
 TEST_CASE("an import is part of the texture")
 {
     const test::Folder folder;

@@ -48,10 +48,21 @@ struct TiffKind {
 // A texel of a colour picture is its value times these: what a reader of brightness must weigh.
 inline constexpr double tiff_tint[3] = {1, 0.5, 0.25};
 
+// An f32 of few bits as IEEE half.
+inline uint16_t half_of(double value)
+{
+    const auto bits = std::bit_cast<uint32_t>(static_cast<float>(value));
+    const uint32_t sign = bits >> 16 & 0x8000, fraction = bits >> 13 & 0x3ff;
+    const int exponent = static_cast<int>(bits >> 23 & 0xff) - 127 + 15;
+    return static_cast<uint16_t>(exponent <= 0 ? sign : sign | static_cast<uint32_t>(exponent) << 10 | fraction);
+}
+
 inline void put_sample(FileBytes& file, const TiffKind& kind, double value)
 {
     if (kind.numbers == Numbers::real) {
-        if (kind.bits == 32)
+        if (kind.bits == 16)
+            file.put(half_of(value));
+        else if (kind.bits == 32)
             file.put(static_cast<float>(value));
         else
             file.put(value);
@@ -156,15 +167,6 @@ inline std::string tiff(int columns, int rows, const TiffKind& kind, const Texel
     }
     file.put(uint32_t{0});
     return file.bytes + beyond.bytes;
-}
-
-// An f32 of few bits as IEEE half.
-inline uint16_t half_of(double value)
-{
-    const auto bits = std::bit_cast<uint32_t>(static_cast<float>(value));
-    const uint32_t sign = bits >> 16 & 0x8000, fraction = bits >> 13 & 0x3ff;
-    const int exponent = static_cast<int>(bits >> 23 & 0xff) - 127 + 15;
-    return static_cast<uint16_t>(exponent <= 0 ? sign : sign | static_cast<uint32_t>(exponent) << 10 | fraction);
 }
 
 // OpenEXR 2, scan lines, uncompressed. Channels by the alphabet, all with the same texels times their weight.

@@ -344,7 +344,8 @@ TEST_CASE("the resolver finds textures by reference, and explains what it does n
 
     const std::vector<std::pair<const char*, const char*>> table = {
         {"two.haptel", "it has a, b: write FILE:NAME"},
-        {"two.haptel:c", "this file has no texture 'c'"},
+        {"two.haptel:c", "this file has no texture 'c'\n  hint: it has the textures a, b\n"},
+        {"parts.haptel:c", "this file has no texture 'c'\n  hint: it has none\n"},
         {"rok.haptel:rock", "did you mean 'rock.haptel'?"},
         {"broken.haptel:t", "broken.haptel:1:"},
         {"", "it is a folder"},
@@ -355,6 +356,16 @@ TEST_CASE("the resolver finds textures by reference, and explains what it does n
         CHECK_FALSE(result.binding);
         CHECK(contains(result.diagnostics, message));
     }
+
+    TextureRequest wrong = request_over(0.05);
+    wrong.reference = folder.file("rock.haptel:rock");
+    wrong.parameters = {{"dept", "1mm"}, {"depth", "1kg"}};
+    const std::string file = folder.file("rock.haptel");
+    CHECK(resolve(wrong).diagnostics ==
+          file + ": error: texture 'rock' has no parameter 'dept'\n  hint: did you mean 'depth'?\n" + file +
+              ": error: parameter 'depth' of texture 'rock': unknown unit 'kg'\n  hint: units are m, cm, mm, um, nm, "
+              "deg, "
+              "rad, s, ms, Hz and kHz\n");
 
     folder.write("parts.haptel", "float halve(float x) { return x / 4.0; }"); // an import changes the program too
     CHECK(height("two.haptel:a") == 0.5e-3);

@@ -22,7 +22,7 @@ declare -A may_include=(
 # Which folders alone may include a library.
 declare -A home=(
     [llvm/]='jit' [llvm-c/]='jit' [libusb]='device' [embree]='runtime' [toml++/]='runtime/files'
-    [assimp/]='runtime/files' [boost/]='lang tests' [stb/]='jit tests' [tiff]='jit' [OpenEXR/]='jit' [CLI/]='tools' [cairo]='tools' [nlohmann/]='tools tests bench'
+    [assimp/]='runtime/files' [boost/]='lang tests' [stb/]='jit tests' [tiff]='jit tests' [OpenEXR/]='jit' [Imath/]='jit' [CLI/]='tools' [cairo]='tools' [nlohmann/]='tools tests bench'
 )
 
 # The longest folder with a line in may_include that holds the file, or nothing.

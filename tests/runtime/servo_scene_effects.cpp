@@ -111,3 +111,39 @@ damping_n_s_per_m = 0.5
         CHECK(diagnostics_of(bad.toml) == "scene.toml:" + bad.said);
     }
 }
+
+TEST_CASE("an effect that is written and does nothing is told where it is, unless something else is wrong with it")
+{
+    const std::string object = "[[object]]\nshape = \"plane\"\n", region = object + "[[region]]\nshape = \"space\"\n";
+    const auto idle = [](const char* at, const std::string& strength, const std::string& effect) {
+        return "scene.toml:" + std::string(at) + ": warning: `" + strength + "` is 0, so that this " + effect +
+               " is not felt: write more than 0, or leave the " + effect + " out\n";
+    };
+    const std::string nothing =
+        "scene.toml:3:1: warning: nothing is felt in this region: give it a medium, such as `damping_n_s_per_m = 3`, "
+        "or a `vibration = { force_n = 0.1 }`, or leave it out\n";
+    const struct {
+        std::string toml, said;
+    } cases[] = {
+        {object + "magnet = { force_n = 0, reach_m = 0.01 }\n", idle("3:22", "force_n", "magnet")},
+        {object + "viscosity = { damping_n_s_per_m = 0.0, reach_m = 0.01 }\n",
+         idle("3:35", "damping_n_s_per_m", "viscosity")},
+        {object + "vibration = { force_n = \"0N\", reach_m = 0.01 }\n", idle("3:25", "force_n", "vibration")},
+        {object + "vibration = { force_n = -1 }\n",
+         "scene.toml:3:25: error: `force_n` must be from 0 to 100, found -1\n"},
+        {object + "vibration = { force_n = 0, frequency_hz = 700 }\n",
+         "scene.toml:3:43: error: `frequency_hz` must be below half of the servo's `rate_hz`, so below 500: at that "
+         "rate faster swings are felt as slower ones. Lower it, or raise `rate_hz`\n"},
+        {region, nothing},
+        {region + "damping_n_s_per_m = 0\n", nothing},
+        {region + "vibration = { force_n = 0 }\n", idle("5:25", "force_n", "vibration")},
+        {region + "damping_n_s_per_m = -1\n",
+         "scene.toml:5:21: error: `damping_n_s_per_m` must be from 0 to 1000, found -1\n"},
+        {region + "damping_n_s_per_m = 1\n", ""},
+        {region + "vibration = { force_n = 0.1 }\n", ""},
+    };
+    for (const auto& one : cases) {
+        CAPTURE(one.toml);
+        CHECK(diagnostics_of(one.toml) == one.said);
+    }
+}

@@ -69,11 +69,23 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
         {"[[object]]\nshape = \"plane\"\nsize_m = nan\nstiffness_n_per_m = inf\n",
          "scene.toml:3:10: error: `size_m` must be above 0 up to 1000, found nan\n"
          "scene.toml:4:21: error: `stiffness_n_per_m` must be above 0 up to 1000000, found inf\n"},
+        {"[[object]]\nshape = \"plane\"\nstiffness_n_per_m = 9223372036854775807\ntexture = \"\"\n",
+         "scene.toml:3:21: error: `stiffness_n_per_m` must be above 0 up to 1000000, found 9223372036854775807\n"
+         "scene.toml:4:11: error: `texture` is empty: name something, or leave the key out\n"},
         {"[[object]]\nshape = \"plane\"\nswing_m = [0, 0, 0.01]\n",
          "scene.toml:3:11: error: an object swings by `swing_m = [x, y, z]` at `swing_hz`: write both\n"},
         {"[servo]\nrate_hz = 500\n[[object]]\nshape = \"plane\"\nswing_m = [0, 0, 0.01]\nswing_hz = 250\n",
          "scene.toml:6:12: error: `swing_hz` must be below half of the servo's `rate_hz`, so below 250: at that rate "
          "faster swings are felt as slower ones. Lower it, or raise `rate_hz`\n"},
+        {"[servo]\nrate_hz = 100\n[[object]]\nshape = \"plane\"\nspin_deg_per_s = [0, 0, 18000]\n",
+         "scene.toml:5:18: error: `spin_deg_per_s` must be below half a turn in a tick at the servo's `rate_hz`, so "
+         "below 18000 about all axes together: at that rate faster turns are felt as slower ones. Lower it, or raise "
+         "`rate_hz`\n"},
+        {"[servo]\nrate_hz = 100\n[[object]]\nshape = \"plane\"\nspin_deg_per_s = [0, -10800, 14400]\n",
+         "scene.toml:5:18: error: `spin_deg_per_s` must be below half a turn in a tick at the servo's `rate_hz`, so "
+         "below 18000 about all axes together: at that rate faster turns are felt as slower ones. Lower it, or raise "
+         "`rate_hz`\n"},
+        {"[servo]\nrate_hz = 100\n[[object]]\nshape = \"box\"\nspin_deg_per_s = [0, 0, -17999]\n", ""},
         {"[[object]]\nshape = \"plane\"\nposition_m = [0, 1]\nrotation_deg = 3\n",
          "scene.toml:3:14: error: expected three numbers, such as [0, 0, 0], for `position_m`, found a list of 2\n"
          "scene.toml:4:16: error: expected three numbers, such as [0, 0, 0], for `rotation_deg`, found 3\n"},
@@ -143,6 +155,61 @@ TEST_CASE("a scene that is no text is reported, not crashed on")
     const LoadedScene folder = load_scene(std::filesystem::temp_directory_path(), resolve_flat, open_scripted);
     CHECK_FALSE(folder.scene);
     CHECK(folder.diagnostics.ends_with(":1:1: error: this is a folder: name the scene file in it\n"));
+}
+
+TEST_CASE("usual slips of TOML are told with what to write")
+{
+    const struct {
+        const char *toml, *at, *mend;
+    } slips[] = {
+        {"[[object]]\nshape = box\n", "2:9",
+         "Text needs straight quotes, such as `shape = \"box\"`; three numbers are a list, [0, 0, 0]"},
+        {"[[object]]\nshape = \"box\n", "2:13", "Is the closing quote missing?"},
+        {"[[object]\nshape = \"box\"\n", "1:10",
+         "A header is `[servo]`, or `[[object]]` with two brackets at both ends"},
+        {"[[object]] shape = \"box\"\n", "1:12", "Keys stand below their header, each on a line of its own"},
+        {"[[object]]\nshape: \"box\"\n", "2:6", "Write `key = value`, the key without spaces"},
+        {"[[object]]\nsize_m = 0,15\n", "2:11",
+         "Numbers have a point, such as 0.15; three of them are a list, [0, 0, 0]"},
+        {"[[object]]\nsize_m = 15cm\n", "2:12", "A number with a unit is text, such as `size_m = \"15cm\"`"},
+        {"[[object]]\nsize_m = 1.5cm\n", "2:13",
+         "A number with a unit is text, such as `size_m = \"15cm\"`; a point has digits before and behind it, such as "
+         "0.5 "
+         "and 5.0"},
+        {"[[object]]\nsize_m = .5\n", "2:10",
+         "A number with a unit is text, such as `size_m = \"15cm\"`; a point has digits before and behind it, such as "
+         "0.5 "
+         "and 5.0"},
+        {"[[object]]\nsize_m =\n", "2:9", "Write a value behind the `=`, or leave the key out"},
+        {"[[object]]\njoined = True\n", "2:10",
+         "Write `true` or `false`, in small letters; text needs quotes, such as `shape = \"box\"`"},
+        {"[[object]]\nposition_m = [0, 0 0]\n", "2:20", "Three numbers are a list, [0, 0, 0]"},
+        {"[[object]]\nmagnet = { force_n = 1\nreach_m = 2 }\n", "2:23",
+         "A table in braces stands on one line, with a comma between its keys"},
+        {"[[object]]\nmagnet = { force_n = 1, }\n", "2:25", "Leave the last comma out"},
+        {"[[object]]\nmesh = \"C:\\users\\a.obj\"\n", "2:13",
+         "In double quotes a backslash is written twice; paths may be written with `/`"},
+        {"[[object]]\nmesh = \"meshes\\a.obj\"\n", "2:16",
+         "In double quotes a backslash is written twice; paths may be written with `/`"},
+        {"// a scene\n", "1:1", "A comment begins with `#`"},
+        {"{ \"object\": 1 }\n", "1:1",
+         "A scene is a TOML file: `[[object]]` on a line of its own, `shape = \"box\"` on the next"},
+        {"[[object]]\nshape = \"box\";\n", "2:14", "A line ends without `;`"},
+        {"[servo]\nrate_hz = 1000\nrate_hz = 500\n", "3:11", "It is there twice: leave one of them out"},
+        {"[object]\n[[object]]\n", "2:1", "Write it in double brackets each time"},
+        {"# \xe9\n", "1:2", "Save the file as UTF-8 text"},
+    };
+    for (const auto& slip : slips) {
+        CAPTURE(slip.toml);
+        const std::string said = diagnostics_of(slip.toml);
+        CHECK(said.starts_with("scene.toml:" + std::string(slip.at) + ": error: "));
+        CHECK(said.ends_with(". " + std::string(slip.mend) + "\n"));
+        CHECK(said.find("Error while") == std::string::npos);
+    }
+    CHECK(
+        load_scene("rock.haptel:rock", resolve_flat, open_scripted).diagnostics ==
+        "rock.haptel:rock:1:1: error: this is a texture, and a scene is needed: a TOML file with an `[[object]]` that "
+        "has this `texture`\n");
 }
 
 TEST_CASE("what textures and devices say reaches the user")

@@ -169,6 +169,35 @@ TEST_CASE("a texture that reads coordinates on a mesh without any is told, and s
     CHECK(said(none.c_str(), HAPTEL_READS_POINT).empty());
 }
 
+TEST_CASE("a texture that is deeper than half the width of its object is told")
+{
+    const auto said = [](const std::string& object, double minimum_m, double maximum_m) {
+        return diagnostics_of("[[object]]\ntexture = \"a:b\"\n" + object + "\n", [=](const TextureRequest&) {
+            return TextureResult{lambda_texture([](const haptel_point&, glm::dvec3&) { return 0.0; }, minimum_m,
+                                                maximum_m, HAPTEL_READS_POINT),
+                                 ""};
+        });
+    };
+    CHECK(
+        said("shape = \"box\"\nsize_m = 0.05", -1.0 / 3, 2) ==
+        "scene.toml:2:11: warning: texture `a:b` has heights from -0.333 to 2 m, 2.33 m deep, but `box` is only 0.05 m "
+        "wide: a hand may sink in that far. Is a unit wrong (`depth = \"60um\"` of its `parameters`, `size_m` of the "
+        "object)? If not, bound the height with clamp()\n");
+    // A plane has no thickness, and is as wide as it is long.
+    for (const std::string shape : {"box", "plane", "icosphere"}) {
+        CAPTURE(shape);
+        CHECK(said("shape = \"" + shape + "\"\nsize_m = 0.05", -0.009, 0.012).empty());
+        CHECK_FALSE(said("shape = \"" + shape + "\"\nsize_m = 0.05", -0.014, 0.012).empty());
+    }
+    // A triangle of 4 cm by 3 cm; and nothing is deep about a height that is the same everywhere.
+    CHECK(said("mesh = \"triangle.obj\"\nsize_m = 0.04", 0, 0.0149).find("deep") == std::string::npos);
+    CHECK(said("mesh = \"triangle.obj\"\nsize_m = 0.04", 0, 0.0151).find("is only 0.03 m wide") != std::string::npos);
+    CHECK(said("shape = \"box\"", 2, 2).empty());
+    CHECK(diagnostics_of("[[object]]\nshape = \"box\"\ntexture = \"a:b\"\n", [](const TextureRequest&) {
+              return TextureResult{TextureBinding{}, ""};
+          }).empty());
+}
+
 TEST_CASE("objects turn and swing as the scene says, and equal ones share their surface")
 {
     const Folder folder;
@@ -258,7 +287,8 @@ TEST_CASE("a scene of one line has the defaults of the documentation")
 TEST_CASE("force models, creases and the turning of normals reach the scene")
 {
     CHECK(diagnostics_of("[servo]\nlateral_depth_m = 0.1\n[[object]]\nshape = \"plane\"\n") ==
-          "scene.toml:2:19: error: `lateral_depth_m` is for `force_model = \"lateral\"` alone\n");
+          "scene.toml:2:19: error: `lateral_depth_m` is for `force_model = \"lateral\"` alone: write that, or leave it "
+          "out\n");
     const Folder folder;
     for (const ForceModel model :
          {ForceModel::displaced, ForceModel::paper, ForceModel::paper_unit, ForceModel::ho99, ForceModel::lateral}) {

@@ -141,3 +141,30 @@ TEST_CASE("a scene that is loaded again has the surfaces that did not change, an
     CHECK_FALSE(load_again().scene);
     CHECK(load_again().meshes.size() == 1);
 }
+
+TEST_CASE("a stiffness of more than twice what a device is made for at that rate is told")
+{
+    class Rated final : public ScriptedDevice {
+    public:
+        Rated() : ScriptedDevice([](uint64_t, DevicePose&) { return DeviceStatus::ok; }) {}
+        const DeviceInfo& info() const override { return rated_; }
+
+    private:
+        DeviceInfo rated_{"rated", 8, 800, 0};
+    };
+    const auto said = [](const std::string& toml) {
+        return diagnostics_of(toml, resolve_flat,
+                              [](const DeviceRequest&) { return DeviceResult{std::make_unique<Rated>(), ""}; });
+    };
+    const std::string soft = "[[object]]\nshape = \"plane\"\n",
+                      hard = "[[object]]\nshape = \"box\"\nposition_m = [1, 0, 0]\nstiffness_n_per_m = ";
+    CHECK(said(soft + hard + "1600\n").empty());
+    CHECK(said(soft + hard + "\"2 N/mm\"\n") ==
+          "scene.toml:6:21: warning: `box` has a stiffness of 2000 N/m, but `rated` is made for up to 800 N/m at 1000 "
+          "Hz: a touch may hum or kick. Lower `stiffness_n_per_m`, or raise `rate_hz`\n");
+    CHECK(said("[servo]\nrate_hz = 2000\n" + soft + hard + "3200\n").empty());
+    CHECK(
+        said("[servo]\nrate_hz = 400\n" + soft).starts_with("scene.toml:3:1: warning: `plane` has a stiffness of 800"));
+    // A workspace changes nothing: stiffness is the hand's.
+    CHECK(said("[workspace]\nscale = 0.1\n" + soft + hard + "1600\n").empty());
+}

@@ -116,3 +116,44 @@ TEST_CASE("a mesh is read from every common format")
         CHECK(glm::length(loaded.scene->objects[0].surface->box_maximum_m - glm::dvec3(4, 3, 0)) < 1e-6);
     }
 }
+
+TEST_CASE("a mesh that is not there is told with what is, and one that is cut off without the reader's words")
+{
+    const Folder folder;
+    folder.write("bunny.obj", triangle_obj);
+    folder.write("bunny.txt", "");
+    folder.write("short.stl", std::string(80, ' ') + std::string("\xe8\x03\0\0", 4) + std::string(150, '\0'));
+    const auto said = [&](const std::string& mesh) {
+        const LoadedScene loaded = load_scene(folder.write("scene.toml", "[[object]]\nmesh = \"" + mesh + "\"\n"),
+                                              resolve_flat, open_scripted);
+        CHECK_FALSE(loaded.scene);
+        const std::size_t at = loaded.diagnostics.find(": error: ");
+        return at == std::string::npos ? "" : loaded.diagnostics.substr(at);
+    };
+    CHECK(said("buny.obj") == ": error: mesh `buny.obj`: there is no such file (looked for " + folder.file("buny.obj") +
+                                  "): did you mean `bunny.obj`?\n");
+    CHECK(said("teapot.ply") == ": error: mesh `teapot.ply`: there is no such file (looked for " +
+                                    folder.file("teapot.ply") + "): paths start from the scene's folder\n");
+    CHECK(said("no/bunny.obj").ends_with("no/bunny.obj): paths start from the scene's folder\n"));
+    CHECK(said("short.stl") == ": error: mesh `short.stl`: the file could not be read: it is no STL, or it is cut off: "
+                               "export it again\n");
+}
+
+TEST_CASE("a mesh in millimetres is told, as far as its size and the workspace show it")
+{
+    const Folder folder;
+    folder.write("part.obj", "v 0 0 0\nv 40 0 0\nv 0 30 0\nf 1 2 3\n");
+    const auto warned = [&](const std::string& toml) {
+        const std::string text = load(folder, toml).diagnostics;
+        const std::size_t at = text.find("warning: ");
+        return at == std::string::npos ? "" : text.substr(at, text.find('\n', at) - at);
+    };
+    const std::string part = "[[object]]\nmesh = \"part.obj\"\n";
+    CHECK(warned(part) == "warning: mesh `part.obj` is 40 m large, as its numbers are taken for metres: if they are "
+                          "millimetres write `size_m = \"40mm\"`, else `size_m = \"40m\"`");
+    CHECK(warned(part + "size_m = \"40mm\"\n").empty());
+    CHECK(warned(part + "size_m = \"40m\"\n").empty());
+    CHECK(warned("[[object]]\nshape = \"box\"\nsize_m = 40\n").empty());
+    CHECK(warned("[workspace]\nscale = 8\n" + part).empty());
+    CHECK_FALSE(warned("[workspace]\nscale = 7.9\n" + part).empty());
+}

@@ -155,6 +155,9 @@ TEST_CASE("check: what cannot be read is a finding at 1:1, and JSON stays JSON")
     CHECK(json["diagnostics"][2]["severity"] == "warning");
     CHECK(run_command("check '" + empty + "'").code == 0);
     CHECK(run_command("check").code == 2);
+    const Ran scene = run_command("check ball.toml");
+    CHECK(scene.code == 2);
+    CHECK(contains(scene.err, "ball.toml is a scene: haptel explore feels it"));
     CHECK(run_command("check --box -1mm '" + empty + "'").code == 2);
 }
 

@@ -1,0 +1,59 @@
+#include "runtime/files/toml_syntax.h"
+
+#include <string_view>
+
+namespace haptel::runtime {
+
+namespace {
+
+// The parser's words, as far as they tell slips apart, the first that fit. Where a version of it has others nothing but
+// the hint is lost.
+struct Slip {
+    std::string_view words, mend;
+};
+constexpr Slip slips[] = {
+    {"utf-8", "Save the file as UTF-8 text"},
+    {"root table: expected keys, tables, whitespace or comments, saw '/'", "A comment begins with `#`"},
+    {"root table: expected keys",
+     "A scene is a TOML file: `[[object]]` on a line of its own, `shape = \"box\"` on the next"},
+    {"table header: expected ']'", "A header is `[servo]`, or `[[object]]` with two brackets at both ends"},
+    {"table header: expected a comment", "Keys stand below their header, each on a line of its own"},
+    {"as array-of-tables", "Write it in double brackets each time"},
+    {"cannot redefine", "It is there twice: leave one of them out"},
+    {"expected '=', saw", "Write `key = value`, the key without spaces"},
+    {"whitespace, saw ','", "Numbers have a point, such as 0.15; three of them are a list, [0, 0, 0]"},
+    {"whitespace, saw ';'", "A line ends without `;`"},
+    {"control characters", "Is the closing quote missing?"},
+    {"unicode scalar sequence", "In double quotes a backslash is written twice; paths may be written with `/`"},
+    {"escape sequence", "In double quotes a backslash is written twice; paths may be written with `/`"},
+    {"inline table: expected key or closing '}'",
+     "A table in braces stands on one line, with a comma between its keys"},
+    {"dangling comma", "Leave the last comma out"},
+    {"parsing array", "Three numbers are a list, [0, 0, 0]"},
+    {"parsing boolean", "Write `true` or `false`, in small letters; text needs quotes, such as `shape = \"box\"`"},
+    {"could not determine value type",
+     "Text needs straight quotes, such as `shape = \"box\"`; three numbers are a list, [0, 0, 0]"},
+    {"integer: expected digit", "A number with a unit is text, such as `size_m = \"15cm\"`"},
+    {"floating-point: expected", "A number with a unit is text, such as `size_m = \"15cm\"`; a point has digits before "
+                                 "and behind it, such as 0.5 and 5.0"},
+    {"expected value, saw", "Write a value behind the `=`, or leave the key out"},
+};
+
+} // namespace
+
+std::string said_of_syntax(const toml::parse_error& problem)
+{
+    constexpr std::string_view opening = "Error while parsing ", whole_file = "root table";
+    const std::string_view found = problem.description();
+    std::string said(found);
+    if (said.starts_with(opening)) {
+        said.replace(0, opening.size(), "cannot read this ");
+        if (const std::size_t at = said.find(whole_file); at != std::string::npos)
+            said.replace(at, whole_file.size(), "line");
+    }
+    for (const Slip& slip : slips)
+        if (found.find(slip.words) != std::string_view::npos) return said.append(". ").append(slip.mend);
+    return said;
+}
+
+} // namespace haptel::runtime

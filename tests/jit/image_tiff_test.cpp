@@ -1,0 +1,55 @@
+// TIFF files as other programs write them.
+#include "jit/picture.h"
+#include "tests/support/catch.h"
+#include "tests/support/folder.h"
+
+#include <tiffio.h>
+
+#include <array>
+#include <fstream>
+#include <iterator>
+#include <utility>
+
+using namespace haptel;
+using namespace haptel::test;
+
+// Bits and values as IEEE 754 has them.
+TEST_CASE("picture: a TIFF of half floats as programs write it, packed and predicted, is read to the last bit")
+{
+    const Folder folder;
+    const std::string file = folder.file("halves.tif");
+    const std::array<std::pair<uint16_t, double>, 8> halves = {{{0x3c00, 1.0},
+                                                                {0xc000, -2.0},
+                                                                {0x3555, 0.333251953125},
+                                                                {0x0001, 0x1p-24},
+                                                                {0x03ff, 0x1p-14 - 0x1p-24},
+                                                                {0x0400, 0x1p-14},
+                                                                {0x7bff, 65504.0},
+                                                                {0x8000, -0.0}}};
+    const auto write = [&](uint16_t bits, auto row) {
+        TIFF* const tiff = TIFFOpen(file.c_str(), "w");
+        REQUIRE(tiff);
+        TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, uint32_t{8});
+        TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, uint32_t{1});
+        TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits);
+        TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_IEEEFP);
+        TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+        TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_LZW);
+        if (bits == 16) TIFFSetField(tiff, TIFFTAG_PREDICTOR, PREDICTOR_FLOATINGPOINT);
+        CHECK(TIFFWriteScanline(tiff, row.data(), 0, 0) == 1);
+        TIFFClose(tiff);
+        std::ifstream in(file, std::ios::binary);
+        return jit::read_tiff(std::string{std::istreambuf_iterator<char>(in), {}});
+    };
+    std::array<uint16_t, 8> row;
+    for (size_t i = 0; i < 8; ++i) row[i] = halves[i].first;
+    const jit::Picture picture = write(16, row);
+    CHECK(picture.error.empty());
+    REQUIRE(picture.gray.size() == 8);
+    for (size_t i = 0; i < 8; ++i) CHECK(picture.gray[i] == halves[i].second);
+
+    const jit::Picture odd = write(24, std::array<uint8_t, 24>{});
+    CHECK(odd.error == "is a TIFF of a kind that is not read, of 24 bits a sample, real: Sorry, can not handle images "
+                       "with 24-bit samples");
+    CHECK(odd.hint == "TIFF of 8, 16 or 32 bits, gray or RGB, whole numbers or real ones");
+}
