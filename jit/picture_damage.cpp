@@ -20,6 +20,12 @@ size_t word(std::string_view bytes, size_t at)
     return byte(bytes, at) << 8 | byte(bytes, at + 1);
 }
 
+// Than what is there. The sides have 30 bits each at most.
+bool is_longer(size_t width, size_t height, size_t texel_bytes, size_t there_bytes)
+{
+    return width > 0 && texel_bytes > 0 && height > there_bytes / texel_bytes / width;
+}
+
 // JPEG (ITU T.81, B.2.4.2): a Huffman table says how many codes there are of each of 16 lengths, 256 at most.
 bool huffman_tables_fit(std::string_view bytes, size_t from, size_t to)
 {
@@ -52,18 +58,34 @@ const char* jpeg_damage(std::string_view bytes)
     return fine;
 }
 
-// PNM: width, height and greatest value, in digits, before the texels.
+constexpr const char* cut_off = "it ends before its last texel";
+
+// PNM: width, height and greatest value, in digits, one character, and the texels.
 const char* pnm_damage(std::string_view bytes)
 {
-    size_t at = 2;
-    for (int number = 0; number < 3; ++number) {
+    size_t at = 2, numbers[3] = {};
+    for (size_t& number : numbers) {
         for (; at < bytes.size() && (bytes[at] < '0' || bytes[at] > '9'); ++at)
             if (bytes[at] == '#') at = std::min(bytes.find_first_of("\r\n", at), bytes.size());
         size_t digits = 0;
-        for (; at < bytes.size() && bytes[at] >= '0' && bytes[at] <= '9'; ++at) ++digits;
-        if (digits > 9) return "a number in its header is too large";
+        for (; at < bytes.size() && bytes[at] >= '0' && bytes[at] <= '9'; ++at) {
+            if (++digits > 9) return "a number in its header is too large";
+            number = 10 * number + byte(bytes, at) - '0';
+        }
     }
-    return fine;
+    const size_t texel_bytes = (bytes[1] == '6' ? 3 : 1) * (numbers[2] > 255 ? 2 : 1);
+    return is_longer(numbers[0], numbers[1], texel_bytes, bytes.size() - std::min(bytes.size(), at + 1)) ? cut_off
+                                                                                                         : fine;
+}
+
+// TGA has no mark. Whole texels as they are: 18 bytes, a name, and the texels.
+const char* tga_damage(std::string_view bytes)
+{
+    const size_t palette = byte(bytes, 1), kind = byte(bytes, 2), bits = byte(bytes, 16);
+    if (palette != 0 || (kind != 2 && kind != 3) || bits % 8 != 0) return fine;
+    const size_t width = byte(bytes, 12) | byte(bytes, 13) << 8, height = byte(bytes, 14) | byte(bytes, 15) << 8;
+    const size_t begin = 18 + byte(bytes, 0);
+    return is_longer(width, height, bits / 8, bytes.size() - std::min(bytes.size(), begin)) ? cut_off : fine;
 }
 
 } // namespace
@@ -72,7 +94,7 @@ const char* picture_damage(std::string_view bytes)
 {
     if (bytes.starts_with("\xff\xd8") || bytes.starts_with("\xff\xff")) return jpeg_damage(bytes);
     if (bytes.starts_with("P5") || bytes.starts_with("P6")) return pnm_damage(bytes);
-    return fine;
+    return tga_damage(bytes);
 }
 
 } // namespace haptel::jit

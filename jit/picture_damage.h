@@ -1,4 +1,5 @@
-// Damage that the reader of common pictures takes without a look in some of its releases, and computes with.
+// Damage that the reader of common pictures takes without a look in some of its releases, and computes with: of what is
+// cut off it takes memory that nobody has written.
 #pragma once
 
 #include <string_view>

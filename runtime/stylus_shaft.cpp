@@ -135,16 +135,22 @@ bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstac
 
     Crossing crossing;
     if (!first_crossing(s, to.tip, to.tail, StartsOn::nothing(), crossing, collision_)) return false;
+    // Where the straight ways led below a vertex it is the next edge that stops the shaft, not one below that.
     obstacle = {crossing.face, 0, 1, 0, true, crossing.fraction()};
-    double nearest = HUGE_VAL;
-    for (uint32_t edge = 0; edge < 3; ++edge) {
-        const glm::dvec3 &a = edge_end(crossing.face, edge, 0), &b = edge_end(crossing.face, edge, 1);
-        const Passing then = passing(to, a, b), now = passing(from, a, b);
-        if (then.parallel || now.parallel || !then.within(0, 0, reach)) continue;
-        if (std::fabs(then.height) >= nearest) continue;
-        nearest = std::fabs(then.height);
-        obstacle.edge = edge;
-        obstacle.side = -side_of_line(from.tip, from.tail, a, b);
+    const auto& corners = s.faces[crossing.face].vertex;
+    for (const bool below : {false, true}) {
+        double nearest = HUGE_VAL;
+        for (uint32_t edge = 0; edge < 3; ++edge) {
+            const glm::dvec3 &a = edge_end(crossing.face, edge, 0), &b = edge_end(crossing.face, edge, 1);
+            const Passing then = passing(to, a, b), now = passing(from, a, b);
+            if (then.parallel || now.parallel || !then.within(0, 0, reach)) continue;
+            if (std::fabs(then.height) >= nearest) continue;
+            if (is_below_a_side(corners[edge], corners[next(edge)], to) != below) continue;
+            nearest = std::fabs(then.height);
+            obstacle.edge = edge;
+            obstacle.side = -side_of_line(from.tip, from.tail, a, b);
+        }
+        if (obstacle.side != 0) break;
     }
     return true;
 }

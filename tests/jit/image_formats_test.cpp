@@ -201,6 +201,30 @@ TEST_CASE("picture: a PNG that ends in its texels is told in words for people")
     CHECK(decoded(whole.substr(0, whole.size() / 2)).error == "is damaged: Corrupt PNG");
 }
 
+TEST_CASE("picture: a PNM or TGA that ends before its last texel is refused, a whole one is read")
+{
+    const auto tga = [](int bits, int kind) {
+        FileBytes file;
+        for (const int byte : {2, 0, kind, 0, 0, 0, 0, 0}) file.put(static_cast<uint8_t>(byte)); // a name of 2 bytes
+        for (const int word : {0, 0, 5, 3}) file.put(static_cast<uint16_t>(word));
+        for (const int byte : {bits, 0, 104, 105}) file.put(static_cast<uint8_t>(byte));
+        return file.bytes;
+    };
+    const std::pair<std::string, size_t> heads[] = {{"P5 5 3 255\n", 1}, {"P5\n# heights\n5 3\n65535\n", 2},
+                                                    {"P6 5 3 255\n", 3}, {"P6 5 3 1000\n", 6},
+                                                    {tga(8, 3), 1},      {tga(24, 2), 3},
+                                                    {tga(32, 2), 4}};
+    for (const auto& [head, texel_bytes] : heads) {
+        CAPTURE(head, texel_bytes);
+        const size_t all = 15 * texel_bytes;
+        const jit::Picture whole = decoded(head + std::string(all, '\xff'));
+        CHECK(whole.error.empty());
+        CHECK(whole.gray.size() == 15);
+        for (const size_t there : {size_t{0}, size_t{1}, all / 2, all - 1})
+            CHECK(decoded(head + std::string(there, '\xff')).error == "is damaged: it ends before its last texel");
+    }
+}
+
 TEST_CASE("picture: damaged files end in a picture or in words, and never in more memory than a picture may have")
 {
     std::mt19937_64 random(1);
