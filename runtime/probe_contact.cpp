@@ -71,6 +71,12 @@ void ProbeContact::reset() noexcept
     std::visit([](auto& contact) { contact.reset(); }, contact_);
 }
 
+bool ProbeContact::move_out(double most_m) noexcept
+{
+    auto* sphere = std::get_if<SphereContact>(&contact_);
+    return sphere && sphere->move_out(most_m);
+}
+
 std::span<const Contact> ProbeContact::contacts() const noexcept
 {
     if (const auto* point = std::get_if<PointContact>(&contact_)) return any(point->contact());

@@ -48,6 +48,10 @@ public:
 
     void reset() noexcept;
 
+    // A ball that overlaps what touches it by no more than `most_m` goes out of it, as far as the way is free. True: it
+    // went, and the next tick tells.
+    bool move_out(double most_m) noexcept;
+
     // Where it was held in the last tick, in which the hand was there: each place that touches by `off_m` off what it
     // touches. Nothing if it touched nothing.
     std::optional<ProbePose> held(const ProbePose& hand, double off_m) const noexcept;

@@ -19,6 +19,7 @@ constexpr double nudge_m = 1e-3;
 // From the place where the probe was held, off what held it there, the least first: surfaces that are built anew round
 // otherwise, and may have grown or moved a little. Not farther: something else may be there.
 constexpr double off_m[] = {1e-5, 1e-4, 1e-3};
+constexpr double farthest_off_m = off_m[2];
 
 double distance_m(const Placement& a, const Placement& b)
 {
@@ -115,17 +116,21 @@ void Renderer::take_over(Renderer& before) noexcept
 
 // Each of the old bodies held the probe somewhere, on the free side of itself: from there the hand comes to what this
 // one is now. Objects that the new scene numbers alike count as the same ones: the place where one of them held the
-// probe may be inside another. Where none can hold it as it did the hand is put down where it is.
+// probe may be inside another. Where none can hold it as it did the hand is put down where it is. A ball that what has
+// grown reaches into touches it as a smaller one: it goes out of that, or it would push too little until it had left.
 void Renderer::put_down(Body& body, const Renderer& before, const HeldBodies& held) noexcept
 {
     const ProbePose hand = body.pose_of(*last_pose_);
     const double grown_m = std::max(0.0, probe_.radius_m - before.probe_.radius_m); // of a ball in place of another
     body.contact.update(hand, {});
     const double gap_m = body.contact.gap_m(hand);
+    const auto come = [&](const Body& old) {
+        return body.contact.update(hand, {old.tip_friction.mean, old.tail_friction.mean}).size();
+    };
     const auto come_from = [&](const ProbePose& start, const Body& old) {
         body.contact.reset();
         body.contact.update(start, {});
-        return body.contact.update(hand, {old.tip_friction.mean, old.tail_friction.mean}).size();
+        return come(old);
     };
     std::size_t most = 0;
     ProbePose best;
@@ -148,6 +153,7 @@ void Renderer::put_down(Body& body, const Renderer& before, const HeldBodies& he
     }
     if (best_old) {
         come_from(best, *best_old);
+        if (body.contact.move_out(farthest_off_m * hand_.workspace.scale)) come(*best_old);
         body.tip_friction = best_old->tip_friction;
         body.tail_friction = best_old->tail_friction;
     } else {

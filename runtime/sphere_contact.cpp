@@ -35,6 +35,13 @@ constexpr uint64_t faces_per_tick = 1 << 11;
 // to the end of what was picked; of the radius at least; and picked anew where it is so many times as far as needed.
 constexpr double stride_of_hand = 1.1, stride_of_step = 0.5, stride_of_end = 4, stride_least = 1e-3, stride_most = 8;
 
+// A ball that moves out looks so many times as far as it lacks, for grooves hold it farther out than their walls are
+// near, grows at once by no more than this of what it has looked at, and tries so many ways, each half as long as one
+// that was not free. Once it has looked at so many faces it stays where it has come to.
+constexpr double out_most = 4, out_of_room = 0.9;
+constexpr int ways_out_most = 32;
+constexpr uint64_t faces_out_most = 1 << 15;
+
 } // namespace
 
 SphereContact::SphereContact(std::shared_ptr<const Surface> surface, double radius_m)
@@ -86,6 +93,38 @@ void SphereContact::place() noexcept
     if (!look_around(0)) return;
     grown_ = faces_.distance(centre_, radius_);
     placed_ = grown_ >= std::min(least_radius, radius_);
+}
+
+// The ball as it is keeps in front of the planes all along a straight way out of those of the larger ball: it meets
+// nothing that it has not looked at.
+bool SphereContact::move_out(double most_m) noexcept
+{
+    if (!placed_ || grown_ >= radius_ || (radius_ - grown_) * surface_->lattice.unit_m > most_m) return false;
+    const double before = grown_;
+    const uint64_t seen = counters_.triangles_tested;
+    double share = 1;
+    bool looked = false; // from here
+    for (int tries = 0; tries < ways_out_most && radius_ - grown_ > settled * radius_; ++tries) {
+        const double lacks = radius_ - grown_;
+        if (!looked && around_.room(centre_) < 0.5 * lacks) {
+            if (counters_.triangles_tested - seen > faces_out_most || !look_around(out_most * lacks)) break;
+            looked = true;
+        }
+        const double room = around_.room(centre_), more = share * std::min(lacks, out_of_room * room);
+        faces_.pick(centre_, grown_ + more + 2 * rounding, room);
+        const glm::dvec3 out = nearest_in(faces_.picked(), centre_, centre_, rounding).at;
+        bool free = glm::distance(centre_, out) <= room;
+        for (const HalfSpace& space : faces_.picked())
+            free = free && glm::dot(space.normal, out) - space.offset >= -2 * rounding;
+        share = free ? std::min(1.0, 2 * share) : 0.5 * share;
+        if (!free) continue;
+        centre_ = out;
+        looked = false;
+        grown_ = std::max(grown_, faces_.distance(centre_, radius_ + rounding) - rounding);
+    }
+    around_ = close_ = {};
+    margin_ = 0;
+    return grown_ > before;
 }
 
 // Finds the faces within the radius and a margin, or within less where there are too many. False: nothing less is left.

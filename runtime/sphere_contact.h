@@ -31,6 +31,9 @@ public:
     // add up to that way, friction's lag apart. The first tick puts the ball down where the hand is; what it overlaps
     // there it does not push away, but as it leaves it grows to its radius.
     std::span<const Contact> update(const glm::dvec3& centre_m, const Friction& friction = {}) noexcept;
+    // A ball that was put down smaller, for what it overlapped there, goes out of that as far as the way is free, and
+    // grows by as much; one that lacks more than `most_m` of its radius stays. True: it went, and the next tick tells.
+    bool move_out(double most_m) noexcept;
     // One tick of a probe that is free and known to have met nothing on its way.
     void follow(const glm::dvec3& centre_m) noexcept;
     void reset() noexcept;

@@ -125,3 +125,56 @@ TEST_CASE("both fingers go on holding what has grown or moved a little")
         CHECK(glm::distance(felt.force_n, dvec3(0, 0, 1000 * (top_m - bottom_m))) < 1e-6);
     }
 }
+
+// What a ball feels of a box, or of a vertex, is in closed form: by how much it reaches below the nearest point.
+TEST_CASE("a ball pushes with its whole radius against a surface that has grown under it")
+{
+    const double r = 2e-3, deep = 0.3e-3, size_m = 0.05;
+    const ProbeSettings probe{ProbeKind::sphere, 0.1, r};
+    std::mt19937_64 random(3);
+    const auto uniform = [&](double from, double to) {
+        return std::uniform_real_distribution<double>(from, to)(random);
+    };
+    const auto in_box = [](double size, const dvec3& p) {
+        return glm::clamp(p, dvec3(-0.5 * size), dvec3(0.5 * size));
+    };
+    const Mesh ball = shape("icosphere", size_m);
+    const double share = glm::length(ball.positions_m[0]) / size_m; // of that vertex
+    for (const double grown_m : {0.0, 5e-6, 50e-6, 0.5e-3, 0.99e-3})
+        for (int trial = 0; trial < 10; ++trial) {
+            const bool on_box = trial > 0; // on its sides, edges and corners
+            const auto surface = [&](double size) { return on_box ? make_box(dvec3(size)) : shape("icosphere", size); };
+            const auto nearest = [&](double size, const dvec3& p) {
+                return on_box ? in_box(size, p) : share * size * glm::normalize(p);
+            };
+            const double larger_m = size_m + (on_box ? 2 * grown_m / std::sqrt(3.0) : grown_m / share); // or a corner
+            Scene first = scene_of(probe, surface(size_m)), second = scene_of(probe, surface(larger_m));
+            first.servo.force_rise_s = second.servo.force_rise_s = 0.1;
+            const auto scene = shared(std::move(first)), anew = shared(std::move(second));
+
+            dvec3 at = 0.03 * glm::normalize(ball.positions_m[0]);
+            while (on_box && (at = dvec3(uniform(-0.03, 0.03), uniform(-0.03, 0.03), uniform(0.026, 0.03)),
+                              in_box(size_m, at) == at)) {
+            }
+            const dvec3 foot = nearest(size_m, at), out = glm::normalize(at - foot);
+            Renderer renderer(scene);
+            DevicePose hand;
+            TickResult felt;
+            for (int i = 0; i <= 300; ++i) {
+                hand.tip_m = hand.tail_m = foot + (r - deep + 1e-5 * std::max(0, 100 - i)) * out;
+                felt = renderer.tick(hand);
+            }
+            CAPTURE(on_box, grown_m, at.x, at.y, at.z);
+            CHECK(glm::distance(felt.force_n, 1000 * deep * out) < 1e-6);
+
+            Renderer next(anew, {}, *scene);
+            next.take_over(renderer);
+            const dvec3 off = hand.tip_m - nearest(larger_m, hand.tip_m);
+            const dvec3 whole_n = 1000 * (r - glm::length(off)) * glm::normalize(off);
+            for (int i = 0; i < 150; ++i) {
+                felt = next.tick(hand);
+                const double risen = std::min(1.0, i / 100.0); // over force_rise_s, without a step
+                CHECK(glm::distance(felt.force_n, (1 - risen) * 1000 * deep * out + risen * whole_n) < 1e-6);
+            }
+        }
+}
