@@ -41,6 +41,8 @@ Passing StylusContact::passing_of(const Side& side, const Shaft& shaft) const no
 bool StylusContact::drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept
 {
     const Shaft from = shaft_, to = goal();
+    tip_walked_ = tip_.contact_.touching || tip_path.count > 0; // one that has left its border by now, too
+    tail_walked_ = tail_.contact_.touching || tail_path.count > 0;
     if (move(to)) return true;
     Shaft leg = to;
     const uint32_t legs = std::max(tip_path.count, tail_path.count);
@@ -108,7 +110,7 @@ bool StylusContact::is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Sh
 bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept
 {
     const Surface& s = surface();
-    const double tip_off = tip_.contact_.touching ? at_the_end : 0, tail_off = tail_.contact_.touching ? at_the_end : 0;
+    const double tip_off = tip_walked_ ? at_the_end : 0, tail_off = tail_walked_ ? at_the_end : 0;
     bool met = false;
     obstacle.time = 1;
     obstacle.exact = false;
