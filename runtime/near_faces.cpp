@@ -23,6 +23,7 @@ NearFaces::NearFaces(const Surface& surface) : surface_(&surface)
     const std::size_t room = std::min(faces_most, surface.faces.size());
     faces_.reserve(room);
     planes_.reserve(room);
+    corners_.reserve(room);
     laid_.reserve(room);
     picked_.reserve(room);
     place_of_.reserve(room);
@@ -30,7 +31,6 @@ NearFaces::NearFaces(const Surface& surface) : surface_(&surface)
 
 bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) noexcept
 {
-    planes_.clear();
     picked_.clear();
     place_of_.clear();
     see_from(centre);
@@ -40,6 +40,9 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
     const auto& faces = surface_->faces;
     const auto& vertices = surface_->vertices;
     const std::size_t boxes = faces_.size();
+    planes_.resize(boxes);
+    corners_.resize(boxes);
+    // Which of them stay is as good as random: all are written, and those that stay are counted.
     std::size_t found = 0;
     for (std::size_t i = 0; i < boxes; ++i) {
         if (i + 2 * lookahead < boxes) __builtin_prefetch(&faces[faces_[i + 2 * lookahead]]);
@@ -52,11 +55,14 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
         const double square = glm::dot(away, away);
         const glm::dvec3 normal = square > 0 ? away * (1 / std::sqrt(square)) : face.normal;
         const HalfSpace plane{normal, std::max({glm::dot(normal, a), glm::dot(normal, b), glm::dot(normal, c)})};
-        if (ahead(plane) > radius + rounding) continue;
-        faces_[found++] = faces_[i];
-        planes_.push_back(plane);
+        faces_[found] = faces_[i];
+        planes_[found] = plane;
+        corners_[found] = {a, b, c};
+        found += !(ahead(plane) > radius + rounding);
     }
     faces_.resize(found);
+    planes_.resize(found);
+    corners_.resize(found);
     laid_.assign(found, 0);
     return all;
 }
@@ -64,17 +70,24 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
 void NearFaces::pick(const glm::dvec3& centre, double radius, double reach) noexcept
 {
     picked_.clear();
-    place_of_.clear();
     see_from(centre);
     radius_ = radius;
     const double near = radius + reach + rounding;
+    place_of_.resize(planes_.size());
+    std::size_t close = 0;
     for (std::size_t place = 0; place < planes_.size(); ++place) {
-        if (ahead(planes_[place]) > near) continue;
+        place_of_[close] = static_cast<uint32_t>(place);
+        close += !(ahead(planes_[place]) > near);
+    }
+    std::size_t picked = 0;
+    for (std::size_t i = 0; i < close; ++i) {
+        const uint32_t place = place_of_[i];
         if (laid_[place] != centres_) lay(place);
         if (ahead(planes_[place]) > near) continue;
         picked_.push_back({planes_[place].normal, planes_[place].offset + radius});
-        place_of_.push_back(static_cast<uint32_t>(place));
+        place_of_[picked++] = place;
     }
+    place_of_.resize(picked);
 }
 
 bool NearFaces::renew(uint32_t picked, const glm::dvec3& centre) noexcept
@@ -108,13 +121,10 @@ void NearFaces::see_from(const glm::dvec3& centre) noexcept
 
 void NearFaces::lay(std::size_t place) noexcept
 {
-    const Face& face = surface_->faces[faces_[place]];
-    const glm::dvec3 away =
-        centre_ - nearest_point(surface_->vertices[face.vertex[0]], surface_->vertices[face.vertex[1]],
-                                surface_->vertices[face.vertex[2]], centre_)
-                      .at;
+    const auto& [a, b, c] = corners_[place];
+    const glm::dvec3 away = centre_ - nearest_point(a, b, c, centre_).at;
     const double distance = glm::length(away);
-    const glm::dvec3 normal = distance > 0 ? away / distance : face.normal;
+    const glm::dvec3 normal = distance > 0 ? away / distance : surface_->faces[faces_[place]].normal;
     planes_[place] = {normal, glm::dot(normal, centre_) - distance};
     laid_[place] = centres_;
 }

@@ -9,6 +9,7 @@
 #include "runtime/half_spaces.h"
 #include "runtime/surface.h"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -49,7 +50,8 @@ private:
     std::vector<uint32_t> faces_; // room for all is made beforehand
     std::size_t boxes_ = 0;
     std::vector<HalfSpace> planes_;
-    std::vector<uint64_t> laid_; // seen from which centre
+    std::vector<std::array<glm::dvec3, 3>> corners_; // of each, side by side in memory
+    std::vector<uint64_t> laid_;                     // seen from which centre
     std::vector<HalfSpace> picked_;
     std::vector<uint32_t> place_of_; // of those picked, above
     double radius_ = 0;              // they were picked for

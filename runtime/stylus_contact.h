@@ -112,7 +112,8 @@ private:
     void restart_ends() noexcept;
 
     void resolve(const EndsFriction& friction) noexcept;
-    double solve(const Shaft& hand, Shaft& aim, Grips& grips) noexcept;
+    enum class Turning : uint8_t { with_the_shaft, not_at_all };
+    double solve(const Shaft& hand, Shaft& aim, Grips& grips, Turning normals = Turning::with_the_shaft) noexcept;
     Shaft clear_of_sides(const Shaft& to, EndsGive gives) const noexcept;
     void take_hold(EndGrip& grip, const PointContact& end, const glm::dvec3& on_shaft) const noexcept;
     bool drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept;
@@ -122,6 +123,8 @@ private:
     void approach(const Shaft& to, const Obstacle& obstacle) noexcept;
     void touch(const Obstacle& obstacle) noexcept;
     void let_go_of_ended() noexcept;
+    bool let_go_of_unreached() noexcept;
+    void hold_hand_from_here(Grips& grips) noexcept;
     void drop(uint32_t side) noexcept;
     void report() noexcept;
     void count() noexcept;

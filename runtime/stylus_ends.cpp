@@ -134,12 +134,22 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     counters_.walks_cut += stopped;
     stuck_ticks_ = stopped && farther(shaft_, goal()) > far_behind ? stuck_ticks_ + 1 : 0;
     if (stuck_ticks_ == patience_ticks) tracked_ = false;
+    if (let_go_of_unreached() || stopped) hold_hand_from_here(grips);
     tip_.proxy_.sliding = tip_slides;
     tail_.proxy_.sliding = tail_slides;
     tip_.describe();
     tail_.describe();
     for (uint32_t i = side_count_; i-- > 0;)
         if (sides_[i].push == 0 && sides_[i].sign * passing_of(sides_[i], shaft_).height > 4 * rest_gap) drop(i);
+}
+
+// What pushes the hand while the shaft is not where it should be: the ends were aimed at less of the hand's way, or at
+// what a side left them that is gone. It is all of the hand that is held, by the contacts as they are here.
+void StylusContact::hold_hand_from_here(Grips& grips) noexcept
+{
+    solve(hand_, aim_, grips, Turning::not_at_all);
+    if (begin_ == 0 && tip_.proxy_.touches()) tip_.aim(aim_.tip);
+    if (end_ == 1 && tail_.proxy_.touches()) tail_.aim(aim_.tail);
 }
 
 // With the end that gives where it clears the sides that push, the other being where it is.
@@ -181,8 +191,8 @@ void StylusContact::take_hold(EndGrip& grip, const PointContact& end, const glm:
 }
 
 // Where the ends are to be aimed for the sides to hold a hand; and the share of the way there on which each side that
-// pushes stays within its edge and the shaft.
-double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips) noexcept
+// pushes stays within its edge and the shaft. `normals`: of the sides; not turned they are those where the shaft is.
+double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips, Turning normals) noexcept
 {
     std::array<ShaftContact, shaft_contacts_max> contacts;
     EndGrip &tip = grips.tip, &tail = grips.tail;
@@ -196,7 +206,8 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips) noexcep
     for (int turn = 0; turn < turns_max; ++turn) {
         for (uint32_t i = 0; i < side_count_; ++i) {
             Side& side = sides_[i];
-            if (const Passing here = passing_of(side, at); !here.parallel) {
+            const Passing here = passing_of(side, normals == Turning::with_the_shaft ? at : shaft_);
+            if (!here.parallel) {
                 side.normal = side.sign * here.normal;
                 side.point = here.edge_point;
                 side.share = begin_ + here.on_shaft * (end_ - begin_);

@@ -217,6 +217,19 @@ void StylusContact::let_go_of_ended() noexcept
     }
 }
 
+// Of edges that the shaft was stopped by on its way, and has not come to pass over: it found another way. Nothing is
+// there to push. Returns whether one did.
+bool StylusContact::let_go_of_unreached() noexcept
+{
+    bool pushed = false;
+    for (uint32_t i = side_count_; i-- > 0;) {
+        if (sides_[i].reached) continue;
+        pushed |= sides_[i].push > 0;
+        drop(i);
+    }
+    return pushed;
+}
+
 void StylusContact::drop(uint32_t side) noexcept
 {
     for (uint32_t i = side + 1; i < side_count_; ++i) sides_[i - 1] = sides_[i];
