@@ -1,6 +1,7 @@
 // How the shaft of a stylus follows its ends: straight moves past edges, and what it meets on the way.
 #include "runtime/collision.h"
 #include "runtime/fan.h"
+#include "runtime/predicates.h"
 #include "runtime/stylus_contact.h"
 
 #include <algorithm>
@@ -203,6 +204,12 @@ void StylusContact::let_go_of_ended() noexcept
     for (uint32_t i = side_count_; i-- > 0;) {
         Side& side = sides_[i];
         const Passing now = passing_of(side, shaft_);
+        // Met beyond an end of the shaft, as by a tip that goes over a border: only now is it seen on which side.
+        const int exact = now.parallel || !now.within(0, 0, 0)
+                              ? 0
+                              : -side_of_line(shaft_.tip, shaft_.tail, edge_end(side.face, side.edge, 0),
+                                              edge_end(side.face, side.edge, 1));
+        if (exact != 0) side.sign = exact;
         const bool over =
             !now.parallel && now.within(let_go_by_end, let_go_by_end, let_go) && side.sign * now.height > -rest_gap;
         const bool ahead = !side.reached && (side.fresh || side.push > 0);

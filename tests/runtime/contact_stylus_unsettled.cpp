@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <random>
 #include <span>
@@ -65,65 +64,7 @@ private:
     dvec3 middle_, heading_, along_, turning_;
 };
 
-// An open disc of 8 cm with a short skirt.
-Mesh make_cap(uint32_t sides, double skirt_m, double flare_m, double top_m)
-{
-    Mesh cap;
-    constexpr double radius_m = 0.04, turn = 2 * 3.14159265358979323846;
-    for (uint32_t i = 0; i < sides; ++i) {
-        const dvec3 out(std::cos(turn * i / sides), std::sin(turn * i / sides), 0);
-        cap.positions_m.push_back(radius_m * out);
-        cap.positions_m.push_back((radius_m + flare_m) * out - dvec3(0, 0, skirt_m));
-    }
-    cap.positions_m.emplace_back(0, 0, top_m);
-    for (uint32_t i = 0; i < sides; ++i) {
-        const uint32_t here = 2 * i, there = 2 * ((i + 1) % sides);
-        cap.triangles.push_back({2 * sides, here, there});
-        cap.triangles.push_back({here, here + 1, there + 1});
-        cap.triangles.push_back({here, there + 1, there});
-    }
-    return cap;
-}
-
 } // namespace
-
-TEST_CASE("a tip that is drawn over a border leaves its shaft leaning on it")
-{
-    std::mt19937_64 random(1);
-    const auto any = [&](double most) { return std::uniform_real_distribution<double>(-most, most)(random); };
-    int by_shaft = 0, out_of_balance = 0;
-    for (int stroke = 0; stroke < 60; ++stroke) {
-        CAPTURE(stroke);
-        const auto sides = static_cast<uint32_t>(8 + random() % 24);
-        const double skirt_m = 0.0005 + std::fabs(any(0.004)), flare_m = any(0.002), top_m = 0.008 + any(0.01);
-        const auto surface = surface_of(make_cap(sides, skirt_m, flare_m, top_m));
-        StylusContact stylus(surface);
-        const double angle = any(3.14), across = any(0.005), deep_m = 0.002 + std::fabs(any(0.006));
-        const dvec3 out(std::cos(angle), std::sin(angle), 0), beside(-out.y, out.x, 0);
-        const dvec3 along = 0.12 * glm::normalize(dvec3(0, 0, 1) + any(0.6) * out + any(0.6) * beside);
-        for (int tick = 0; tick < 3000; ++tick) {
-            const double time_s = 1e-3 * tick, pressed = std::min(1.0, time_s / 0.4);
-            const dvec3 tip = (0.03 + 0.006 * time_s) * out + across * time_s * beside +
-                              dvec3(0, 0, 0.02 - (0.02 + deep_m) * pressed),
-                        tail = tip + along;
-            stylus.update(tip, tail);
-            if (stylus.contacts().empty()) continue;
-            CAPTURE(tick);
-            REQUIRE(stylus.ideal());
-            const dvec3 tip_pull = surface->lattice.metres(stylus.ideal()->tip) - tip,
-                        tail_pull = surface->lattice.metres(stylus.ideal()->tail) - tail;
-            dvec3 force{0}; // over the stiffness
-            for (const Contact& contact : stylus.contacts()) {
-                by_shaft += contact.by_shaft;
-                force += contact.depth_m * contact.normal;
-                REQUIRE(contact.depth_m <= 3 * (glm::length(tip_pull) + glm::length(tail_pull)) + 1e-9);
-            }
-            out_of_balance += glm::distance(force, tip_pull + tail_pull) > 1e-5;
-        }
-    }
-    CHECK(by_shaft > 10'000);
-    CHECK(out_of_balance == 0);
-}
 
 TEST_CASE("a stylus pushes as its ends are pulled, whether or not it has come to rest")
 {
