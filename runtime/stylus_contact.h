@@ -131,16 +131,17 @@ private:
 
     PointContact tip_, tail_;
     bool skips_free_space_;
-    const SweptTree* tree_;                     // of the surface, which the ends hold
-    Shaft hand_;                                // lattice units, neither rounded nor clamped
-    double begin_ = 0, end_ = 1;                // shares of the stylus that lie in the workspace
-    Shaft aim_;                                 // where the pushes of the sides would have the hand's ends
-    Shaft reached_;                             // the hand for which the shaft was held last
-    Shaft shaft_;                               // lattice points
-    bool has_tail_ = false, has_shaft_ = false; // of the last tick
-    bool tracked_ = false;                      // the shaft crosses nothing
-    bool astray_ = false;                       // the shaft could not follow its ends
-    Obstacle met_;                              // by the last move
+    const SweptTree* tree_;                         // of the surface, which the ends hold
+    Shaft hand_;                                    // lattice units, neither rounded nor clamped
+    double begin_ = 0, end_ = 1;                    // shares of the stylus that lie in the workspace
+    Shaft aim_;                                     // where the pushes of the sides would have the hand's ends
+    Shaft reached_;                                 // the hand for which the shaft was held last
+    Shaft shaft_;                                   // lattice points
+    bool has_tail_ = false, has_shaft_ = false;     // of the last tick
+    bool tracked_ = false;                          // the shaft crosses nothing
+    bool astray_ = false;                           // the shaft could not follow its ends
+    bool tip_walked_ = false, tail_walked_ = false; // in this move, on the surface
+    Obstacle met_;                                  // by the last move
     std::array<Side, sides_max> sides_;
     uint32_t side_count_ = 0;
     Clear clear_;

@@ -1,6 +1,7 @@
 // How the shaft of a stylus follows its ends: straight moves past edges, and what it meets on the way.
 #include "runtime/collision.h"
 #include "runtime/fan.h"
+#include "runtime/predicates.h"
 #include "runtime/stylus_contact.h"
 
 #include <algorithm>
@@ -41,6 +42,8 @@ Passing StylusContact::passing_of(const Side& side, const Shaft& shaft) const no
 bool StylusContact::drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept
 {
     const Shaft from = shaft_, to = goal();
+    tip_walked_ = tip_.contact_.touching || tip_path.count > 0; // one that has left its border by now, too
+    tail_walked_ = tail_.contact_.touching || tail_path.count > 0;
     if (move(to)) return true;
     Shaft leg = to;
     const uint32_t legs = std::max(tip_path.count, tail_path.count);
@@ -108,7 +111,7 @@ bool StylusContact::is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Sh
 bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept
 {
     const Surface& s = surface();
-    const double tip_off = tip_.contact_.touching ? at_the_end : 0, tail_off = tail_.contact_.touching ? at_the_end : 0;
+    const double tip_off = tip_walked_ ? at_the_end : 0, tail_off = tail_walked_ ? at_the_end : 0;
     bool met = false;
     obstacle.time = 1;
     obstacle.exact = false;
@@ -201,6 +204,12 @@ void StylusContact::let_go_of_ended() noexcept
     for (uint32_t i = side_count_; i-- > 0;) {
         Side& side = sides_[i];
         const Passing now = passing_of(side, shaft_);
+        // Met beyond an end of the shaft, as by a tip that goes over a border: only now is it seen on which side.
+        const int exact = now.parallel || !now.within(0, 0, 0)
+                              ? 0
+                              : -side_of_line(shaft_.tip, shaft_.tail, edge_end(side.face, side.edge, 0),
+                                              edge_end(side.face, side.edge, 1));
+        if (exact != 0) side.sign = exact;
         const bool over =
             !now.parallel && now.within(let_go_by_end, let_go_by_end, let_go) && side.sign * now.height > -rest_gap;
         const bool ahead = !side.reached && (side.fresh || side.push > 0);

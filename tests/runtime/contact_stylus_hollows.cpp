@@ -92,3 +92,64 @@ TEST_CASE("a shaft that slides round the hole of a ring is caught at none of its
     CHECK(by_shaft > 5000);
     CHECK(searched > 100);
 }
+
+namespace {
+
+// A disc of 8 cm, raised in its middle, with a skirt that is open below.
+Mesh make_cap(uint32_t sides, double skirt_m, double flare_m)
+{
+    Mesh mesh;
+    for (uint32_t i = 0; i < sides; ++i) {
+        const double angle = 6.283185307179586 * i / sides;
+        const dvec3 out(std::cos(angle), std::sin(angle), 0);
+        mesh.positions_m.push_back(0.04 * out);
+        mesh.positions_m.push_back((0.04 + flare_m) * out - dvec3(0, 0, skirt_m));
+    }
+    mesh.positions_m.emplace_back(0, 0, 0.01);
+    for (uint32_t i = 0; i < sides; ++i) {
+        const uint32_t a = 2 * i, b = 2 * ((i + 1) % sides);
+        mesh.triangles.push_back({2 * sides, a, b});
+        mesh.triangles.push_back({a, a + 1, b + 1});
+        mesh.triangles.push_back({a, b + 1, b});
+    }
+    return mesh;
+}
+
+} // namespace
+
+TEST_CASE("a tip that is drawn over the open border of a cap leaves its shaft there, and no contact fights another")
+{
+    std::mt19937_64 random(1);
+    std::uniform_real_distribution<double> any(-1, 1);
+    int over = 0, stopped = 0;
+    for (int stroke = 0; stroke < 60; ++stroke) {
+        const auto sides = static_cast<uint32_t>(20 + 12 * any(random));
+        const auto surface = surface_of(make_cap(sides, 0.0025 + 0.002 * any(random), 0.002 * any(random)));
+        StylusContact stylus(surface);
+        const double angle = 3 * any(random), deep_m = 0.005 + 0.003 * any(random), aside = 0.005 * any(random);
+        const dvec3 out(std::cos(angle), std::sin(angle), 0), along(-out.y, out.x, 0);
+        const dvec3 leans = glm::normalize(dvec3(0, 0, 1) + 0.6 * any(random) * out + 0.6 * any(random) * along);
+        for (int tick = 0; tick < 3000; ++tick) {
+            const double time_s = 1e-3 * tick, down = std::min(1.0, time_s / 0.4);
+            const dvec3 tip =
+                (0.03 + 0.006 * time_s) * out + aside * time_s * along + dvec3(0, 0, 0.02 - (0.02 + deep_m) * down);
+            const Pose hand{tip, tip + 0.12 * leans};
+            stylus.update(hand.tip, hand.tail);
+            if (stylus.contacts().empty()) continue;
+            CAPTURE(stroke, sides, tick);
+            REQUIRE(stylus.ideal());
+            const Pose ideal{surface->lattice.metres(stylus.ideal()->tip),
+                             surface->lattice.metres(stylus.ideal()->tail)};
+            dvec3 sum(0);
+            for (const Contact& contact : stylus.contacts()) {
+                sum += contact.depth_m * contact.normal;
+                REQUIRE(contact.depth_m <= 3 * std::sqrt(ideal.square_to(hand)) + 1e-9);
+                over += contact.by_shaft;
+            }
+            // What pushes is what the ideal stylus is off the hand, unless it was stopped on its way.
+            stopped += glm::distance(sum, ideal.tip - hand.tip + ideal.tail - hand.tail) > 1e-6;
+        }
+    }
+    CHECK(over > 1000);
+    CHECK(stopped <= 60); // of 180 000; the tip of one stroke is held up for 51 on its way round a corner
+}
