@@ -24,9 +24,7 @@ ImageFile fail(std::string error, std::string hint = {})
 
 ImageFile decode(const std::string& bytes, const std::string& shown)
 {
-    const Picture picture = is_tiff(bytes)  ? read_tiff(bytes)
-                            : is_exr(bytes) ? read_exr(bytes)
-                                            : read_common_picture(bytes);
+    const Picture picture = read_picture(bytes);
     if (!picture.error.empty()) return fail("'" + shown + "' " + lang::printable(picture.error), picture.hint);
     ImageFile made;
     made.image = ir::SplineImage::make(picture.gray, picture.width, picture.height, made.error);

@@ -7,7 +7,6 @@
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_BMP
 #define STBI_ONLY_TGA
-#define STBI_ONLY_PNM
 #define STBI_NO_STDIO
 #define STBI_FAILURE_USERMSG
 #define STB_IMAGE_STATIC
@@ -44,6 +43,14 @@ Picture picture_of(int64_t width, int64_t height)
     made.width = width;
     made.height = height;
     return made;
+}
+
+Picture read_picture(std::string_view bytes)
+{
+    return is_tiff(bytes)  ? read_tiff(bytes)
+           : is_exr(bytes) ? read_exr(bytes)
+           : is_pnm(bytes) ? read_pnm(bytes)
+                           : read_common_picture(bytes);
 }
 
 Picture read_common_picture(std::string_view bytes)

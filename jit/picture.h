@@ -17,13 +17,15 @@ struct Picture {
 };
 
 // Bytes are anybody's: what is no picture, damaged or cut off is an error in words and never more.
-Picture read_common_picture(std::string_view bytes); // PNG, JPEG, BMP, TGA, PGM
-Picture read_tiff(std::string_view bytes);
-Picture read_exr(std::string_view bytes);
+Picture read_picture(std::string_view bytes); // of any of the kinds below, by its first bytes
 
-// By the first bytes.
+bool is_pnm(std::string_view bytes);
 bool is_tiff(std::string_view bytes);
 bool is_exr(std::string_view bytes);
+Picture read_pnm(std::string_view bytes); // PGM, PPM
+Picture read_tiff(std::string_view bytes);
+Picture read_exr(std::string_view bytes);
+Picture read_common_picture(std::string_view bytes); // PNG, JPEG, BMP, TGA
 
 Picture no_picture(std::string error, std::string hint = {});
 

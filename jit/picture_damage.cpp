@@ -60,24 +60,6 @@ const char* jpeg_damage(std::string_view bytes)
 
 constexpr const char* cut_off = "it ends before its last texel";
 
-// PNM: width, height and greatest value, in digits, one character, and the texels.
-const char* pnm_damage(std::string_view bytes)
-{
-    size_t at = 2, numbers[3] = {};
-    for (size_t& number : numbers) {
-        for (; at < bytes.size() && (bytes[at] < '0' || bytes[at] > '9'); ++at)
-            if (bytes[at] == '#') at = std::min(bytes.find_first_of("\r\n", at), bytes.size());
-        size_t digits = 0;
-        for (; at < bytes.size() && bytes[at] >= '0' && bytes[at] <= '9'; ++at) {
-            if (++digits > 9) return "a number in its header is too large";
-            number = 10 * number + byte(bytes, at) - '0';
-        }
-    }
-    const size_t texel_bytes = (bytes[1] == '6' ? 3 : 1) * (numbers[2] > 255 ? 2 : 1);
-    return is_longer(numbers[0], numbers[1], texel_bytes, bytes.size() - std::min(bytes.size(), at + 1)) ? cut_off
-                                                                                                         : fine;
-}
-
 // TGA has no mark. Whole texels as they are: 18 bytes, a name, and the texels.
 const char* tga_damage(std::string_view bytes)
 {
@@ -93,7 +75,6 @@ const char* tga_damage(std::string_view bytes)
 const char* picture_damage(std::string_view bytes)
 {
     if (bytes.starts_with("\xff\xd8") || bytes.starts_with("\xff\xff")) return jpeg_damage(bytes);
-    if (bytes.starts_with("P5") || bytes.starts_with("P6")) return pnm_damage(bytes);
     return tga_damage(bytes);
 }
 

@@ -11,9 +11,7 @@ namespace haptel::fuzz {
 
 void read_picture(std::string_view bytes)
 {
-    const jit::Picture picture = jit::is_tiff(bytes)  ? jit::read_tiff(bytes)
-                                 : jit::is_exr(bytes) ? jit::read_exr(bytes)
-                                                      : jit::read_common_picture(bytes);
+    const jit::Picture picture = jit::read_picture(bytes);
     if (picture.error.empty() == picture.gray.empty()) fail("neither a picture nor a reason, or both");
     if (picture.gray.size() != static_cast<size_t>(picture.width * picture.height)) fail("a picture of two sizes");
     count(picture.error.empty() ? "pictures" : "refused");
@@ -34,6 +32,7 @@ std::vector<std::string> picture_corpus()
     return {test::png(20, 15, 8, value),
             test::png(20, 15, 16, value),
             "P5\n3 2\n255\nabcdef",
+            "P6\n2 1\n1000\nabcdefghijkl",
             test::tiff(20, 15, {16, test::Numbers::unsigned_whole}, value),
             test::tiff(20, 15, tiled, value),
             test::tiff(20, 15, colour, value),

@@ -33,9 +33,7 @@ double smooth(int column, int row)
 
 jit::Picture decoded(const std::string& bytes)
 {
-    return jit::is_tiff(bytes)  ? jit::read_tiff(bytes)
-           : jit::is_exr(bytes) ? jit::read_exr(bytes)
-                                : jit::read_common_picture(bytes);
+    return jit::read_picture(bytes);
 }
 
 // The largest difference to `value` over all texels.
@@ -223,6 +221,27 @@ TEST_CASE("picture: a PNM or TGA that ends before its last texel is refused, a w
         for (const size_t there : {size_t{0}, size_t{1}, all / 2, all - 1})
             CHECK(decoded(head + std::string(there, '\xff')).error == "is damaged: it ends before its last texel");
     }
+}
+
+// The format's own words (netpbm.sourceforge.net/doc/pgm.html): two bytes with the most significant first where the
+// greatest value is above 255, and grays as shares of it.
+TEST_CASE("picture: what a PNM says is a share of its greatest value, in one byte or two, gray or in colour")
+{
+    const std::string in_one = "P5 2 1 200\n\x64\xc8", in_two = std::string("P5 2 1 1000\n\x01\xf4\x03\xe8", 16);
+    for (const std::string& bytes : {in_one, in_two}) {
+        const jit::Picture picture = decoded(bytes);
+        REQUIRE(picture.error.empty());
+        CHECK(picture.gray == std::vector<double>{0.5, 1});
+    }
+    const std::string colours("P6 1 2 65535\n\xff\xff\x00\x00\x00\x00\x00\x00\xff\xff\x80\x00", 25);
+    const jit::Picture coloured = decoded(colours); // red above; green and half of blue below
+    REQUIRE(coloured.error.empty());
+    CHECK(std::fabs(coloured.gray[1] - 0.299) < 1e-12);
+    CHECK(std::fabs(coloured.gray[0] - (0.587 + 0.114 * 32768 / 65535)) < 1e-12);
+    CHECK(decoded("P5 1 1 200\n\xff").gray == std::vector<double>{1}); // beyond the greatest
+    for (const char* most : {"0", "65536"})
+        CHECK(decoded(std::string("P5 1 1 ") + most + "\nab").error ==
+              "is damaged: its greatest value is not one from 1 to 65535");
 }
 
 TEST_CASE("picture: damaged files end in a picture or in words, and never in more memory than a picture may have")
