@@ -57,8 +57,8 @@ std::string to_table(const std::vector<bench::TickRow>& rows)
 
 std::string to_csv(const std::vector<bench::TickRow>& rows)
 {
-    std::string text = "scene,triangles,objects,contact,tick_ns,tick_ns_p99,tick_ns_p999,once_ns,once_ns_p99,once_ns_"
-                       "p999,ahead_ns,tree_ns,queries,queries_p99,"
+    std::string text = "scene,triangles,objects,contact,tick_ns,tick_ns_p99,tick_ns_p999,"
+                       "once_ns,once_ns_p99,once_ns_p999,ahead_ns,tree_ns,queries,queries_p99,"
                        "triangles_touched,triangles_touched_p99,triangles_seen_p99\n";
     for (const bench::TickRow& row : rows)
         text += fmt::format("\"{}\",{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.scene, row.triangles,
