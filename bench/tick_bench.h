@@ -20,8 +20,8 @@ struct TickRow {
     Times ahead_ns;          // after the tick: what the next may need, brought into the cache
     Times tree_ns;           // a walk through the tree of boxes for the same way of the hand, in the same run
     Times queries;           // per tick: walks through trees
-    Times triangles_touched; // per tick: delivered by trees, and stepped on by proxies
-    Times triangles_seen;    // those and the ones read ahead
+    Times triangles_stepped; // per tick, for its force: delivered by trees, and stepped on by proxies
+    Times triangles_touched; // all that the servo reads for a tick: those, and the ones ahead, some of them twice
 };
 
 // Ticks along one stroke over a ball with small bumps, which differs between rows only in what it is made of.
@@ -30,7 +30,7 @@ std::vector<TickRow> bench_tick(bool quick, const std::function<void(double)>& p
 
 // What a tick costs more on the last of these rows than on the first.
 struct Growth {
-    double median = 0, p99 = 0, touched_p99 = 0, seen_p99 = 0;
+    double median = 0, p99 = 0, touched_p99 = 0, stepped_p99 = 0;
 };
 Growth growth(const TickRow& first, const TickRow& last);
 

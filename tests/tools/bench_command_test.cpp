@@ -84,10 +84,14 @@ TEST_CASE("bench tick: what a tick looks at does not grow with the mesh or the s
         // In contact a proxy walks, and asks no tree; of other objects one wakes now and then.
         CHECK(row["queries"]["p99"].get<double>() <= (row["objects"] == 1 ? 0 : 3));
         CHECK(row["queries"]["median"].get<double>() == 0);
-        CHECK(row["triangles_touched"]["p99"].get<double>() <= 6);
+        CHECK(row["triangles_stepped"]["median"].get<double>() == 1);
+        CHECK(row["triangles_stepped"]["p99"].get<double>() <= 6);
+        CHECK(row["triangles_touched"]["median"].get<double>() == 11); // and ten ahead
     }
     CHECK(faster > 0);
     REQUIRE(json["growth"].size() == 6);
+    for (const Json& growth : json["growth"])
+        if (growth["scene"] == "fbm4") CHECK(growth["touched_p99"].get<double>() < 1.2);
 }
 
 TEST_CASE("bench skip: what a tick leaves out nobody feels, and it is counted")
