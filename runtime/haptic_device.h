@@ -28,6 +28,7 @@ struct DeviceInfo {
     double force_max_n = 0;           // what the motors can hold for a moment
     double stiffness_max_n_per_m = 0; // recommended at 1 kHz; 0: unknown
     double workspace_radius_m = 0;    // 0: unbounded
+    double press_n = 0;               // with which a simulated hand presses; 0: another hand, not known
 };
 
 enum class DeviceStatus : uint8_t {

@@ -28,6 +28,7 @@ DeviceText read_device(const toml::table& source, const std::string& name, Devic
     if (const auto stroke = table.word("stroke", strokes)) device.request.stroke = strokes[*stroke];
     table.number("speed_m_per_s", device.request.speed_m_per_s, Quantity::speed, {0, 10, true});
     table.number("press_n", device.request.press_n, Quantity::force, {0, 100});
+    device.press_at = table.where("press_n");
     table.whole_number("seed", device.request.seed);
     if (const toml::table* probe = table.table("probe", "{ kind = \"point\" }"))
         device.hand.probe = device.probe = read_probe(*probe, "`probe`", messages);

@@ -14,7 +14,7 @@ struct DeviceText {
     DeviceRequest request; // without what the scene's geometry says
     HandSettings hand;
     ProbeSettings probe; // of this hand
-    toml::source_region at;
+    toml::source_region at, press_at;
 };
 
 ProbeSettings read_probe(const toml::table& source, const std::string& name, FileMessages& messages);

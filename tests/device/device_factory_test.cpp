@@ -35,7 +35,11 @@ TEST_CASE("every simulated device opens by its name, with its limits")
             CHECK(opened.device->info().force_max_n == preset.model.force_max_n);
             CHECK(opened.device->info().stiffness_max_n_per_m > 0);
         }
-    CHECK(open_device(request_on_plane("simulated")).device->info().force_max_n == 8.5);
+    DeviceRequest request = request_on_plane("simulated");
+    request.press_n = 9;
+    const DeviceResult opened = open_device(request);
+    CHECK(opened.device->info().force_max_n == 8.5);
+    CHECK(opened.device->info().press_n == 9); // told where it is too much
 }
 
 TEST_CASE("unknown names are answered with what was meant, or with what there is")

@@ -142,20 +142,47 @@ TEST_CASE("a scene that is loaded again has the surfaces that did not change, an
     CHECK(load_again().meshes.size() == 1);
 }
 
+namespace {
+
+class Rated final : public ScriptedDevice {
+public:
+    explicit Rated(double press_n)
+        : ScriptedDevice([](uint64_t, DevicePose&) { return DeviceStatus::ok; }), rated_{"rated", 8, 800, 0, press_n}
+    {
+    }
+    const DeviceInfo& info() const override { return rated_; }
+
+private:
+    DeviceInfo rated_;
+};
+
+std::string said(const std::string& toml)
+{
+    return diagnostics_of(toml, resolve_flat, [](const DeviceRequest& request) {
+        return DeviceResult{std::make_unique<Rated>(request.press_n), ""};
+    });
+}
+
+} // namespace
+
+TEST_CASE("a simulated hand that presses harder than anything pushes back is told both figures")
+{
+    const std::string object = "[[object]]\nshape = \"plane\"\n";
+    CHECK(said("[device]\npress_n = 7\n" + object).empty());
+    CHECK(said("[device]\npress_n = \"7.5N\"\n" + object) ==
+          "scene.toml:2:11: warning: `press_n` is 7.5 N, but at most 7 N push back, the `force_limit_n`: the hand "
+          "sinks in, and the force stays at that limit. Lower `press_n`, or raise `force_limit_n`\n");
+    CHECK(said("[servo]\nforce_limit_n = 9\n[device]\npress_n = 8.5\n" + object) ==
+          "scene.toml:4:11: warning: `press_n` is 8.5 N, but at most 8 N push back, all that `rated` can hold: the "
+          "hand sinks in, and the force stays at that limit. Lower `press_n`\n");
+    CHECK(said("[servo]\nforce_limit_n = 0.5\n[device]\n" + object)
+              .starts_with("scene.toml:3:1: warning: `press_n` is 1 N, but at most 0.5 N push back")); // the default
+    // A device in a hand of flesh is pressed by whoever holds it.
+    CHECK(diagnostics_of("[device]\npress_n = 9\n" + object).empty());
+}
+
 TEST_CASE("a stiffness of more than twice what a device is made for at that rate is told")
 {
-    class Rated final : public ScriptedDevice {
-    public:
-        Rated() : ScriptedDevice([](uint64_t, DevicePose&) { return DeviceStatus::ok; }) {}
-        const DeviceInfo& info() const override { return rated_; }
-
-    private:
-        DeviceInfo rated_{"rated", 8, 800, 0};
-    };
-    const auto said = [](const std::string& toml) {
-        return diagnostics_of(toml, resolve_flat,
-                              [](const DeviceRequest&) { return DeviceResult{std::make_unique<Rated>(), ""}; });
-    };
     const std::string soft = "[[object]]\nshape = \"plane\"\n",
                       hard = "[[object]]\nshape = \"box\"\nposition_m = [1, 0, 0]\nstiffness_n_per_m = ";
     CHECK(said(soft + hard + "1600\n").empty());

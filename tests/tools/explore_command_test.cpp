@@ -258,7 +258,9 @@ TEST_CASE("a replay knows the limits of the device that was recorded, whatever t
 {
     const Stage stage("press_n = 9"); // on the default device
     const std::string explore = "explore " + stage.scene + " --clock virtual --json --out ";
-    REQUIRE(run_command(explore + stage.out("one") + " --device simulated:touch --seconds 2").code == 0);
+    const Ran one = run_command(explore + stage.out("one") + " --device simulated:touch --seconds 2");
+    REQUIRE(one.code == 0);
+    CHECK(contains(one.err, "`press_n` is 9 N, but at most 3.3 N push back, all that `simulated:touch` can hold"));
     const std::string trace = stage.out("one") + "/trace.csv";
     const Ran ran = run_command(explore + stage.out("replay") + " --device replay:" + trace);
     CHECK(ran.err.empty());
