@@ -9,7 +9,7 @@ std::shared_ptr<const Motion> read_motion(TableReader& table, const Placement& s
 {
     glm::dvec3 spin_deg_per_s(0);
     SteadyMotion::Figures figures;
-    table.three_numbers("spin_deg_per_s", spin_deg_per_s, Quantity::number, {-36'000, 36'000});
+    table.three_numbers("spin_deg_per_s", spin_deg_per_s, Quantity::turning_deg_per_s, {-36'000, 36'000});
     table.three_numbers("swing_m", figures.swing_m, Quantity::length, {-1000, 1000});
     table.number("swing_hz", figures.swing_hz, Quantity::frequency, {0, 1000, true});
     if (table.has("swing_m") != table.has("swing_hz"))

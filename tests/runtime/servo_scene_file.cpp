@@ -27,6 +27,9 @@ TEST_CASE("quantities are numbers in SI or text with a unit, to the last bit")
     CHECK(parse_quantity("0.8 N/mm", Quantity::stiffness) == 800);
     CHECK(parse_quantity("100mm/s", Quantity::speed) == 0.1);
     CHECK(std::abs(*parse_quantity("3.141592653589793rad", Quantity::angle_deg) - 180) < 1e-12);
+    CHECK(parse_quantity("90 deg/s", Quantity::turning_deg_per_s) == 90);
+    CHECK(parse_quantity("15rpm", Quantity::turning_deg_per_s) == 90);
+    CHECK(std::abs(*parse_quantity("3.141592653589793rad/s", Quantity::turning_deg_per_s) - 180) < 1e-12);
     for (const char* wrong :
          {"", "m", "1 m m", "1kg", "1Hz", "1,5m", "0x10", "1e", "1 M", "--1", "+-5mm", "-+5mm", "++5mm", "+"})
         CHECK_FALSE(parse_quantity(wrong, Quantity::length).has_value());
@@ -205,7 +208,7 @@ TEST_CASE("objects turn and swing as the scene says, and equal ones share their 
 [[object]]
 shape = "box"
 position_m = [0.1, 0, 0]
-spin_deg_per_s = [0, 0, 90]
+spin_deg_per_s = [0, 0, "15rpm"]
 [[object]]
 shape = "box"
 swing_m = [0, 0, "5mm"]
