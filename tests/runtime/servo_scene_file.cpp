@@ -227,6 +227,24 @@ size_m = 0.2
     CHECK(objects[0].surface != objects[2].surface);
 }
 
+TEST_CASE("an object that swings out of reach, or not at all, is told")
+{
+    const auto said = [](const std::string& swing, const std::string& above = "") {
+        return diagnostics_of(above + "[[object]]\nshape = \"box\"\nswing_m = " + swing + "\nswing_hz = 1\n");
+    };
+    CHECK(said("[0, 0, 1]") ==
+          "scene.toml:3:11: warning: `box` swings by 1 m to either side, but is only 0.1 m large: a hand hardly meets "
+          "it again. Is a unit wrong (`swing_m = [0, 0, \"1mm\"]`, `size_m` of the object)?\n");
+    CHECK(said("[0, 0.3, 0.4]").empty());
+    CHECK(said("[0, 0.3, 0.41]").starts_with("scene.toml:3:11: warning: `box` swings by 0.508035 m"));
+    CHECK(said("[0, 0, 1]", "[workspace]\nscale = 2\n").empty());
+    CHECK(said("[0, 0, 1]\nsize_m = 0.25").empty()); // large enough to be met often
+
+    CHECK(said("[0, 0, 0]") == "scene.toml:3:11: warning: `swing_m` is 0, so that this object does not swing: write "
+                               "more than 0, or leave `swing_m` and `swing_hz` out\n");
+    CHECK(said("[0, 0, \"1kg\"]").find("warning") == std::string::npos); // it was told already
+}
+
 TEST_CASE("the scene of the documentation is one, and has every key")
 {
     const Folder folder;
