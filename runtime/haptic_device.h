@@ -75,10 +75,14 @@ struct DeviceRequest {
     std::function<std::optional<SurfaceHit>(double x_m, double y_m)> surface_below;
 };
 
+// What of a request a driver speaks of, so that its words stand where that is written.
+enum class DeviceKey : uint8_t { device, name, stroke, speed, press, stylus_length };
+
 struct DeviceResult {
     std::unique_ptr<HapticDevice> device; // null: see error
     std::string error;
     std::string warning = {}; // beside a device: what the user should know of it, in words
+    DeviceKey about = DeviceKey::name;
 };
 
 using DeviceFactory = std::function<DeviceResult(const DeviceRequest&)>;

@@ -97,12 +97,12 @@ std::vector<LoadedHand> open_hands(std::vector<DeviceText>& texts, const std::sh
         DeviceResult opened = devices(device.request);
         const std::string name = "device `" + device.request.name + "`: ";
         if (!opened.device) {
-            messages.error(device.at, name + opened.error);
+            messages.error(device.where(opened.about), name + opened.error);
             continue;
         }
-        if (!opened.warning.empty()) messages.warning(device.at, name + opened.warning);
+        if (!opened.warning.empty()) messages.warning(device.where(opened.about), name + opened.warning);
         device.hand.force_max_n = opened.device->info().force_max_n;
-        warn_of_press(opened.device->info(), *scene, device.press_at, messages);
+        warn_of_press(opened.device->info(), *scene, device.where(DeviceKey::press), messages);
         warn_of_stiffness(opened.device->info(), *scene, stiffness_at, messages);
         hands.push_back({std::move(opened.device), std::move(device.hand)});
     }

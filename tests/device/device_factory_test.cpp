@@ -48,6 +48,8 @@ TEST_CASE("unknown names are answered with what was meant, or with what there is
     CHECK(contains(error_of(request_on_plane("simulated:premum")), "did you mean 'premium'?"));
     CHECK(contains(error_of(request_on_plane("simulated:premium:frm")), "did you mean 'firm'?"));
     CHECK(contains(error_of(request_on_plane("simulated:premium", "circle")), "did you mean 'circles'?"));
+    CHECK(open_device(request_on_plane("simulated:premium", "circle")).about == DeviceKey::stroke);
+    CHECK(open_device(request_on_plane("simulated:premum")).about == DeviceKey::name);
     CHECK(contains(error_of(request_on_plane("teapot")),
                    "there are simulated, replay; write simulated:premium, or replay:trace.csv"));
     CHECK(contains(error_of(request_on_plane("")), "there are simulated, replay"));
@@ -60,6 +62,7 @@ TEST_CASE("a stylus that a workspace makes too long is told of by its length in 
     DeviceRequest request = request_on_plane("simulated:premium");
     request.stylus_length_m = 150;
     CHECK(contains(error_of(request), "found 150 m: its length over the scale of the workspace"));
+    CHECK(open_device(request).about == DeviceKey::stylus_length);
 }
 
 TEST_CASE("a gripper that cannot reach round its object is told of")

@@ -233,7 +233,7 @@ TEST_CASE("what textures and devices say reaches the user")
                            "height is not"));
     CHECK(diagnostics_of(toml, resolve_flat, [](const DeviceRequest&) {
               return DeviceResult{nullptr, "not plugged in"};
-          }) == "scene.toml:1:1: error: device `falcon`: not plugged in\n");
+          }) == "scene.toml:2:8: error: device `falcon`: not plugged in\n");
     CHECK(diagnostics_of(toml, [](const TextureRequest&) -> TextureResult { throw std::runtime_error("oops"); }) ==
           "scene.toml:1:1: error: the scene could not be loaded: oops\n");
 }

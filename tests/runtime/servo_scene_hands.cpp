@@ -83,7 +83,7 @@ texture = "a.haptel:a"
                          [&](const DeviceRequest& request) {
                              if (++opened == 2) return DeviceResult{nullptr, "is not there"};
                              return open_scripted(request);
-                         }) == "scene.toml:2:1: error: device `other`: is not there\n");
+                         }) == "scene.toml:3:8: error: device `other`: is not there\n");
 }
 
 TEST_CASE("the surface below a point is the first hit from above, wherever the object is put")
@@ -164,6 +164,29 @@ std::string said(const std::string& toml)
 }
 
 } // namespace
+
+TEST_CASE("what a driver says stands where that is written of which it speaks")
+{
+    const auto told_at = [](DeviceKey about, const std::string& toml) {
+        const std::string said =
+            diagnostics_of(toml + "[[object]]\nshape = \"plane\"\n", resolve_flat,
+                           [&](const DeviceRequest&) { return DeviceResult{nullptr, "no", {}, about}; });
+        return said.substr(0, said.find(": error"));
+    };
+    const std::string device = "[device]\nspeed_m_per_s = 0.2\nname = \"simulated\"\nstroke = \"scan\"\npress_n = 2\n";
+    CHECK(told_at(DeviceKey::device, device) == "scene.toml:1:1");
+    CHECK(told_at(DeviceKey::speed, device) == "scene.toml:2:17");
+    CHECK(told_at(DeviceKey::name, device) == "scene.toml:3:8");
+    CHECK(told_at(DeviceKey::stroke, device) == "scene.toml:4:10");
+    CHECK(told_at(DeviceKey::press, device) == "scene.toml:5:11");
+    CHECK(told_at(DeviceKey::name, "[device]\nseed = 2\n") == "scene.toml:1:1"); // not written
+    // The length is that of the probe, which may be the scene's.
+    const std::string scene = "[probe]\nkind = \"stylus\"\nlength_m = 9\n", own = "probe = { kind = \"stylus\" }\n";
+    CHECK(told_at(DeviceKey::stylus_length, scene + device) == "scene.toml:3:12");
+    CHECK(told_at(DeviceKey::stylus_length, scene + device + own) == "scene.toml:9:9");
+    CHECK(told_at(DeviceKey::stylus_length, device + "[device.probe]\nkind = \"stylus\"\nlength_m = 9\n") ==
+          "scene.toml:8:12");
+}
 
 TEST_CASE("a simulated hand that presses harder than anything pushes back is told both figures")
 {
