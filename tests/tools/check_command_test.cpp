@@ -161,6 +161,27 @@ TEST_CASE("check: what cannot be read is a finding at 1:1, and JSON stays JSON")
     CHECK(run_command("check --box -1mm '" + empty + "'").code == 2);
 }
 
+TEST_CASE("check: a file that is not there is told with where it was looked for, and what is there")
+{
+    const Folder folder;
+    const auto hint = [&](const std::string& file) {
+        const std::string said = run_command("check '" + folder.file(file) + "'").err;
+        const std::size_t at = said.find("hint: ");
+        return at == std::string::npos ? "" : said.substr(at + 6, said.find('\n', at) - at - 6);
+    };
+    const std::string here = "'" + folder.path.string() + "'";
+    CHECK(hint("granite.haptel") == "it was looked for in " + here + ", which holds no texture file (*.haptel)");
+    CHECK(hint("no/granite.haptel") == "there is no folder '" + folder.file("no") + "'");
+    for (const char* name : {"wood", "brick", "note.txt"}) folder.write(std::string(name) + ".haptel", waves);
+    CHECK(hint("granite.haptel") ==
+          "it was looked for in " + here + ", which holds brick.haptel, note.txt.haptel, wood.haptel");
+    for (const char* name : {"zinc", "cork", "leather"}) folder.write(std::string(name) + ".haptel", waves);
+    CHECK(hint("granite.haptel") == "it was looked for in " + here +
+                                        ", which holds brick.haptel, cork.haptel, leather.haptel, note.txt.haptel, "
+                                        "wood.haptel, ...");
+    CHECK(hint("bric.haptel") == "did you mean 'brick.haptel'?");
+}
+
 TEST_CASE("check: --fix writes what the compiler proposes, until nothing is left to propose")
 {
     const Folder folder;
