@@ -19,9 +19,11 @@ namespace {
 using runtime::DeviceRequest;
 using runtime::DeviceResult;
 
-DeviceResult refused(std::string why)
+using runtime::DeviceKey;
+
+DeviceResult refused(std::string why, DeviceKey about = DeviceKey::name)
 {
-    return {nullptr, std::move(why)};
+    return {nullptr, std::move(why), {}, about};
 }
 
 // Levenshtein distance.
@@ -89,20 +91,25 @@ DeviceResult open_simulated(std::string_view variant, const DeviceRequest& reque
     if (!holding) return refused(unknown("simulated hand", hand_name, names_of(hand_presets())));
 
     if (!within(request.rate_hz, 1, 1e6)) return refused("a simulated device runs at 1 Hz to 1 MHz");
-    if (!within(request.speed_m_per_s, 0, 10)) return refused("the speed of a stroke is 0 to 10 m/s");
-    if (!within(request.press_n, 0, 100)) return refused("a simulated hand presses with 0 to 100 N");
+    if (!within(request.speed_m_per_s, 0, 10)) return refused("the speed of a stroke is 0 to 10 m/s", DeviceKey::speed);
+    if (!within(request.press_n, 0, 100)) return refused("a simulated hand presses with 0 to 100 N", DeviceKey::press);
     if (!within(request.stylus_length_m, 0, 10))
         return refused(fmt::format("a stylus is 0 to 10 m long in the hand's space, found {:g} m: its length over the "
                                    "scale of the workspace",
-                                   request.stylus_length_m));
-    if (!request.surface_below) return refused("a simulated hand needs a surface to explore");
+                                   request.stylus_length_m),
+                       DeviceKey::stylus_length);
+    if (!request.surface_below) return refused("a simulated hand needs a surface to explore", DeviceKey::device);
 
     const glm::dvec2 low(request.box_minimum_m), high(request.box_maximum_m);
     const auto start = nearest_hit(request.surface_below, low, high);
-    if (!start) return refused("the simulated hand finds no surface when it looks down on the object from +z");
+    if (!start)
+        return refused("the simulated hand finds no surface when it looks down on the object from +z",
+                       DeviceKey::device);
     Curve curve =
         make_curve(request.stroke, {low, high, glm::dvec2(start->point_m), request.speed_m_per_s, request.seed});
-    if (!curve) return refused(unknown("stroke", request.stroke, {stroke_names().begin(), stroke_names().end()}));
+    if (!curve)
+        return refused(unknown("stroke", request.stroke, {stroke_names().begin(), stroke_names().end()}),
+                       DeviceKey::stroke);
 
     std::string warning;
     const double around_m = start->point_m.z + approach_m - request.box_minimum_m.z;
@@ -113,12 +120,14 @@ DeviceResult open_simulated(std::string_view variant, const DeviceRequest& reque
 
     Hand hand(holding->impedance, Stroke(std::move(curve), request.surface_below, *start), request.press_n,
               1 / request.rate_hz);
-    runtime::DeviceInfo info{request.name, preset->model.force_max_n, preset->model.stiffness_max_n_per_m, 0};
+    runtime::DeviceInfo info{request.name, preset->model.force_max_n, preset->model.stiffness_max_n_per_m, 0,
+                             request.press_n};
     return {std::make_unique<SimulatedDevice>(
                 std::move(info), preset->model, std::move(hand),
                 SimulatedDevice::Options{request.rate_hz, request.stylus_length_m, request.gripper}),
             {},
-            std::move(warning)};
+            std::move(warning),
+            DeviceKey::stylus_length};
 }
 
 DeviceResult open_recording(std::string_view file, const DeviceRequest& request)

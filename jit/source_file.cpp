@@ -16,17 +16,29 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A texture file of nearly that name in the same folder.
+constexpr std::size_t listed_max = 5; // of the files of a folder
+
+// A texture file of nearly that name in the same folder, or else where it was looked for and what is there.
 std::string did_you_mean(const fs::path& path)
 {
-    std::error_code ignored;
+    std::error_code ignored, unreadable;
     std::vector<std::string> names;
-    for (fs::directory_iterator entry(path.has_parent_path() ? path.parent_path() : ".", ignored), end;
-         !ignored && entry != end && names.size() < 1000; entry.increment(ignored))
+    const fs::path folder = fs::absolute(path, ignored).parent_path();
+    for (fs::directory_iterator entry(folder, unreadable), end; !unreadable && entry != end && names.size() < 1000;
+         entry.increment(unreadable))
         if (entry->path().extension() == ".haptel") names.push_back(entry->path().filename());
     const std::string wanted = path.filename();
     const std::string_view nearest = lang::nearest_name(wanted, {names.begin(), names.end()});
-    return nearest.empty() ? std::string{} : "did you mean '" + lang::printable(nearest) + "'?";
+    if (!nearest.empty()) return "did you mean '" + lang::printable(nearest) + "'?";
+    const std::string there = "'" + lang::printable(folder.lexically_normal().string()) + "'";
+    if (!fs::is_directory(folder, ignored)) return "there is no folder " + there;
+    if (unreadable) return "it was looked for in " + there + ", which cannot be listed";
+    if (names.empty()) return "it was looked for in " + there + ", which holds no texture file (*.haptel)";
+    std::sort(names.begin(), names.end());
+    std::string list;
+    for (std::size_t i = 0; i < std::min(names.size(), listed_max); ++i)
+        list += (i == 0 ? "" : ", ") + lang::printable(names[i]);
+    return "it was looked for in " + there + ", which holds " + list + (names.size() > listed_max ? ", ..." : "");
 }
 
 bool is_name(std::string_view text)

@@ -1,8 +1,8 @@
 // Checks one body: of a function, of a texture, or of a global constant. One pass over its tree, in source order, with
 // a little knowledge of flow: which variables are assigned for certain, and what the integers can be.
 //
-// check_expression.cpp, check_call.cpp, check_statement.cpp, check_array.cpp, check_loop.cpp and check_range.cpp hold
-// the parts.
+// check_expression.cpp, check_call.cpp, check_unknown_call.cpp, check_statement.cpp, check_array.cpp, check_loop.cpp
+// and check_range.cpp hold the parts.
 #pragma once
 
 #include "lang/check.h"

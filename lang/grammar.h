@@ -87,10 +87,12 @@ private:
     ast::ExpressionPtr primary();
     ast::ExpressionPtr behind_stray_operator();
     ast::ExpressionPtr number();
+    ast::ExpressionPtr brace_list();
+
+    // parse_call.cpp
     ast::ExpressionPtr name_or_call();
     ast::ExpressionPtr grad_call(Span first);
     std::vector<ast::ExpressionPtr> arguments(Span opener);
-    ast::ExpressionPtr brace_list();
     ast::ExpressionPtr array_constructor(ast::Name type);
 
     // parse_foreign.cpp

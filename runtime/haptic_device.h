@@ -28,6 +28,7 @@ struct DeviceInfo {
     double force_max_n = 0;           // what the motors can hold for a moment
     double stiffness_max_n_per_m = 0; // recommended at 1 kHz; 0: unknown
     double workspace_radius_m = 0;    // 0: unbounded
+    double press_n = 0;               // with which a simulated hand presses; 0: another hand, not known
 };
 
 enum class DeviceStatus : uint8_t {
@@ -74,10 +75,14 @@ struct DeviceRequest {
     std::function<std::optional<SurfaceHit>(double x_m, double y_m)> surface_below;
 };
 
+// What of a request a driver speaks of, so that its words stand where that is written.
+enum class DeviceKey : uint8_t { device, name, stroke, speed, press, stylus_length };
+
 struct DeviceResult {
     std::unique_ptr<HapticDevice> device; // null: see error
     std::string error;
     std::string warning = {}; // beside a device: what the user should know of it, in words
+    DeviceKey about = DeviceKey::name;
 };
 
 using DeviceFactory = std::function<DeviceResult(const DeviceRequest&)>;

@@ -3,6 +3,7 @@
 #include "runtime/files/effects_reader.h"
 
 #include <string_view>
+#include <utility>
 
 namespace haptel::runtime {
 
@@ -18,16 +19,29 @@ Workspace read_workspace(const toml::table& source, const std::string& name, Fil
     return workspace;
 }
 
+// The probe of a device or of the scene.
+void find_stylus_length(const toml::table& owner, DeviceText& device)
+{
+    for (const toml::node* node : {owner["probe"].node(), owner["probe"]["length_m"].node()})
+        if (node) device.at[static_cast<std::size_t>(DeviceKey::stylus_length)] = node->source();
+}
+
 DeviceText read_device(const toml::table& source, const std::string& name, DeviceText device,
                        const std::filesystem::path& folder, FileMessages& messages)
 {
     TableReader table(source, name, messages);
-    device.at = source.source();
     table.text("name", device.request.name);
     static const std::vector<std::string_view> strokes = {"circles", "scan", "press", "random"};
     if (const auto stroke = table.word("stroke", strokes)) device.request.stroke = strokes[*stroke];
     table.number("speed_m_per_s", device.request.speed_m_per_s, Quantity::speed, {0, 10, true});
     table.number("press_n", device.request.press_n, Quantity::force, {0, 100});
+    static constexpr std::pair<DeviceKey, const char*> keys[] = {{DeviceKey::device, ""},
+                                                                 {DeviceKey::name, "name"},
+                                                                 {DeviceKey::stroke, "stroke"},
+                                                                 {DeviceKey::speed, "speed_m_per_s"},
+                                                                 {DeviceKey::press, "press_n"}};
+    for (const auto& [key, written] : keys) device.at[static_cast<std::size_t>(key)] = table.where(written);
+    find_stylus_length(source, device);
     table.whole_number("seed", device.request.seed);
     if (const toml::table* probe = table.table("probe", "{ kind = \"point\" }"))
         device.hand.probe = device.probe = read_probe(*probe, "`probe`", messages);
@@ -81,6 +95,7 @@ std::vector<DeviceText> read_devices(const toml::table& root, const ProbeSetting
     common.request.name = "simulated:premium";
     common.request.stroke = "circles";
     common.probe = probe;
+    find_stylus_length(root, common);
     common.hand.workspace = read_workspace(table_named(root, "workspace", messages), "[workspace]", messages);
 
     const toml::node* node = root.get("device");

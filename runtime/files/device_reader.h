@@ -5,6 +5,7 @@
 #include "runtime/hand.h"
 #include "runtime/haptic_device.h"
 
+#include <array>
 #include <filesystem>
 #include <vector>
 
@@ -14,7 +15,9 @@ struct DeviceText {
     DeviceRequest request; // without what the scene's geometry says
     HandSettings hand;
     ProbeSettings probe; // of this hand
-    toml::source_region at;
+    // Where the parts of the request are written, or what they belong to; by DeviceKey.
+    std::array<toml::source_region, 6> at;
+    const toml::source_region& where(DeviceKey key) const { return at[static_cast<std::size_t>(key)]; }
 };
 
 ProbeSettings read_probe(const toml::table& source, const std::string& name, FileMessages& messages);

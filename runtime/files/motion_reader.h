@@ -8,8 +8,13 @@
 
 namespace haptel::runtime {
 
-// Steady motion from where the object starts, or none. The rate is that of the servo.
-std::shared_ptr<const Motion> read_motion(TableReader& object, const Placement& start, double rate_hz,
-                                          FileMessages& messages);
+struct MotionText {
+    std::shared_ptr<const Motion> motion; // steady, from where the object starts; or none
+    double swing_m = 0;                   // to either side
+    toml::source_region swing_at;
+};
+
+// The rate is that of the servo.
+MotionText read_motion(TableReader& object, const Placement& start, double rate_hz, FileMessages& messages);
 
 } // namespace haptel::runtime

@@ -70,6 +70,20 @@ void warn_of_stiffness(const DeviceInfo& info, const Scene& scene, std::span<con
                                                   "`rate_hz`");
 }
 
+// What pushes back is limited: a hand that presses harder is never held.
+void warn_of_press(const DeviceInfo& info, const Scene& scene, const toml::source_region& press_at,
+                   FileMessages& messages)
+{
+    const bool by_device = info.force_max_n > 0 && info.force_max_n <= scene.servo.force_limit_n;
+    const double most_n = by_device ? info.force_max_n : scene.servo.force_limit_n;
+    if (info.press_n <= most_n) return;
+    messages.warning(press_at, "`press_n` is " + shortest(info.press_n) + " N, but at most " + shortest(most_n) +
+                                   " N push back, " +
+                                   (by_device ? "all that `" + info.name + "` can hold" : "the `force_limit_n`") +
+                                   ": the hand sinks in, and the force stays at that limit. Lower `press_n`" +
+                                   (by_device ? "" : ", or raise `force_limit_n`"));
+}
+
 } // namespace
 
 std::vector<LoadedHand> open_hands(std::vector<DeviceText>& texts, const std::shared_ptr<const Scene>& scene,
@@ -83,11 +97,12 @@ std::vector<LoadedHand> open_hands(std::vector<DeviceText>& texts, const std::sh
         DeviceResult opened = devices(device.request);
         const std::string name = "device `" + device.request.name + "`: ";
         if (!opened.device) {
-            messages.error(device.at, name + opened.error);
+            messages.error(device.where(opened.about), name + opened.error);
             continue;
         }
-        if (!opened.warning.empty()) messages.warning(device.at, name + opened.warning);
+        if (!opened.warning.empty()) messages.warning(device.where(opened.about), name + opened.warning);
         device.hand.force_max_n = opened.device->info().force_max_n;
+        warn_of_press(opened.device->info(), *scene, device.where(DeviceKey::press), messages);
         warn_of_stiffness(opened.device->info(), *scene, stiffness_at, messages);
         hands.push_back({std::move(opened.device), std::move(device.hand)});
     }

@@ -14,16 +14,29 @@ struct Unit {
 };
 
 constexpr Unit units[] = {
-    {Quantity::length, "m", 1, 1},         {Quantity::length, "cm", 1, 1e2},
-    {Quantity::length, "mm", 1, 1e3},      {Quantity::length, "um", 1, 1e6},
-    {Quantity::length, "nm", 1, 1e9},      {Quantity::speed, "m/s", 1, 1},
-    {Quantity::speed, "cm/s", 1, 1e2},     {Quantity::speed, "mm/s", 1, 1e3},
-    {Quantity::angle_deg, "deg", 1, 1},    {Quantity::angle_deg, "rad", 180, 3.14159265358979323846},
-    {Quantity::force, "N", 1, 1},          {Quantity::force, "mN", 1, 1e3},
-    {Quantity::stiffness, "N/m", 1, 1},    {Quantity::stiffness, "N/mm", 1e3, 1},
-    {Quantity::stiffness, "kN/m", 1e3, 1}, {Quantity::damping, "N s/m", 1, 1},
-    {Quantity::damping, "Ns/m", 1, 1},     {Quantity::frequency, "Hz", 1, 1},
-    {Quantity::frequency, "kHz", 1e3, 1},  {Quantity::time, "s", 1, 1},
+    {Quantity::length, "m", 1, 1},
+    {Quantity::length, "cm", 1, 1e2},
+    {Quantity::length, "mm", 1, 1e3},
+    {Quantity::length, "um", 1, 1e6},
+    {Quantity::length, "nm", 1, 1e9},
+    {Quantity::speed, "m/s", 1, 1},
+    {Quantity::speed, "cm/s", 1, 1e2},
+    {Quantity::speed, "mm/s", 1, 1e3},
+    {Quantity::angle_deg, "deg", 1, 1},
+    {Quantity::angle_deg, "rad", 180, 3.14159265358979323846},
+    {Quantity::turning_deg_per_s, "deg/s", 1, 1},
+    {Quantity::turning_deg_per_s, "rad/s", 180, 3.14159265358979323846},
+    {Quantity::turning_deg_per_s, "rpm", 6, 1},
+    {Quantity::force, "N", 1, 1},
+    {Quantity::force, "mN", 1, 1e3},
+    {Quantity::stiffness, "N/m", 1, 1},
+    {Quantity::stiffness, "N/mm", 1e3, 1},
+    {Quantity::stiffness, "kN/m", 1e3, 1},
+    {Quantity::damping, "N s/m", 1, 1},
+    {Quantity::damping, "Ns/m", 1, 1},
+    {Quantity::frequency, "Hz", 1, 1},
+    {Quantity::frequency, "kHz", 1e3, 1},
+    {Quantity::time, "s", 1, 1},
     {Quantity::time, "ms", 1, 1e3},
 };
 
@@ -43,6 +56,7 @@ std::string_view description_of(Quantity quantity)
     case Quantity::length: return "a length in metres, such as 0.15 or \"15cm\"";
     case Quantity::speed: return "a speed in metres per second, such as 0.1 or \"100mm/s\"";
     case Quantity::angle_deg: return "an angle in degrees, such as 45 or \"0.5rad\"";
+    case Quantity::turning_deg_per_s: return "a rate of turning in degrees per second, such as 90 or \"15rpm\"";
     case Quantity::force: return "a force in newtons, such as 7 or \"500mN\"";
     case Quantity::stiffness: return "a stiffness in newtons per metre, such as 800 or \"0.8N/mm\"";
     case Quantity::damping: return "a damping in newton seconds per metre, such as 1.0";

@@ -8,7 +8,18 @@
 
 namespace haptel::runtime {
 
-enum class Quantity : uint8_t { number, length, speed, angle_deg, force, stiffness, damping, frequency, time };
+enum class Quantity : uint8_t {
+    number,
+    length,
+    speed,
+    angle_deg,
+    turning_deg_per_s,
+    force,
+    stiffness,
+    damping,
+    frequency,
+    time
+};
 
 // "a length", and how one is written: `a length in metres, such as 0.15 or "15cm"`.
 std::string_view description_of(Quantity quantity);

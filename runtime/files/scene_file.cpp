@@ -37,6 +37,7 @@ struct ObjectText {
     bool joined = true;      // with what it meets
     std::string surface_key;
     SceneObject object;
+    MotionText motion;
     TextureText texture;
     toml::source_region mesh_at, stiffness_at, reach_at;
 };
@@ -106,7 +107,8 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
     text.own_crease = table.has("crease_deg");
 
     text.object.placement = read_placement(table);
-    text.object.motion = read_motion(table, text.object.placement, rate_hz, messages);
+    text.motion = read_motion(table, text.object.placement, rate_hz, messages);
+    text.object.motion = text.motion.motion;
     table.yes_or_no("joined", text.joined);
     if (table.has("joined") && text.joined && text.object.motion)
         messages.error(table.where("joined"), "an object that moves cannot be joined to what it meets");
@@ -182,16 +184,26 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, Surfac
     if (surfaces && text.object.surface) surfaces->keep(key, text.object.surface);
 }
 
+double largest_scale(const std::vector<DeviceText>& devices)
+{
+    double scale = 0;
+    for (const DeviceText& device : devices) scale = std::max(scale, device.hand.workspace.scale);
+    return scale;
+}
+
+double largest_side_m(const SceneObject& object)
+{
+    const glm::dvec3 sides_m = object.surface->box_maximum_m - object.surface->box_minimum_m;
+    return std::max({sides_m.x, sides_m.y, sides_m.z});
+}
+
 // Mesh files do not say their unit. No hand reaches round something this large.
 constexpr double hand_reach_m = 5;
 
 void check_unit(const ObjectText& text, const std::vector<DeviceText>& devices, FileMessages& messages)
 {
-    double reach_m = 0;
-    for (const DeviceText& device : devices) reach_m = std::max(reach_m, hand_reach_m * device.hand.workspace.scale);
-    const glm::dvec3 sides_m = text.object.surface->box_maximum_m - text.object.surface->box_minimum_m;
-    const double largest_m = std::max({sides_m.x, sides_m.y, sides_m.z});
-    if (text.mesh.empty() || text.size_m > 0 || largest_m <= reach_m) return;
+    const double largest_m = largest_side_m(text.object);
+    if (text.mesh.empty() || text.size_m > 0 || largest_m <= hand_reach_m * largest_scale(devices)) return;
     std::ostringstream size;
     size << largest_m; // to 6 digits
     messages.warning(text.mesh_at, "mesh `" + text.mesh + "` is " + size.str() +
@@ -200,11 +212,25 @@ void check_unit(const ObjectText& text, const std::vector<DeviceText>& devices, 
                                        size.str() + "mm\"`, else `size_m = \"" + size.str() + "m\"`");
 }
 
+// What leaves both the reach of a hand that sits at its device, and its own place by far, is hardly met again.
+// Something small may well cross all of the workspace.
+constexpr double seated_reach_m = 0.5, swing_sides_max = 5;
+
+void check_swing(const ObjectText& text, const std::vector<DeviceText>& devices, FileMessages& messages)
+{
+    const double swing_m = text.motion.swing_m, largest_m = largest_side_m(text.object);
+    if (swing_m <= std::max(seated_reach_m * largest_scale(devices), swing_sides_max * largest_m)) return;
+    std::ostringstream figures; // to 6 digits
+    figures << "`" << text.object.name << "` swings by " << swing_m << " m to either side, but is only " << largest_m
+            << " m large: a hand hardly meets it again. Is a unit wrong (`swing_m = [0, 0, \"1mm\"]`, `size_m` of the "
+               "object)?";
+    messages.warning(text.motion.swing_at, figures.str());
+}
+
 // What reaches farther than the object is large is not looked for.
 void check_reach(const ObjectText& text, const std::vector<DeviceText>& devices, FileMessages& messages)
 {
-    const glm::dvec3 sides_m = text.object.surface->box_maximum_m - text.object.surface->box_minimum_m;
-    const double largest_m = std::max({sides_m.x, sides_m.y, sides_m.z}) * (1 + 1e-9);
+    const double largest_m = largest_side_m(text.object) * (1 + 1e-9);
     for (const DeviceText& device : devices)
         if (device.probe.kind == ProbeKind::sphere && device.probe.radius_m > largest_m) {
             messages.error(text.mesh_at, "the probe's `radius_m` is larger than `" + text.object.name +
@@ -220,9 +246,7 @@ void check_reach(const ObjectText& text, const std::vector<DeviceText>& devices,
 // How fast hands move in the scene: its speeds are those of the hand times the scale.
 double hand_speed_max_m_per_s(const SceneText& scene)
 {
-    double scale = 0;
-    for (const DeviceText& device : scene.devices) scale = std::max(scale, device.hand.workspace.scale);
-    return scale * scene.servo.v_max_m_per_s;
+    return largest_scale(scene.devices) * scene.servo.v_max_m_per_s;
 }
 
 LoadedScene load(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
@@ -270,6 +294,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
             object->surface_key = same->surface_key;
         }
         if (object->object.surface && same == object) check_unit(*object, text.devices, messages);
+        if (object->object.surface) check_swing(*object, text.devices, messages);
         if (object->object.surface) check_reach(*object, text.devices, messages);
     }
     if (messages.any_error()) return loaded;

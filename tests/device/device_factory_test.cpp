@@ -35,7 +35,11 @@ TEST_CASE("every simulated device opens by its name, with its limits")
             CHECK(opened.device->info().force_max_n == preset.model.force_max_n);
             CHECK(opened.device->info().stiffness_max_n_per_m > 0);
         }
-    CHECK(open_device(request_on_plane("simulated")).device->info().force_max_n == 8.5);
+    DeviceRequest request = request_on_plane("simulated");
+    request.press_n = 9;
+    const DeviceResult opened = open_device(request);
+    CHECK(opened.device->info().force_max_n == 8.5);
+    CHECK(opened.device->info().press_n == 9); // told where it is too much
 }
 
 TEST_CASE("unknown names are answered with what was meant, or with what there is")
@@ -44,6 +48,8 @@ TEST_CASE("unknown names are answered with what was meant, or with what there is
     CHECK(contains(error_of(request_on_plane("simulated:premum")), "did you mean 'premium'?"));
     CHECK(contains(error_of(request_on_plane("simulated:premium:frm")), "did you mean 'firm'?"));
     CHECK(contains(error_of(request_on_plane("simulated:premium", "circle")), "did you mean 'circles'?"));
+    CHECK(open_device(request_on_plane("simulated:premium", "circle")).about == DeviceKey::stroke);
+    CHECK(open_device(request_on_plane("simulated:premum")).about == DeviceKey::name);
     CHECK(contains(error_of(request_on_plane("teapot")),
                    "there are simulated, replay; write simulated:premium, or replay:trace.csv"));
     CHECK(contains(error_of(request_on_plane("")), "there are simulated, replay"));
@@ -56,6 +62,7 @@ TEST_CASE("a stylus that a workspace makes too long is told of by its length in 
     DeviceRequest request = request_on_plane("simulated:premium");
     request.stylus_length_m = 150;
     CHECK(contains(error_of(request), "found 150 m: its length over the scale of the workspace"));
+    CHECK(open_device(request).about == DeviceKey::stylus_length);
 }
 
 TEST_CASE("a gripper that cannot reach round its object is told of")

@@ -1,45 +1,22 @@
 // The distance to surfaces, and their pull, held to closed forms; what it does with energy.
 #include "runtime/renderer.h"
 #include "runtime/surface_distance.h"
+#include "tests/runtime/distance.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <random>
 
 using namespace haptel;
 using namespace haptel::runtime;
 using namespace haptel::tests;
+using haptel::test::distance_to;
 
 namespace {
 
 constexpr double pi = 3.141592653589793;
-
-// By projection on the plane and on the three edges: not how the runtime does it.
-double distance_to_triangle(const glm::dvec3& p, const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c)
-{
-    const glm::dvec3 n = glm::cross(b - a, c - a);
-    const auto inside = [&](const glm::dvec3& u, const glm::dvec3& v) {
-        return glm::dot(glm::cross(v - u, p - u), n) >= 0;
-    };
-    if (inside(a, b) && inside(b, c) && inside(c, a)) return std::fabs(glm::dot(p - a, n)) / glm::length(n);
-    const auto to_edge = [&](const glm::dvec3& u, const glm::dvec3& v) {
-        const double t = std::clamp(glm::dot(p - u, v - u) / glm::dot(v - u, v - u), 0.0, 1.0);
-        return glm::distance(p, u + t * (v - u));
-    };
-    return std::min({to_edge(a, b), to_edge(b, c), to_edge(c, a)});
-}
-
-double distance_to(const Surface& surface, const glm::dvec3& p)
-{
-    double least = std::numeric_limits<double>::infinity();
-    for (uint32_t face = 0; face < surface.faces.size(); ++face)
-        least = std::min(least, distance_to_triangle(p, surface.vertex_m(face, 0), surface.vertex_m(face, 1),
-                                                     surface.vertex_m(face, 2)));
-    return least;
-}
 
 // Energy that held forces give to a hand on its way.
 struct Energy {

@@ -86,6 +86,9 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "below 18000 about all axes together: at that rate faster turns are felt as slower ones. Lower it, or raise "
          "`rate_hz`\n"},
         {"[servo]\nrate_hz = 100\n[[object]]\nshape = \"box\"\nspin_deg_per_s = [0, 0, -17999]\n", ""},
+        {"[[object]]\nshape = \"box\"\nspin_deg_per_s = [0, 0, \"15Hz\"]\n",
+         "scene.toml:3:25: error: expected a rate of turning in degrees per second, such as 90 or \"15rpm\" for "
+         "`spin_deg_per_s`, found \"15Hz\" (units that fit: deg/s, rad/s, rpm)\n"},
         {"[[object]]\nshape = \"plane\"\nposition_m = [0, 1]\nrotation_deg = 3\n",
          "scene.toml:3:14: error: expected three numbers, such as [0, 0, 0], for `position_m`, found a list of 2\n"
          "scene.toml:4:16: error: expected three numbers, such as [0, 0, 0], for `rotation_deg`, found 3\n"},
@@ -230,7 +233,7 @@ TEST_CASE("what textures and devices say reaches the user")
                            "height is not"));
     CHECK(diagnostics_of(toml, resolve_flat, [](const DeviceRequest&) {
               return DeviceResult{nullptr, "not plugged in"};
-          }) == "scene.toml:1:1: error: device `falcon`: not plugged in\n");
+          }) == "scene.toml:2:8: error: device `falcon`: not plugged in\n");
     CHECK(diagnostics_of(toml, [](const TextureRequest&) -> TextureResult { throw std::runtime_error("oops"); }) ==
           "scene.toml:1:1: error: the scene could not be loaded: oops\n");
 }

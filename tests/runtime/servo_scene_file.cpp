@@ -27,6 +27,9 @@ TEST_CASE("quantities are numbers in SI or text with a unit, to the last bit")
     CHECK(parse_quantity("0.8 N/mm", Quantity::stiffness) == 800);
     CHECK(parse_quantity("100mm/s", Quantity::speed) == 0.1);
     CHECK(std::abs(*parse_quantity("3.141592653589793rad", Quantity::angle_deg) - 180) < 1e-12);
+    CHECK(parse_quantity("90 deg/s", Quantity::turning_deg_per_s) == 90);
+    CHECK(parse_quantity("15rpm", Quantity::turning_deg_per_s) == 90);
+    CHECK(std::abs(*parse_quantity("3.141592653589793rad/s", Quantity::turning_deg_per_s) - 180) < 1e-12);
     for (const char* wrong :
          {"", "m", "1 m m", "1kg", "1Hz", "1,5m", "0x10", "1e", "1 M", "--1", "+-5mm", "-+5mm", "++5mm", "+"})
         CHECK_FALSE(parse_quantity(wrong, Quantity::length).has_value());
@@ -205,7 +208,7 @@ TEST_CASE("objects turn and swing as the scene says, and equal ones share their 
 [[object]]
 shape = "box"
 position_m = [0.1, 0, 0]
-spin_deg_per_s = [0, 0, 90]
+spin_deg_per_s = [0, 0, "15rpm"]
 [[object]]
 shape = "box"
 swing_m = [0, 0, "5mm"]
@@ -222,6 +225,24 @@ size_m = 0.2
     CHECK(objects[2].motion == nullptr);
     CHECK(objects[0].surface == objects[1].surface);
     CHECK(objects[0].surface != objects[2].surface);
+}
+
+TEST_CASE("an object that swings out of reach, or not at all, is told")
+{
+    const auto said = [](const std::string& swing, const std::string& above = "") {
+        return diagnostics_of(above + "[[object]]\nshape = \"box\"\nswing_m = " + swing + "\nswing_hz = 1\n");
+    };
+    CHECK(said("[0, 0, 1]") ==
+          "scene.toml:3:11: warning: `box` swings by 1 m to either side, but is only 0.1 m large: a hand hardly meets "
+          "it again. Is a unit wrong (`swing_m = [0, 0, \"1mm\"]`, `size_m` of the object)?\n");
+    CHECK(said("[0, 0.3, 0.4]").empty());
+    CHECK(said("[0, 0.3, 0.41]").starts_with("scene.toml:3:11: warning: `box` swings by 0.508035 m"));
+    CHECK(said("[0, 0, 1]", "[workspace]\nscale = 2\n").empty());
+    CHECK(said("[0, 0, 1]\nsize_m = 0.25").empty()); // large enough to be met often
+
+    CHECK(said("[0, 0, 0]") == "scene.toml:3:11: warning: `swing_m` is 0, so that this object does not swing: write "
+                               "more than 0, or leave `swing_m` and `swing_hz` out\n");
+    CHECK(said("[0, 0, \"1kg\"]").find("warning") == std::string::npos); // it was told already
 }
 
 TEST_CASE("the scene of the documentation is one, and has every key")

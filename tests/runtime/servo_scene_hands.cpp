@@ -83,7 +83,7 @@ texture = "a.haptel:a"
                          [&](const DeviceRequest& request) {
                              if (++opened == 2) return DeviceResult{nullptr, "is not there"};
                              return open_scripted(request);
-                         }) == "scene.toml:2:1: error: device `other`: is not there\n");
+                         }) == "scene.toml:3:8: error: device `other`: is not there\n");
 }
 
 TEST_CASE("the surface below a point is the first hit from above, wherever the object is put")
@@ -142,20 +142,70 @@ TEST_CASE("a scene that is loaded again has the surfaces that did not change, an
     CHECK(load_again().meshes.size() == 1);
 }
 
+namespace {
+
+class Rated final : public ScriptedDevice {
+public:
+    explicit Rated(double press_n)
+        : ScriptedDevice([](uint64_t, DevicePose&) { return DeviceStatus::ok; }), rated_{"rated", 8, 800, 0, press_n}
+    {
+    }
+    const DeviceInfo& info() const override { return rated_; }
+
+private:
+    DeviceInfo rated_;
+};
+
+std::string said(const std::string& toml)
+{
+    return diagnostics_of(toml, resolve_flat, [](const DeviceRequest& request) {
+        return DeviceResult{std::make_unique<Rated>(request.press_n), ""};
+    });
+}
+
+} // namespace
+
+TEST_CASE("what a driver says stands where that is written of which it speaks")
+{
+    const auto told_at = [](DeviceKey about, const std::string& toml) {
+        const std::string said =
+            diagnostics_of(toml + "[[object]]\nshape = \"plane\"\n", resolve_flat,
+                           [&](const DeviceRequest&) { return DeviceResult{nullptr, "no", {}, about}; });
+        return said.substr(0, said.find(": error"));
+    };
+    const std::string device = "[device]\nspeed_m_per_s = 0.2\nname = \"simulated\"\nstroke = \"scan\"\npress_n = 2\n";
+    CHECK(told_at(DeviceKey::device, device) == "scene.toml:1:1");
+    CHECK(told_at(DeviceKey::speed, device) == "scene.toml:2:17");
+    CHECK(told_at(DeviceKey::name, device) == "scene.toml:3:8");
+    CHECK(told_at(DeviceKey::stroke, device) == "scene.toml:4:10");
+    CHECK(told_at(DeviceKey::press, device) == "scene.toml:5:11");
+    CHECK(told_at(DeviceKey::name, "[device]\nseed = 2\n") == "scene.toml:1:1"); // not written
+    // The length is that of the probe, which may be the scene's.
+    const std::string scene = "[probe]\nkind = \"stylus\"\nlength_m = 9\n", own = "probe = { kind = \"stylus\" }\n";
+    CHECK(told_at(DeviceKey::stylus_length, scene + device) == "scene.toml:3:12");
+    CHECK(told_at(DeviceKey::stylus_length, scene + device + own) == "scene.toml:9:9");
+    CHECK(told_at(DeviceKey::stylus_length, device + "[device.probe]\nkind = \"stylus\"\nlength_m = 9\n") ==
+          "scene.toml:8:12");
+}
+
+TEST_CASE("a simulated hand that presses harder than anything pushes back is told both figures")
+{
+    const std::string object = "[[object]]\nshape = \"plane\"\n";
+    CHECK(said("[device]\npress_n = 7\n" + object).empty());
+    CHECK(said("[device]\npress_n = \"7.5N\"\n" + object) ==
+          "scene.toml:2:11: warning: `press_n` is 7.5 N, but at most 7 N push back, the `force_limit_n`: the hand "
+          "sinks in, and the force stays at that limit. Lower `press_n`, or raise `force_limit_n`\n");
+    CHECK(said("[servo]\nforce_limit_n = 9\n[device]\npress_n = 8.5\n" + object) ==
+          "scene.toml:4:11: warning: `press_n` is 8.5 N, but at most 8 N push back, all that `rated` can hold: the "
+          "hand sinks in, and the force stays at that limit. Lower `press_n`\n");
+    CHECK(said("[servo]\nforce_limit_n = 0.5\n[device]\n" + object)
+              .starts_with("scene.toml:3:1: warning: `press_n` is 1 N, but at most 0.5 N push back")); // the default
+    // A device in a hand of flesh is pressed by whoever holds it.
+    CHECK(diagnostics_of("[device]\npress_n = 9\n" + object).empty());
+}
+
 TEST_CASE("a stiffness of more than twice what a device is made for at that rate is told")
 {
-    class Rated final : public ScriptedDevice {
-    public:
-        Rated() : ScriptedDevice([](uint64_t, DevicePose&) { return DeviceStatus::ok; }) {}
-        const DeviceInfo& info() const override { return rated_; }
-
-    private:
-        DeviceInfo rated_{"rated", 8, 800, 0};
-    };
-    const auto said = [](const std::string& toml) {
-        return diagnostics_of(toml, resolve_flat,
-                              [](const DeviceRequest&) { return DeviceResult{std::make_unique<Rated>(), ""}; });
-    };
     const std::string soft = "[[object]]\nshape = \"plane\"\n",
                       hard = "[[object]]\nshape = \"box\"\nposition_m = [1, 0, 0]\nstiffness_n_per_m = ";
     CHECK(said(soft + hard + "1600\n").empty());
