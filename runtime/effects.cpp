@@ -5,6 +5,7 @@
 #include "runtime/scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace haptel::runtime {
@@ -54,16 +55,19 @@ void Effects::begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) no
     }
 }
 
-void Effects::update(std::size_t object, const Placement& placement, std::span<const Contact> contacts) noexcept
+void Effects::update(std::size_t object, const Placement& placement, std::span<const Contact> contacts,
+                     std::span<const Contact> joined) noexcept
 {
+    const auto of_tip = [](const Contact& contact) { return contact.along == 0; };
     Near& near = *objects_[object];
     const ObjectEffects& effects = near.effects;
     double distance_m = 0;
     glm::dvec3 toward(0);
-    const bool by_tip =
-        std::any_of(contacts.begin(), contacts.end(), [](const Contact& contact) { return contact.along == 0; });
-    if (!by_tip) {
-        const glm::dvec3 tip_m = placement.to_object(tip_m_);
+    if (std::none_of(contacts.begin(), contacts.end(), of_tip)) {
+        // What holds the tip holds it out here: a hand in a floor is as far from a wall on it as its proxy.
+        const auto holds = std::find_if(joined.begin(), joined.end(), of_tip);
+        const glm::dvec3 tip_m =
+            placement.to_object(holds == joined.end() ? tip_m_ : holds->proxy_m + probe_radius_m_ * holds->normal);
         const double reach_m = effects.reach_m();
         const uint64_t queries = near.distance.queries(), triangles = near.distance.triangles();
         const auto nearest = reach_m > 0 ? near.distance.within(tip_m, reach_m + probe_radius_m_) : std::nullopt;
@@ -74,7 +78,16 @@ void Effects::update(std::size_t object, const Placement& placement, std::span<c
         if (distance_m > 0 && nearest)
             toward = placement.direction_to_world((nearest->point_m - tip_m) / nearest->distance_m);
     }
-    if (effects.magnet.acts()) sum_n_ += effects.magnet.pull_n(distance_m) * toward;
+    if (effects.magnet.acts()) {
+        glm::dvec3 pull_n = effects.magnet.pull_n(distance_m) * toward;
+        const double stiffness_n_per_m = scene_.objects[object].material.stiffness_n_per_m / scale_;
+        for (const Contact& contact : joined) {
+            if (!of_tip(contact)) continue;
+            const double across_n = glm::dot(pull_n, contact.normal), held_n = stiffness_n_per_m * contact.depth_m;
+            pull_n -= std::copysign(std::min(std::abs(across_n), held_n), across_n) * contact.normal;
+        }
+        sum_n_ += pull_n;
+    }
     const auto share = [&](double reach_m) {
         return distance_m == 0 ? 1.0 : distance_m < reach_m ? 1 - distance_m / reach_m : 0.0;
     };

@@ -48,8 +48,11 @@ public:
     double awake_within_m(std::size_t object) const noexcept;
 
     // One tick, if they act at all: begin, then update of each object that has effects and may be near, then force.
+    // `joined`: the contacts of all that the object is joined with, in the scene's space. What they hold the tip
+    // against it is not pulled across, by as much as they push back: nothing begins with a step.
     void begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) noexcept;
-    void update(std::size_t object, const Placement& placement, std::span<const Contact> contacts) noexcept;
+    void update(std::size_t object, const Placement& placement, std::span<const Contact> contacts,
+                std::span<const Contact> joined) noexcept;
     glm::dvec3 force_n() noexcept;
 
     void lose_hand() noexcept { trail_.lose_hand(); }

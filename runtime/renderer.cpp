@@ -143,7 +143,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         const PartContacts alone{0, contacts};
         const std::span<const PartContacts> parts =
             body.objects.joined ? by_part_.of(*scene_, *body.objects.joined, contacts) : std::span(&alone, 1);
-        if (effects_.act()) update_effects(body, parts);
+        if (effects_.act()) update_effects(body, contacts, parts);
         body.tip_friction = body.tail_friction = {};
         if (contacts.empty()) {
             skipped.texture = skipped.texture && (scene_->servo.skips.texture || !feels_in_air(body, pose));
@@ -154,7 +154,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
             }
             continue;
         }
-        for (const PartContacts& part : parts) touch(body, part, pose, result, skipped);
+        for (const PartContacts& part : parts) touch(body, contacts, part, pose, result, skipped);
     }
     const double left_work_j = last_pose_ ? work_j(swapped_ ? sent_ : left_, *last_pose_, pose) : 0.0;
     last_pose_ = pose;
@@ -164,9 +164,8 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     skipped_.mapping += skipped.mapping;
     if (effects_.act()) {
         const glm::dvec3 effects_n = effects_.force_n(); // once: its medium lives a tick
-        result.unlimited_force_n += effects_n;
+        push(result, pose, 0, effects_n);
         held_j_ += glm::dot(effects_n, effects_n) * hand_.workspace.scale / (2 * effect_stiffness_n_per_m);
-        if (has_tail) result.unlimited_torque_n_m += torque_about(grip_m, pose.tip_m, effects_n);
     }
     send(result, std::max(glm::distance(pose.tip_m, grip_m), glm::distance(pose.tail_m, grip_m)), left_work_j);
     return result;
@@ -309,15 +308,17 @@ std::span<const Contact> Renderer::update_contact(Body& body, const DevicePose& 
     return body.contact.update(body.pose_of(pose), {body.tip_friction.mean, body.tail_friction.mean});
 }
 
-void Renderer::update_effects(const Body& body, std::span<const PartContacts> parts) noexcept
+void Renderer::update_effects(const Body& body, std::span<const Contact> contacts,
+                              std::span<const PartContacts> parts) noexcept
 {
     const std::span<const uint32_t> numbers = body.objects.numbers();
     for (uint32_t part = 0; part < numbers.size(); ++part) {
         if (!effects_.of(numbers[part])) continue;
-        const auto touched = std::find_if(parts.begin(), parts.end(),
-                                          [&](const PartContacts& contacts) { return contacts.part == part; });
+        const auto touched =
+            std::find_if(parts.begin(), parts.end(), [&](const PartContacts& of) { return of.part == part; });
+        const std::span<const Contact> none;
         effects_.update(numbers[part], body.placement_of(scene_->objects[numbers[part]]),
-                        touched == parts.end() ? std::span<const Contact>() : touched->contacts);
+                        touched == parts.end() ? none : touched->contacts, body.objects.joined ? contacts : none);
     }
 }
 

@@ -128,15 +128,17 @@ private:
     static std::vector<Surroundings> surroundings(const Scene& scene, const std::vector<Body>& bodies,
                                                   double probe_radius_m);
     TickResult feel(const DevicePose& pose) noexcept;
-    void touch(Body& body, const PartContacts& part, const DevicePose& pose, TickResult& result,
-               Skipped& skipped) noexcept;
+    void push(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept;
+    void touch(Body& body, std::span<const Contact> contacts, const PartContacts& part, const DevicePose& pose,
+               TickResult& result, Skipped& skipped) noexcept;
     void put_down(Body& body, const Renderer& before, const HeldBodies& held) noexcept;
     void advance_texture(Touched& touched) noexcept;
     void advance_textures(const Body& body) noexcept;
     void wake(Body& body) noexcept;
     double gap_to_sleep_m(const Body& body, const DevicePose& pose, double near_m) const noexcept;
     std::span<const Contact> update_contact(Body& body, const DevicePose& pose, uint64_t periods) noexcept;
-    void update_effects(const Body& body, std::span<const PartContacts> parts) noexcept;
+    void update_effects(const Body& body, std::span<const Contact> contacts,
+                        std::span<const PartContacts> parts) noexcept;
     bool feels_in_air(const Body& body, const DevicePose& pose) const noexcept;
     ObjectForce force_of(const Body& body, const Touched& touched, const Placement& placement,
                          const Contact& contact) const noexcept;

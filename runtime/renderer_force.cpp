@@ -17,31 +17,54 @@ double along_fingers(const DevicePose& pose, const glm::dvec3& force_n)
     return along == glm::dvec3(0) ? 0.0 : glm::dot(force_n, glm::normalize(along));
 }
 
-// What one of a ball's contacts holds, of how deep the hand is below what is touched there: two walls at right angles
-// hold all of it each, several facets nearly in one plane hold it together. Along the way from the hand to the proxy
-// the shares of damping add up to 1, but in grooves narrower than a right angle: more than all of it is held by none.
-double share_of(const Contact& contact, std::span<const Contact> contacts)
+// Of the end of the probe that a contact is at, from the hand to the proxy by all that holds it there, in the body's
+// space. Zero where nothing else does.
+glm::dvec3 shared_way_m(const Contact& contact, std::span<const Contact> contacts)
 {
     glm::dvec3 way_m(0);
-    for (const Contact& other : contacts) way_m += other.depth_m * other.normal;
+    if (contact.by_shaft || contacts.size() == 1) return way_m;
+    int holding = 0;
+    for (const Contact& other : contacts) {
+        if (other.along != contact.along || other.by_shaft) continue;
+        way_m += other.depth_m * other.normal;
+        ++holding;
+    }
+    return holding > 1 ? way_m : glm::dvec3(0);
+}
+
+// What one of several contacts holds, of how deep the hand is below what is touched there: two walls at right angles
+// hold all of it each, several facets nearly in one plane hold it together. Along the way from the hand to the proxy
+// the shares of damping add up to 1, but in grooves narrower than a right angle: more than all of it is held by none.
+double share_of(const Contact& contact, const glm::dvec3& way_m)
+{
     const double below_m = glm::dot(way_m, contact.normal);
-    return contact.depth_m < below_m ? contact.depth_m / below_m : 1.0;
+    return contact.depth_m > 0 && contact.depth_m < below_m ? contact.depth_m / below_m : 1.0;
 }
 
 } // namespace
 
-// One object.
-void Renderer::touch(Body& body, const PartContacts& part, const DevicePose& pose, TickResult& result,
-                     Skipped& skipped) noexcept
+// On the probe at the share `along` of the way from its tip to its tail.
+void Renderer::push(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept
+{
+    result.unlimited_force_n += force_n;
+    if (probe_.has_tail())
+        result.unlimited_torque_n_m +=
+            torque_about(result.grip_m, pose.tip_m + along * (pose.tail_m - pose.tip_m), force_n);
+    if (probe_.kind == ProbeKind::gripper) result.grip_force_n += (along - 0.5) * along_fingers(pose, force_n);
+}
+
+// One object, of all `contacts` of its body those with it.
+void Renderer::touch(Body& body, std::span<const Contact> contacts, const PartContacts& part, const DevicePose& pose,
+                     TickResult& result, Skipped& skipped) noexcept
 {
     const Touched& touched = objects_[body.objects.number(part.part)];
     const Placement& placement = body.placement_of(*touched.object);
     ++result.contacts;
     for (const Contact& contact : part.contacts) { // what presses most first, of a stylus its tip
-        const bool shared = probe_.kind == ProbeKind::sphere && part.contacts.size() > 1 && contact.depth_m > 0;
+        const glm::dvec3 way_m = shared_way_m(contact, contacts);
+        const double share = share_of(contact, body.objects.joined ? placement.direction_to_object(way_m) : way_m);
         ObjectForce force;
-        if (shared) {
-            const double share = share_of(contact, part.contacts);
+        if (share < 1) {
             Contact whole = contact; // as if it held all of it
             whole.depth_m /= share;
             whole.lag_m /= share;
@@ -51,12 +74,7 @@ void Renderer::touch(Body& body, const PartContacts& part, const DevicePose& pos
         } else {
             force = force_of(body, touched, placement, contact);
         }
-        result.unlimited_force_n += force.force_n;
-        if (probe_.has_tail())
-            result.unlimited_torque_n_m +=
-                torque_about(result.grip_m, pose.tip_m + contact.along * (pose.tail_m - pose.tip_m), force.force_n);
-        if (probe_.kind == ProbeKind::gripper)
-            result.grip_force_n += (contact.along - 0.5) * along_fingers(pose, force.force_n);
+        push(result, pose, contact.along, force.force_n);
         result.faults |= force.faults;
         held_j_ += force.held_j;
         skipped.texture = skipped.texture && !force.textured;

@@ -186,6 +186,35 @@ TEST_CASE("what a gripper's springs take while it closes they give back while it
     CHECK(std::abs(energy_j(there_and_back, 2e-3 * (steps + 1))) < 2e-3 * stored_j);
 }
 
+TEST_CASE("a magnet that pulls one finger does no work on a closed path of a gripper")
+{
+    constexpr double force_n = 1, reach_m = 5e-3;
+    constexpr int steps = 2000;
+    // Tip and tail above the plane, metres: down as a whole, up with the tip while the tail comes nearer, up as a whole
+    // and open again.
+    const glm::dvec2 corners[] = {{6e-3, 60e-3}, {1e-6, 54e-3}, {6e-3, 48e-3}, {12e-3, 54e-3}, {6e-3, 60e-3}};
+    const auto energy_j = [&](int sides) {
+        Scene scene = magnet_scene(plane_mesh(), force_n, reach_m);
+        scene.probe.kind = ProbeKind::gripper;
+        const auto hand = [&](uint64_t tick, DevicePose& pose) {
+            const auto last = static_cast<uint64_t>(sides * steps);
+            const uint64_t at = std::min(tick, last), side = std::min<uint64_t>(at / steps, uint64_t(sides) - 1);
+            const glm::dvec2 place = glm::mix(corners[side], corners[side + 1], double(at - side * steps) / steps);
+            pose = {{0, 0, place.x}, {0, 0, place.y}};
+            return DeviceStatus::ok;
+        };
+        ServoOptions options;
+        options.clock = ServoClock::virtual_time;
+        options.seconds = 1e-3 * (sides * steps + 1);
+        ServoThread servo(shared(std::move(scene)), std::make_unique<ScriptedDevice>(hand), options);
+        servo.start();
+        return servo.wait().energy_j;
+    };
+    const double drawn_j = Magnet{force_n, reach_m}.energy_j(reach_m); // down to the surface
+    CHECK(std::abs(energy_j(1) / drawn_j - 1) < 1e-2);
+    CHECK(std::abs(energy_j(4)) < 1e-2 * drawn_j);
+}
+
 TEST_CASE("a scene may be felt with a gripper")
 {
     Folder folder;

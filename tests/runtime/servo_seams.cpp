@@ -81,9 +81,11 @@ public:
         const dvec3 from_m = hand_m_;
         const int ticks = std::max(1, static_cast<int>(std::ceil(way_m / step_m)));
         for (int i = 1; i <= ticks; ++i) {
+            const dvec3 last_m = hand_m_;
             hand_m_ = began_ ? from_m + (place_m - from_m) * (static_cast<double>(i) / ticks) : place_m;
             felt_ = renderer_.tick({hand_m_, hand_m_ + rest_m_});
             const double change_n = glm::distance(felt_.unlimited_force_n, force_n_);
+            if (began_) given_j_ += 0.5 * glm::dot(felt_.unlimited_force_n + force_n_, hand_m_ - last_m);
             if (std::exchange(began_, true) && change_n > largest_n_) largest_n_ = change_n, largest_at_m_ = hand_m_;
             force_n_ = felt_.unlimited_force_n;
             touching_ += felt_.contacts > 0;
@@ -94,15 +96,16 @@ public:
     const TickResult& felt() const { return felt_; }
     double largest_n() const { return largest_n_; }
     const dvec3& largest_at_m() const { return largest_at_m_; }
-    int touching() const { return touching_; } // ticks
-    int both() const { return both_; }         // ticks that felt more than one object
+    double given_j() const { return given_j_; } // to the hand, of a point
+    int touching() const { return touching_; }  // ticks
+    int both() const { return both_; }          // ticks that felt more than one object
 
 private:
     Renderer renderer_;
     dvec3 rest_m_, hand_m_{0}, force_n_{0}, largest_at_m_{0};
     TickResult felt_;
     bool began_ = false;
-    double largest_n_ = 0;
+    double largest_n_ = 0, given_j_ = 0;
     int touching_ = 0, both_ = 0;
 };
 
@@ -302,4 +305,62 @@ TEST_CASE("each finger of a gripper, and each end of a stylus, has the friction 
         const double each_n = stiffness_n_per_m * depth_m;
         CHECK(glm::distance(stroke.force_n(), dvec3(0, -(0.1 + 0.8) * each_n, 2 * each_n)) < 1e-6);
     }
+}
+
+TEST_CASE("in a shallow valley of two objects a texture reaches as deep, and damps as much, as in one mesh")
+{
+    constexpr double stiffness = 1000, damping = 5, below_m = 1e-4, deep_m = 3e-3;
+    const TextureBinding lowered = lambda_texture(
+        [](const haptel_point&, dvec3& gradient) { return gradient = dvec3(0), 0.0; }, -below_m, below_m);
+    const Wedge wedge{174};
+    const double half = std::cos(glm::radians(3.0)); // each normal along the way out
+    for (const ProbeKind kind : {ProbeKind::point, ProbeKind::sphere, ProbeKind::stylus}) {
+        CAPTURE(static_cast<int>(kind));
+        std::vector<SceneObject> objects = {wedge.floor(stiffness, 0, lowered), wedge.wall(stiffness, 0, lowered)};
+        for (SceneObject& one : objects) one.material.damping_n_s_per_m = damping;
+        const Scene scene = with_probe(joined(std::move(objects)), kind);
+        const dvec3 rests_m = scene.probe.radius_m / half * wedge.between();
+        Stroke stroke(scene, rest_m(kind, wedge.between()));
+        stroke.to(rests_m + deep_m * wedge.between());
+        stroke.to(rests_m - deep_m * wedge.between());
+        CHECK(stroke.felt().contacts == 2);
+        const double speed_m_per_s = step_m * scene.servo.rate_hz;
+        const dvec3 moving_n = (stiffness * (deep_m - below_m / half) + damping * speed_m_per_s) * wedge.between();
+        CHECK(glm::distance(stroke.force_n(), moving_n) < 1e-6);
+        // Little deeper than the texture, and no notch on the way there.
+        const dvec3 valley_m = rests_m - 3 * below_m * wedge.between();
+        stroke.to(valley_m + dvec3(-2e-3, 0, 0));
+        const double before_n = stroke.largest_n();
+        for (int i = 0; i < 100; ++i) stroke.to(valley_m); // until its speed is forgotten
+        CHECK(stroke.largest_n() == before_n);
+        const dvec3 resting_n = stiffness * (3 * below_m - below_m / half) * wedge.between();
+        CHECK(glm::distance(stroke.force_n(), resting_n) < 1e-6);
+    }
+}
+
+TEST_CASE("a magnet beside what the hand presses on pulls without a step, and a closed path gives nothing")
+{
+    constexpr double stiffness = 1000;
+    constexpr Magnet magnet{1, 5e-3};
+    for (const double degrees : {60.0, 90.0, 120.0, 180.0})
+        for (const ProbeKind kind : {ProbeKind::point, ProbeKind::sphere})
+            for (const bool back : {false, true}) {
+                const Wedge wedge{degrees};
+                std::vector<SceneObject> objects = {wedge.floor(stiffness), wedge.wall(stiffness)};
+                objects[1].effects.magnet = magnet;
+                Stroke stroke(with_probe(joined(std::move(objects)), kind), dvec3(0));
+                const dvec3 up = {-std::cos(wedge.radians()), 0, std::sin(wedge.radians())};
+                std::vector<dvec3> corners = {{-12e-3, 0, 8e-3},
+                                              {-12e-3, 0, -2e-3},
+                                              -2.5e-3 * wedge.between(),
+                                              12e-3 * up - 1e-3 * wedge.wall_normal(),
+                                              12e-3 * up + 8e-3 * wedge.wall_normal(),
+                                              {-12e-3, 0, 8e-3}};
+                if (back) std::reverse(corners.begin(), corners.end());
+                for (const dvec3& corner : corners) stroke.to(corner);
+                CAPTURE(degrees, static_cast<int>(kind), back, stroke.given_j(), stroke.largest_n());
+                CHECK(stroke.largest_n() < 1.001 * stiffness * step_m); // the springs' alone
+                CHECK(std::abs(stroke.given_j()) < 1e-4 * magnet.energy_j(magnet.reach_m));
+                CHECK(stroke.touching() > 500);
+            }
 }
