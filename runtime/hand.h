@@ -33,7 +33,7 @@ struct Workspace {
 struct HandSettings {
     double force_max_n = 0; // what the motors can do; 0: unknown, the scene's limit alone holds
     Workspace workspace = {};
-    std::optional<ProbeSettings> probe = {}; // none: the scene's
+    std::optional<ProbeSettings> probe = {}; // none: the scene's, whichever is felt
 };
 
 inline bool Workspace::moves() const

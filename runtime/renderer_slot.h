@@ -1,8 +1,10 @@
-// Hands a scene to a servo that runs, as texture_slot.h does with textures: one atomic pointer, no lock in the tick,
+// Hands a scene to a servo that runs, as texture_slot.h does with textures: atomic pointers, no lock in the tick,
 // nothing freed by the servo.
 //
 // What is handed over is a whole renderer, made off the servo thread; the servo lets it take over from the one it has
-// and puts that one back, to be freed by whoever publishes or collects next. One servo per slot.
+// and puts that one back, to be freed by whoever publishes or collects next. Several may lie there: while the servo
+// takes one over another may be published, which it takes in its next tick whether anybody collects or not. One servo
+// per slot.
 #pragma once
 
 #include "runtime/renderer.h"
@@ -31,12 +33,18 @@ public:
     bool take(std::unique_ptr<Renderer>& current) noexcept;
 
 private:
+    // Made by who publishes; goes to the servo with the next renderer in it and comes back with the one before.
+    struct Carrier {
+        std::unique_ptr<Renderer> renderer;
+        Carrier* below = nullptr; // given back before this one, and not freed yet
+    };
+    void give_back(Carrier* carrier) noexcept;
     void free_given_back() noexcept;
 
     HandSettings hand_;
     std::mutex publishers_;
     std::shared_ptr<const Scene> taken_, newest_; // as far as the publishers know; guarded by publishers_
-    std::atomic<Renderer*> next_{nullptr}, given_back_{nullptr};
+    std::atomic<Carrier*> next_{nullptr}, given_back_{nullptr};
 };
 
 } // namespace haptel::runtime

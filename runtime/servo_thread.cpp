@@ -193,6 +193,7 @@ bool ServoThread::tick()
 
 void ServoThread::record(const DevicePose& pose, const TickResult& result, uint64_t compute_ns)
 {
+    if (result.interrupted) has_last_tip_ = false; // no force was on the hand while it came here
     if (result.faults & fault_pose_not_finite) {
         has_last_tip_ = false;
     } else {

@@ -111,8 +111,8 @@ ExitCode explore(const ExploreOptions& options)
     }
 
     ExploreStatus status(stderr_is_terminal());
-    std::optional<ExploreScene> scene(std::in_place, options.scene, std::move(loaded.meshes), surfaces, textures,
-                                      hands);
+    std::optional<ExploreScene> scene(std::in_place, options.scene, std::move(loaded.meshes), std::move(loaded.probes),
+                                      surfaces, textures, hands);
     hands.start();
     while (hands.running()) {
         if (interrupted) hands.request_stop();

@@ -34,8 +34,15 @@ std::string content_of(const std::filesystem::path& file)
 } // namespace
 
 ExploreScene::ExploreScene(std::filesystem::path file, std::vector<std::filesystem::path> meshes,
-                           runtime::SurfaceCache& surfaces, ExploreTextures& textures, ExploreHands& hands)
-    : file_(std::move(file)), meshes_(std::move(meshes)), surfaces_(surfaces), textures_(textures), hands_(hands)
+                           std::vector<runtime::ProbeSettings> probes, runtime::SurfaceCache& surfaces,
+                           ExploreTextures& textures, ExploreHands& hands)
+    : file_(std::move(file))
+    , meshes_(std::move(meshes))
+    , probes_(std::move(probes))
+    , written_(probes_)
+    , surfaces_(surfaces)
+    , textures_(textures)
+    , hands_(hands)
 {
     loaded_state_ = state();
     thread_ = std::thread([this] { watch(); });
@@ -110,6 +117,17 @@ void ExploreScene::tell_that_it_is_gone()
     say(file_.filename().string() + ": the file is gone; what was felt stays, and the file is read when it is back\n");
 }
 
+// Of a probe that was edited, once. A device was made for the probe that it has: one that gives no tail can hold no
+// gripper, and the hand would stick.
+std::string ExploreScene::told_of_probes(std::vector<runtime::ProbeSettings> now)
+{
+    bool edited = false;
+    for (std::size_t i = 0; i < std::min(now.size(), probes_.size()); ++i)
+        edited = edited || (now[i] != probes_[i] && (i >= written_.size() || now[i] != written_[i]));
+    written_ = std::move(now);
+    return edited ? file_.filename().string() + ": another probe is felt after a restart\n" : "";
+}
+
 void ExploreScene::load()
 {
     std::string now = state();
@@ -126,7 +144,8 @@ void ExploreScene::load()
     if (const std::string refused = hands_.publish(loaded.scene); !refused.empty())
         return say(name + ": not used: " + refused + "\n");
     textures_.watch(*loaded.scene);
-    say(name + ": reloaded; devices and workspaces stay as they were at the start\n");
+    say(name + ": reloaded; devices, probes and workspaces stay as they were at the start\n" +
+        told_of_probes(std::move(loaded.probes)));
 }
 
 } // namespace haptel::tools

@@ -44,7 +44,8 @@ DeviceText read_device(const toml::table& source, const std::string& name, Devic
     find_stylus_length(source, device);
     table.whole_number("seed", device.request.seed);
     if (const toml::table* probe = table.table("probe", "{ kind = \"point\" }"))
-        device.hand.probe = device.probe = read_probe(*probe, "`probe`", messages);
+        device.probe = read_probe(*probe, "`probe`", messages);
+    device.hand.probe = device.probe; // what the device was opened with, whatever scene comes later
     if (const toml::table* workspace = table.table("workspace", "{ scale = 2 }"))
         device.hand.workspace = read_workspace(*workspace, "`workspace`", messages);
     table.report_unknown_keys();

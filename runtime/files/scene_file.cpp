@@ -324,6 +324,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
         loaded.hands.clear();
         return loaded;
     }
+    for (const DeviceText& device : text.devices) loaded.probes.push_back(device.probe);
     loaded.scene = std::move(scene);
     return loaded;
 }

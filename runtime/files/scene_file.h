@@ -23,7 +23,8 @@ struct LoadedHand {
 struct LoadedScene {
     std::shared_ptr<const Scene> scene;        // null: see diagnostics
     std::vector<std::filesystem::path> meshes; // files that it is made of, as far as it could be read
-    std::vector<LoadedHand> hands; // one per device of the file; none without a scene or where no factory was given
+    std::vector<LoadedHand> hands;     // one per device of the file; none without a scene or where no factory was given
+    std::vector<ProbeSettings> probes; // of each device of the file, opened or not; none without a scene
     // Errors (then there is no scene), warnings and notes, ready to print: "FILE:LINE:COLUMN: error: ...", a line each,
     // several at once.
     std::string diagnostics;

@@ -207,6 +207,31 @@ TEST_CASE("a device that is away for a while comes back to a force that rises")
         CHECK(std::abs(glm::length(records[i].force_n) - full_n * std::min(1.0, double(i - 200) / 50)) < 1e-9);
 }
 
+TEST_CASE("while a device is away no force gives energy to its hand, neither in the run nor in its replay")
+{
+    // Pressed in by 1 mm: 1 N that would be 0.1 J on the way of 10 cm.
+    for (const bool told_by_pose : {false, true}) {
+        std::vector<TickRecord> records;
+        const ServoReport report =
+            run(std::make_unique<ScriptedDevice>([&](uint64_t tick, DevicePose& pose) {
+                    pose = at(0, 0, tick < 50 ? 1e-3 : tick < 100 ? -1e-3 : 0.1);
+                    pose.interrupted = told_by_pose && tick == 100;
+                    return !told_by_pose && tick >= 100 && tick < 200 ? DeviceStatus::not_ready : DeviceStatus::ok;
+                }),
+                as_fast_as_possible(0.3), &records, bare_scene(plane_mesh()));
+        CHECK(records.size() == (told_by_pose ? 300 : 200));
+        CHECK(std::abs(report.energy_j) < 1e-12); // no force on the way in, and none since
+        const ServoReport again = run(std::make_unique<ScriptedDevice>([&](uint64_t tick, DevicePose& pose) {
+                                          if (tick == records.size()) return DeviceStatus::finished;
+                                          pose = {records[tick].tip_m, records[tick].tail_m};
+                                          pose.interrupted = records[tick].interrupted != 0;
+                                          return DeviceStatus::ok;
+                                      }),
+                                      as_fast_as_possible(0.4), nullptr, bare_scene(plane_mesh()));
+        CHECK(again.energy_j == report.energy_j);
+    }
+}
+
 TEST_CASE("missed deadlines stand in the trace's time, not for a hand that has a time of its own")
 {
     for (const bool own_time : {false, true}) {

@@ -45,7 +45,8 @@ texture = "a.haptel:a"
         });
     REQUIRE(loaded.hands.size() == 2);
     const HandSettings &first = loaded.hands[0].settings, &second = loaded.hands[1].settings;
-    CHECK_FALSE(first.probe);
+    CHECK(first.probe->kind == ProbeKind::stylus); // whatever the scene says when it is edited
+    CHECK(first.probe->length_m == 0.3);
     CHECK(first.workspace.scale == 2);
     CHECK(second.probe->kind == ProbeKind::sphere);
     CHECK(second.probe->radius_m == 0.02);

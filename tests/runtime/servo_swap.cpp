@@ -5,9 +5,13 @@
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
+#include <functional>
+#include <optional>
 #include <thread>
+#include <utility>
 #include <vector>
 
 using namespace haptel;
@@ -137,6 +141,81 @@ TEST_CASE("of scenes published between two ticks the newest is felt, and what is
     stage.press(-1e-3, 1);
     stage.slot.collect();
     CHECK(published.back().expired());
+}
+
+namespace {
+
+// Is asked where its object is when a renderer takes over, and does something else first, once.
+class Occasion final : public Motion {
+public:
+    std::function<void()> meanwhile;
+    std::optional<Placement> at(double) const noexcept override
+    {
+        if (meanwhile) std::exchange(const_cast<Occasion*>(this)->meanwhile, {})();
+        return std::nullopt;
+    }
+};
+
+} // namespace
+
+TEST_CASE("a scene published while the one before is taken is felt next, and those before are freed")
+{
+    auto first = shared(plane_scene());
+    const auto occasion = std::make_shared<Occasion>();
+    Scene moved = same_as(*first), third = same_as(*first);
+    moved.objects[0].motion = occasion;
+    third.objects[0].material.stiffness_n_per_m = 2000;
+    auto second = shared(std::move(moved)), last = shared(std::move(third));
+    const std::weak_ptr<const Scene> first_alive = first, second_alive = second, last_alive = last;
+    Stage stage(first);
+    stage.press(1e-3, 1);
+    stage.press(-1e-3, 200);
+    first.reset();
+    stage.slot.publish(std::move(second));
+    occasion->meanwhile = [&] { std::thread([&] { stage.slot.publish(std::move(last)); }).join(); };
+    CHECK(stage.slot.take(stage.renderer));
+    CHECK_FALSE(occasion->meanwhile); // it was published in the middle of that
+    CHECK(stage.slot.take(stage.renderer));
+    CHECK_FALSE(stage.slot.take(stage.renderer));
+    CHECK(std::abs(stage.press(-1e-3, 200).force_n.z - 2) < 1e-8);
+    stage.slot.collect();
+    CHECK(first_alive.expired());
+    CHECK(second_alive.expired());
+    CHECK_FALSE(last_alive.expired());
+}
+
+TEST_CASE("of scenes published as fast as a servo takes them none is left")
+{
+    const auto scene = shared(plane_scene());
+    Stage stage(scene);
+    stage.press(-1e-3, 1);
+    std::vector<std::weak_ptr<const Scene>> published;
+    std::atomic<bool> stop = false;
+    uint64_t taken = 0;
+    std::thread servo([&] {
+        while (!stop.load(std::memory_order_relaxed)) {
+            if (stage.slot.take(stage.renderer))
+                ++taken;
+            else
+                std::this_thread::yield();
+        }
+    });
+    for (int i = 0; i < 3000; ++i) {
+        const auto next = shared(same_as(*scene));
+        published.push_back(next);
+        stage.slot.publish(next);
+        if (i % 3 == 0) std::this_thread::yield();
+        if (i % 7 == 0) stage.slot.collect();
+    }
+    stop = true;
+    servo.join();
+    while (stage.slot.take(stage.renderer)) ++taken;
+    CHECK(taken > 10);
+    stage.slot.collect();
+    uint64_t alive = 0;
+    for (const auto& one : published) alive += !one.expired();
+    CHECK(alive == 1);
+    CHECK_FALSE(published.back().expired()); // the newest is what is felt
 }
 
 TEST_CASE(

@@ -1,4 +1,5 @@
 // haptel explore while its files are edited: scene, meshes and textures.
+#include "runtime/recording.h"
 #include "tests/tools/explore_stage.h"
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 
 using namespace haptel::test;
 using haptel::tools::Json;
+namespace runtime = haptel::runtime;
 
 TEST_CASE("a scene or a mesh that is edited is felt without a restart; a broken edit is explained and not felt")
 {
@@ -61,6 +63,44 @@ TEST_CASE("a scene or a mesh that is edited is felt without a restart; a broken 
     CHECK(after_n > 0.4);
 }
 
+TEST_CASE("a probe that is edited is that of the next start, and that is said once: the hand goes on with what it has")
+{
+    const Folder folder;
+    const auto scene = [&](const std::string& name, const std::string& probe, const std::string& of_second) {
+        return folder.write(name, "[probe]\nkind = \"" + probe + "\"\n[[device]]\nstroke = \"press\"\n[[device]]\n" +
+                                      of_second + "[[object]]\nshape = \"box\"\n");
+    };
+    const std::string path = scene("scene.toml", "point", "");
+    scene("point.toml", "point", "");
+    scene("own.toml", "point", "probe = { kind = \"stylus\" }\n");
+    scene("gripper.toml", "gripper", "");
+    scene("softer.toml", "gripper", "press_n = 0.5\n");
+    const auto edit = [&](const char* to) {
+        return "cp " + folder.file(to) + " " + folder.file("scene.toml") + "; sleep 0.6; ";
+    };
+    const std::string edits =
+        "(sleep 1.7; " + edit("own.toml") + edit("point.toml") + edit("gripper.toml") + edit("softer.toml") + ") & ";
+    const Ran ran = run_command("explore " + path + " --seconds 6 --json --out " + folder.file("run"), edits);
+    INFO(ran.err);
+    CHECK(ran.code == 0);
+    CHECK(json_of(ran)["scenes_swapped"] == 4);
+    const std::string reloaded =
+                          "scene.toml: reloaded; devices, probes and workspaces stay as they were at the start\n",
+                      another = "scene.toml: another probe is felt after a restart\n";
+    CHECK(ran.err == reloaded + another + reloaded + reloaded + another + reloaded);
+    // A point has no tail: as a gripper's second finger it would never let go of the box.
+    int left = 0, touched = 0;
+    const auto trace = runtime::read_trace(folder.file("run/trace.csv"));
+    REQUIRE(trace.error.empty());
+    for (const runtime::TickRecord& tick : trace.records) {
+        if (tick.time_s < 3.5) continue;
+        left += tick.contact == 0;
+        touched += tick.contact > 0;
+    }
+    CHECK(left > 300);
+    CHECK(touched > 300);
+}
+
 TEST_CASE("a scene whose file goes is felt on, which is said once; it is taken up again when it is back")
 {
     const Folder folder;
@@ -77,7 +117,7 @@ TEST_CASE("a scene whose file goes is felt on, which is said once; it is taken u
     CHECK(json_of(ran)["scenes_swapped"] == 1);
     const std::string gone =
                           "scene.toml: the file is gone; what was felt stays, and the file is read when it is back\n",
-                      back = "scene.toml: reloaded; devices and workspaces stay as they were at the start\n";
+                      back = "scene.toml: reloaded; devices, probes and workspaces stay as they were at the start\n";
     CHECK(ran.err == gone + back); // nothing of the second time: an editor may save like that
 }
 
