@@ -23,8 +23,8 @@ struct ProbeSettings {
     // Of the stylus: from its tip to where the hand holds it, about which torque is told. Nothing: at the tail.
     std::optional<double> grip_m = {};
 
-    // A stylus or a gripper: where its tail is counts, and there is a torque.
     bool operator==(const ProbeSettings&) const = default;
+    // A stylus or a gripper: where its tail is counts, and there is a torque.
     bool has_tail() const { return kind == ProbeKind::stylus || kind == ProbeKind::gripper; }
     // Where the hand holds it: a gripper in the middle between its fingers.
     glm::dvec3 grip_of(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const;
