@@ -83,6 +83,7 @@ public:
         const int64_t stride = spline_stride(image.width, edge);
         std::vector<Points<degree_x>> lines[spline_support];
         for (auto& line : lines) line.resize(x.cells());
+        halvings_left = 1000 + 2 * x.cells() * y.cells();
         for (size_t row = 0; row < y.texel.size(); ++row) {
             read(image.coefficients[edge] + y.texel[row] * stride, x, lines[row % spline_support]);
             if (row + 1 < spline_support) continue;
@@ -139,11 +140,12 @@ private:
             reached_high = std::max({reached_high, points->front(), points->back()});
         }
         const double more = std::max((reached_high - reached_low) * near, size * rounding);
-        if (halvings == 0 || (least >= reached_low - more && greatest <= reached_high + more)) {
+        if (halvings == 0 || halvings_left == 0 || (least >= reached_low - more && greatest <= reached_high + more)) {
             low = std::min(low, least);
             high = std::max(high, greatest);
             return;
         }
+        --halvings_left;
         halve_by_x(patch, halvings - 1);
     }
 
@@ -176,6 +178,7 @@ private:
     double low = infinity, high = -infinity;                 // what is found
     double reached_low = infinity, reached_high = -infinity; // values at corners
     double size = 0;                                         // of the largest coefficient
+    size_t halvings_left = 0; // so that a picture whose every cell goes further than the last one takes no hours
 };
 
 template <size_t order_x, size_t order_y>
