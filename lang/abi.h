@@ -52,12 +52,12 @@ enum {
 enum { HAPTEL_EDGE_CLAMPED = 0, HAPTEL_EDGE_TILED = 1, HAPTEL_EDGE_MIRRORED = 2 };
 
 /* A picture as textures read it: the cubic B-spline that goes through its texels. Texel (0, 0) is the lower left one,
- * rows follow each other upwards. `minimum` and `maximum` bound all coefficients, and so the spline.
+ * rows follow each other upwards.
  */
 typedef struct {
-    const double* coefficients[2]; /* clamped or mirrored, tiled; width * height each, finite */
+    const double* coefficients[3]; /* by HAPTEL_EDGE_*; width * height each, finite. Clamped: (width + 2) * (height +
+                                      2), the first row and column below and left of texel (0, 0) */
     int32_t width, height;         /* in texels, at least 1 */
-    double minimum, maximum;
 } haptel_image;
 
 /* haptel_facts::continuity */

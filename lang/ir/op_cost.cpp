@@ -39,8 +39,8 @@ struct Counted {
 
 uint64_t counted_spline()
 {
-    const double texel = 0;
-    const haptel_image image{{&texel, &texel}, 1, 1, 0, 0};
+    const double texels[9] = {};
+    const haptel_image image{{texels, texels, texels}, 1, 1};
     uint64_t worst = 0;
     for (uint32_t edge = 0; edge < spline_edges; ++edge)
         for (uint32_t by_x = 0; by_x <= 3; ++by_x)

@@ -74,12 +74,18 @@ void spline_weights(const T& fraction, uint32_t order, T (&weights)[spline_suppo
     }
 }
 
-// One of `count` texels, for any index not too far outside.
+// Coefficients from one row to the next: a clamped image has those around it, too.
+inline int64_t spline_stride(int64_t width, uint32_t edge)
+{
+    return edge == HAPTEL_EDGE_CLAMPED ? width + 2 : width;
+}
+
+// Where coefficient `index` of a line over `count` texels is stored, for any index not too far outside.
 inline int64_t spline_texel(int64_t index, int64_t count, uint32_t edge)
 {
     const auto within = [index](int64_t period) { return (index % period + period) % period; };
     if (edge == HAPTEL_EDGE_TILED) return within(count);
-    if (edge == HAPTEL_EDGE_CLAMPED) return index < 0 ? 0 : index < count ? index : count - 1;
+    if (edge == HAPTEL_EDGE_CLAMPED) return index < 0 ? 0 : index < count ? index + 1 : count + 1;
     const int64_t folded = within(2 * count);
     return folded < count ? folded : 2 * count - 1 - folded;
 }
@@ -119,11 +125,11 @@ T spline(const haptel_image* image, const T& x, const T& y, uint32_t orders)
     const bool is_place = column.set(x, image->width, spline_order_along(orders, 0), edge) &&
                           row.set(y, image->height, spline_order_along(orders, 1), edge);
     if (!is_place) return x - x + (y - y);
-    // An image that is level where it ends goes on either way: the coefficients of the clamped one.
-    const double* coefficients = image->coefficients[edge == HAPTEL_EDGE_TILED];
+    const double* coefficients = image->coefficients[edge];
+    const int64_t stride = spline_stride(image->width, edge);
     T sum(0);
     for (uint32_t j = 0; j < spline_support; ++j) {
-        const double* line = coefficients + row.texel[j] * image->width;
+        const double* line = coefficients + row.texel[j] * stride;
         T along(0);
         for (uint32_t i = 0; i < spline_support; ++i) along = along + column.weight[i] * T(line[column.texel[i]]);
         sum = sum + row.weight[j] * along;

@@ -51,7 +51,7 @@ Quad bump(Quad x, int order)
 Quad closed_form(const haptel_image& image, double x, double y, int by_x, int by_y, uint32_t edge)
 {
     const auto inside = [&](int i, int n) {
-        if (edge == HAPTEL_EDGE_CLAMPED) return std::min(std::max(i, 0), n - 1);
+        if (edge == HAPTEL_EDGE_CLAMPED) return std::min(std::max(i, -1), n) + 1;
         while (i < 0 || i >= n) // from copy to copy
             i = edge == HAPTEL_EDGE_TILED ? i + (i < 0 ? n : -n) : i < 0 ? -1 - i : 2 * n - 1 - i;
         return i;
@@ -60,9 +60,9 @@ Quad closed_form(const haptel_image& image, double x, double y, int by_x, int by
     Quad sum = 0;
     for (int j = row - 2; j <= row + 3; ++j)
         for (int i = column - 2; i <= column + 3; ++i) {
-            const int at = inside(j, image.height) * image.width + inside(i, image.width);
-            sum += Quad(image.coefficients[edge == HAPTEL_EDGE_TILED][at]) * bump(Quad(x) - i, by_x) *
-                   bump(Quad(y) - j, by_y);
+            const int stride = image.width + (edge == HAPTEL_EDGE_CLAMPED ? 2 : 0);
+            const int at = inside(j, image.height) * stride + inside(i, image.width);
+            sum += Quad(image.coefficients[edge][at]) * bump(Quad(x) - i, by_x) * bump(Quad(y) - j, by_y);
         }
     return sum;
 }
@@ -178,7 +178,7 @@ TEST_CASE("spline: damaged images are refused with the reason")
     CHECK(error.find("too large") != std::string::npos);
 }
 
-TEST_CASE("spline: nothing found by sampling is outside of the bounds, which are not far off")
+TEST_CASE("spline: nothing found by sampling is outside of the bounds")
 {
     const auto image = image_of(random_texels(40 * 30, 9), 40, 30);
     std::mt19937 random(2);
@@ -199,8 +199,6 @@ TEST_CASE("spline: nothing found by sampling is outside of the bounds, which are
         CAPTURE(x, y, wide, orders, low, high, bounds.minimum, bounds.maximum);
         CHECK(bounds.minimum <= low);
         CHECK(bounds.maximum >= high);
-        // neighbours that know nothing of each other are the worst case
-        if (orders == 0 && wide == 60) CHECK(bounds.maximum <= 5 * std::max(high, -low));
     }
     const Interval anywhere = image->bounds({-infinity, infinity}, {-infinity, infinity}, 0);
     CHECK(anywhere.is_finite());
@@ -244,9 +242,9 @@ texture "pic" { parameter "picture" image 0 in 0 .. 0 unit "" offset 56 block 64
     box.images = {image.get()};
     const TextureBounds bounds = texture_bounds(*parsed.module, parsed.module->textures[0], box);
     CHECK(bounds.height.minimum <= 10);
-    CHECK(bounds.height.minimum > 8.5);
+    CHECK(bounds.height.minimum > 9.999);
     CHECK(bounds.height.maximum >= 20);
-    CHECK(bounds.height.maximum < 22.01);
+    CHECK(bounds.height.maximum < 20.001);
     CHECK(std::fabs(bounds.slope_max - 1) < 1e-3);
     CHECK(bounds.curvature_max_per_m < 1e-2);
     CHECK(bounds.smoothness == Smoothness::c2);
