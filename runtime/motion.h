@@ -22,14 +22,15 @@ struct MotionBounds {
     double sway_m = 0, turn_rad_per_s = 0;
 };
 
-// Asked by servo threads, several if there are several devices, once per tick: allocates, locks and throws nothing.
+// Asked by servo threads, several if there are several devices, once per tick: allocates, locks and throws nothing. One
+// that tells its bounds is asked less often, and for times that have passed.
 class Motion {
 public:
     virtual ~Motion() = default;
     // Nothing: the object stays where it was.
     virtual std::optional<Placement> at(double time_s) const noexcept = 0;
-    // Of an object that is within the ball in its own space. Who tells is a function of time alone: it is then asked
-    // where the object was, and not asked while the hand is far away. Nothing: not known.
+    // Of an object that is within the ball in its own space. Only a function of time alone has any; an object with them
+    // costs a tick nothing while the hand is far away (reach.h). Nothing: not known.
     virtual std::optional<MotionBounds> bounds(const glm::dvec3& /*centre_m*/, double /*radius_m*/) const noexcept
     {
         return std::nullopt;

@@ -5,10 +5,11 @@
 // that gap. One heap, ordered by the way at which to wake. Who is then still far away, by the ball around it, sleeps
 // on: the hand goes up and down more than away. Objects that are joined are one here (body.h).
 //
-// One that moves within known bounds (motion.h) is at rest here: the ball holds all the places that it can take, and is
-// larger by what it may seem to move in a tick, as it sees the hand. What of that grows with the distance is less than
-// the share of its gap that nobody sleeps through, up to a turn in one tick; what grows with the length of the probe
-// counts as way of the hand. So a hand that stays out of that ball meets nothing, as it meets nothing at rest.
+// One that moves within known bounds (motion.h) is at rest here. The ball holds all the places that it can take. As it
+// sees the hand, that makes longer steps than it does: by what it sways, and by what it turns at its own edge, for
+// which the ball is larger; by what it turns per metre of gap, for which nobody sleeps through the last tenth of his
+// gap; and by what it turns per metre of the probe, which is counted as way. So each step is shorter than the gap
+// before it, and meets nothing, as at rest.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -102,7 +102,8 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         advance_texture(objects_.front());
         result.binding = objects_.front().texture.to().serial;
     }
-    for (const uint32_t body : reach_.awake()) advance_textures(bodies_[body]);
+    for (const uint32_t body : reach_.awake())
+        if (!bodies_[body].asleep) advance_textures(bodies_[body]);
     if (!finite(pose.tip_m) || !finite(pose.tail_m)) {
         velocity_.lose_hand();
         tail_velocity_.lose_hand();
@@ -273,7 +274,8 @@ void Renderer::between_ticks() noexcept
 {
     // Now and then, in turn: so that nobody keeps a texture that is to be freed.
     if (!objects_.empty() && texture_period_ % 8 == 0) advance_texture(objects_[texture_period_ / 8 % objects_.size()]);
-    for (const uint32_t body : reach_.awake()) work_.read_ahead += bodies_[body].contact.read_ahead();
+    for (const uint32_t body : reach_.awake())
+        if (!bodies_[body].asleep) work_.read_ahead += bodies_[body].contact.read_ahead();
 }
 
 void Renderer::advance_texture(Touched& touched) noexcept

@@ -1,4 +1,5 @@
 // Objects that move and are out of reach: what a tick looks at does not grow with them, and nobody feels it.
+#include "runtime/allocation_count.h"
 #include "runtime/motion.h"
 #include "runtime/renderer.h"
 #include "tests/runtime/wild_motion.h"
@@ -39,6 +40,7 @@ struct Felt {
     std::vector<TickResult> ticks;
     SkippedStages skipped;
     int contacts = 0;
+    uint64_t allocated = 0; // in ticks and while one scene took over from another
 };
 
 // Another scene takes the place of the first where there is one.
@@ -55,13 +57,18 @@ Felt feel(const std::vector<Scene>& scenes, const std::vector<DevicePose>& hand,
         if (scenes.size() > 1 && i % 1000 == 999) {
             const auto next = with_skips(scenes[(i / 1000 + 1) % scenes.size()]);
             auto other = std::make_unique<Renderer>(next, HandSettings(), *scene);
+            const uint64_t before = allocations_of_this_thread();
             other->take_over(*renderer);
+            felt.allocated += allocations_of_this_thread() - before;
             scene = next;
             renderer = std::move(other);
         }
-        felt.ticks.push_back(renderer->tick(hand[i]));
-        felt.contacts += static_cast<int>(felt.ticks.back().contacts);
+        const uint64_t before = allocations_of_this_thread();
+        const TickResult tick = renderer->tick(hand[i]);
         renderer->between_ticks();
+        felt.allocated += allocations_of_this_thread() - before;
+        felt.ticks.push_back(tick);
+        felt.contacts += static_cast<int>(tick.contacts);
     }
     felt.skipped = renderer->skipped();
     return felt;
@@ -146,8 +153,31 @@ TEST_CASE("objects that move and are left alone change no bit of what is felt")
             other.probe = scene.probe;
             for (std::size_t i = 0; i < other.objects.size(); i += 3) other.objects[i].motion = nullptr;
             const Felt swapped = feel({scene, other}, hand, {});
+            CHECK(all.allocated + swapped.allocated == 0);
             CHECK(first_difference(swapped, feel({scene, other}, hand, {.objects = false})) == hand.size());
         }
+}
+
+TEST_CASE("who turns far in a tick is met on the straight way that the hand takes as it sees it")
+{
+    // A rod of a metre whose ends pass just before the hand: between two ticks the way cuts the circle short. And a
+    // box that makes half a turn in a tick that is late: the way leads through it.
+    const Mesh rod = make_box({1, 4e-3, 4e-3});
+    const auto turning = [](const Mesh& mesh, double spin_rad_per_s) {
+        Scene scene = bare_scene(mesh);
+        scene.objects[0].motion =
+            std::make_shared<SteadyMotion>(Placement(), SteadyMotion::Figures{{0, 0, 1}, spin_rad_per_s, {}, 0});
+        return scene;
+    };
+    const std::vector<DevicePose> before_the_end(3000, at(0.50004, 0, 0));
+    std::vector<DevicePose> late(10, at(0.1, 1e-4, 2e-4));
+    late[1].periods = 314;
+    for (const auto& [scene, hand] :
+         {std::pair(turning(rod, 49), before_the_end), std::pair(turning(shape("box", 0.01), 10), late)}) {
+        const Felt looked_at = feel({scene}, hand, {.objects = false}), all = feel({scene}, hand, {});
+        CHECK(looked_at.contacts > 0);
+        CHECK(first_difference(all, looked_at) == hand.size());
+    }
 }
 
 TEST_CASE("the damping of an object that turns is the same whether or not it was watched before it was touched")
@@ -160,14 +190,22 @@ TEST_CASE("the damping of an object that turns is the same whether or not it was
         foreseen.objects[0].motion = std::make_shared<SteadyMotion>(steady);
         Scene unforeseen = foreseen;
         unforeseen.objects[0].motion = std::make_shared<Unforeseen>([&](double time_s) { return *steady.at(time_s); });
-        Renderer a(shared(std::move(foreseen))), b(shared(std::move(unforeseen)));
+        const auto a_scene = shared(std::move(foreseen)), b_scene = shared(std::move(unforeseen));
+        auto a = std::make_unique<Renderer>(a_scene), b = std::make_unique<Renderer>(b_scene);
+        const auto renew = [](std::unique_ptr<Renderer>& renderer, const std::shared_ptr<const Scene>& scene) {
+            auto next = std::make_unique<Renderer>(scene, HandSettings(), *scene);
+            next->take_over(*renderer);
+            renderer = std::move(next);
+        };
         const int ticks = static_cast<int>(2 * rate_hz);
         double furthest_n = 0;
         int contacts = 0;
         for (int i = 0; i < ticks; ++i) {
             const double t = i / rate_hz;
-            const DevicePose pose = at(0.002, 0.001, 0.03 + 0.03 * std::cos(20 * t));
-            const TickResult x = a.tick(pose), y = b.tick(pose);
+            DevicePose pose = at(0.002, 0.001, 0.03 + 0.03 * std::cos(20 * t));
+            if (i % 170 == 0) pose.tip_m.x = std::nan(""); // it is taken to rest when it comes back
+            if (i % 50 == 0) renew(a, a_scene), renew(b, b_scene);
+            const TickResult x = a->tick(pose), y = b->tick(pose);
             furthest_n = std::max(furthest_n, glm::distance(x.force_n, y.force_n));
             contacts += static_cast<int>(x.contacts);
         }
