@@ -49,6 +49,7 @@ struct Kind {
     double height_m;
     uint64_t objects;
     TextureBinding texture, texture_without;
+    double spin_rad_per_s = 0; // of all objects
 };
 
 // One row in the making.
@@ -95,6 +96,10 @@ private:
     {
         auto scene = balls_on_a_grid(surface, kind.objects, texture, {});
         scene->servo.skips = skips;
+        const SteadyMotion::Figures figures{{1, 2, 3}, kind.spin_rad_per_s, {}, 0};
+        if (kind.spin_rad_per_s > 0)
+            for (SceneObject& object : scene->objects)
+                object.motion = std::make_shared<SteadyMotion>(object.placement, figures);
         return scene;
     }
 
@@ -127,7 +132,7 @@ std::vector<SkipRow> bench_skip(bool quick, const std::function<void(double)>& p
     const auto limited = bound_over_ball(rock, "rock", footprint_m);
     const auto in_full = bound_over_ball(rock, "rock_in_full", footprint_m);
     const Skips all_on, none{false, false, false, false};
-    // A single object that is looked at every tick, as one is that moves.
+    // A single object that is looked at every tick, as one is that the hand is near to.
     const Skips awake{.objects = false};
     using Counted = SkippedStages;
     const Kind kinds[] = {
@@ -154,6 +159,8 @@ std::vector<SkipRow> bench_skip(bool quick, const std::function<void(double)>& p
         {"in contact, no texture", "mapping", &Counted::mapping, all_on, {.mapping = false}, in_contact_m, 1, {}, {}},
         {"2 cm above, 1000 objects", "objects", &Counted::objects, all_on, awake, far_m, 1000, stone, stone},
         {"in contact, 1000 objects", "objects", &Counted::objects, all_on, awake, in_contact_m, 1000, stone, stone},
+        {"2 cm above, 1000 turning", "objects", &Counted::objects, all_on, awake, far_m, 1000, stone, stone, 1},
+        {"in contact, 1000 turning", "objects", &Counted::objects, all_on, awake, in_contact_m, 1000, stone, stone, 1},
         {"2 cm above, 1000 objects", "all", &Counted::free_space, all_on, none, far_m, 1000, stone, stone},
         {"in contact, 1000 objects", "all", &Counted::mapping, all_on, none, in_contact_m, 1000, limited, in_full}};
     const auto surface = build_surface(bumpy_ball(5, true)).surface;

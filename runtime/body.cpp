@@ -22,26 +22,65 @@ std::vector<BodyObjects> bodies_of(const Scene& scene)
     return bodies;
 }
 
-Surroundings surroundings_of(const Scene& scene, const BodyObjects& objects, double probe_radius_m)
+namespace {
+
+constexpr double rounding = 1e-6; // of a radius
+
+Surroundings box_of(const Surface& surface)
 {
-    const Surface& surface = *objects.surface(scene);
+    const glm::dvec3 middle = 0.5 * surface.box_minimum_m + 0.5 * surface.box_maximum_m;
+    return {middle, glm::distance(surface.box_minimum_m, middle)};
+}
+
+// From the surface to where nothing is felt of it any more.
+double felt_within_m(const Scene& scene, const BodyObjects& objects, double probe_radius_m)
+{
     double reach_m = 0;
     for (const uint32_t number : objects.numbers())
         reach_m = std::max(reach_m, scene.objects[number].effects.reach_m());
-    const glm::dvec3 middle = 0.5 * surface.box_minimum_m + 0.5 * surface.box_maximum_m;
-    const double radius_m = glm::distance(surface.box_minimum_m, middle) + probe_radius_m + reach_m;
-    return {objects.placement(scene).to_world(middle),
-            objects.motion(scene) ? std::numeric_limits<double>::infinity() : radius_m * (1 + 1e-6)};
+    return probe_radius_m + reach_m;
+}
+
+// Nothing: at rest, not known, or too fast for a tick.
+std::optional<MotionBounds> bounds_of(const Scene& scene, const BodyObjects& objects)
+{
+    const Motion* motion = objects.motion(scene);
+    if (!motion) return std::nullopt;
+    const Surroundings box = box_of(*objects.surface(scene));
+    const auto bounds = motion->bounds(box.centre_m, box.radius_m);
+    return bounds && bounds->turn_rad_per_s <= turn_max_rad * scene.servo.rate_hz ? bounds : std::nullopt;
+}
+
+} // namespace
+
+Surroundings surroundings_of(const Scene& scene, const BodyObjects& objects, double probe_radius_m)
+{
+    const Surroundings box = box_of(*objects.surface(scene));
+    const double felt_m = felt_within_m(scene, objects, probe_radius_m);
+    if (!objects.motion(scene))
+        return {objects.placement(scene).to_world(box.centre_m), (box.radius_m + felt_m) * (1 + rounding)};
+    const auto bounds = bounds_of(scene, objects);
+    if (!bounds) return {{}, std::numeric_limits<double>::infinity()};
+    const double radius_m = bounds->radius_m + felt_m;
+    // r more, so that r = sway + turn * (radius + r + radius): the hand is farther away than it seems to move at the
+    // edge of the ball.
+    const double seems_m = (bounds->sway_m + 2 * turn_max_rad * radius_m) / (1 - turn_max_rad);
+    return {bounds->centre_m, (radius_m + seems_m) * (1 + rounding)};
 }
 
 Body::Body(const Scene& scene, const BodyObjects& of, const ProbeSettings& probe)
     : objects(of)
     , motion(of.motion(scene))
+    , around(box_of(*of.surface(scene)))
     , contact(probe, of.surface(scene), scene.servo.skips.free_space)
     , placement(of.placement(scene))
     , velocity(1 / scene.servo.rate_hz)
     , tail_velocity(1 / scene.servo.rate_hz)
 {
+    around.radius_m = (around.radius_m + felt_within_m(scene, of, probe.radius_m)) * (1 + rounding);
+    const auto bounds = bounds_of(scene, of);
+    bounded = bounds.has_value();
+    if (bounded) turn_rad_per_s = bounds->turn_rad_per_s;
 }
 
 void Body::move(double time_s) noexcept

@@ -41,7 +41,7 @@ struct BodyObjects {
 // Each object in one of them, in the order of their first ones.
 std::vector<BodyObjects> bodies_of(const Scene& scene);
 
-// Within which a body is felt, effects included.
+// Within which a body is felt, effects included, wherever it goes: a radius without end if that is not known.
 Surroundings surroundings_of(const Scene& scene, const BodyObjects& objects, double probe_radius_m);
 
 // The friction that holds one end of the probe: the mean of all that it touches, by how hard that pushes, so that in a
@@ -59,11 +59,17 @@ struct Body {
 
     BodyObjects objects;
     const Motion* motion; // null: at rest
-    ProbeContact contact; // in the body's space
-    Placement placement;  // of this tick
+    // Moves, within bounds: may be asked where it was, and not at all for a while (reach.h). Its velocities are known
+    // only from when it is touched to when the hand is out of its surroundings.
+    bool bounded = false;
+    double turn_rad_per_s = 0; // of those bounds
+    Surroundings around;       // in its own space, within which it is felt
+    ProbeContact contact;      // in the body's space
+    Placement placement;       // of this tick
     // Of tip and tail, in the space of a body that moves; else not kept.
     HandVelocity velocity, tail_velocity;
-    bool asleep = false; // out of the hand's reach: its contact stands where the hand last was
+    // Out of the hand's reach: its contact stands where the hand last was, and so does it itself if it is bounded.
+    bool asleep = false;
     // Of the tick before: contact comes before texture.
     EndFriction tip_friction, tail_friction;
 

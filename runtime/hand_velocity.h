@@ -17,6 +17,7 @@ public:
     void update(const glm::dvec3& hand_m, uint64_t periods) noexcept;
     // Where the hand was is not known any more: it is taken to rest when it comes back.
     void lose_hand() noexcept { has_last_ = false; }
+    bool has_hand() const noexcept { return has_last_; }
 
     const glm::dvec3& m_per_s() const noexcept { return m_per_s_; }
 

@@ -13,6 +13,9 @@ constexpr double two_pi = 6.283185307179586;
 // Rotations made by others are rounded; what is farther from one scales or shears.
 constexpr double orthonormal_within = 1e-6;
 
+// Per second. Up to here angles are finite at any time of a run.
+constexpr double fastest = 1e9;
+
 bool is_rotation(const glm::dmat3& m)
 {
     const glm::dmat3 square = glm::transpose(m) * m;
@@ -35,6 +38,25 @@ std::optional<Placement> SteadyMotion::at(double time_s) const noexcept
         now.rotation = glm::dmat3(glm::rotate(glm::dmat4(1), angle, figures_.axis)) * start_.rotation;
     }
     return now;
+}
+
+// The ball goes round its axis, and the whole circle swings.
+std::optional<MotionBounds> SteadyMotion::bounds(const glm::dvec3& centre_m, double radius_m) const noexcept
+{
+    const double swing_m = glm::length(figures_.swing_m), turn = std::fabs(figures_.spin_rad_per_s);
+    const glm::dvec3 arm_m = start_.rotation * centre_m;
+    MotionBounds bounds{start_.position_m + arm_m, radius_m + swing_m, 2 * swing_m, turn};
+    if (turn != 0) {
+        const double length = glm::length(figures_.axis);
+        const glm::dvec3 axis = figures_.axis / length, along_m = glm::dot(arm_m, axis) * axis;
+        if (!(std::isnormal(length) && turn < fastest)) return std::nullopt;
+        bounds.centre_m = start_.position_m + along_m;
+        bounds.radius_m += glm::distance(arm_m, along_m);
+    }
+    bounds.radius_m += 10 * orthonormal_within * (bounds.radius_m + glm::length(arm_m));
+    if (!finite(start_) || !std::isfinite(bounds.radius_m) || !(std::fabs(figures_.swing_hz) < fastest))
+        return std::nullopt;
+    return bounds;
 }
 
 double SteadyMotion::speed_max_m_per_s(double radius_m) const noexcept

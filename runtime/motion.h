@@ -13,12 +13,28 @@
 
 namespace haptel::runtime {
 
-// Asked by servo threads, several if there are several devices, once per tick: allocates, locks and throws nothing.
+// Where an object stays whatever the time, in the scene's space, and how it goes to and fro there.
+struct MotionBounds {
+    glm::dvec3 centre_m{0};
+    double radius_m = 0; // no point of the object leaves this ball
+    // Between two times a place at rest that is d from the centre moves, as the object sees it, by no more than
+    // sway_m + turn_rad_per_s * seconds * (d + radius_m).
+    double sway_m = 0, turn_rad_per_s = 0;
+};
+
+// Asked by servo threads, several if there are several devices, once per tick: allocates, locks and throws nothing. One
+// that tells its bounds is asked less often, and for times that have passed.
 class Motion {
 public:
     virtual ~Motion() = default;
     // Nothing: the object stays where it was.
     virtual std::optional<Placement> at(double time_s) const noexcept = 0;
+    // Of an object that is within the ball in its own space. Only a function of time alone has any; an object with them
+    // costs a tick nothing while the hand is far away (reach.h). Nothing: not known.
+    virtual std::optional<MotionBounds> bounds(const glm::dvec3& /*centre_m*/, double /*radius_m*/) const noexcept
+    {
+        return std::nullopt;
+    }
     // No point of the object that far from its origin goes faster: textures have no finer detail than a tick passes. 0:
     // not known, and not counted.
     virtual double speed_max_m_per_s(double /*radius_m*/) const noexcept { return 0; }
@@ -36,6 +52,7 @@ public:
     };
     SteadyMotion(const Placement& start, const Figures& figures);
     std::optional<Placement> at(double time_s) const noexcept override;
+    std::optional<MotionBounds> bounds(const glm::dvec3& centre_m, double radius_m) const noexcept override;
     double speed_max_m_per_s(double radius_m) const noexcept override;
 
 private:

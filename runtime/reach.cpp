@@ -8,8 +8,9 @@ namespace haptel::runtime {
 
 namespace {
 
-// The way is rounded up, the gap down: nobody sleeps too long.
-constexpr double up = 1 + 0x1p-51, early = 1 - 1e-6;
+// The way is rounded up, and a part of the gap left over for what turns: nobody sleeps too long.
+constexpr double up = 1 + 0x1p-51, early = 0.9;
+static_assert(early + turn_max_rad < 1);
 // The way is counted anew before it has lost the digits of a step.
 constexpr double way_max_m = 100;
 
@@ -21,10 +22,8 @@ Reach::Reach(std::vector<Surroundings> objects) : objects_(std::move(objects))
     for (uint32_t object = 0; object < objects_.size(); ++object) awake_.push_back(object);
 }
 
-// From the hand to the object's surroundings; not above 0 where that is not known.
-double Reach::gap_m(uint32_t object, const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept
+double gap_m(const Surroundings& around, const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
 {
-    const Surroundings& around = objects_[object];
     const glm::dvec3 shaft = tail_m - tip_m, to_centre = around.centre_m - tip_m;
     const double square = glm::dot(shaft, shaft);
     const double share = square > 0 ? glm::clamp(glm::dot(to_centre, shaft) / square, 0.0, 1.0) : 0.0;
@@ -39,7 +38,7 @@ void Reach::go(double way_m, const glm::dvec3& tip_m, const glm::dvec3& tail_m, 
         const uint32_t object = sleepers_.front().second;
         std::pop_heap(sleepers_.begin(), sleepers_.end(), std::greater<>());
         sleepers_.pop_back();
-        const double gap = gap_m(object, tip_m, tail_m);
+        const double gap = runtime::gap_m(objects_[object], tip_m, tail_m);
         if (gap > near_m) {
             fall_asleep(object, gap);
             continue;

@@ -4,6 +4,12 @@
 // Known by the way that the hand has gone, added up: an object at least a gap away sleeps until the way has grown by
 // that gap. One heap, ordered by the way at which to wake. Who is then still far away, by the ball around it, sleeps
 // on: the hand goes up and down more than away. Objects that are joined are one here (body.h).
+//
+// One that moves within known bounds (motion.h) is at rest here. The ball holds all the places that it can take. As it
+// sees the hand, that makes longer steps than it does: by what it sways, and by what it turns at its own edge, for
+// which the ball is larger; by what it turns per metre of gap, for which nobody sleeps through the last tenth of his
+// gap; and by what it turns per metre of the probe, which is counted as way. So each step is shorter than the gap
+// before it, and meets nothing, as at rest.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -21,6 +27,12 @@ struct Surroundings {
     double radius_m = 0;
 };
 
+// From the hand to there; not above 0 where that is not known.
+double gap_m(const Surroundings& around, const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
+
+// Of who turns, in one tick; who may have turned farther has to be awake.
+inline constexpr double turn_max_rad = 0.05;
+
 class Reach {
 public:
     // All awake.
@@ -34,13 +46,13 @@ public:
     void sleep(uint32_t object, double gap_m) noexcept;
 
     // In rising order, so that what is summed over them does not depend on who slept when.
+    const Surroundings& around(uint32_t object) const noexcept { return objects_[object]; }
     const std::vector<uint32_t>& awake() const noexcept { return awake_; }
     std::size_t asleep() const noexcept { return sleepers_.size(); }
 
 private:
     void fall_asleep(uint32_t object, double gap_m) noexcept;
     void wake_all() noexcept;
-    double gap_m(uint32_t object, const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept;
 
     using Sleeper = std::pair<double, uint32_t>; // the way at which it wakes; the object
 

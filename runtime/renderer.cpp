@@ -4,18 +4,26 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace haptel::runtime {
 
 namespace {
 
+constexpr double anywhere_m = std::numeric_limits<double>::infinity();
+
 // An object is left alone if it is farther away than this: the hand needs several ticks to come near it, and what
 // rounding does to coordinates is nothing beside it.
-double far_enough_m(const DevicePose& pose, double way_m)
+double far_enough_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m, double way_m)
 {
-    const glm::dvec3 farthest = glm::max(glm::abs(pose.tip_m), glm::abs(pose.tail_m));
+    const glm::dvec3 farthest = glm::max(glm::abs(tip_m), glm::abs(tail_m));
     return std::max({1e-6, 8 * way_m, 1e-6 * std::max({farthest.x, farthest.y, farthest.z})});
+}
+
+double farther_m(const glm::dvec3& tip_way_m, const glm::dvec3& tail_way_m)
+{
+    return std::sqrt(std::max(glm::dot(tip_way_m, tip_way_m), glm::dot(tail_way_m, tail_way_m)));
 }
 
 // Forces of effects have no spring. Where they are left over by a scene that is gone they fade like those of this one.
@@ -36,7 +44,9 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
     , waiting_(scene_->servo.wait_for_small_force_n > 0)
     , velocity_(period_s_)
     , tail_velocity_(period_s_)
+    , history_(period_s_)
 {
+    for (const Body& body : bodies_) turn_max_rad_per_s_ = std::max(turn_max_rad_per_s_, body.turn_rad_per_s);
     objects_.reserve(scene_->objects.size());
     for (const SceneObject& object : scene_->objects) {
         TextureReader reader(*object.texture);
@@ -92,11 +102,13 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         advance_texture(objects_.front());
         result.binding = objects_.front().texture.to().serial;
     }
-    for (const uint32_t body : reach_.awake()) advance_textures(bodies_[body]);
+    for (const uint32_t body : reach_.awake())
+        if (!bodies_[body].asleep) advance_textures(bodies_[body]);
     if (!finite(pose.tip_m) || !finite(pose.tail_m)) {
         velocity_.lose_hand();
         tail_velocity_.lose_hand();
         effects_.lose_hand();
+        history_.lose_hand();
         sent_ = left_ = {};
         for (Body& body : bodies_) body.velocity.lose_hand(), body.tail_velocity.lose_hand();
         interrupted_ = true;
@@ -106,6 +118,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     velocity_.update(pose.tip_m, periods);
     const bool has_tail = probe_.has_tail();
     if (has_tail) tail_velocity_.update(pose.tail_m, periods);
+    history_.add(period_, pose.tip_m, pose.tail_m);
     const glm::dvec3 grip_m = result.grip_m = has_tail ? probe_.grip_of(pose.tip_m, pose.tail_m) : pose.tip_m;
     result.interrupted = std::exchange(interrupted_, false) || pose.interrupted;
     if (result.interrupted) {
@@ -118,24 +131,21 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     if (effects_.act()) effects_.begin(pose.tip_m, result.time_s, periods);
 
     held_j_ = 0;
-    double way_m = 0;
-    if (last_pose_) {
-        const glm::dvec3 tip_way = pose.tip_m - last_pose_->tip_m, tail_way = pose.tail_m - last_pose_->tail_m;
-        way_m = std::sqrt(std::max(glm::dot(tip_way, tip_way), glm::dot(tail_way, tail_way)));
-    }
-    const double near_m = far_enough_m(pose, way_m);
-    reach_.go(way_m, pose.tip_m, pose.tail_m, near_m);
+    const double way = way_m(pose), near_m = far_enough_m(pose.tip_m, pose.tail_m, way);
+    reach_.go(turned_rad() <= turn_max_rad ? way : anywhere_m, pose.tip_m, pose.tail_m, near_m);
     Skipped skipped;
     skipped_.objects += objects_.size();
     for (std::size_t i = 0; i < reach_.awake().size(); ++i) {
         const uint32_t number = reach_.awake()[i];
         Body& body = bodies_[number];
+        if (!take_pose(body, pose, periods)) continue;
         skipped_.objects -= body.objects.numbers().size();
-        if (body.asleep) wake(body);
         const ContactCounters& counters = body.contact.counters();
         const uint64_t spared = counters.skipped, queries = counters.sweeps, triangles = counters.triangles_tested,
                        steps = counters.walk_steps;
-        const std::span<const Contact> contacts = update_contact(body, pose, periods);
+        const std::span<const Contact> contacts =
+            body.contact.update(body.pose_of(pose), {body.tip_friction.mean, body.tail_friction.mean});
+        if (body.bounded) track_velocity(number, pose, periods, !contacts.empty());
         skipped.query = skipped.query && counters.skipped > spared;
         work_.queries += counters.sweeps - queries;
         work_.triangles += counters.triangles_tested - triangles;
@@ -147,9 +157,10 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         body.tip_friction = body.tail_friction = {};
         if (contacts.empty()) {
             skipped.texture = skipped.texture && (scene_->servo.skips.texture || !feels_in_air(body, pose));
-            if (const double gap_m = gap_to_sleep_m(body, pose, near_m); gap_m > 0) {
-                body.asleep = true;
-                reach_.sleep(number, gap_m);
+            const double gap = gap_to_sleep_m(number, pose, near_m);
+            body.asleep = gap > 0;
+            if (body.asleep && !(body.motion && !body.bounded)) {
+                reach_.sleep(number, gap);
                 --i;
             }
             continue;
@@ -158,6 +169,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     }
     const double left_work_j = last_pose_ ? work_j(swapped_ ? sent_ : left_, *last_pose_, pose) : 0.0;
     last_pose_ = pose;
+    last_pose_period_ = period_;
     skipped_.free_space += skipped.query;
     skipped_.texture += skipped.texture;
     skipped_.octaves += skipped.octaves;
@@ -262,7 +274,8 @@ void Renderer::between_ticks() noexcept
 {
     // Now and then, in turn: so that nobody keeps a texture that is to be freed.
     if (!objects_.empty() && texture_period_ % 8 == 0) advance_texture(objects_[texture_period_ / 8 % objects_.size()]);
-    for (const uint32_t body : reach_.awake()) work_.read_ahead += bodies_[body].contact.read_ahead();
+    for (const uint32_t body : reach_.awake())
+        if (!bodies_[body].asleep) work_.read_ahead += bodies_[body].contact.read_ahead();
 }
 
 void Renderer::advance_texture(Touched& touched) noexcept
@@ -277,35 +290,92 @@ void Renderer::advance_textures(const Body& body) noexcept
     for (const uint32_t object : body.objects.joined->objects) advance_texture(objects_[object]);
 }
 
+// How far who turns within bounds has done so since the last pose.
+double Renderer::turned_rad() const noexcept
+{
+    return turn_max_rad_per_s_ * (time_s() - time_s(last_pose_period_));
+}
+
+// Of the hand since the last pose, with how much longer it looks to who turns: a stylus far away sweeps along.
+double Renderer::way_m(const DevicePose& pose) const noexcept
+{
+    if (!last_pose_) return 0;
+    const double way = farther_m(pose.tip_m - last_pose_->tip_m, pose.tail_m - last_pose_->tail_m);
+    return turn_max_rad_per_s_ > 0 && probe_.has_tail()
+               ? way + std::min(turned_rad(), turn_max_rad) * glm::distance(pose.tip_m, pose.tail_m)
+               : way;
+}
+
+// Where the probe was in the tick before, in the body's space as it was then.
+ProbePose Renderer::pose_before(Body& body) const noexcept
+{
+    if (body.asleep && body.bounded) body.move(time_s(last_pose_period_));
+    return body.pose_of(*last_pose_);
+}
+
+// To where a body and the hand are now. False: it sleeps on. One of which nobody knows where it can go is not among
+// those that Reach leaves alone, and cannot be touched while in its own space the hand is out of the ball around it,
+// and its way into this tick is.
+bool Renderer::take_pose(Body& body, const DevicePose& pose, uint64_t periods) noexcept
+{
+    const ProbePose before = body.asleep ? pose_before(body) : ProbePose();
+    if (body.motion) body.move(time_s());
+    if (body.motion && !body.bounded) {
+        const ProbePose now = body.pose_of(pose);
+        body.velocity.update(now.tip_m, periods);
+        if (probe_.has_tail()) body.tail_velocity.update(now.tail_m, periods);
+        if (body.asleep) {
+            const double way = farther_m(now.tip_m - before.tip_m, now.tail_m - before.tail_m);
+            if (gap_m(body.around, now.tip_m, now.tail_m) > far_enough_m(now.tip_m, now.tail_m, way)) return false;
+        }
+    }
+    if (body.asleep) wake(body, before);
+    return true;
+}
+
 // Takes the contact to where the hand was in the tick before: nothing lay on its way.
-void Renderer::wake(Body& body) noexcept
+void Renderer::wake(Body& body, const ProbePose& before) noexcept
 {
     body.asleep = false;
     advance_textures(body);
-    body.contact.follow(body.pose_of(*last_pose_));
+    body.contact.follow(before);
 }
 
 // How far the hand must go before a body that it does not touch is looked at again; 0: look at it every tick.
-double Renderer::gap_to_sleep_m(const Body& body, const DevicePose& pose, double near_m) const noexcept
+double Renderer::gap_to_sleep_m(uint32_t number, const DevicePose& pose, double near_m) const noexcept
 {
-    if (body.motion || !scene_->servo.skips.objects) return 0;
+    if (!scene_->servo.skips.objects) return 0;
+    const Body& body = bodies_[number];
     const ProbePose probe = body.pose_of(pose);
     double awake_within_m = 0;
     for (const uint32_t object : body.objects.numbers())
         awake_within_m = std::max(awake_within_m, effects_.awake_within_m(object));
-    const double gap_m = body.contact.gap_m(probe) - awake_within_m;
+    double gap = body.contact.gap_m(probe) - awake_within_m;
+    if (body.bounded) gap = std::min(gap, gap_m(reach_.around(number), pose.tip_m, pose.tail_m));
     const glm::dvec3 farthest = glm::abs(probe.tip_m); // in its space, where coordinates may be larger
-    return gap_m > std::max({near_m, 1e-6 * farthest.x, 1e-6 * farthest.y, 1e-6 * farthest.z}) ? gap_m : 0;
+    return gap > std::max({near_m, 1e-6 * farthest.x, 1e-6 * farthest.y, 1e-6 * farthest.z}) ? gap : 0;
 }
 
-std::span<const Contact> Renderer::update_contact(Body& body, const DevicePose& pose, uint64_t periods) noexcept
+// Of a body that moves within bounds. Whether it slept does not matter: it is told from the poses of late when it is
+// touched, and forgotten where it may fall asleep.
+void Renderer::track_velocity(uint32_t number, const DevicePose& pose, uint64_t periods, bool touching) noexcept
 {
-    if (body.motion) {
-        body.move(time_s());
-        body.velocity.update(body.placement.to_object(pose.tip_m), periods);
-        if (probe_.has_tail()) body.tail_velocity.update(body.placement.to_object(pose.tail_m), periods);
+    Body& body = bodies_[number];
+    const auto update = [&](const glm::dvec3& tip_m, const glm::dvec3& tail_m, uint64_t since) {
+        body.velocity.update(body.placement.to_object(tip_m), since);
+        if (probe_.has_tail()) body.tail_velocity.update(body.placement.to_object(tail_m), since);
+    };
+    if (body.velocity.has_hand()) {
+        if (touching || !(gap_m(reach_.around(number), pose.tip_m, pose.tail_m) > 0))
+            update(pose.tip_m, pose.tail_m, periods);
+        else
+            body.velocity.lose_hand(), body.tail_velocity.lose_hand();
+    } else if (touching) {
+        history_.each([&](const HandHistory::Entry& entry) {
+            body.move(time_s(entry.period));
+            update(entry.tip_m, entry.tail_m, entry.periods);
+        });
     }
-    return body.contact.update(body.pose_of(pose), {body.tip_friction.mean, body.tail_friction.mean});
 }
 
 void Renderer::update_effects(const Body& body, std::span<const Contact> contacts,

@@ -9,6 +9,7 @@
 #include "runtime/body.h"
 #include "runtime/effects.h"
 #include "runtime/hand.h"
+#include "runtime/hand_history.h"
 #include "runtime/hand_velocity.h"
 #include "runtime/haptic_device.h"
 #include "runtime/reach.h"
@@ -134,9 +135,13 @@ private:
     void put_down(Body& body, const Renderer& before, const HeldBodies& held) noexcept;
     void advance_texture(Touched& touched) noexcept;
     void advance_textures(const Body& body) noexcept;
-    void wake(Body& body) noexcept;
-    double gap_to_sleep_m(const Body& body, const DevicePose& pose, double near_m) const noexcept;
-    std::span<const Contact> update_contact(Body& body, const DevicePose& pose, uint64_t periods) noexcept;
+    double way_m(const DevicePose& pose) const noexcept;
+    double turned_rad() const noexcept;
+    bool take_pose(Body& body, const DevicePose& pose, uint64_t periods) noexcept;
+    ProbePose pose_before(Body& body) const noexcept;
+    void wake(Body& body, const ProbePose& before) noexcept;
+    double gap_to_sleep_m(uint32_t body, const DevicePose& pose, double near_m) const noexcept;
+    void track_velocity(uint32_t body, const DevicePose& pose, uint64_t periods, bool touching) noexcept;
     void update_effects(const Body& body, std::span<const Contact> contacts,
                         std::span<const PartContacts> parts) noexcept;
     bool feels_in_air(const Body& body, const DevicePose& pose) const noexcept;
@@ -146,7 +151,8 @@ private:
                      const glm::dvec3& normal, double depth_m, double stiffness_n_per_m) const noexcept;
     double work_j(const OnHand& on_hand, const DevicePose& from, const DevicePose& to) const noexcept;
     void send(TickResult& result, double lever_m, double left_work_j) noexcept;
-    double time_s() const noexcept { return static_cast<double>(period_) * period_s_; }
+    double time_s() const noexcept { return time_s(period_); }
+    double time_s(uint64_t period) const noexcept { return static_cast<double>(period) * period_s_; }
 
     std::shared_ptr<const Scene> scene_;
     HandSettings hand_;
@@ -156,7 +162,8 @@ private:
     std::vector<Touched> objects_;
     std::vector<Body> bodies_;
     Effects effects_;
-    Reach reach_; // of bodies
+    Reach reach_;                   // of bodies
+    double turn_max_rad_per_s_ = 0; // of those that move within bounds
     bool started_ = false;
     uint64_t period_ = 0;         // number of this tick's period, 0 at the first pose
     uint64_t texture_period_ = 0; // the same, those before a pose included
@@ -167,7 +174,9 @@ private:
     SkippedStages skipped_;
     ContactWork work_;
     std::optional<DevicePose> last_pose_;   // that was finite
+    uint64_t last_pose_period_ = 0;         // of it
     HandVelocity velocity_, tail_velocity_; // world frame
+    HandHistory history_;
 
     // For who takes over, and after having taken over.
     OnHand sent_;                // in the tick before, the scene's space

@@ -76,6 +76,8 @@ void Renderer::take_over(Renderer& before) noexcept
     work_ = before.work();
     reloads_before_ = before.reloads();
     last_pose_ = before.last_pose_;
+    last_pose_period_ = before.last_pose_period_;
+    history_ = before.history_;
     velocity_ = before.velocity_;
     tail_velocity_ = before.tail_velocity_;
     sent_ = before.sent_;
@@ -99,13 +101,14 @@ void Renderer::take_over(Renderer& before) noexcept
     for (std::size_t i = 0; i < bodies_.size(); ++i) { // the others first: they look at what the old bodies hold
         Body& body = bodies_[i];
         if (body.motion) body.move(time_s());
+        if (was_[i] != none)
+            if (Body& old = before.bodies_[was_[i]]; old.asleep) before.wake(old, before.pose_before(old));
         if (was_[i] != none && !goes_on(body, before.bodies_[was_[i]])) was_[i] = none;
         if (was_[i] == none) put_down(body, before, held);
     }
     for (std::size_t i = 0; i < bodies_.size(); ++i) {
         if (was_[i] == none) continue;
         Body &body = bodies_[i], &old = before.bodies_[was_[i]];
-        if (old.asleep) before.wake(old);
         std::swap(body.contact, old.contact);
         std::swap(body.velocity, old.velocity);
         std::swap(body.tail_velocity, old.tail_velocity);

@@ -183,8 +183,7 @@ TEST_CASE("objects out of reach are left alone, and nobody feels it")
         const double friction = is_sphere ? 0 : 0.2;
         Scene lazy = field_of_balls(49, friction), eager = field_of_balls(49, friction);
         lazy.probe = eager.probe = {probe, 0.1, is_sphere ? 0.004 : 0.0};
-        for (SceneObject& object : eager.objects) // one that may move is looked at every tick
-            object.motion = std::make_shared<SteadyMotion>(object.placement, SteadyMotion::Figures{});
+        eager.servo.skips.objects = false;
         Renderer sleeping(shared(std::move(lazy))), watching(shared(std::move(eager)));
         int contacts = 0;
         for (const DevicePose& pose : wild_walk(60000, 0.3, is_sphere ? 5e-4 : 0.1)) {
