@@ -45,8 +45,8 @@ public:
     // The object, which is awake, is at least this far from the hand: more than a micrometre.
     void sleep(uint32_t object, double gap_m) noexcept;
 
-    // In rising order, so that what is summed over them does not depend on who slept when.
     const Surroundings& around(uint32_t object) const noexcept { return objects_[object]; }
+    // In rising order, so that what is summed over them does not depend on who slept when.
     const std::vector<uint32_t>& awake() const noexcept { return awake_; }
     std::size_t asleep() const noexcept { return sleepers_.size(); }
 
