@@ -191,7 +191,7 @@ TEST_CASE("of scenes published as fast as a servo takes them none is left")
     stage.press(-1e-3, 1);
     std::vector<std::weak_ptr<const Scene>> published;
     std::atomic<bool> stop = false;
-    uint64_t taken = 0;
+    std::atomic<uint64_t> taken = 0;
     std::thread servo([&] {
         while (!stop.load(std::memory_order_relaxed)) {
             if (stage.slot.take(stage.renderer))
@@ -200,7 +200,7 @@ TEST_CASE("of scenes published as fast as a servo takes them none is left")
                 std::this_thread::yield();
         }
     });
-    for (int i = 0; i < 3000; ++i) {
+    for (int i = 0; i < 3000 || taken <= 10; ++i) { // on a busy machine the servo is late
         const auto next = shared(same_as(*scene));
         published.push_back(next);
         stage.slot.publish(next);
@@ -210,7 +210,6 @@ TEST_CASE("of scenes published as fast as a servo takes them none is left")
     stop = true;
     servo.join();
     while (stage.slot.take(stage.renderer)) ++taken;
-    CHECK(taken > 10);
     stage.slot.collect();
     uint64_t alive = 0;
     for (const auto& one : published) alive += !one.expired();
