@@ -29,7 +29,7 @@ constexpr double rounding = 1e-6; // of a radius
 Surroundings box_of(const Surface& surface)
 {
     const glm::dvec3 middle = 0.5 * surface.box_minimum_m + 0.5 * surface.box_maximum_m;
-    return {middle, glm::distance(surface.box_minimum_m, middle)};
+    return {.centre_m = middle, .radius_m = glm::distance(surface.box_minimum_m, middle)};
 }
 
 // From the surface to where nothing is felt of it any more.
@@ -58,14 +58,15 @@ Surroundings surroundings_of(const Scene& scene, const BodyObjects& objects, dou
     const Surroundings box = box_of(*objects.surface(scene));
     const double felt_m = felt_within_m(scene, objects, probe_radius_m);
     if (!objects.motion(scene))
-        return {objects.placement(scene).to_world(box.centre_m), (box.radius_m + felt_m) * (1 + rounding)};
+        return {.centre_m = objects.placement(scene).to_world(box.centre_m),
+                .radius_m = (box.radius_m + felt_m) * (1 + rounding)};
     const auto bounds = bounds_of(scene, objects);
-    if (!bounds) return {{}, std::numeric_limits<double>::infinity()};
+    if (!bounds) return {.radius_m = std::numeric_limits<double>::infinity()};
     const double radius_m = bounds->radius_m + felt_m;
     // r more, so that r = sway + turn * (radius + r + radius): the hand is farther away than it seems to move at the
     // edge of the ball.
     const double seems_m = (bounds->sway_m + 2 * turn_max_rad * radius_m) / (1 - turn_max_rad);
-    return {bounds->centre_m, (radius_m + seems_m) * (1 + rounding)};
+    return {bounds->centre_m, (radius_m + seems_m) * (1 + rounding), bounds->turn_rad_per_s > 0};
 }
 
 Body::Body(const Scene& scene, const BodyObjects& of, const ProbeSettings& probe)

@@ -8,9 +8,9 @@ namespace haptel::runtime {
 
 namespace {
 
-// The way is rounded up, and a part of the gap left over for what turns: nobody sleeps too long.
-constexpr double up = 1 + 0x1p-51, early = 0.9;
-static_assert(early + turn_max_rad < 1);
+// The way is rounded up, the gap down, and of what turns a part of the gap is left over: nobody sleeps too long.
+constexpr double up = 1 + 0x1p-51, early = 1 - 1e-6, early_if_turning = 0.9;
+static_assert(early_if_turning + turn_max_rad < 1);
 // The way is counted anew before it has lost the digits of a step.
 constexpr double way_max_m = 100;
 
@@ -55,7 +55,7 @@ void Reach::sleep(uint32_t object, double gap_m) noexcept
 
 void Reach::fall_asleep(uint32_t object, double gap_m) noexcept
 {
-    sleepers_.emplace_back(way_m_ + early * gap_m, object);
+    sleepers_.emplace_back(way_m_ + (objects_[object].turns ? early_if_turning : early) * gap_m, object);
     std::push_heap(sleepers_.begin(), sleepers_.end(), std::greater<>());
 }
 

@@ -7,8 +7,8 @@
 //
 // One that moves within known bounds (motion.h) is at rest here. The ball holds all the places that it can take. As it
 // sees the hand, that makes longer steps than it does: by what it sways, and by what it turns at its own edge, for
-// which the ball is larger; by what it turns per metre of gap, for which nobody sleeps through the last tenth of his
-// gap; and by what it turns per metre of the probe, which is counted as way. So each step is shorter than the gap
+// which the ball is larger; by what it turns per metre of gap, for which it does not sleep through the last tenth of
+// its gap; and by what it turns per metre of the probe, which is counted as way. So each step is shorter than the gap
 // before it, and meets nothing, as at rest.
 #pragma once
 
@@ -25,6 +25,7 @@ namespace haptel::runtime {
 struct Surroundings {
     glm::dvec3 centre_m{0};
     double radius_m = 0;
+    bool turns = false;
 };
 
 // From the hand to there; not above 0 where that is not known.

@@ -44,9 +44,11 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
     , waiting_(scene_->servo.wait_for_small_force_n > 0)
     , velocity_(period_s_)
     , tail_velocity_(period_s_)
-    , history_(period_s_)
 {
-    for (const Body& body : bodies_) turn_max_rad_per_s_ = std::max(turn_max_rad_per_s_, body.turn_rad_per_s);
+    for (const Body& body : bodies_) {
+        turn_max_rad_per_s_ = std::max(turn_max_rad_per_s_, body.turn_rad_per_s);
+        if (body.bounded && !history_) history_.emplace(period_s_);
+    }
     objects_.reserve(scene_->objects.size());
     for (const SceneObject& object : scene_->objects) {
         TextureReader reader(*object.texture);
@@ -108,7 +110,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         velocity_.lose_hand();
         tail_velocity_.lose_hand();
         effects_.lose_hand();
-        history_.lose_hand();
+        if (history_) history_->lose_hand();
         sent_ = left_ = {};
         for (Body& body : bodies_) body.velocity.lose_hand(), body.tail_velocity.lose_hand();
         interrupted_ = true;
@@ -118,7 +120,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     velocity_.update(pose.tip_m, periods);
     const bool has_tail = probe_.has_tail();
     if (has_tail) tail_velocity_.update(pose.tail_m, periods);
-    history_.add(period_, pose.tip_m, pose.tail_m);
+    if (history_) history_->add(period_, pose.tip_m, pose.tail_m);
     const glm::dvec3 grip_m = result.grip_m = has_tail ? probe_.grip_of(pose.tip_m, pose.tail_m) : pose.tip_m;
     result.interrupted = std::exchange(interrupted_, false) || pose.interrupted;
     if (result.interrupted) {
@@ -293,7 +295,7 @@ void Renderer::advance_textures(const Body& body) noexcept
 // How far who turns within bounds has done so since the last pose.
 double Renderer::turned_rad() const noexcept
 {
-    return turn_max_rad_per_s_ * (time_s() - time_s(last_pose_period_));
+    return turn_max_rad_per_s_ > 0 ? turn_max_rad_per_s_ * (time_s() - time_s(last_pose_period_)) : 0;
 }
 
 // Of the hand since the last pose, with how much longer it looks to who turns: a stylus far away sweeps along.
@@ -318,6 +320,7 @@ ProbePose Renderer::pose_before(Body& body) const noexcept
 // and its way into this tick is.
 bool Renderer::take_pose(Body& body, const DevicePose& pose, uint64_t periods) noexcept
 {
+    if (!body.motion && !body.asleep) return true;
     const ProbePose before = body.asleep ? pose_before(body) : ProbePose();
     if (body.motion) body.move(time_s());
     if (body.motion && !body.bounded) {
@@ -371,7 +374,7 @@ void Renderer::track_velocity(uint32_t number, const DevicePose& pose, uint64_t 
         else
             body.velocity.lose_hand(), body.tail_velocity.lose_hand();
     } else if (touching) {
-        history_.each([&](const HandHistory::Entry& entry) {
+        history_->each([&](const HandHistory::Entry& entry) {
             body.move(time_s(entry.period));
             update(entry.tip_m, entry.tail_m, entry.periods);
         });

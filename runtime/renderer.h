@@ -176,7 +176,7 @@ private:
     std::optional<DevicePose> last_pose_;   // that was finite
     uint64_t last_pose_period_ = 0;         // of it
     HandVelocity velocity_, tail_velocity_; // world frame
-    HandHistory history_;
+    std::optional<HandHistory> history_;    // where something moves within bounds
 
     // For who takes over, and after having taken over.
     OnHand sent_;                // in the tick before, the scene's space

@@ -77,7 +77,7 @@ void Renderer::take_over(Renderer& before) noexcept
     reloads_before_ = before.reloads();
     last_pose_ = before.last_pose_;
     last_pose_period_ = before.last_pose_period_;
-    history_ = before.history_;
+    if (history_ && before.history_) history_ = before.history_;
     velocity_ = before.velocity_;
     tail_velocity_ = before.tail_velocity_;
     sent_ = before.sent_;

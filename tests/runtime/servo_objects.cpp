@@ -270,6 +270,23 @@ TEST_CASE("whoever the hand may have reached is awake")
     CHECK(reach.asleep() == 0);
 }
 
+TEST_CASE("who turns is looked at before the whole gap is gone, who is at rest is not")
+{
+    constexpr double anywhere = std::numeric_limits<double>::infinity();
+    Reach reach({{.radius_m = anywhere}, {.radius_m = anywhere, .turns = true}});
+    reach.sleep(0, 1);
+    reach.sleep(1, 1);
+    const auto go = [&](double way_m) { reach.go(way_m, {}, {}, 1e-6); };
+    go(0.89);
+    CHECK(reach.awake().empty());
+    go(0.05);
+    CHECK(reach.awake() == std::vector<uint32_t>{1});
+    go(0.05999);
+    CHECK(reach.awake() == std::vector<uint32_t>{1});
+    go(0.00001);
+    CHECK(reach.awake() == std::vector<uint32_t>{0, 1});
+}
+
 TEST_CASE("who is still far away when the hand has gone far sleeps on, and wakes before the hand is there")
 {
     Reach reach({{{1, 0, 0}, 0.1}});
