@@ -21,6 +21,9 @@ constexpr double drawn_in = 0.75 * Lattice::workspace;
 // Lattice units. A shaft shorter than this has no direction.
 constexpr double least_length = 4096;
 
+// Lattice units, and share of what the springs are drawn by: what is not known and pushes less is not told.
+constexpr double least_push = 4096, least_push_share = 1e-6;
+
 // A clear region is worth looking for if the hand needs several ticks to cross it.
 constexpr double ticks_per_region = 4;
 
@@ -200,7 +203,6 @@ void StylusContact::report() noexcept
     if (tip_.contact().touching) contacts_[contact_count_++] = tip_.contact();
     if (!tracked_) return;
 
-    const Lattice& lattice = surface().lattice;
     const uint32_t first = contact_count_;
     for (uint32_t i = 0; i < side_count_; ++i) {
         const Side& side = sides_[i];
@@ -209,18 +211,8 @@ void StylusContact::report() noexcept
         const auto facing = [&](uint32_t face) {
             return std::fabs(glm::dot(side.normal, surface().facet_normal(face)));
         };
-        Contact contact;
-        contact.touching = contact.by_shaft = true;
-        contact.along = glm::clamp(side.share, 0.0, 1.0);
-        contact.face = facing(other.face()) > facing(side.face) ? other.face() : side.face;
-        contact.side = glm::dot(side.normal, surface().facet_normal(contact.face)) >= 0 ? 0 : 1;
-        contact.proxy_m = lattice.metres(side.point);
-        contact.hand_m = lattice.metres(hand_.at(contact.along));
-        contact.barycentric = barycentric_of(surface(), contact.face, side.point);
-        contact.facet_normal = surface().facet_normal(contact.face, contact.side);
-        contact.normal = side.normal;
-        contact.depth_m = side.push * lattice.unit_m;
-        contacts_[contact_count_++] = contact;
+        const uint32_t face = facing(other.face()) > facing(side.face) ? other.face() : side.face;
+        tell(glm::clamp(side.share, 0.0, 1.0), face, side.point, side.normal, side.push);
     }
     std::sort(contacts_.begin() + first, contacts_.begin() + contact_count_,
               [](const Contact& a, const Contact& b) { return a.depth_m > b.depth_m; });
@@ -228,6 +220,44 @@ void StylusContact::report() noexcept
         contacts_[contact_count_] = tail_.contact();
         contacts_[contact_count_++].along = 1;
     }
+    if (begin_ == 0 && end_ == 1) tell_what_is_left();
+}
+
+// One more contact of the shaft, by a push in lattice units.
+void StylusContact::tell(double along, uint32_t face, const glm::dvec3& point, const glm::dvec3& normal,
+                         double push) noexcept
+{
+    const Lattice& lattice = surface().lattice;
+    Contact contact;
+    contact.touching = contact.by_shaft = true;
+    contact.along = along;
+    contact.face = face;
+    contact.side = glm::dot(normal, surface().facet_normal(face)) >= 0 ? 0 : 1;
+    contact.proxy_m = lattice.metres(point);
+    contact.hand_m = lattice.metres(hand_.at(along));
+    contact.barycentric = barycentric_of(surface(), face, point);
+    contact.facet_normal = surface().facet_normal(face, contact.side);
+    contact.normal = normal;
+    contact.depth_m = push * lattice.unit_m;
+    contacts_[contact_count_++] = contact;
+}
+
+// What the springs of the ends are drawn by, and none of the contacts known by now makes up for: where ends and shaft
+// have not come to agree it is held by what it does not know yet. So the force is that of the potential in every tick.
+void StylusContact::tell_what_is_left() noexcept
+{
+    glm::dvec3 tip = shaft_.tip - hand_.tip, tail = shaft_.tail - hand_.tail;
+    const double least = std::max(least_push, least_push_share * away(shaft_));
+    for (uint32_t i = 0; i < contact_count_; ++i) {
+        const Contact& contact = contacts_[i];
+        const glm::dvec3 push = (contact.depth_m * contact.normal + contact.lag_m) / surface().lattice.unit_m;
+        tip -= (1 - contact.along) * push;
+        tail -= contact.along * push;
+    }
+    const uint32_t face = side_count_ > 0 ? sides_[0].face : met_.face;
+    const double tip_push = glm::length(tip), tail_push = glm::length(tail);
+    if (tip_push > least) tell(0, face, shaft_.tip, tip / tip_push, tip_push);
+    if (tail_push > least) tell(1, face, shaft_.tail, tail / tail_push, tail_push);
 }
 
 void StylusContact::count() noexcept

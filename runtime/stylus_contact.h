@@ -4,8 +4,11 @@
 // The hand's stylus is the pair (p, q) of its tip and its tail. The ideal one is the pair (P, Q) that is nearest to it,
 // by |P - p|^2 + |Q - q|^2, of those that it can come to without passing through the surface. It is as if both ends
 // hung on springs of the object's stiffness: the force of all contacts is minus the gradient of a potential over the
-// poses of the stylus, so that without friction no closed path gains energy. A contact at the share s of the shaft
-// pushes with the stiffness times depth / ((1 - s)^2 + s^2): like a point at the tip, twice as hard in the middle.
+// poses of the stylus, so that without friction no closed path gains energy. That holds in ticks, too, in which ends
+// and shaft do not come to agree: the pair is where it was nearest to the hand, never farther away than before the
+// tick, and what the contacts known by then do not hold is told as held by the ends. A contact at the share s of the
+// shaft pushes with the stiffness times depth / ((1 - s)^2 + s^2): like a point at the tip, twice as hard in the
+// middle.
 //
 // Ends are tracked by PointContact, each toward where the pushes of the shaft's contacts would have the hand's end. The
 // shaft that follows them has lattice points for ends. It moves straight, meets edges in the order of time, and takes
@@ -49,8 +52,9 @@ public:
     void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
     void reset() noexcept;
 
-    // Where the stylus touches: the tip first, then the shaft, then the tail. The depth of each is what it pushes over
-    // the stiffness: the depths times the normals add up to (P - p) + (Q - q), the ends' friction apart.
+    // Where the stylus touches: the tip first, then the shaft, then the tail, then what is not known yet (`by_shaft`,
+    // at an end). The depth of each is what it pushes over the stiffness: with the ends' lags, by friction, the depths
+    // times the normals add up to (P - p) + (Q - q).
     std::span<const Contact> contacts() const noexcept { return {contacts_.data(), contact_count_}; }
     const Contact& contact() const noexcept { return tip_.contact(); } // the tip's
 
@@ -98,6 +102,15 @@ private:
         double radius = 0, next_radius = 0;
     };
 
+    // All that a tick changes of where it is held.
+    struct Place {
+        Shaft shaft, reached;
+        Proxy tip, tail;
+        std::array<Side, sides_max> sides;
+        uint32_t side_count;
+        bool astray;
+    };
+
     const glm::dvec3& edge_end(uint32_t face, uint32_t edge, uint32_t which) const noexcept;
     Passing passing_of(const Side& side, const Shaft& shaft) const noexcept;
 
@@ -124,9 +137,14 @@ private:
     void touch(const Obstacle& obstacle) noexcept;
     void let_go_of_ended() noexcept;
     bool let_go_of_unreached() noexcept;
+    Place place() const noexcept;
+    void go_back(const Place& to) noexcept;
+    double away(const Shaft& shaft) const noexcept;
     void hold_hand_from_here(Grips& grips) noexcept;
     void drop(uint32_t side) noexcept;
     void report() noexcept;
+    void tell(double along, uint32_t face, const glm::dvec3& point, const glm::dvec3& normal, double push) noexcept;
+    void tell_what_is_left() noexcept;
     void count() noexcept;
 
     PointContact tip_, tail_;
@@ -145,7 +163,7 @@ private:
     std::array<Side, sides_max> sides_;
     uint32_t side_count_ = 0;
     Clear clear_;
-    std::array<Contact, sides_max + 2> contacts_;
+    std::array<Contact, sides_max + 4> contacts_;
     uint32_t contact_count_ = 0;
     uint32_t sweeps_left_ = 0; // in this tick
     uint32_t stuck_ticks_ = 0; // in a row

@@ -33,6 +33,10 @@ constexpr int turns_max = 48;
 constexpr uint32_t patience_ticks = 64;
 constexpr double far_behind = 0x1p20; // lattice units: a millionth of the object
 
+// Lattice units: what a tick may draw the springs of the ends out by, the hand being where it is. More than gaps and
+// rounding do.
+constexpr double uphill = 4096;
+
 // What a way that was blocked by nothing new is cut to.
 constexpr double shorter = 0.25;
 
@@ -64,9 +68,13 @@ void StylusContact::restart_ends() noexcept
     astray_ = false;
 }
 
-// Ends and shaft in turn, until they agree.
+// Ends and shaft in turn, until they agree. Where they led away from the hand, back to where they were nearest to it:
+// what the springs hold is given by the hand, not by how it is looked for where they give way.
 void StylusContact::resolve(const EndsFriction& friction) noexcept
 {
+    const double away_first = away(shaft_);
+    Place nearest = place();
+    double nearest_away = away_first;
     if (astray_) restart_ends();
     bool stopped = false, tip_slides = false, tail_slides = false;
     WalkPath tip_path, tail_path;
@@ -130,9 +138,15 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
             reached_ = extended(shaft_);
         }
         let_go_of_ended();
+        if (const double now = away(shaft_); now < nearest_away) nearest = place(), nearest_away = now;
+    }
+    const bool behind = stopped && farther(shaft_, goal()) > far_behind;
+    if (begin_ == 0 && end_ == 1 && away(shaft_) > nearest_away + uphill) {
+        go_back(nearest);
+        stopped = true;
     }
     counters_.walks_cut += stopped;
-    stuck_ticks_ = stopped && farther(shaft_, goal()) > far_behind ? stuck_ticks_ + 1 : 0;
+    stuck_ticks_ = behind && away_first - away(shaft_) < far_behind ? stuck_ticks_ + 1 : 0;
     if (stuck_ticks_ == patience_ticks) tracked_ = false;
     if (let_go_of_unreached() || stopped) hold_hand_from_here(grips);
     tip_.proxy_.sliding = tip_slides;
@@ -141,6 +155,27 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     tail_.describe();
     for (uint32_t i = side_count_; i-- > 0;)
         if (sides_[i].push == 0 && sides_[i].sign * passing_of(sides_[i], shaft_).height > 4 * rest_gap) drop(i);
+}
+
+StylusContact::Place StylusContact::place() const noexcept
+{
+    return {shaft_, reached_, tip_.proxy_, tail_.proxy_, sides_, side_count_, astray_};
+}
+
+void StylusContact::go_back(const Place& to) noexcept
+{
+    shaft_ = to.shaft, reached_ = to.reached;
+    tip_.proxy_ = to.tip, tail_.proxy_ = to.tail;
+    sides_ = to.sides, side_count_ = to.side_count;
+    astray_ = to.astray;
+    tip_.clear_.radius = tail_.clear_.radius = clear_.radius = 0; // it may be out of these
+}
+
+// How far the springs of both ends are drawn there: their energy is half the stiffness times its square.
+double StylusContact::away(const Shaft& shaft) const noexcept
+{
+    const glm::dvec3 tip = shaft.tip - hand_.tip, tail = shaft.tail - hand_.tail;
+    return std::sqrt(glm::dot(tip, tip) + glm::dot(tail, tail));
 }
 
 // What pushes the hand while the shaft is not where it should be: the ends were aimed at less of the hand's way, or at
@@ -220,6 +255,9 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips, Turning
         };
         add_end(tip, 0);
         add_end(tail, 1);
+        if (normals == Turning::not_at_all) // the shaft is where it may be: no more is held than the springs are drawn
+            for (ShaftContact& contact : std::span(contacts.data(), count))
+                contact.offset = std::min(contact.offset, glm::dot(contact.normal, extended(shaft_).at(contact.share)));
         const std::span<const ShaftContact> all(contacts.data(), count);
         const EndsGive gives{!tip.sticks, !tail.sticks};
         aim = hand;

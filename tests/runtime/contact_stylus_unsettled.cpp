@@ -1,13 +1,16 @@
-// A stylus that wanders over hard meshes, held by springs of a few millimetres, where shaft and ends do not always come
-// to agree within a tick: what pushes is what the ends' springs pull all the same.
+// A stylus that wanders over hard meshes, held by springs of millimetres, where shaft and ends do not always come to
+// agree within a tick. Its springs have a potential, half the stiffness times the squares of what both are drawn by.
+// What is told pushes as these pull, in every tick; and with the hand at rest no tick may draw them further. So no path
+// of the hand gains energy.
 #include "runtime/stylus_contact.h"
 
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <cstddef>
+#include <optional>
 #include <random>
 #include <span>
 #include <vector>
@@ -18,12 +21,16 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double size_m = 0.1, length_m = 0.05, speed_m_per_tick = 1e-4, deepest_m = 2e-3;
+constexpr double size_m = 0.1, length_m = 0.05;
+
+struct Manner {
+    double speed_m_per_tick, deepest_m;
+};
 
 // Goes about an object, gives way to what pushes it by more than `deepest_m`.
 class WanderingHand {
 public:
-    explicit WanderingHand(uint64_t seed) : random_(seed)
+    WanderingHand(uint64_t seed, const Manner& manner) : manner_(manner), random_(seed)
     {
         const dvec3 from = glm::normalize(any());
         middle_ = 1.2 * size_m * from;
@@ -39,16 +46,16 @@ public:
     {
         const dvec3 home = -10.0 * std::max(0.0, glm::length(middle_) - 0.35 * size_m) * middle_;
         heading_ = glm::normalize(heading_ + 0.02 * any() + home);
-        middle_ += speed_m_per_tick * heading_;
+        middle_ += manner_.speed_m_per_tick * heading_;
         turning_ = 0.98 * (turning_ + 0.05 * any());
-        along_ = glm::normalize(along_ + 2 * speed_m_per_tick / length_m * turning_);
+        along_ = glm::normalize(along_ + 2 * manner_.speed_m_per_tick / length_m * turning_);
     }
 
     void give_way(std::span<const Contact> contacts)
     {
         dvec3 tip = tip_m(), tail = tail_m();
         for (const Contact& contact : contacts) {
-            const dvec3 by = std::max(0.0, contact.depth_m - deepest_m) * contact.normal;
+            const dvec3 by = std::max(0.0, contact.depth_m - manner_.deepest_m) * contact.normal;
             tip += (1 - contact.along) * by;
             tail += contact.along * by;
         }
@@ -59,55 +66,85 @@ public:
 private:
     dvec3 any() { return {normal_(random_), normal_(random_), normal_(random_)}; }
 
+    Manner manner_;
     std::mt19937_64 random_;
     std::normal_distribution<double> normal_;
     dvec3 middle_, heading_, along_, turning_;
 };
 
-} // namespace
-
-TEST_CASE("a stylus pushes as its ends are pulled, whether or not it has come to rest")
+std::vector<NamedMesh> hard_meshes()
 {
     std::vector<NamedMesh> meshes{{"star", make_star(3)},
                                   {"stairs", make_stairs()},
                                   {"crossing", make_crossing_boxes()},
+                                  {"box", make_box()},
                                   {"torus", make_torus(0.4, 64, 24)}};
-    for (NamedMesh& hard : meshes) {
-        CAPTURE(hard.name);
-        scale_to_size(hard.mesh, size_m);
+    for (NamedMesh& hard : meshes) scale_to_size(hard.mesh, size_m);
+    return meshes;
+}
+
+// Both ends at once, a place or what pushes them over the stiffness, m.
+struct Ends {
+    dvec3 tip{0}, tail{0};
+
+    Ends operator-(const Ends& other) const { return {tip - other.tip, tail - other.tail}; }
+    double length() const { return std::sqrt(glm::dot(tip, tip) + glm::dot(tail, tail)); }
+};
+
+Ends pushed_by(std::span<const Contact> contacts)
+{
+    Ends pushed;
+    for (const Contact& contact : contacts) {
+        const dvec3 by = contact.depth_m * contact.normal + contact.lag_m;
+        pushed.tip += (1 - contact.along) * by;
+        pushed.tail += contact.along * by;
+    }
+    return pushed;
+}
+
+} // namespace
+
+TEST_CASE("what a stylus pushes has a potential that the hand alone can raise")
+{
+    const Manner manner = GENERATE(Manner{1e-4, 2e-3}, Manner{3e-4, 10e-3}, Manner{1e-4, 25e-3});
+    const double rounding_m = 1e-8 * size_m;
+    for (const NamedMesh& hard : hard_meshes()) {
+        CAPTURE(hard.name, manner.deepest_m);
         const auto surface = surface_of(hard.mesh);
-        int touching = 0, steps = 0;
-        for (uint64_t seed = 1; seed <= 8; ++seed) {
+        int touching = 0, unsettled = 0, ticks = 0, steps = 0;
+        for (uint64_t seed = 1; seed <= 4; ++seed) {
             StylusContact stylus(surface);
-            WanderingHand hand(seed);
-            dvec3 force_before{0};
-            std::array<dvec3, 4> ends_before;
+            WanderingHand hand(seed, manner);
+            Ends at_before;
+            std::optional<Ends> held_before;
             for (int tick = 0; tick < 4000; ++tick) {
                 hand.go();
-                stylus.update(hand.tip_m(), hand.tail_m());
-                CAPTURE(seed, tick);
-                REQUIRE(stylus.ideal());
-                const Lattice& lattice = surface->lattice;
-                const std::array<dvec3, 4> ends{hand.tip_m(), hand.tail_m(), lattice.metres(stylus.ideal()->tip),
-                                                lattice.metres(stylus.ideal()->tail)};
-                dvec3 force{0}; // over the stiffness
-                for (const Contact& contact : stylus.contacts()) force += contact.depth_m * contact.normal;
-                const double pulled = glm::distance(ends[0], ends[2]) + glm::distance(ends[1], ends[3]);
-                REQUIRE(glm::length(force) <= 1.05 * pulled + 1e-9);
-                // A force that has come to rest is the sum of what both ends are pulled, and changes as they move.
-                double moved = 0;
-                for (std::size_t i = 0; tick > 0 && i < ends.size(); ++i)
-                    moved += glm::distance(ends[i], ends_before[i]);
-                const double step = tick > 0 ? glm::distance(force, force_before) - moved : 0.0;
-                REQUIRE(step < 1.5 * deepest_m);
-                steps += step > 0.25 * deepest_m;
-                touching += !stylus.contacts().empty();
-                force_before = force;
-                ends_before = ends;
+                const Ends at{hand.tip_m(), hand.tail_m()};
+                const uint64_t cut = stylus.counters().walks_cut;
+                stylus.update(at.tip, at.tail);
                 hand.give_way(stylus.contacts());
+                std::optional<Ends> held;
+                if (const auto ideal = stylus.ideal())
+                    held = {surface->lattice.metres(ideal->tip), surface->lattice.metres(ideal->tail)};
+                CAPTURE(seed, tick);
+                if (held)
+                    REQUIRE((pushed_by(stylus.contacts()) - (*held - at)).length() <
+                            rounding_m + 2e-6 * (*held - at).length());
+                if (held && held_before) {
+                    REQUIRE((*held - at).length() < (*held_before - at).length() + rounding_m);
+                    ++ticks;
+                    const double step = (*held - *held_before).length() - (at - at_before).length();
+                    steps += step > 0.25 * manner.deepest_m; // as where it slides off an edge
+                }
+                at_before = at;
+                unsettled += stylus.counters().walks_cut > cut;
+                touching += !stylus.contacts().empty();
+                held_before = held;
             }
         }
-        CHECK(touching > 10'000);
-        CHECK(1000 * steps < touching);
+        CHECK(ticks > 13'000); // of 16 000: it is rarely let go
+        CHECK(touching > 4'000);
+        CHECK(unsettled < touching / 4);
+        CHECK(100 * steps < touching);
     }
 }
