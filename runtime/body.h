@@ -99,8 +99,9 @@ struct PartContacts {
 // Contacts with a joined surface, object by object.
 class ContactsByPart {
 public:
-    // As many as any probe has: the ends of a stylus, held by three sheets each, and its shaft.
-    static constexpr std::size_t most = 10;
+    // As many as any probe has: the ends of a stylus, held by three sheets each, its shaft, and what it does not know
+    // yet.
+    static constexpr std::size_t most = 12;
 
     // In the order of the contacts, the first of each object counting. Valid until the next call.
     std::span<const PartContacts> of(const Scene& scene, const JoinedObjects& joined,
