@@ -2,6 +2,7 @@
 // (Lawson and Hanson 1974, Solving Least Squares Problems, 23.3, written for the Gram matrix).
 #include "runtime/held_ends.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace haptel::runtime {
@@ -44,6 +45,32 @@ bool solve(const Matrix& gram, const Vector& b, const std::array<uint32_t, n_max
     return true;
 }
 
+// The newest of those chosen is a sum of the others: it pushes in the place of one of which it has a positive part, of
+// that which it relieves first. False: there is none, and it contradicts the others.
+bool take_place(const Matrix& gram, std::array<uint32_t, n_max>& chosen, uint32_t& count, std::array<bool, n_max>& in,
+                Vector& push)
+{
+    const uint32_t newest = chosen[count - 1], others = count - 1;
+    Vector part{};
+    if (!solve(gram, gram[newest], chosen, others, part)) return false;
+    uint32_t relieved = others;
+    double more = HUGE_VAL;
+    for (uint32_t i = 0; i < others; ++i) {
+        const double share = part[chosen[i]];
+        if (!(share > independent) || push[chosen[i]] >= more * share) continue;
+        more = push[chosen[i]] / share;
+        relieved = i;
+    }
+    if (relieved == others) return false;
+    for (uint32_t i = 0; i < others; ++i) push[chosen[i]] = std::max(0.0, push[chosen[i]] - more * part[chosen[i]]);
+    push[newest] += more;
+    push[chosen[relieved]] = 0;
+    in[chosen[relieved]] = false;
+    for (uint32_t i = relieved + 1; i < count; ++i) chosen[i - 1] = chosen[i];
+    --count;
+    return true;
+}
+
 } // namespace
 
 std::array<double, n_max> pushes(std::span<const ShaftContact> contacts, const glm::dvec3& tip, const glm::dvec3& tail,
@@ -83,6 +110,7 @@ std::array<double, n_max> pushes(std::span<const ShaftContact> contacts, const g
         for (;;) {
             Vector x{};
             if (!solve(gram, b, chosen, count, x)) { // the newest depends on the others
+                if (take_place(gram, chosen, count, in, push)) continue;
                 refused[chosen[count - 1]] = true;
                 in[chosen[--count]] = false;
                 push[chosen[count]] = 0;
