@@ -55,6 +55,9 @@ struct Contact {
     double depth_m = 0;    // >= 0: how deep the hand is below the proxy along `normal`
     double along = 0;      // of a stylus or a gripper: where it touches, 0 at its tip, 1 at its tail
     bool by_shaft = false; // of a stylus: between its ends, on an edge
+    // Of a stylus, `by_shaft`: what its springs pull besides, held by what ends and shaft have not come to agree on. It
+    // is told at an end, and at no place of the surface.
+    bool unsettled = false;
     // A crease where its own surface may have no edge: with an object that it is joined to (body.h), or of sheets that
     // pierce each other.
     bool on_crease = false;

@@ -12,8 +12,12 @@ namespace {
 constexpr uint32_t n_max = shaft_contacts_max;
 constexpr int steps_max = 32;
 
-// Of a diagonal element: what is left of it below this is no direction of its own but rounding.
-constexpr double independent = 1e-13;
+// Of a diagonal element: what is left of it below this is no direction of its own. By 1e-5 in angle pushes would be
+// that of rounding, over it.
+constexpr double independent = 1e-10;
+
+// Of the others' sum that a contact is: a smaller part of one is rounding.
+constexpr double least_part = 1e-4;
 
 // Lattice units: violations below it are none.
 constexpr double settled = 1e-3;
@@ -57,7 +61,7 @@ bool take_place(const Matrix& gram, std::array<uint32_t, n_max>& chosen, uint32_
     double more = HUGE_VAL;
     for (uint32_t i = 0; i < others; ++i) {
         const double share = part[chosen[i]];
-        if (!(share > independent) || push[chosen[i]] >= more * share) continue;
+        if (!(share > least_part) || push[chosen[i]] >= more * share) continue;
         more = push[chosen[i]] / share;
         relieved = i;
     }

@@ -99,6 +99,7 @@ std::optional<ProbePose> ProbeContact::held(const ProbePose& hand, double off_m)
     else
         for (const Contact& contact : touching) (contact.along == 0 ? at.tip_m : at.tail_m) = contact.proxy_m;
     for (const Contact& contact : touching) { // the least move of both ends that moves the place so far
+        if (contact.unsettled) continue;      // its normal is no surface's
         const double tail = contact.along, tip = 1 - tail, squares = tip * tip + tail * tail;
         at.tip_m += tip / squares * off_m * contact.normal;
         at.tail_m += tail / squares * off_m * contact.normal;

@@ -24,6 +24,10 @@ constexpr double least_length = 4096;
 // Lattice units, and share of what the springs are drawn by: what is not known and pushes less is not told.
 constexpr double least_push = 4096, least_push_share = 1e-6;
 
+// Of what the springs are drawn by: sides that push more than that push against each other, as in a fold, by what
+// rounding makes of the angle between them. What they push together is told as what is left.
+constexpr double against_each_other = 4;
+
 // A clear region is worth looking for if the hand needs several ticks to cross it.
 constexpr double ticks_per_region = 4;
 
@@ -204,9 +208,10 @@ void StylusContact::report() noexcept
     if (!tracked_) return;
 
     const uint32_t first = contact_count_;
+    const double drawn = away(extended(shaft_));
     for (uint32_t i = 0; i < side_count_; ++i) {
         const Side& side = sides_[i];
-        if (!(side.push > 0)) continue;
+        if (!(side.push > 0 && side.push < against_each_other * drawn)) continue;
         const SideEdge other = surface().faces[side.face].link[side.edge][0];
         const auto facing = [&](uint32_t face) {
             return std::fabs(glm::dot(side.normal, surface().facet_normal(face)));
@@ -220,7 +225,7 @@ void StylusContact::report() noexcept
         contacts_[contact_count_] = tail_.contact();
         contacts_[contact_count_++].along = 1;
     }
-    if (begin_ == 0 && end_ == 1) tell_what_is_left();
+    tell_what_is_left();
 }
 
 // One more contact of the shaft, by a push in lattice units.
@@ -246,18 +251,30 @@ void StylusContact::tell(double along, uint32_t face, const glm::dvec3& point, c
 // have not come to agree it is held by what it does not know yet. So the force is that of the potential in every tick.
 void StylusContact::tell_what_is_left() noexcept
 {
-    glm::dvec3 tip = shaft_.tip - hand_.tip, tail = shaft_.tail - hand_.tail;
-    const double least = std::max(least_push, least_push_share * away(shaft_));
+    const Shaft ideal = extended(shaft_);
+    glm::dvec3 tip = ideal.tip - hand_.tip, tail = ideal.tail - hand_.tail;
+    const double least = std::max(least_push / (end_ - begin_), least_push_share * away(ideal));
     for (uint32_t i = 0; i < contact_count_; ++i) {
         const Contact& contact = contacts_[i];
         const glm::dvec3 push = (contact.depth_m * contact.normal + contact.lag_m) / surface().lattice.unit_m;
         tip -= (1 - contact.along) * push;
         tail -= contact.along * push;
     }
-    const uint32_t face = side_count_ > 0 ? sides_[0].face : met_.face;
     const double tip_push = glm::length(tip), tail_push = glm::length(tail);
-    if (tip_push > least) tell(0, face, shaft_.tip, tip / tip_push, tip_push);
-    if (tail_push > least) tell(1, face, shaft_.tail, tail / tail_push, tail_push);
+    const uint32_t told = contact_count_;
+    if (tip_push > least) tell(0, nearest_face(tip_, 0), ideal.tip, tip / tip_push, tip_push);
+    if (tail_push > least) tell(1, nearest_face(tail_, 1), ideal.tail, tail / tail_push, tail_push);
+    for (uint32_t i = told; i < contact_count_; ++i) contacts_[i].unsettled = true;
+}
+
+// Of those that are known: it has the material of its object.
+uint32_t StylusContact::nearest_face(const PointContact& end, double along) const noexcept
+{
+    if (end.contact().touching) return end.contact().face;
+    const Side* nearest = nullptr;
+    for (const Side& side : std::span(sides_.data(), side_count_))
+        if (!nearest || std::fabs(side.share - along) < std::fabs(nearest->share - along)) nearest = &side;
+    return nearest ? nearest->face : met_.face;
 }
 
 void StylusContact::count() noexcept

@@ -6,9 +6,9 @@
 // hung on springs of the object's stiffness: the force of all contacts is minus the gradient of a potential over the
 // poses of the stylus, so that without friction no closed path gains energy. That holds in ticks, too, in which ends
 // and shaft do not come to agree: the pair is where it was nearest to the hand, never farther away than before the
-// tick, and what the contacts known by then do not hold is told as held by the ends. A contact at the share s of the
-// shaft pushes with the stiffness times depth / ((1 - s)^2 + s^2): like a point at the tip, twice as hard in the
-// middle.
+// tick (while all of it is in the workspace), and what the contacts known by then do not hold is told as held by the
+// ends. A contact at the share s of the shaft pushes with the stiffness times depth / ((1 - s)^2 + s^2): like a point
+// at the tip, twice as hard in the middle.
 //
 // Ends are tracked by PointContact, each toward where the pushes of the shaft's contacts would have the hand's end. The
 // shaft that follows them has lattice points for ends. It moves straight, meets edges in the order of time, and takes
@@ -52,7 +52,7 @@ public:
     void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
     void reset() noexcept;
 
-    // Where the stylus touches: the tip first, then the shaft, then the tail, then what is not known yet (`by_shaft`,
+    // Where the stylus touches: the tip first, then the shaft, then the tail, then what is not known yet (`unsettled`,
     // at an end). The depth of each is what it pushes over the stiffness: with the ends' lags, by friction, the depths
     // times the normals add up to (P - p) + (Q - q).
     std::span<const Contact> contacts() const noexcept { return {contacts_.data(), contact_count_}; }
@@ -145,6 +145,7 @@ private:
     void report() noexcept;
     void tell(double along, uint32_t face, const glm::dvec3& point, const glm::dvec3& normal, double push) noexcept;
     void tell_what_is_left() noexcept;
+    uint32_t nearest_face(const PointContact& end, double along) const noexcept;
     void count() noexcept;
 
     PointContact tip_, tail_;

@@ -153,6 +153,8 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     tail_.proxy_.sliding = tail_slides;
     tip_.describe();
     tail_.describe();
+    if (!grips.tip.drags()) tip_.contact_.lag_m = glm::dvec3(0); // nothing holds it
+    if (!grips.tail.drags()) tail_.contact_.lag_m = glm::dvec3(0);
     for (uint32_t i = side_count_; i-- > 0;)
         if (sides_[i].push == 0 && sides_[i].sign * passing_of(sides_[i], shaft_).height > 4 * rest_gap) drop(i);
 }

@@ -1,5 +1,4 @@
 // The stylus against closed forms of its geometry, and its ideal shaft against all triangles in exact arithmetic.
-#include "runtime/held_ends.h"
 #include "runtime/stylus_contact.h"
 
 #include "tests/runtime/exact_mesh.h"
@@ -133,42 +132,6 @@ TEST_CASE("a shaft on the edge of a box is a lever: force and torque at every sh
                     const double lever = (1 - share) * (1 - share) + share * share;
                     CHECK(std::abs(contact.depth_m * lever / depth - 1) < 5 * depth);
                 }
-}
-
-TEST_CASE("pushes on a shaft are those of the best active set, whatever the contacts")
-{
-    std::mt19937_64 random(3);
-    std::uniform_real_distribution<double> u(-1, 1);
-    const auto any = [&] { return dvec3(u(random), u(random), u(random)); };
-    for (int trial = 0; trial < 2000; ++trial) {
-        std::vector<ShaftContact> contacts(1 + random() % shaft_contacts_max);
-        const Pose hand{1e9 * any(), 1e9 * any()};
-        for (ShaftContact& contact : contacts)
-            contact = {glm::normalize(any()), 0.5 * (1 + u(random)), 1e9 * u(random)};
-        // Every other time they are edges that meet on the shaft: two of these normals make up for a third.
-        const bool at_a_vertex = trial % 2 == 1;
-        const dvec3 up = glm::normalize(any()), aside = glm::normalize(glm::cross(up, any()));
-        for (ShaftContact& contact : contacts)
-            if (at_a_vertex) contact = {glm::normalize(up + 3 * u(random) * aside), contacts[0].share, 128};
-        const auto found = pushes(contacts, hand.tip, hand.tail);
-        // Optimal is what solves the conditions of Karush, Kuhn and Tucker: nothing pulls, nothing is violated, and
-        // what pushes is tight.
-        Pose held = hand;
-        for (size_t i = 0; i < contacts.size(); ++i) {
-            held.tip += found[i] * (1 - contacts[i].share) * contacts[i].normal;
-            held.tail += found[i] * contacts[i].share * contacts[i].normal;
-        }
-        for (size_t i = 0; i < contacts.size(); ++i) {
-            const ShaftContact& contact = contacts[i];
-            const double gap =
-                glm::dot(contact.normal, (1 - contact.share) * held.tip + contact.share * held.tail) - contact.offset;
-            if (found[i] < 0 || gap < -1e-2 || (found[i] > 0 && gap > 1e-2)) {
-                CAPTURE(trial, i, contacts.size(), gap, found[i]);
-                CHECK(contacts.size() == 6); // six of them may have no common solution,
-                CHECK(!at_a_vertex);         // those of one vertex always have
-            }
-        }
-    }
 }
 
 TEST_CASE("a shaft across two edges rests on both: it is the line through them")
