@@ -58,7 +58,7 @@ void Effects::begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) no
 void Effects::update(std::size_t object, const Placement& placement, std::span<const Contact> contacts,
                      std::span<const Contact> joined) noexcept
 {
-    const auto of_tip = [](const Contact& contact) { return contact.along == 0; };
+    const auto of_tip = [](const Contact& contact) { return contact.along == 0 && !contact.by_shaft; };
     Near& near = *objects_[object];
     const ObjectEffects& effects = near.effects;
     double distance_m = 0;

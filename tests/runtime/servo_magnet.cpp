@@ -1,4 +1,7 @@
 // The distance to surfaces, and their pull, held to closed forms; what it does with energy.
+#include "runtime/contact.h"
+#include "runtime/effects.h"
+#include "runtime/hand.h"
 #include "runtime/renderer.h"
 #include "runtime/surface_distance.h"
 #include "tests/runtime/distance.h"
@@ -98,6 +101,23 @@ TEST_CASE("a magnet pulls toward a plate as its potential says, from its reach t
         }
     }
     CHECK(std::fabs(largest_n - force_n) < 1e-4);
+}
+
+TEST_CASE("a magnet pulls a tip that is free, whatever else holds the stylus")
+{
+    const auto scene = shared(magnet_scene(plane_mesh(), 2, 5e-3));
+    Effects effects(*scene, {});
+    const auto pull_n = [&](const Contact& contact) {
+        effects.begin({0.01, 0.02, 1e-3}, 0, 1);
+        effects.update(0, {}, {&contact, 1}, {&contact, 1});
+        return effects.force_n().z;
+    };
+    Contact contact; // 0.1 m of it are drawn up by the shaft
+    contact.touching = true;
+    contact.depth_m = 0.1;
+    CHECK(pull_n(contact) == 0);
+    contact.by_shaft = true;
+    CHECK(pull_n(contact) == Approx(-Magnet{2, 5e-3}.pull_n(1e-3)));
 }
 
 TEST_CASE("a magnet pulls to the nearest point of a box, wherever it stands, and a ball by its rim")
