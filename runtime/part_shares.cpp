@@ -23,6 +23,10 @@ constexpr double enough = 1e-6;
 // Share of the depth: where the sheets around leave more of it than this they are not what holds the proxy.
 constexpr double lost = 1e-3;
 
+// Of the way from the hand to the proxy: walls of a narrow groove that push more than this in sum, each by a stiffness
+// and a texture of its own, share the way itself beyond it.
+constexpr double against_each_other = 4;
+
 // The sheets around a place that may hold a proxy there, those of one part and plane as one.
 struct Sheets {
     static constexpr uint32_t most = 10;
@@ -165,7 +169,32 @@ std::span<const Contact> PartShares::of(const Surface& surface, std::span<const 
 {
     count_ = 0;
     for (const Contact& contact : contacts) add(surface, contact);
+    for (const double along : {0.0, 1.0}) settle(along);
     return {contacts_.data(), count_};
+}
+
+// Of one end: its walls push against each other by what the angle between them makes of the way. The sum stays.
+void PartShares::settle(double along) noexcept
+{
+    glm::dvec3 way_m(0);
+    double sum_m = 0;
+    const auto ours = [&](const Contact& contact) { return !contact.by_shaft && contact.along == along; };
+    for (std::size_t i = 0; i < count_; ++i)
+        if (const Contact& contact = contacts_[i]; ours(contact)) {
+            way_m += contact.depth_m * contact.normal;
+            sum_m += contact.depth_m;
+        }
+    const double most_m = against_each_other * glm::length(way_m);
+    if (!(sum_m > most_m)) return;
+    const double kept = most_m / sum_m;
+    for (std::size_t i = 0; i < count_; ++i) {
+        Contact& contact = contacts_[i];
+        if (!ours(contact) || contact.depth_m == 0) continue;
+        const glm::dvec3 push = contact.depth_m * (kept * contact.normal + (1 - kept) / sum_m * way_m);
+        contact.depth_m = glm::length(push);
+        if (contact.depth_m > 0) contact.normal = push / contact.depth_m;
+        contact.on_crease = true;
+    }
 }
 
 void PartShares::add(const Surface& surface, const Contact& contact) noexcept

@@ -18,6 +18,12 @@ make(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, 
     return PointContact(surface, skips_free_space);
 }
 
+// Whether several parts, sheets or faces may hold the same end of the probe.
+bool is_shared(const ProbeSettings& probe, const Surface& surface)
+{
+    return probe.kind == ProbeKind::sphere || !surface.origins.empty() || !surface.pierced_by.empty();
+}
+
 std::span<const Contact> any(const Contact& contact)
 {
     return {&contact, contact.touching ? std::size_t{1} : std::size_t{0}};
@@ -36,7 +42,7 @@ glm::dvec3 ProbeSettings::grip_of(const glm::dvec3& tip_m, const glm::dvec3& tai
 ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
                            bool skips_free_space)
     : surface_(surface.get())
-    , shares_(surface->origins.empty() && surface->pierced_by.empty() ? nullptr : std::make_unique<PartShares>())
+    , shares_(is_shared(probe, *surface) ? std::make_unique<PartShares>() : nullptr)
     , contact_(make(probe, surface, skips_free_space))
 {
 }

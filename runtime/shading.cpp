@@ -37,7 +37,7 @@ bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::
     for (uint32_t i = 0; i < 3; ++i) {
         if (barycentric[int(previous(i))] > on_feature) continue;
         const SideEdge link = surface.faces[face].link[i][side];
-        if (link.face() == face) return false; // a border: nothing meets the face there
+        if (link.face() == face) return true; // a border
         const auto& there = surface.shading_normal_of[link.face()];
         const bool same_way = surface.faces[link.face()].vertex[link.edge()] == surface.faces[face].vertex[i];
         const uint32_t first = same_way ? link.edge() : next(link.edge());

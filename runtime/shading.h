@@ -13,7 +13,8 @@ namespace haptel::runtime {
 // where they cancel.
 glm::dvec3 shading_normal(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept;
 
-// Whether the point lies on an edge or a vertex at which the shading normals of the faces around differ.
+// Whether the point lies on an edge or a vertex at which the shading normals of the faces around differ, or on a
+// border, off which a ball is held by its rim.
 bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept;
 
 struct Shading {

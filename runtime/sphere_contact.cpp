@@ -251,6 +251,7 @@ void SphereContact::move(const Friction& friction) noexcept
     // of what the hand has left.
     if (cut && on_the_way) {
         if (contact_count_ > 0 && glm::dot(hand_ - centre_, contacts_[0].normal) >= 0) contact_count_ = 0;
+        push_no_harder_than(glm::distance(centre_, hand_) * surface_->lattice.unit_m);
         return;
     }
     if (found.count == 0) {
@@ -268,6 +269,19 @@ void SphereContact::move(const Friction& friction) noexcept
     for (std::size_t i = 0; i < contact_count_; ++i) depth_m += contacts_[i].depth_m;
     for (std::size_t i = 0; i < contact_count_; ++i)
         contacts_[i].lag_m = depth_m > 0 ? contacts_[i].depth_m / depth_m * lag_m : glm::dvec3(0);
+}
+
+// What was felt where the hand has been is no more than its spring pulls now.
+void SphereContact::push_no_harder_than(double way_m) noexcept
+{
+    glm::dvec3 told_m(0);
+    for (std::size_t i = 0; i < contact_count_; ++i)
+        told_m += contacts_[i].depth_m * contacts_[i].normal + contacts_[i].lag_m;
+    const double told = glm::length(told_m);
+    for (std::size_t i = 0; i < contact_count_ && told > way_m; ++i) {
+        contacts_[i].depth_m *= way_m / told;
+        contacts_[i].lag_m *= way_m / told;
+    }
 }
 
 // Friction is a way that ends early, by coefficient times depth, or does not begin.

@@ -71,6 +71,7 @@ private:
     NearestInHalfSpaces approach(double step_max) noexcept;
     Way go(bool until_it_touches) noexcept;
     void move(const Friction& friction) noexcept;
+    void push_no_harder_than(double way_m) noexcept;
     void hold_by_friction(const Friction& friction) noexcept;
     void describe(const NearestInHalfSpaces& found, const glm::dvec3& nearest) noexcept;
 

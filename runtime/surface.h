@@ -73,7 +73,7 @@ struct Fan {
 // Mean of the facet normals around a vertex, weighted by their angles, as far as no crease parts them.
 struct ShadingNormal {
     glm::dvec3 normal; // unit; zero where they cancel
-    bool whole;        // of a whole fan: no crease ends in the vertex, or one that does not part it
+    bool whole;        // of a whole fan: no border and no crease ends in the vertex, or one that does not part it
 };
 
 struct SegmentHit {

@@ -66,7 +66,8 @@ public:
                 }
         for (size_t begin = 0, i = 0; i < count; ++i)
             if (i + 1 == count || ends(i)) {
-                add_group(std::span(sectors).subspan(begin, i + 1 - begin), i + 1 - begin == count);
+                const bool whole = ring.closed && i + 1 - begin == count; // a border is a crease
+                add_group(std::span(sectors).subspan(begin, i + 1 - begin), whole);
                 begin = i + 1;
             }
     }

@@ -135,6 +135,28 @@ TEST_CASE("a ball that cannot keep up with the hand is not pushed harder, and le
     CHECK(press({-0.4, -0.4, 2}) == 0); // and away
 }
 
+TEST_CASE("a ball is pushed by no more than its way from the hand, whatever it could not finish")
+{
+    for (const NamedMesh& mesh : {NamedMesh{"star", make_star(4)}, NamedMesh{"crossing", make_crossing_boxes()}}) {
+        const auto surface = surface_of(mesh.mesh);
+        const double size = Lattice::extent * surface->lattice.unit_m;
+        SphereContact contact(surface, 0.1 * size);
+        std::mt19937_64 random(7);
+        std::normal_distribution<double> normal;
+        dvec3 hand(0, 0, 0.7 * size);
+        const Friction friction{0.3, 0.2};
+        for (int tick = 0; tick < 20'000; ++tick) {
+            const double step = random() % 4 == 0 ? 0.2 : 0.01;
+            hand = 0.98 * (hand + step * size * dvec3(normal(random), normal(random), normal(random)));
+            dvec3 told(0);
+            for (const Contact& one : contact.update(hand, friction)) told += one.depth_m * one.normal + one.lag_m;
+            CAPTURE(mesh.name, tick);
+            REQUIRE(glm::length(told) < (1 + 1e-6) * glm::distance(hand, contact.proxy_m()) + 1e-9 * size);
+        }
+        CHECK(contact.counters().walks_cut > 20);
+    }
+}
+
 TEST_CASE("no ball comes nearer to a mesh than its radius, however wild the hand and bad the mesh")
 {
     std::mt19937_64 random(31);

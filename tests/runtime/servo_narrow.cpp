@@ -1,0 +1,124 @@
+// Walls of a narrow groove push against each other by the way of the hand over the sine of the angle between them. By
+// what is left of it, stiffnesses and textures apart, the hand is pushed by no more than a few times its spring's pull.
+// And a ball on the border of an open mesh, where there is one wall of no thickness.
+#include "runtime/joined_surfaces.h"
+#include "runtime/renderer.h"
+#include "tests/support/catch.h"
+#include "tests/support/lambda_texture.h"
+#include "tests/support/touch_scenes.h"
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+using namespace haptel;
+using namespace haptel::runtime;
+using namespace haptel::tests;
+using glm::dvec3;
+
+namespace {
+
+// Two joined boxes with a gap of that angle, which widens along x from the y axis.
+Scene gap_scene(double angle, double below_n_per_m, double above_n_per_m)
+{
+    Mesh below = make_box({0.1, 0.1, 0.03}), above = below;
+    for (dvec3& p : below.positions_m) p += dvec3(0.02, 0, -0.015);
+    for (dvec3& p : above.positions_m) {
+        const dvec3 flat = p + dvec3(0.02, 0.001, 0.015);
+        p = {std::cos(angle) * flat.x - std::sin(angle) * flat.z, flat.y,
+             std::sin(angle) * flat.x + std::cos(angle) * flat.z};
+    }
+    Scene scene = bare_scene(below);
+    scene.objects.push_back(bare_scene(above).objects[0]);
+    scene.objects[0].material.stiffness_n_per_m = below_n_per_m;
+    scene.objects[1].material.stiffness_n_per_m = above_n_per_m;
+    const std::vector<PlacedSurface> placed{{scene.objects[0].surface, {}}, {scene.objects[1].surface, {}}};
+    const std::vector<uint32_t> numbers{0, 1};
+    scene.joined.push_back({join(placed, numbers).surface, numbers});
+    return scene;
+}
+
+// Into a gap that widens along x: 4.9 mm farther than the probe can go, whose centre stops at `bottom_m`.
+dvec3 force_in_gap_n(const Scene& scene, double angle, double bottom_m)
+{
+    Renderer renderer(shared(scene));
+    dvec3 force(0);
+    for (double x = bottom_m + 0.05; x > bottom_m - 4.9e-3; x -= 1e-4)
+        force = renderer.tick(at(x, 0.0013, x * std::tan(angle / 2))).unlimited_force_n;
+    return force;
+}
+
+} // namespace
+
+TEST_CASE("a narrow gap between a soft and a hard object pushes by a few times the pull of the harder spring")
+{
+    for (const double angle : {0.2, 0.01, 0.002}) {
+        CAPTURE(angle);
+        CHECK(glm::length(force_in_gap_n(gap_scene(angle, 100, 2000), angle, 0)) < 4.5 * 2000 * 4.9e-3);
+        const dvec3 alike = force_in_gap_n(gap_scene(angle, 1000, 1000), angle, 0); // as one mesh would
+        CHECK(glm::distance(alike, 4.9 * dvec3(std::cos(angle / 2), 0, std::sin(angle / 2))) < 0.15);
+    }
+}
+
+TEST_CASE("a texture in a narrow groove acts by a few times the way of the ball, not by its walls' pushes")
+{
+    constexpr double angle = 0.03, radius_m = 1e-3, length_m = 0.12, amplitude_m = 1e-4, per_m = 600;
+    Mesh groove;
+    const double high_m = length_m * std::tan(angle / 2);
+    groove.positions_m = {{0, -0.05, 0},
+                          {0, 0.05, 0},
+                          {length_m, -0.05, -high_m},
+                          {length_m, 0.05, -high_m},
+                          {length_m, -0.05, high_m},
+                          {length_m, 0.05, high_m}};
+    groove.triangles = {{0, 2, 3}, {0, 3, 1}, {0, 5, 4}, {0, 1, 5}};
+    const auto waves = [](const haptel_point& at, haptel_sample& sample) {
+        sample.height_m = amplitude_m * std::sin(per_m * at.p[1]);
+        sample.gradient[1] = amplitude_m * per_m * std::cos(per_m * at.p[1]);
+    };
+    Scene scene = bare_scene(groove, sample_lambda(waves, -amplitude_m, amplitude_m));
+    scene.probe.kind = ProbeKind::sphere;
+    scene.probe.radius_m = radius_m;
+    Renderer renderer(shared(scene));
+    dvec3 force(0);
+    for (double x = 0.11; x > radius_m / std::sin(angle / 2) - 5e-3; x -= 1e-4)
+        force = renderer.tick(at(x, 3e-4, 0)).unlimited_force_n;
+    CHECK(std::fabs(force.x - 5) < 1);
+    CHECK(std::fabs(force.y) < 4 * 5 * amplitude_m * per_m); // the slope's share
+}
+
+TEST_CASE("a ball on the border of a sheet is pushed away from it, and a closed path gives nothing")
+{
+    constexpr double radius_m = 5e-3, side_m = 0.1;
+    for (const bool at_a_corner : {false, true}) {
+        CAPTURE(at_a_corner);
+        Scene scene = bare_scene(plane_mesh(side_m));
+        scene.probe.kind = ProbeKind::sphere;
+        scene.probe.radius_m = radius_m;
+        Renderer renderer(shared(scene));
+        const dvec3 rim(side_m / 2, at_a_corner ? side_m / 2 : 0.01, 0);
+        const dvec3 out = at_a_corner ? glm::normalize(dvec3(1, 1, 0)) : dvec3(1, 0, 0), up(0, 0, 1);
+        double given_j = 0;
+        dvec3 hand = rim + 0.006 * out + 2e-4 * up, force(0);
+        const auto go = [&](const dvec3& to) {
+            constexpr int ticks = 400;
+            const dvec3 from = hand;
+            for (int i = 1; i <= ticks; ++i) {
+                const dvec3 next = from + double(i) / ticks * (to - from);
+                const dvec3 felt = renderer.tick(at(next.x, next.y, next.z)).unlimited_force_n;
+                given_j += 0.5 * glm::dot(felt + force, next - hand);
+                hand = next;
+                force = felt;
+                const dvec3 away = hand - rim;
+                const double depth_m = std::fmax(0, radius_m - glm::length(away));
+                REQUIRE(glm::distance(force, 1000 * depth_m * glm::normalize(away)) < 1e-3);
+            }
+        };
+        const dvec3 start = hand, near = rim + 0.002 * out + 2e-4 * up, above = near + 2.8e-3 * up;
+        go(near);
+        go(above);
+        go(start + 2.8e-3 * up);
+        go(start);
+        CHECK(std::fabs(given_j) < 1e-7);
+    }
+}
