@@ -5,10 +5,37 @@
 #include "runtime/scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 namespace haptel::runtime {
+
+namespace {
+
+bool of_tip(const Contact& contact)
+{
+    return contact.along == 0 && !contact.by_shaft;
+}
+
+// What contacts leave of a pull, each taking along its normal up to its depth times the stiffness: all that they can of
+// it together, to which they come in turns.
+glm::dvec3 not_held_n(glm::dvec3 pull_n, std::span<const Contact> contacts, double stiffness_n_per_m)
+{
+    constexpr int turns = 32;
+    std::array<double, 16> held_n{};
+    for (int turn = 0; turn < turns; ++turn)
+        for (std::size_t i = 0; i < contacts.size() && i < held_n.size(); ++i) {
+            if (!of_tip(contacts[i])) continue;
+            const double most_n = stiffness_n_per_m * contacts[i].depth_m;
+            const double held = std::clamp(held_n[i] + glm::dot(pull_n, contacts[i].normal), -most_n, most_n);
+            pull_n -= (held - held_n[i]) * contacts[i].normal;
+            held_n[i] = held;
+        }
+    return pull_n;
+}
+
+} // namespace
 
 double ObjectEffects::reach_m() const
 {
@@ -58,16 +85,13 @@ void Effects::begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) no
 void Effects::update(std::size_t object, const Placement& placement, std::span<const Contact> contacts,
                      std::span<const Contact> joined) noexcept
 {
-    const auto of_tip = [](const Contact& contact) { return contact.along == 0 && !contact.by_shaft; };
     Near& near = *objects_[object];
     const ObjectEffects& effects = near.effects;
     double distance_m = 0;
     glm::dvec3 toward(0);
     if (std::none_of(contacts.begin(), contacts.end(), of_tip)) {
         // What holds the tip holds it out here: a hand in a floor is as far from a wall on it as its proxy.
-        const auto holds = std::find_if(joined.begin(), joined.end(), of_tip);
-        const glm::dvec3 tip_m =
-            placement.to_object(holds == joined.end() ? tip_m_ : holds->proxy_m + probe_radius_m_ * holds->normal);
+        const glm::dvec3 tip_m = placement.to_object(held_out_m(joined));
         const double reach_m = effects.reach_m();
         const uint64_t queries = near.distance.queries(), triangles = near.distance.triangles();
         const auto nearest = reach_m > 0 ? near.distance.within(tip_m, reach_m + probe_radius_m_) : std::nullopt;
@@ -81,18 +105,25 @@ void Effects::update(std::size_t object, const Placement& placement, std::span<c
     if (effects.magnet.acts()) {
         glm::dvec3 pull_n = effects.magnet.pull_n(distance_m) * toward;
         const double stiffness_n_per_m = scene_.objects[object].material.stiffness_n_per_m / scale_;
-        for (const Contact& contact : joined) {
-            if (!of_tip(contact)) continue;
-            const double across_n = glm::dot(pull_n, contact.normal), held_n = stiffness_n_per_m * contact.depth_m;
-            pull_n -= std::copysign(std::min(std::abs(across_n), held_n), across_n) * contact.normal;
-        }
-        sum_n_ += pull_n;
+        sum_n_ += not_held_n(pull_n, joined, stiffness_n_per_m);
     }
     const auto share = [&](double reach_m) {
         return distance_m == 0 ? 1.0 : distance_m < reach_m ? 1 - distance_m / reach_m : 0.0;
     };
     damping_n_s_per_m_ += effects.damping_n_s_per_m * share(effects.damping_reach_m);
     vibrate(effects.vibration, near.level, contacts.empty() ? share(effects.vibration_reach_m) : 1, placement);
+}
+
+// Where what holds the tip holds it: a ball by its middle, whatever its way there is divided among.
+glm::dvec3 Effects::held_out_m(std::span<const Contact> joined) const noexcept
+{
+    glm::dvec3 middle_m = tip_m_;
+    for (const Contact& contact : joined) {
+        if (!of_tip(contact)) continue;
+        if (probe_radius_m_ == 0) return contact.proxy_m;
+        middle_m += contact.depth_m * contact.normal + contact.lag_m;
+    }
+    return middle_m;
 }
 
 glm::dvec3 Effects::force_n() noexcept

@@ -62,6 +62,7 @@ public:
     uint64_t triangles() const noexcept { return triangles_; }
 
 private:
+    glm::dvec3 held_out_m(std::span<const Contact> joined) const noexcept;
     void vibrate(const Vibration& vibration, VibrationLevel& level, double share, const Placement& placement) noexcept;
 
     struct Near {

@@ -1,5 +1,7 @@
 #include "runtime/fan.h"
 
+#include <cmath>
+
 namespace haptel::runtime {
 
 bool NearestInFan::consider(const Surface& surface, const Sector& start, const glm::dvec3& to) noexcept
@@ -29,6 +31,15 @@ bool NearestInFan::consider(const Surface& surface, const Sector& start, const g
         offer_edge(leaving, candidate.corner);
         offer_edge(arriving, previous(candidate.corner));
     });
+}
+
+glm::dvec3 weighted_normal(const Surface& surface, const Sector& sector) noexcept
+{
+    const Face& face = surface.faces[sector.face];
+    const glm::dvec3& at = surface.vertices[face.vertex[sector.corner]];
+    const glm::dvec3 a = surface.vertices[face.vertex[next(sector.corner)]] - at;
+    const glm::dvec3 b = surface.vertices[face.vertex[previous(sector.corner)]] - at;
+    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * surface.facet_normal(sector.face, sector.side);
 }
 
 } // namespace haptel::runtime

@@ -55,6 +55,9 @@ bool for_each_sector(const Surface& surface, const Sector& start, Visit&& visit)
     return false;
 }
 
+// The facet's normal toward the side that is seen times the angle at the vertex.
+glm::dvec3 weighted_normal(const Surface& surface, const Sector& sector) noexcept;
+
 // The point of a fan, its sectors taken as endless, that is nearest to where a vector from the vertex leads.
 struct NearestInFan {
     static constexpr uint32_t into_sector = 3;

@@ -1,5 +1,6 @@
 #include "runtime/probe_contact.h"
 
+#include "runtime/fan.h"
 #include "runtime/read_ahead.h"
 
 namespace haptel::runtime {
@@ -22,6 +23,28 @@ make(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, 
 bool is_shared(const ProbeSettings& probe, const Surface& surface)
 {
     return probe.kind == ProbeKind::sphere || !surface.origins.empty() || !surface.pierced_by.empty();
+}
+
+// Out of where a point touches: in a narrow pit its contact's normal, from the hand, leads into a wall.
+glm::dvec3 way_out(const Surface& surface, const Contact& contact)
+{
+    constexpr double on_feature = 1e-9; // of a corner's weight
+    const auto unit = [&](const glm::dvec3& sum) {
+        return glm::length(sum) > Surface::least_normal ? glm::normalize(sum) : contact.normal;
+    };
+    for (uint32_t i = 0; i < 3; ++i) {
+        if (!(contact.barycentric[int(i)] > 1 - on_feature)) continue;
+        glm::dvec3 sum(0);
+        const auto add = [&](const Sector& sector) { sum += weighted_normal(surface, sector); };
+        for_each_sector(surface, {contact.face, i, contact.side}, add);
+        return unit(sum);
+    }
+    for (uint32_t i = 0; i < 3; ++i) {
+        if (contact.barycentric[int(previous(i))] > on_feature) continue;
+        const SideEdge link = surface.faces[contact.face].link[i][contact.side];
+        return unit(contact.facet_normal + surface.facet_normal(link.face(), link.side()));
+    }
+    return contact.normal;
 }
 
 std::span<const Contact> any(const Contact& contact)
@@ -107,8 +130,10 @@ std::optional<ProbePose> ProbeContact::held(const ProbePose& hand, double off_m)
     for (const Contact& contact : touching) { // the least move of both ends that moves the place so far
         if (contact.unsettled) continue;      // its normal is no surface's
         const double tail = contact.along, tip = 1 - tail, squares = tip * tip + tail * tail;
-        at.tip_m += tip / squares * off_m * contact.normal;
-        at.tail_m += tail / squares * off_m * contact.normal;
+        const bool by_place = !contact.by_shaft && !std::holds_alternative<SphereContact>(contact_);
+        const glm::dvec3 out = by_place ? way_out(*surface_, contact) : contact.normal;
+        at.tip_m += tip / squares * off_m * out;
+        at.tail_m += tail / squares * off_m * out;
     }
     return at;
 }

@@ -56,7 +56,6 @@ public:
     // Where it was held in the last tick, in which the hand was there: each place that touches by `off_m` off what it
     // touches. Nothing if it touched nothing.
     std::optional<ProbePose> held(const ProbePose& hand, double off_m) const noexcept;
-    std::size_t holds() const noexcept { return contacts().size(); } // at so many places
 
     // Brings what the next tick may need into the cache. Returns how many faces it looked at.
     uint32_t read_ahead() const noexcept;

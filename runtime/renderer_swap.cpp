@@ -18,8 +18,17 @@ constexpr double nudge_m = 1e-3;
 
 // From the place where the probe was held, off what held it there, the least first: surfaces that are built anew round
 // otherwise, and may have grown or moved a little. Not farther: something else may be there.
-constexpr double off_m[] = {1e-5, 1e-4, 1e-3};
-constexpr double farthest_off_m = off_m[2];
+constexpr double off_m[] = {0, 1e-5, 1e-4, 1e-3};
+constexpr double settled_m = off_m[1], farthest_off_m = off_m[3];
+
+// How far apart two bodies hold the probe, in the scene's space.
+double apart_m(const Body& a, const ProbePose& held_by_a, const Body& b, const ProbePose& held_by_b)
+{
+    const auto way_m = [&](const glm::dvec3& p, const glm::dvec3& q) {
+        return glm::distance(a.placement.to_world(p), b.placement.to_world(q));
+    };
+    return std::max(way_m(held_by_a.tip_m, held_by_b.tip_m), way_m(held_by_a.tail_m, held_by_b.tail_m));
+}
 
 double distance_m(const Placement& a, const Placement& b)
 {
@@ -135,7 +144,7 @@ void Renderer::put_down(Body& body, const Renderer& before, const HeldBodies& he
         body.contact.update(start, {});
         return come(old);
     };
-    std::size_t most = 0;
+    double least_m = std::numeric_limits<double>::infinity(); // from where it was held
     ProbePose best;
     const Body* best_old = nullptr;
     for (uint32_t i = 0; i < held.count; ++i) {
@@ -149,9 +158,10 @@ void Renderer::put_down(Body& body, const Renderer& before, const HeldBodies& he
             const double way_m =
                 std::max(glm::distance(start.tip_m, hand.tip_m), glm::distance(start.tail_m, hand.tail_m));
             if (gap_m > way_m) break;
-            const std::size_t contacts = come_from(start, old);
-            if (contacts > most) most = contacts, best = start, best_old = &old;
-            if (contacts >= old.contact.holds()) break;
+            if (come_from(start, old) == 0) continue;
+            const double from_there_m = apart_m(old, *old.contact.held(old_hand, 0), body, *body.contact.held(hand, 0));
+            if (from_there_m < least_m) least_m = from_there_m, best = start, best_old = &old;
+            if (from_there_m <= settled_m * hand_.workspace.scale) break;
         }
     }
     if (best_old) {

@@ -50,7 +50,7 @@ int roots(double c0, double c1, double c2, double (&t)[2])
 } // namespace
 
 bool meets(const Shaft& from, const Shaft& to, const glm::dvec3& edge0, const glm::dvec3& edge1, double tip_off,
-           double tail_off, double before, Meeting& meeting) noexcept
+           double tail_off, double before, EdgeMeeting& meeting) noexcept
 {
     const glm::dvec3 edge = edge1 - edge0;
     const glm::dvec3 along = from.tail - from.tip, turn = (to.tail - to.tip) - along;

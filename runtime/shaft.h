@@ -53,7 +53,7 @@ struct Passing {
 Passing passing(const Shaft& shaft, const glm::dvec3& edge0, const glm::dvec3& edge1) noexcept;
 
 // A straight move of both ends meets an edge.
-struct Meeting {
+struct EdgeMeeting {
     double time = 1; // share of the move
     int side = 0;    // of the edge that the shaft came from: the sign of its height
 };
@@ -62,6 +62,6 @@ struct Meeting {
 // the ends on straight ways and the edge at rest the height changes its sign where a quadratic polynomial does. `from`
 // has lattice points for ends, so that the side on which it begins is known exactly.
 bool meets(const Shaft& from, const Shaft& to, const glm::dvec3& edge0, const glm::dvec3& edge1, double tip_off,
-           double tail_off, double before, Meeting& meeting) noexcept;
+           double tail_off, double before, EdgeMeeting& meeting) noexcept;
 
 } // namespace haptel::runtime

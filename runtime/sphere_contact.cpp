@@ -305,6 +305,26 @@ void SphereContact::hold_by_friction(const Friction& friction) noexcept
     }
 }
 
+// Of the faces that meet where the ball touches one the one that turns to it most: another may be the bottom of an
+// object that lies on the other's top, and ends in the same edge where nobody can come to it.
+uint32_t SphereContact::outermost(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) const noexcept
+{
+    constexpr double same_place = 64; // lattice units
+    const auto nearest = [&](uint32_t number) {
+        const auto& vertex = surface_->faces[number].vertex;
+        return nearest_point(surface_->vertices[vertex[0]], surface_->vertices[vertex[1]],
+                             surface_->vertices[vertex[2]], centre)
+            .at;
+    };
+    const auto turned = [&](uint32_t number) { return std::fabs(glm::dot(surface_->faces[number].normal, normal)); };
+    const glm::dvec3 at = nearest(face);
+    for (std::size_t i = 0; i < faces_.picked().size(); ++i) {
+        const uint32_t other = faces_.face(static_cast<uint32_t>(i));
+        if (turned(other) > (1 + 1e-9) * turned(face) && glm::distance(nearest(other), at) < same_place) face = other;
+    }
+    return face;
+}
+
 void SphereContact::describe(const NearestInHalfSpaces& found, const glm::dvec3& nearest) noexcept
 {
     std::array<uint32_t, 3> order{0, 1, 2}; // who presses most first
@@ -319,6 +339,7 @@ void SphereContact::describe(const NearestInHalfSpaces& found, const glm::dvec3&
         contact.touching = true;
         contact.sliding = sliding_;
         contact.face = faces_.face(picked);
+        if (!surface_->origins.empty()) contact.face = outermost(contact.face, faces_.picked()[picked].normal, nearest);
         const Face& face = surface_->faces[contact.face];
         contact.normal = faces_.picked()[picked].normal;
         contact.side = glm::dot(contact.normal, face.normal) >= 0 ? 0 : 1;

@@ -72,6 +72,7 @@ private:
     Way go(bool until_it_touches) noexcept;
     void move(const Friction& friction) noexcept;
     void push_no_harder_than(double way_m) noexcept;
+    uint32_t outermost(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) const noexcept;
     void hold_by_friction(const Friction& friction) noexcept;
     void describe(const NearestInHalfSpaces& found, const glm::dvec3& nearest) noexcept;
 

@@ -123,7 +123,7 @@ bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstac
         for (uint32_t edge = 0; edge < 3; ++edge) {
             if (std::min(face.link[edge][0].face(), face.link[edge][1].face()) < f) continue; // tested from there
             const glm::dvec3 &a = edge_end(f, edge, 0), &b = edge_end(f, edge, 1);
-            Meeting meeting;
+            EdgeMeeting meeting;
             if (!meets(from, to, a, b, tip_off, tail_off, obstacle.time, meeting) ||
                 is_below_a_side(face.vertex[edge], face.vertex[next(edge)], to))
                 continue;

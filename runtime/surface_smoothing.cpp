@@ -38,16 +38,6 @@ glm::dvec3 normal_of(const Surface& surface, const Sector& sector)
     return surface.facet_normal(sector.face, sector.side);
 }
 
-// Normal times the angle at the vertex.
-glm::dvec3 weighted_normal(const Surface& surface, const Sector& sector)
-{
-    const Face& face = surface.faces[sector.face];
-    const glm::dvec3& at = surface.vertices[face.vertex[sector.corner]];
-    const glm::dvec3 a = surface.vertices[face.vertex[next(sector.corner)]] - at;
-    const glm::dvec3 b = surface.vertices[face.vertex[previous(sector.corner)]] - at;
-    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * normal_of(surface, sector);
-}
-
 class Smoothing {
 public:
     Smoothing(Surface& surface, double crease_deg) : surface_(surface), crease_rad_(glm::radians(crease_deg)) {}

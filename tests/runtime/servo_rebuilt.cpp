@@ -1,11 +1,16 @@
 // Surfaces that are built anew while a hand presses on them, as after an edit of a scene's file.
 #include "runtime/renderer.h"
+#include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory>
 #include <random>
 #include <string>
+#include <vector>
 
 using namespace haptel;
 using namespace haptel::runtime;
@@ -72,6 +77,51 @@ TEST_CASE("surfaces built anew as they were are felt as they were, by any probe"
             CHECK(otherwise <= (probe.kind == ProbeKind::stylus ? pressed / 50 : 0));
             CHECK(pressed > 5);
         }
+}
+
+// A hand wanders about, 2 mm deep; of many renderers that follow it each is taken over from at another time.
+TEST_CASE("a star of narrow pits and spikes built anew holds the probe where it did")
+{
+    constexpr double size_m = 0.1, length_m = 0.05, deepest_m = 2e-3, speed_m = 1e-4;
+    constexpr int ticks = 4000, between = 100;
+    Mesh mesh = haptel::test::make_star(3);
+    scale_to_size(mesh, size_m);
+    for (const ProbeKind kind : {ProbeKind::point, ProbeKind::stylus, ProbeKind::gripper}) {
+        const ProbeSettings probe{kind, length_m};
+        const auto scene = shared(scene_of(probe, mesh)), anew = shared(scene_of(probe, mesh));
+        std::mt19937_64 random(9);
+        std::normal_distribution<double> normal;
+        const auto any = [&] { return dvec3(normal(random), normal(random), normal(random)); };
+        std::vector<std::unique_ptr<Renderer>> followers;
+        for (int i = 0; i <= ticks / between; ++i) followers.push_back(std::make_unique<Renderer>(scene));
+        const dvec3 from = glm::normalize(any());
+        dvec3 middle = 0.7 * size_m * from, heading = -from, axis = glm::normalize(glm::cross(from, any()));
+        int pressed = 0, lost = 0, elsewhere = 0;
+        for (int tick = 0; tick < ticks; ++tick) {
+            const dvec3 home = -10.0 * std::max(0.0, glm::length(middle) - 0.35 * size_m) * middle;
+            heading = glm::normalize(heading + 0.02 * any() + home);
+            middle += speed_m * heading;
+            axis = glm::normalize(axis + 2e-3 * any());
+            const DevicePose hand{middle - 0.5 * length_m * axis, middle + 0.5 * length_m * axis};
+            TickResult felt;
+            for (auto& follower : followers)
+                if (follower) felt = follower->tick(hand);
+            if (tick % between == between - 1) {
+                const auto first = std::move(followers[static_cast<std::size_t>(tick / between)]);
+                if (felt.contacts == 0) continue;
+                ++pressed;
+                const TickResult after = swapped(*first, *scene, anew, hand);
+                lost += after.contacts == 0;
+                elsewhere += glm::distance(after.unlimited_force_n, felt.unlimited_force_n) > 1;
+            }
+            const double depth_m = glm::length(felt.unlimited_force_n) / 1000;
+            if (depth_m > deepest_m) middle += (1 - deepest_m / depth_m) / 1000 * felt.unlimited_force_n;
+        }
+        CAPTURE(int(kind), pressed, lost, elsewhere);
+        CHECK(pressed > 20);
+        CHECK(lost == 0);
+        CHECK(elsewhere == 0);
+    }
 }
 
 TEST_CASE("a floor and a wall built anew both hold on, though each of them holds the probe inside the other")

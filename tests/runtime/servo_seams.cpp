@@ -290,6 +290,37 @@ TEST_CASE("over a seam or a ridge between two objects the force changes as over 
             }
 }
 
+TEST_CASE("a ball rolls over the eaves of a roof that lies on a box, whichever is written first, without a step")
+{
+    constexpr double radius_m = 2e-3, depth_m = 5e-4, hard = 2000;
+    const dvec3 eaves(0.03, 0.007, 0), slope = glm::normalize(dvec3(-1, 0, 1));
+    Mesh prism;
+    for (const double y : {-0.05, 0.05})
+        for (const dvec3& corner : {dvec3(-0.03, y, 0), dvec3(0.03, y, 0), dvec3(0, y, 0.03)})
+            prism.positions_m.push_back(corner);
+    prism.triangles = {{0, 1, 2}, {3, 5, 4}, {0, 3, 4}, {0, 4, 1}, {1, 4, 5}, {1, 5, 2}, {2, 5, 3}, {2, 3, 0}};
+    for (const bool roof_first : {false, true}) {
+        std::vector<SceneObject> objects = {object(make_box({0.06, 0.1, 0.04}), {glm::dmat3(1), {0, 0, -0.02}}, 1000),
+                                            object(prism, {}, hard)};
+        if (roof_first) std::reverse(objects.begin(), objects.end());
+        Scene scene = joined(std::move(objects));
+        scene.probe = {ProbeKind::sphere, 0.05, radius_m};
+        Stroke stroke(scene, dvec3(0));
+        const double off_m = radius_m - depth_m;
+        stroke.to(eaves + dvec3(5e-3, 0, -6e-3));
+        stroke.to(eaves + dvec3(off_m, 0, -6e-3));
+        constexpr int turns = 100;
+        for (int i = 0; i <= turns; ++i) {
+            const double angle = glm::radians(45.0) * i / turns;
+            stroke.to(eaves + off_m * dvec3(std::cos(angle), 0, std::sin(angle)));
+        }
+        stroke.to(eaves + off_m * glm::normalize(dvec3(1, 0, 1)) + 5e-3 * slope);
+        CAPTURE(roof_first, stroke.largest_at_m().x, stroke.largest_at_m().z);
+        CHECK(stroke.largest_n() < 3 * hard * step_m);
+        CHECK(stroke.touching() > 400);
+    }
+}
+
 TEST_CASE("each finger of a gripper, and each end of a stylus, has the friction of what it touches itself")
 {
     constexpr double stiffness_n_per_m = 500, depth_m = 1e-3, apart_m = 0.05;
