@@ -173,7 +173,8 @@ std::span<const Contact> PartShares::of(const Surface& surface, std::span<const 
     return {contacts_.data(), count_};
 }
 
-// Of one end: its walls push against each other by what the angle between them makes of the way. The sum stays.
+// Of one end, or of a ball, which several faces of one mesh may hold, too: its walls push against each other by what
+// the angle between them makes of the way. The sum stays.
 void PartShares::settle(double along) noexcept
 {
     glm::dvec3 way_m(0);

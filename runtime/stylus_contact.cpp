@@ -208,7 +208,7 @@ void StylusContact::report() noexcept
     if (!tracked_) return;
 
     const uint32_t first = contact_count_;
-    const double drawn = away(extended(shaft_));
+    const double drawn = away(shaft_);
     for (uint32_t i = 0; i < side_count_; ++i) {
         const Side& side = sides_[i];
         if (!(side.push > 0 && side.push < against_each_other * drawn)) continue;
@@ -253,7 +253,7 @@ void StylusContact::tell_what_is_left() noexcept
 {
     const Shaft ideal = extended(shaft_);
     glm::dvec3 tip = ideal.tip - hand_.tip, tail = ideal.tail - hand_.tail;
-    const double least = std::max(least_push / (end_ - begin_), least_push_share * away(ideal));
+    const double least = std::max(least_push / (end_ - begin_), least_push_share * away(shaft_));
     for (uint32_t i = 0; i < contact_count_; ++i) {
         const Contact& contact = contacts_[i];
         const glm::dvec3 push = (contact.depth_m * contact.normal + contact.lag_m) / surface().lattice.unit_m;

@@ -139,7 +139,7 @@ private:
     bool let_go_of_unreached() noexcept;
     Place place() const noexcept;
     void go_back(const Place& to) noexcept;
-    double away(const Shaft& shaft) const noexcept;
+    double away(const Shaft& part) const noexcept;
     void hold_hand_from_here(Grips& grips) noexcept;
     void drop(uint32_t side) noexcept;
     void report() noexcept;

@@ -173,10 +173,12 @@ void StylusContact::go_back(const Place& to) noexcept
     tip_.clear_.radius = tail_.clear_.radius = clear_.radius = 0; // it may be out of these
 }
 
-// How far the springs of both ends are drawn there: their energy is half the stiffness times its square.
-double StylusContact::away(const Shaft& shaft) const noexcept
+// How far the springs of both ends are drawn where the part in the workspace is there: their energy is half the
+// stiffness times its square.
+double StylusContact::away(const Shaft& part) const noexcept
 {
-    const glm::dvec3 tip = shaft.tip - hand_.tip, tail = shaft.tail - hand_.tail;
+    const Shaft whole = extended(part);
+    const glm::dvec3 tip = whole.tip - hand_.tip, tail = whole.tail - hand_.tail;
     return std::sqrt(glm::dot(tip, tip) + glm::dot(tail, tail));
 }
 
