@@ -32,16 +32,12 @@ glm::dvec3 way_out(const Surface& surface, const Contact& contact)
     const auto unit = [&](const glm::dvec3& sum) {
         return glm::length(sum) > Surface::least_normal ? glm::normalize(sum) : contact.normal;
     };
-    for (uint32_t i = 0; i < 3; ++i) {
-        if (!(contact.barycentric[int(i)] > 1 - on_feature)) continue;
-        glm::dvec3 sum(0);
-        const auto add = [&](const Sector& sector) { sum += weighted_normal(surface, sector); };
-        for_each_sector(surface, {contact.face, i, contact.side}, add);
-        return unit(sum);
-    }
+    const Face& face = surface.faces[contact.face];
+    for (uint32_t i = 0; i < 3; ++i)
+        if (contact.barycentric[int(i)] > 1 - on_feature) return unit(surface.fans[face.fan[i][contact.side]].normal);
     for (uint32_t i = 0; i < 3; ++i) {
         if (contact.barycentric[int(previous(i))] > on_feature) continue;
-        const SideEdge link = surface.faces[contact.face].link[i][contact.side];
+        const SideEdge link = face.link[i][contact.side];
         return unit(contact.facet_normal + surface.facet_normal(link.face(), link.side()));
     }
     return contact.normal;

@@ -2,7 +2,6 @@
 #include "runtime/surface_build.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 namespace haptel::runtime {
@@ -18,11 +17,7 @@ void add_fan(Surface& surface, const Sector& start)
     glm::dvec3 sum{0};
     for_each_sector(surface, start, [&](const Sector& sector) {
         Face& face = surface.faces[sector.face];
-        const glm::dvec3& at = surface.vertices[face.vertex[sector.corner]];
-        const glm::dvec3 a = surface.vertices[face.vertex[next(sector.corner)]] - at;
-        const glm::dvec3 b = surface.vertices[face.vertex[previous(sector.corner)]] - at;
-        const double angle = std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
-        sum += angle * surface.facet_normal(sector.face, sector.side);
+        sum += weighted_normal(surface, sector);
         face.fan[sector.corner][sector.side] = index;
     });
     const double length = glm::length(sum);
