@@ -37,12 +37,6 @@ glm::dvec3 not_held_n(glm::dvec3 pull_n, std::span<const Contact> contacts, doub
 
 } // namespace
 
-double ObjectEffects::reach_m() const
-{
-    return std::max({magnet.acts() ? magnet.reach_m : 0.0, damping_n_s_per_m > 0 ? damping_reach_m : 0.0,
-                     vibration.acts() ? vibration_reach_m : 0.0});
-}
-
 Effects::Effects(const Scene& scene, const HandSettings& hand)
     : scene_(scene)
     , period_s_(1 / scene.servo.rate_hz)

@@ -6,13 +6,6 @@
 
 namespace haptel::runtime {
 
-std::optional<ForceModel> force_model_named(std::string_view name)
-{
-    const auto found = std::find(force_model_names.begin(), force_model_names.end(), name);
-    if (found == force_model_names.end()) return std::nullopt;
-    return static_cast<ForceModel>(found - force_model_names.begin());
-}
-
 ModelForce model_force(const ForceRule& rule, const TouchedSurface& surface, const TextureSample& texture) noexcept
 {
     const double stiffness = surface.stiffness_n_per_m * texture.stiffness_scale;

@@ -23,34 +23,12 @@
 // stiffness_scale: stiffness that changes from point to point does work, up to its change times (d + h - h_max)^2 / 2.
 #pragma once
 
+#include "runtime/force_rule.h"
 #include "runtime/surface_texture.h"
 
 #include <glm/glm.hpp>
 
-#include <array>
-#include <cstdint>
-#include <optional>
-#include <string_view>
-
 namespace haptel::runtime {
-
-enum class ForceModel : uint8_t { displaced, paper, paper_unit, ho99, lateral };
-
-// In the order of ForceModel.
-inline constexpr std::array<std::string_view, 5> force_model_names = {"displaced", "paper", "paper_unit", "ho99",
-                                                                      "lateral"};
-
-inline std::string_view name_of(ForceModel model)
-{
-    return force_model_names[static_cast<std::size_t>(model)];
-}
-std::optional<ForceModel> force_model_named(std::string_view name);
-
-// What a scene says about it.
-struct ForceRule {
-    ForceModel model = ForceModel::displaced;
-    double lateral_depth_m = 1e-3; // l of `lateral`, > 0
-};
 
 // The contact as a force model sees it. Any frame, as long as it is one.
 struct TouchedSurface {

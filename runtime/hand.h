@@ -3,7 +3,7 @@
 
 #include "runtime/haptic_device.h"
 #include "runtime/placement.h"
-#include "runtime/probe_contact.h"
+#include "runtime/probe.h"
 
 #include <glm/glm.hpp>
 

@@ -14,7 +14,7 @@
 #include "runtime/haptic_device.h"
 #include "runtime/reach.h"
 #include "runtime/scene.h"
-#include "runtime/servo_report.h"
+#include "runtime/skipped_stages.h"
 #include "runtime/surface_texture.h"
 #include "runtime/texture_slot.h"
 

@@ -3,12 +3,13 @@
 #pragma once
 
 #include "lang/texture_binding.h"
-#include "runtime/effects.h"
-#include "runtime/force_model.h"
+#include "runtime/force_rule.h"
 #include "runtime/haptic_device.h"
 #include "runtime/motion.h"
+#include "runtime/object_effects.h"
 #include "runtime/placement.h"
-#include "runtime/probe_contact.h"
+#include "runtime/probe.h"
+#include "runtime/region.h"
 #include "runtime/surface.h"
 #include "runtime/texture_slot.h"
 
