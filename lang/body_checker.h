@@ -5,7 +5,8 @@
 // and check_range.cpp hold the parts.
 #pragma once
 
-#include "lang/check.h"
+#include "lang/checked_program.h"
+#include "lang/diagnostic.h"
 #include "lang/names.h"
 
 #include <optional>

@@ -2,7 +2,8 @@
 // enough for every later stage to walk them by recursion, and derivatives of derivatives few enough to be written out.
 #pragma once
 
-#include "lang/check.h"
+#include "lang/checked_program.h"
+#include "lang/diagnostic.h"
 
 #include <unordered_map>
 

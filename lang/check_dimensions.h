@@ -5,7 +5,8 @@
 // finding names the innermost code of the user's own; what goes wrong inside the library is the fault of the call.
 #pragma once
 
-#include "lang/check.h"
+#include "lang/checked_program.h"
+#include "lang/diagnostic.h"
 
 namespace haptel::lang {
 

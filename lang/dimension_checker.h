@@ -3,7 +3,8 @@
 // dimension_call.cpp, dimension_statement.cpp.
 #pragma once
 
-#include "lang/check.h"
+#include "lang/checked_program.h"
+#include "lang/diagnostic.h"
 #include "lang/dimension.h"
 
 #include <deque>

@@ -1,5 +1,7 @@
 #include "lang/library.h"
 
+#include "lang/check.h"
+
 #include "lang/outline.h"
 #include "lang/parser.h"
 

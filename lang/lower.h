@@ -2,7 +2,8 @@
 // reach them; vectors split into scalars, early returns and breaks into flags and nesting, inputs into parameters.
 #pragma once
 
-#include "lang/check.h"
+#include "lang/checked_program.h"
+#include "lang/diagnostic.h"
 #include "lang/ir/ir.h"
 
 #include <string_view>

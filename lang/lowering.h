@@ -4,7 +4,8 @@
 #pragma once
 
 #include "lang/builtins.h"
-#include "lang/check.h"
+#include "lang/checked_program.h"
+#include "lang/diagnostic.h"
 #include "lang/ir/builder.h"
 #include "lang/ir/differentiate.h"
 #include "lang/outcome.h"
