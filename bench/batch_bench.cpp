@@ -1,7 +1,7 @@
 #include "bench/batch_bench.h"
 
 #include "jit/check_points.h"
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 
 #include <algorithm>
 #include <atomic>

@@ -3,8 +3,8 @@
 #include "bench/library_functions.h"
 #include "jit/engine.h"
 #include "lang/ir/elementary.h"
-#include "lang/ir/elementary_truth.h"
 #include "lang/ir/op_info.h"
+#include "lang/ir/run/elementary_truth.h"
 #include "lang/ir/text.h"
 
 #include <algorithm>

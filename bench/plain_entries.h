@@ -1,7 +1,7 @@
 // The plain C++ textures as entries like those of compiled textures, by every way to get a gradient.
 #pragma once
 
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 #include "lang/ir/ir.h"
 
 #include <string>

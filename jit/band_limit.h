@@ -1,7 +1,7 @@
 // Whether a footprint takes anything away from a texture.
 #pragma once
 
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 
 namespace haptel::jit {
 

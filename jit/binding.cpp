@@ -2,7 +2,7 @@
 #include "jit/facts.h"
 #include "jit/image_file.h"
 #include "jit/texture.h"
-#include "lang/value.h"
+#include "lang/parameter_value.h"
 
 #include <algorithm>
 #include <cmath>

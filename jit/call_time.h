@@ -1,7 +1,7 @@
 // How long a texture takes where it will run: measured before a servo has to wait for it.
 #pragma once
 
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 
 #include <string>
 

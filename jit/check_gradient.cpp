@@ -3,7 +3,7 @@
 #include "jit/check_code.h"
 #include "jit/check_points.h"
 #include "jit/entry_inputs.h"
-#include "lang/ir/quad.h"
+#include "lang/math/quad.h"
 
 #include <algorithm>
 #include <atomic>

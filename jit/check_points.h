@@ -2,7 +2,7 @@
 #pragma once
 
 #include "jit/check_gradient.h"
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 
 #include <cstdint>
 #include <vector>

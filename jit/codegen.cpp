@@ -2,7 +2,7 @@
 
 #include "jit/codegen_function.h"
 #include "jit/kernels.h"
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 
 #include <cstddef>
 #include <optional>

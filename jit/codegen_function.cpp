@@ -2,7 +2,7 @@
 
 #include "jit/codegen_operation.h"
 #include "jit/codegen_table.h"
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 
 #include <algorithm>
 #include <cstddef>

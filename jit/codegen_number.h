@@ -3,7 +3,7 @@
 #pragma once
 
 #include "jit/llvm.h"
-#include "lang/ir/elementary_number.h"
+#include "lang/math/elementary_number.h"
 
 namespace haptel::jit {
 

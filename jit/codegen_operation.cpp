@@ -3,8 +3,8 @@
 #include "jit/codegen.h"
 #include "jit/codegen_math.h"
 #include "jit/codegen_turn.h"
-#include "lang/ir/elementary_number.h"
-#include "lang/ir/spline.h"
+#include "lang/math/elementary_number.h"
+#include "lang/math/spline.h"
 
 #include <cmath>
 #include <cstring>

@@ -1,6 +1,6 @@
 #include "jit/codegen_turn.h"
 
-#include "lang/ir/turn_polynomials.h"
+#include "lang/math/turn_polynomials.h"
 
 #include <span>
 

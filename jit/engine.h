@@ -8,7 +8,7 @@
 #pragma once
 
 #include "jit/codegen.h"
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 
 #include <atomic>
 #include <map>

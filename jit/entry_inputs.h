@@ -1,8 +1,8 @@
 // A point and a block as the interpreter takes them, for any real type.
 #pragma once
 
-#include "lang/abi.h"
-#include "lang/ir/interpret.h"
+#include "lang/abi/abi.h"
+#include "lang/ir/run/interpret.h"
 
 #include <array>
 #include <cstring>

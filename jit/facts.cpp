@@ -1,6 +1,6 @@
 #include "jit/facts.h"
 
-#include "lang/ir/bounds.h"
+#include "lang/ir/bounds/bounds.h"
 #include "lang/ir/verify.h"
 
 #include <algorithm>

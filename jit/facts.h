@@ -1,10 +1,10 @@
 // What is proven about a texture, as the C interface carries it.
 #pragma once
 
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
+#include "lang/abi/texture_binding.h"
+#include "lang/ir/bounds/spline_image.h"
 #include "lang/ir/ir.h"
-#include "lang/ir/spline_image.h"
-#include "lang/texture_binding.h"
 
 #include <span>
 

@@ -2,7 +2,7 @@
 
 #include "jit/content_hash.h"
 #include "jit/picture.h"
-#include "lang/diagnostic.h"
+#include "lang/text/diagnostic.h"
 
 #include <chrono>
 #include <filesystem>

@@ -1,7 +1,7 @@
 // Pictures on disk, made ready for textures. lang performs no I/O: this is where texels come from.
 #pragma once
 
-#include "lang/ir/spline_image.h"
+#include "lang/ir/bounds/spline_image.h"
 
 #include <memory>
 #include <string>

@@ -4,7 +4,7 @@
 #include "jit/compile_thread.h"
 #include "jit/image_file.h"
 #include "jit/source_file.h"
-#include "lang/value.h"
+#include "lang/parameter_value.h"
 
 #include <algorithm>
 #include <chrono>

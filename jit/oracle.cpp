@@ -1,7 +1,7 @@
 #include "jit/oracle.h"
 
 #include "jit/entry_inputs.h"
-#include "lang/ir/quad.h"
+#include "lang/math/quad.h"
 
 namespace haptel::jit {
 

@@ -1,7 +1,7 @@
 #include "jit/picture.h"
 
 #include "jit/picture_damage.h"
-#include "lang/ir/spline_image.h"
+#include "lang/ir/bounds/spline_image.h"
 
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG

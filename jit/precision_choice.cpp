@@ -3,7 +3,7 @@
 #include "jit/check_points.h"
 #include "jit/oracle.h"
 #include "jit/texture.h"
-#include "lang/evaluate.h"
+#include "lang/abi/evaluate.h"
 
 #include <algorithm>
 #include <chrono>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "jit/precision.h"
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 
 #include <cstdint>
 #include <string>

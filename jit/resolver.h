@@ -2,7 +2,7 @@
 #pragma once
 
 #include "jit/program_cache.h"
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 
 namespace haptel::jit {
 

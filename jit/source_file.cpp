@@ -1,6 +1,6 @@
 #include "jit/source_file.h"
 
-#include "lang/diagnostic.h"
+#include "lang/text/diagnostic.h"
 
 #include <algorithm>
 #include <cerrno>

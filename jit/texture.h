@@ -6,8 +6,8 @@
 #pragma once
 
 #include "jit/engine.h"
+#include "lang/abi/texture_binding.h"
 #include "lang/compile.h"
-#include "lang/texture_binding.h"
 
 #include <memory>
 #include <optional>

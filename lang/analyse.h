@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lang/compile.h"
-#include "lang/ir/bounds.h"
+#include "lang/ir/bounds/bounds.h"
 
 #include <limits>
 #include <span>

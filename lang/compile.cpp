@@ -1,11 +1,11 @@
 #include "lang/compile.h"
 
-#include "lang/check.h"
-#include "lang/check_dimensions.h"
+#include "lang/check/check.h"
+#include "lang/check/dimension/check_dimensions.h"
+#include "lang/check/library.h"
 #include "lang/ir/verify.h"
-#include "lang/library.h"
-#include "lang/lower.h"
-#include "lang/parser.h"
+#include "lang/lower/lower.h"
+#include "lang/syntax/parser.h"
 
 #include <algorithm>
 #include <map>

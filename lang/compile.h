@@ -5,9 +5,9 @@
 // prints, recurses without bound or loops without end, whatever the bytes.
 #pragma once
 
-#include "lang/diagnostic.h"
 #include "lang/ir/ir.h"
-#include "lang/source.h"
+#include "lang/text/diagnostic.h"
+#include "lang/text/source.h"
 
 #include <functional>
 #include <memory>

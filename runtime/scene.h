@@ -2,7 +2,7 @@
 // objects' slots change, each by its own atomic pointer.
 #pragma once
 
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 #include "runtime/force_rule.h"
 #include "runtime/haptic_device.h"
 #include "runtime/motion.h"

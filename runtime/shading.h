@@ -2,7 +2,7 @@
 // derivatives along the facet, which a texture that reads them needs for its gradient.
 #pragma once
 
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 #include "runtime/surface.h"
 
 namespace haptel::runtime {

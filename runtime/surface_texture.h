@@ -4,8 +4,8 @@
 // touching the base mesh is then necessary for touching the texture, and force starts at 0.
 #pragma once
 
-#include "lang/abi.h"
-#include "lang/texture_binding.h"
+#include "lang/abi/abi.h"
+#include "lang/abi/texture_binding.h"
 #include "runtime/shading.h"
 #include "runtime/texture_slot.h"
 

@@ -6,7 +6,7 @@
 // during a fade stay in memory until it ends and somebody publishes or collects.
 #pragma once
 
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 
 #include <atomic>
 #include <cstddef>

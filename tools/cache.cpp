@@ -1,7 +1,7 @@
 // haptel cache: the machine code that is kept on disk, so that the next start need not make it.
 #include "jit/object_cache.h"
 #include "jit/texture.h"
-#include "lang/diagnostic.h"
+#include "lang/text/diagnostic.h"
 #include "stdlib/stdlib.h"
 #include "tools/command.h"
 #include "tools/json.h"

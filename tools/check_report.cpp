@@ -1,6 +1,6 @@
 #include "tools/check_report.h"
 
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 #include "lang/ir/verify.h"
 #include "tools/check_cost.h"
 

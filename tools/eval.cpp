@@ -1,6 +1,6 @@
 // haptel eval: height and gradient of a texture at points, by any engine.
 #include "jit/oracle.h"
-#include "lang/evaluate.h"
+#include "lang/abi/evaluate.h"
 #include "tools/command.h"
 #include "tools/eval_table.h"
 #include "tools/json.h"

@@ -1,6 +1,6 @@
 #include "tools/explain.h"
 
-#include "lang/diagnostic.h"
+#include "lang/text/diagnostic.h"
 #include "tools/json.h"
 #include "tools/terminal.h"
 

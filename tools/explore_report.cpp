@@ -1,6 +1,6 @@
 #include "tools/explore_report.h"
 
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 #include "runtime/renderer.h"
 
 #include <fmt/format.h>

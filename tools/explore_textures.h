@@ -1,7 +1,7 @@
 // The textures of a scene, compiled, and compiled again whenever their files change.
 #pragma once
 
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 #include "runtime/scene.h"
 
 #include <atomic>

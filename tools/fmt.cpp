@@ -1,6 +1,6 @@
 // haptel fmt: source text in the one style.
 #include "jit/source_file.h"
-#include "lang/format.h"
+#include "lang/format/format.h"
 #include "tools/command.h"
 #include "tools/replace_file.h"
 #include "tools/terminal.h"

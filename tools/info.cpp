@@ -1,7 +1,7 @@
 // haptel info: what there is to call, and what a file's textures are.
 #include "jit/source_file.h"
 #include "lang/compile.h"
-#include "lang/parser.h"
+#include "lang/syntax/parser.h"
 #include "stdlib/stdlib.h"
 #include "tools/check_report.h"
 #include "tools/command.h"

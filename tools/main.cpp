@@ -1,5 +1,5 @@
 // The haptel command: finds the subcommand, turns its outcome into the exit code, and nothing else.
-#include "lang/diagnostic.h"
+#include "lang/text/diagnostic.h"
 #include "tools/command.h"
 #include "tools/terminal.h"
 

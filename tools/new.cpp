@@ -1,5 +1,5 @@
 // haptel new: a first texture to change.
-#include "lang/lexer.h"
+#include "lang/text/lexer.h"
 #include "tools/command.h"
 #include "tools/terminal.h"
 

@@ -1,7 +1,7 @@
 // haptel plot: pictures of a texture.
 #include "jit/oracle.h"
 #include "jit/texture.h"
-#include "lang/evaluate.h"
+#include "lang/abi/evaluate.h"
 #include "tools/command.h"
 #include "tools/plot_texture.h"
 #include "tools/terminal.h"

@@ -1,7 +1,7 @@
 // Pictures of one texture over a square of the plane z = const, seen from +z.
 #pragma once
 
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 #include "tools/plot_picture.h"
 
 #include <functional>

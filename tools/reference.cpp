@@ -1,8 +1,8 @@
 #include "tools/reference.h"
 
-#include "lang/lexer.h"
-#include "lang/names.h"
-#include "lang/parser.h"
+#include "lang/program/scope.h"
+#include "lang/syntax/parser.h"
+#include "lang/text/lexer.h"
 #include "stdlib/stdlib.h"
 
 #include <algorithm>

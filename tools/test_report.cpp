@@ -1,6 +1,6 @@
 #include "tools/test_report.h"
 
-#include "lang/source.h"
+#include "lang/text/source.h"
 
 #include <algorithm>
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
 // How a command line names one texture and its parameters' values: FILE:NAME and --set name=value.
 #pragma once
 
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 #include "tools/quantity.h"
 
 #include <CLI/CLI.hpp>

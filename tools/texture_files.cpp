@@ -1,7 +1,7 @@
 #include "tools/texture_files.h"
 
 #include "jit/source_file.h"
-#include "lang/parser.h"
+#include "lang/syntax/parser.h"
 
 #include <filesystem>
 #include <set>

@@ -1,11 +1,11 @@
 // The elementary functions by their operation, over any number: Number or a code generator's.
 #pragma once
 
-#include "lang/ir/elementary_arc.h"
-#include "lang/ir/elementary_circular.h"
-#include "lang/ir/elementary_hyperbolic.h"
-#include "lang/ir/elementary_power.h"
 #include "lang/ir/ir.h"
+#include "lang/math/elementary_arc.h"
+#include "lang/math/elementary_circular.h"
+#include "lang/math/elementary_hyperbolic.h"
+#include "lang/math/elementary_power.h"
 
 namespace haptel::ir::elementary {
 

@@ -5,7 +5,7 @@
 // differentiation, LLVM, later C and GLSL. Text form: print.h; invariants: verify.h; construction: builder.h.
 #pragma once
 
-#include "lang/source.h"
+#include "lang/text/source.h"
 
 #include <cstdint>
 #include <optional>

@@ -1,6 +1,6 @@
 #include "lang/ir/op_cost.h"
 
-#include "lang/ir/spline.h"
+#include "lang/math/spline.h"
 
 #include <algorithm>
 

@@ -19,11 +19,11 @@
 //               string ] "}"
 //
 // Reading checks names, types and the number of operands; everything else is verify's.
-#include "lang/diagnostic.h"
 #include "lang/ir/op_info.h"
 #include "lang/ir/text.h"
 #include "lang/ir/text_tokens.h"
 #include "lang/ir/verify.h"
+#include "lang/text/diagnostic.h"
 
 #include <bit>
 #include <charconv>

@@ -14,8 +14,8 @@
 
 #include "lang/ir/elementary.h"
 #include "lang/ir/ir.h"
-#include "lang/ir/spline.h"
-#include "lang/ir/turn_polynomials.h"
+#include "lang/math/spline.h"
+#include "lang/math/turn_polynomials.h"
 
 #include <bit>
 #include <cmath>

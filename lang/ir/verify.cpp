@@ -1,6 +1,6 @@
 #include "lang/ir/verify.h"
 
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 #include "lang/ir/int_range.h"
 #include "lang/ir/op_cost.h"
 #include "lang/ir/op_info.h"

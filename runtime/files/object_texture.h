@@ -1,7 +1,7 @@
 // The texture of an object in a scene file: its two keys, and what is asked of whoever makes textures.
 #pragma once
 
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 #include "runtime/files/table_reader.h"
 #include "runtime/scene.h"
 

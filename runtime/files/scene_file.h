@@ -2,7 +2,7 @@
 // or text with a unit; paths are relative to the scene.
 #pragma once
 
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 #include "runtime/files/surface_cache.h"
 #include "runtime/hand.h"
 #include "runtime/haptic_device.h"

@@ -1,9 +1,9 @@
 // Every overload of every built-in, by a loop over the table: its gradient against difference quotients of its own
 // height at 113 bits, and at the edges (signed zeros, ties, subnormal numbers) against the oracle's gradient.
-#include "lang/builtins.h"
 #include "lang/compile.h"
-#include "lang/ir/interpret.h"
-#include "lang/ir/quad.h"
+#include "lang/ir/run/interpret.h"
+#include "lang/math/quad.h"
+#include "lang/program/builtins.h"
 #include "tests/support/catch.h"
 
 #include <algorithm>

@@ -18,7 +18,7 @@
 //   //--- lib.haptel    from here on the text of a file that may be imported under this name
 #pragma once
 
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 #include "lang/compile.h"
 
 #include <array>

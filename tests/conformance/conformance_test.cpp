@@ -1,7 +1,7 @@
 // Every file of cases/: what the compiler says, and the values by the interpreter and by the 113-bit oracle.
 #include "lang/analyse.h"
-#include "lang/ir/interpret.h"
-#include "lang/ir/quad.h"
+#include "lang/ir/run/interpret.h"
+#include "lang/math/quad.h"
 #include "stdlib/stdlib.h"
 #include "tests/conformance/case.h"
 #include "tests/conformance/folder.h"

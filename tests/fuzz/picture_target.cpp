@@ -1,7 +1,7 @@
 // Files that claim to be pictures.
 #include "jit/picture.h"
-#include "lang/ir/spline.h"
-#include "lang/ir/spline_image.h"
+#include "lang/ir/bounds/spline_image.h"
+#include "lang/math/spline.h"
 #include "tests/fuzz/target.h"
 #include "tests/jit/pictures.h"
 

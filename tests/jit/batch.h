@@ -1,7 +1,7 @@
 // Points side by side, as a batch entry takes them.
 #pragma once
 
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 #include "tests/jit/engines.h"
 
 #include <cstring>

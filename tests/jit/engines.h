@@ -2,7 +2,7 @@
 #pragma once
 
 #include "jit/engine.h"
-#include "lang/ir/interpret.h"
+#include "lang/ir/run/interpret.h"
 #include "tests/support/catch.h"
 
 #include <bit>

@@ -1,6 +1,6 @@
 #include "tests/jit/random_program.h"
 
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 #include "lang/ir/builder.h"
 #include "lang/ir/op_info.h"
 

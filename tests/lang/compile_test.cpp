@@ -1,5 +1,5 @@
 // The front door: files, imports, bad input of every kind.
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 #include "lang/compile.h"
 #include "lang/ir/text.h"
 #include "tests/support/catch.h"

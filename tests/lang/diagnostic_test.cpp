@@ -1,4 +1,4 @@
-#include "lang/diagnostic.h"
+#include "lang/text/diagnostic.h"
 #include "tests/support/catch.h"
 
 using namespace haptel::lang;

@@ -1,8 +1,8 @@
 // Dimensions: their arithmetic, whom a finding blames, and that the work is bounded. What is said about single
 // expressions is in golden/dimensions.haptel.
+#include "lang/check/dimension/dimension.h"
+#include "lang/check/dimension/dimension_rules.h"
 #include "lang/compile.h"
-#include "lang/dimension.h"
-#include "lang/dimension_rules.h"
 #include "tests/lang/evaluation.h"
 #include "tests/support/catch.h"
 

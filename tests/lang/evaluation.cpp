@@ -1,7 +1,7 @@
 #include "tests/lang/evaluation.h"
 
 #include "lang/compile.h"
-#include "lang/ir/interpret.h"
+#include "lang/ir/run/interpret.h"
 #include "tests/support/catch.h"
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // The formatter: its style line by line, that it is stable, and that it keeps every token and comment in order.
-#include "lang/format.h"
-#include "lang/lexer.h"
+#include "lang/format/format.h"
+#include "lang/text/lexer.h"
 #include "tests/support/catch.h"
 
 #include <random>

@@ -1,8 +1,8 @@
 // The grammar in docs/language.md against the parser, both ways: sentences derived from it at random are accepted, and
 // what the library and the examples are made of can be derived from it.
-#include "lang/format.h"
-#include "lang/lexer.h"
-#include "lang/parser.h"
+#include "lang/format/format.h"
+#include "lang/syntax/parser.h"
+#include "lang/text/lexer.h"
 #include "tests/lang/ebnf.h"
 #include "tests/support/catch.h"
 

@@ -1,6 +1,6 @@
 // Intervals hold every value, and are not needlessly wide.
-#include "lang/ir/bounds.h"
-#include "lang/ir/differentiate.h"
+#include "lang/ir/bounds/bounds.h"
+#include "lang/ir/derive/differentiate.h"
 #include "lang/ir/op_info.h"
 #include "tests/lang/ir_random.h"
 #include "tests/lang/ir_support.h"

@@ -1,6 +1,6 @@
 // Folding and sharing: as text, and as the same function over values that break careless identities.
 #include "lang/ir/builder.h"
-#include "lang/ir/differentiate.h"
+#include "lang/ir/derive/differentiate.h"
 #include "lang/ir/int_range.h"
 #include "lang/ir/op_info.h"
 #include "tests/lang/ir_random.h"

@@ -1,6 +1,6 @@
 // Derivatives against difference quotients of the 113-bit function, and the conventions at kinks, exactly.
 #include "lang/ir/builder.h"
-#include "lang/ir/differentiate.h"
+#include "lang/ir/derive/differentiate.h"
 #include "lang/ir/op_info.h"
 #include "tests/lang/ir_random.h"
 #include "tests/lang/ir_support.h"

@@ -1,7 +1,7 @@
 // The entries of a texture: never a value that is not finite, equal heights, gradient with respect to the surface
 // point.
-#include "lang/abi.h"
-#include "lang/ir/differentiate.h"
+#include "lang/abi/abi.h"
+#include "lang/ir/derive/differentiate.h"
 #include "tests/lang/ir_support.h"
 
 #include <cmath>

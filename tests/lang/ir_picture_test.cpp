@@ -1,6 +1,6 @@
 // Pictures of several kinds: how close their bounds are, and where they go outside of their edges.
-#include "lang/ir/spline.h"
-#include "lang/ir/spline_image.h"
+#include "lang/ir/bounds/spline_image.h"
+#include "lang/math/spline.h"
 #include "tests/support/catch.h"
 
 #include <cmath>

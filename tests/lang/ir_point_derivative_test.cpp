@@ -1,8 +1,8 @@
 // Derivatives with respect to the surface point inside of a body: they become values, the entries' gradients are exact,
 // and nothing is left that an engine could not run.
-#include "lang/abi.h"
-#include "lang/ir/differentiate.h"
-#include "lang/ir/point_derivative.h"
+#include "lang/abi/abi.h"
+#include "lang/ir/derive/differentiate.h"
+#include "lang/ir/derive/point_derivative.h"
 #include "tests/lang/ir_support.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // Slope, curvature and class: closed forms, and what they promise of every pair of points.
-#include "lang/ir/bounds.h"
+#include "lang/ir/bounds/bounds.h"
 #include "lang/ir/builder.h"
-#include "lang/ir/differentiate.h"
+#include "lang/ir/derive/differentiate.h"
 #include "lang/ir/op_info.h"
 #include "tests/lang/ir_random.h"
 #include "tests/lang/ir_support.h"

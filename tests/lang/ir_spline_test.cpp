@@ -1,12 +1,12 @@
 // Images: the spline goes through the texels, is twice continuously differentiable, and stays in its bounds.
+#include "lang/ir/bounds/interval_evaluator.h"
+#include "lang/ir/bounds/spline_image.h"
 #include "lang/ir/builder.h"
-#include "lang/ir/differentiate.h"
-#include "lang/ir/interpret.h"
-#include "lang/ir/interval_evaluator.h"
-#include "lang/ir/quad.h"
-#include "lang/ir/spline_image.h"
+#include "lang/ir/derive/differentiate.h"
+#include "lang/ir/run/interpret.h"
 #include "lang/ir/text.h"
 #include "lang/ir/verify.h"
+#include "lang/math/quad.h"
 #include "tests/support/catch.h"
 
 #include <cmath>

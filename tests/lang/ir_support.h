@@ -2,10 +2,10 @@
 // the truth about a derivative.
 #pragma once
 
-#include "lang/ir/interpret.h"
-#include "lang/ir/quad.h"
+#include "lang/ir/run/interpret.h"
 #include "lang/ir/text.h"
 #include "lang/ir/verify.h"
+#include "lang/math/quad.h"
 #include "tests/support/catch.h"
 
 #include <bit>

@@ -1,4 +1,4 @@
-#include "lang/ir/interpret.h"
+#include "lang/ir/run/interpret.h"
 #include "lang/ir/text.h"
 #include "lang/ir/verify.h"
 #include "tests/support/catch.h"

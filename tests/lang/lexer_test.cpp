@@ -1,4 +1,4 @@
-#include "lang/lexer.h"
+#include "lang/text/lexer.h"
 #include "tests/support/catch.h"
 
 using namespace haptel::lang;
@@ -47,7 +47,7 @@ TEST_CASE("every symbol and keyword is its own token, however close they stand")
 #define KEYWORD(token, spelling)                                                                                       \
     CHECK(lexed(spelling).list.tokens.at(0).kind == Token::token);                                                     \
     CHECK(lexed(spelling "x").list.tokens.at(0).kind == Token::name);
-#include "lang/token.def"
+#include "lang/text/token.def"
 #undef SYMBOL
 #undef KEYWORD
 }

@@ -1,5 +1,5 @@
 // What reaches a texture from outside, and what it writes.
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 #include "tests/lang/evaluation.h"
 #include "tests/support/catch.h"
 

@@ -1,4 +1,4 @@
-#include "lang/number.h"
+#include "lang/text/number.h"
 #include "tests/support/catch.h"
 
 #include <cmath>

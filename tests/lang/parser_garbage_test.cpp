@@ -1,5 +1,5 @@
 // Whatever the bytes: an answer, soon, in bounded memory and stack.
-#include "lang/lexer.h"
+#include "lang/text/lexer.h"
 #include "tests/lang/tree_text.h"
 #include "tests/support/catch.h"
 
@@ -140,7 +140,7 @@ TEST_CASE("random words of the language")
     const char* const words[] = {
 #define SYMBOL(token, spelling) spelling,
 #define KEYWORD(token, spelling) spelling,
-#include "lang/token.def"
+#include "lang/text/token.def"
 #undef SYMBOL
 #undef KEYWORD
         "float",  "int", "vec3",  "a",   "grad",  "while",     "struct",

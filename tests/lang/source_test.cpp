@@ -1,4 +1,4 @@
-#include "lang/source.h"
+#include "lang/text/source.h"
 #include "tests/support/catch.h"
 
 using namespace haptel::lang;

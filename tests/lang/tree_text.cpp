@@ -1,6 +1,6 @@
 #include "tests/lang/tree_text.h"
 
-#include "lang/parser.h"
+#include "lang/syntax/parser.h"
 
 namespace haptel::lang {
 

@@ -2,8 +2,8 @@
 // (+ a (* b 2)); a chain is flat: "a + b - c" is (+ a b - c).
 #pragma once
 
-#include "lang/ast.h"
-#include "lang/diagnostic.h"
+#include "lang/syntax/ast.h"
+#include "lang/text/diagnostic.h"
 
 #include <string>
 #include <string_view>

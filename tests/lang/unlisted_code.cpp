@@ -1,5 +1,5 @@
 // Must not compile: the code is in no table. Only a message that says so is a pass.
-#include "lang/diagnostic.h"
+#include "lang/text/diagnostic.h"
 
 void report(haptel::lang::Diagnostics& diagnostics)
 {

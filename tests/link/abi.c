@@ -1,6 +1,6 @@
 /* The contract from plain C99: its layout is a promise to libraries that were compiled before, so it is written down
  * here in bytes, for machines with 8-byte doubles and pointers. */
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 
 #include <stddef.h>
 #include <stdio.h>

@@ -7,7 +7,7 @@ set -euo pipefail
 cd "$1"
 
 # What a folder may include of the project: the first prefix that fits decides, ! refuses.
-contract='lang/abi.h lang/evaluate.h lang/texture_binding.h'
+contract='lang/abi/abi.h lang/abi/evaluate.h lang/abi/texture_binding.h'
 declare -A may_include=(
     [lang]='lang/'
     [stdlib]='stdlib/'

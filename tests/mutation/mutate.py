@@ -21,10 +21,10 @@ copy, build = work / "source", work / "build"
 
 # Each file with where its rules begin, and the tests that must notice.
 files = {
-    "lang/ir/derivative_rules.cpp": ("Term zero_where_zero", ["derivative*"]),
-    "lang/ir/interval.cpp": ("", ["intervals*,bounds*,slope*,class*"]),
-    "lang/ir/interval_call.cpp": ("", ["intervals*,bounds*,slope*,class*"]),
-    "lang/ir/variation.cpp": ("", ["intervals*,bounds*,slope*,class*"]),
+    "lang/ir/derive/derivative_rules.cpp": ("Term zero_where_zero", ["derivative*"]),
+    "lang/ir/bounds/interval.cpp": ("", ["intervals*,bounds*,slope*,class*"]),
+    "lang/ir/bounds/interval_call.cpp": ("", ["intervals*,bounds*,slope*,class*"]),
+    "lang/ir/bounds/variation.cpp": ("", ["intervals*,bounds*,slope*,class*"]),
 }
 
 # What is broken, and into what: one place of a rule at a time.
@@ -143,7 +143,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("files", nargs="*", metavar="FILE", help=" ".join(files))
     arguments = parser.parse_args()
-    names = arguments.files or ["lang/ir/derivative_rules.cpp"]
+    names = arguments.files or ["lang/ir/derive/derivative_rules.cpp"]
     mutants = [(name, *mutant) for name in names for mutant in mutants_of(name, (root / name).read_text())]
     if arguments.limit and arguments.limit < len(mutants):
         mutants = random.Random(arguments.seed).sample(mutants, arguments.limit)

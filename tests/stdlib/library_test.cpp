@@ -1,9 +1,9 @@
 // The library as a whole: what it offers is documented, tried and right.
 #include "jit/check_gradient.h"
 #include "jit/texture.h"
+#include "lang/check/library.h"
 #include "lang/ir/text.h"
-#include "lang/library.h"
-#include "lang/parser.h"
+#include "lang/syntax/parser.h"
 #include "stdlib/stdlib.h"
 #include "tests/support/catch.h"
 

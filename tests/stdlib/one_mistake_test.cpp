@@ -1,6 +1,6 @@
 // One mistake makes one message: tokens of the library and the examples left out, doubled and exchanged.
 #include "lang/compile.h"
-#include "lang/lexer.h"
+#include "lang/text/lexer.h"
 #include "stdlib/stdlib.h"
 #include "tests/support/catch.h"
 

@@ -1,6 +1,6 @@
 #include "tests/support/ball.h"
 
-#include "lang/ir/interpret_machine.h"
+#include "lang/ir/run/interpret_machine.h"
 
 #include <algorithm>
 #include <limits>

@@ -6,8 +6,8 @@
 // per thread as the flags of floating-point exceptions are.
 #pragma once
 
-#include "lang/ir/interpret.h"
-#include "lang/ir/quad.h"
+#include "lang/ir/run/interpret.h"
+#include "lang/math/quad.h"
 
 #include <cmath>
 #include <limits>

@@ -1,7 +1,7 @@
 // Textures made of C++ functions, so that the runtime is tested without a compiler.
 #pragma once
 
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 
 #include <glm/glm.hpp>
 

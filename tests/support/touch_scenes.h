@@ -1,7 +1,7 @@
 // Scenes and hands that several tests of the runtime touch.
 #pragma once
 
-#include "lang/texture_binding.h"
+#include "lang/abi/texture_binding.h"
 #include "runtime/scene.h"
 #include "runtime/shapes.h"
 

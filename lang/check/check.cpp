@@ -1,0 +1,270 @@
+// The files of a program: what each declares and sees; then every body.
+#include "lang/check/check.h"
+
+#include "lang/check/body_checker.h"
+#include "lang/check/call_graph.h"
+#include "lang/check/constant.h"
+#include "lang/check/library.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+std::optional<Type> type_named(std::string_view name)
+{
+    static const auto types = [] {
+        std::map<std::string, Type, std::less<>> by_name;
+        for (Type type : {float_type, int_type, uint_type, bool_type, vec(2), vec(3), vec(4), mat(2), mat(3), mat(4),
+                          image_type, void_type})
+            by_name.emplace(to_string(type), type);
+        return by_name;
+    }();
+    const auto found = types.find(name);
+    return found == types.end() ? std::nullopt : std::optional(found->second);
+}
+
+Type resolve_type(CheckContext& context, const TypeName& name)
+{
+    if (name.base.text.empty()) return Type::error(); // the parser has said why
+    if (const auto type = type_named(name.base.text)) return *type;
+    Diagnostic& reported =
+        context.diagnostics.error(name.base.span, "unknown-type", "unknown type " + quoted(name.base.text));
+    const std::string_view nearest = nearest_name(
+        name.base.text, {"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "image"});
+    if (name.base.text.starts_with("mat") && name.base.text.find('x') != std::string::npos) {
+        reported.hint = "matrices are square: mat2, mat3 and mat4";
+    } else if (!nearest.empty()) {
+        reported.hint = "did you mean " + quoted(nearest) + "?";
+        reported.fix = FixIt{name.base.span, std::string(nearest)};
+    } else {
+        reported.hint = "types are float, int, uint, bool, vec2, vec3, vec4, mat2, mat3 and mat4";
+    }
+    return Type::error();
+}
+
+void report_image(CheckContext& context, const TypeName& name)
+{
+    context.diagnostics
+        .error(name.base.span, "image", "an image is a parameter of a texture or of a function, and nothing else")
+        .hint = "pass it on as it is: float bark(image picture, vec2 q) { return sample(picture, q); }";
+}
+
+namespace {
+
+struct SharedInput {
+    const char* name;
+    InputName input;
+    uint8_t size;
+};
+constexpr SharedInput inputs[] = {
+    {"p", InputName::p, 3},
+    {"n", InputName::n, 3},
+    {"uv", InputName::uv, 2},
+    {"time", InputName::time, 1},
+    {"center", InputName::center, 3},
+    {"extent", InputName::extent, 3},
+    {"footprint", InputName::footprint, 1},
+};
+
+class ProgramChecker {
+public:
+    // `own_library`, where this is the library itself: what its files declare together.
+    ProgramChecker(const SourceSet& sources, CheckedProgram& checked, Declarations* own_library,
+                   const Declarations& seen_library, Diagnostics& diagnostics)
+        : program(checked)
+        , context{sources, diagnostics, checked, {}, {}}
+        , declarations(checked.files.size())
+        , made_library(own_library)
+        , library(seen_library)
+    {
+        for (const SharedInput& input : inputs) {
+            Symbol& symbol = program.symbols.emplace_back();
+            symbol.kind = SymbolKind::input;
+            symbol.name = input.name;
+            symbol.type = vec(input.size);
+            symbol.input = input.input;
+            symbol.read_only = "it is an input";
+            context.inputs.push_back(&symbol);
+        }
+    }
+
+    CallDepths run(const CallDepths& of_library)
+    {
+        std::vector<FileScope> scopes;
+        const auto count = static_cast<uint32_t>(program.files.size());
+        for (uint32_t file = 0; file < count; ++file) scopes.push_back(scope_of(file));
+        for (uint32_t file = 0; file < count; ++file) {
+            declarations_of(file).lacks_functions |= program.files[file].tree.lacks_functions;
+            declarations_of(file).unread.merge(program.files[file].tree.unread);
+        }
+        // Sizes of arrays in heads of functions are constants, and constants may name functions.
+        for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], false);
+        for (uint32_t file = 0; file < count; ++file) check_constants(file, scopes[file]);
+        for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], true);
+        for (FunctionInfo& function : program.functions) {
+            if (context.diagnostics.full()) return {};
+            const Function& tree = *function.tree;
+            BodyChecker(context, scopes[function.file], function.is_library)
+                .check_function(const_cast<Function&>(tree), function);
+        }
+        for (uint32_t file = 0; file < count; ++file) check_textures(file, scopes[file]);
+        return check_call_graph(program, of_library, context.diagnostics);
+    }
+
+private:
+    bool is_library() const { return made_library != nullptr; }
+    Declarations& declarations_of(uint32_t file) { return made_library ? *made_library : declarations[file]; }
+
+    FileScope scope_of(uint32_t file)
+    {
+        FileScope scope;
+        if (!is_library()) {
+            scope.add_layer(declarations[file]);
+            for (uint32_t imported : program.files[file].imported) scope.add_layer(declarations[imported]);
+        }
+        scope.add_layer(library);
+        return scope;
+    }
+
+    // Those that pass arrays, or the others.
+    void declare_functions(uint32_t file, const FileScope& scope, bool with_arrays)
+    {
+        for (Function& tree : program.files[file].tree.functions) {
+            const auto is_array = [](const auto& parameter) { return parameter.type.is_array; };
+            if ((tree.result.is_array || std::ranges::any_of(tree.parameters, is_array)) != with_arrays) continue;
+            FunctionInfo& info = program.functions.emplace_back();
+            info.name = tree.name.text;
+            info.tree = &tree;
+            info.file = file;
+            info.is_library = is_library();
+            info.result = value_type(tree.result, "a function returns a value", scope, true);
+            if (type_named(info.name))
+                context.diagnostics.error(tree.name.span, "reserved-name",
+                                          quoted(info.name) + " is a type, expected a name of your own");
+            info.is_valid = !info.result.is_error() && !tree.damage.in_head;
+            for (const FunctionParameter& parameter : tree.parameters) {
+                ParameterInfo made{value_type(parameter.type, "a parameter holds a value", scope), parameter.name.text,
+                                   parameter.is_function};
+                info.is_valid = info.is_valid && !made.type.is_error();
+                for (const TypeName& type : parameter.signature) {
+                    made.signature.push_back(value_type(type, "a function takes values", scope));
+                    info.is_valid = info.is_valid && !made.signature.back().is_error();
+                }
+                info.parameters.push_back(std::move(made));
+            }
+            declare(info, tree);
+        }
+    }
+
+    void declare(FunctionInfo& info, const Function& tree)
+    {
+        auto& overloads = declarations_of(info.file).functions[info.name];
+        const auto same = [&](auto* other) { return std::ranges::equal(other->parameters, info.parameters); };
+        const auto same_and_valid = [&](auto* other) { return other->is_valid && same(other); };
+        if (auto twin = std::find_if(overloads.begin(), overloads.end(), same_and_valid);
+            twin != overloads.end() && info.is_valid) {
+            context.diagnostics
+                .error(tree.name.span, "duplicate-name", quoted(signature_of(info)) + " is defined twice")
+                .related.push_back({(*twin)->tree->name.span, "first defined here"});
+            return;
+        }
+        overloads.push_back(&info);
+        if (info.is_library) return;
+        const auto known = library.functions.find(info.name);
+        const auto builtins = builtin_overloads(info.name);
+        const bool replaces_library =
+            known != library.functions.end() && std::any_of(known->second.begin(), known->second.end(), same);
+        const bool replaces_builtin =
+            std::any_of(builtins.begin(), builtins.end(), [&](const BuiltinOverload& b) { return same(&b); });
+        if (replaces_library || replaces_builtin)
+            context.diagnostics.note(tree.name.span, "replaces-library",
+                                     quoted(signature_of(info)) + " replaces the " +
+                                         (replaces_library ? "library's" : "built-in") + " function in this file");
+    }
+
+    // Of a result or parameter: not void.
+    Type value_type(const TypeName& name, const std::string& why, const FileScope& scope, bool is_result = false)
+    {
+        const Type type = resolve_type(context, name);
+        if (type == image_type && (name.is_array || is_result))
+            report_image(context, name);
+        else if (type == void_type)
+            context.diagnostics.error(name.base.span, "type-mismatch", why + ", found void").hint =
+                "write float, int, vec3 ...";
+        else
+            return name.is_array ? BodyChecker(context, scope, true).array_type(name, type) : type;
+        return Type::error();
+    }
+
+    void check_constants(uint32_t file, const FileScope& scope)
+    {
+        for (const Constant& constant : program.files[file].tree.constants)
+            declarations_of(file).constant_names.insert(constant.declaration.name.text);
+        for (Constant& constant : program.files[file].tree.constants) {
+            if (context.diagnostics.full()) return;
+            const Symbol* symbol = BodyChecker(context, scope, is_library()).check_global(constant.declaration);
+            if (!symbol) continue;
+            const auto [place, is_new] = declarations_of(file).constants.try_emplace(symbol->name, symbol);
+            if (!is_new)
+                context.diagnostics.error(symbol->span, "duplicate-name", quoted(symbol->name) + " is declared twice")
+                    .related.push_back({place->second->span, "first declared here"});
+        }
+    }
+
+    void check_textures(uint32_t file, const FileScope& scope)
+    {
+        std::vector<const Texture*> seen;
+        for (Texture& tree : program.files[file].tree.textures) {
+            if (context.diagnostics.full()) return;
+            const auto twin =
+                std::find_if(seen.begin(), seen.end(), [&](auto* other) { return other->name.text == tree.name.text; });
+            if (twin != seen.end())
+                context.diagnostics
+                    .error(tree.name.span, "duplicate-texture",
+                           "two textures of this file are called " + quoted(tree.name.text))
+                    .related.push_back({(*twin)->name.span, "the first is here"});
+            seen.push_back(&tree);
+            CheckedTexture texture;
+            texture.tree = &tree;
+            for (TextureParameter& parameter : tree.parameters)
+                if (!parameter.is_output)
+                    texture.parameters.push_back(check_texture_parameter(context, scope, parameter));
+            BodyChecker(context, scope, is_library()).check_texture(tree, texture);
+            if (file == 0) program.textures.push_back(std::move(texture));
+        }
+    }
+
+    CheckedProgram& program;
+    CheckContext context;
+    std::vector<Declarations> declarations; // by file
+    Declarations* const made_library;       // null: this is a program
+    const Declarations& library;            // that all files see
+};
+
+} // namespace
+
+CheckedProgram check(const SourceSet& sources, std::vector<CheckFile> files,
+                     std::shared_ptr<const CheckedLibrary> library, Diagnostics& diagnostics)
+{
+    static const CheckedLibrary none;
+    const CheckedLibrary& seen = library ? *library : none;
+    CheckedProgram program;
+    program.library = library;
+    program.files = std::move(files);
+    ProgramChecker(sources, program, nullptr, seen.declarations, diagnostics).run(seen.depths);
+    return program;
+}
+
+void check(const SourceSet& sources, std::vector<CheckFile> files, CheckedLibrary& checked)
+{
+    checked.program.files = std::move(files);
+    checked.depths =
+        ProgramChecker(sources, checked.program, &checked.declarations, checked.declarations, checked.diagnostics)
+            .run({});
+}
+
+} // namespace haptel::lang

@@ -1,0 +1,395 @@
+// Types of expressions.
+#include "lang/check/body_checker.h"
+#include "lang/syntax/foreign.h"
+#include "lang/syntax/operators.h"
+#include "lang/syntax/swizzle.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+namespace {
+
+bool is_integer(Type type)
+{
+    return type == int_type || type == uint_type;
+}
+
+// How to get from one type to the other by hand; `text` is the expression as written, `operand` the same in parentheses
+// if it needs them.
+std::string conversion_hint(Type from, Type to, const std::string& text, const std::string& operand)
+{
+    if (to.is_array() || to.is_error() || to == image_type) return {};
+    if (from == image_type) return "read it: sample(" + text + ", uv)";
+    if (from.is_array()) return "pick an element: " + operand + "[i]";
+    if (from.is_matrix() || to.is_matrix()) {
+        if (from.is_matrix() && to == from.element()) return "pick a column: " + operand + "[0]";
+        if (from.is_matrix() && to.is_scalar()) return "pick an element: " + operand + "[0][0]";
+        return from.is_vector() || to.is_vector() ? "" : "write " + to_string(to) + "(" + text + ")";
+    }
+    if (from.is_vector() && to.is_vector())
+        return from.size > to.size
+                   ? "pick components: " + operand + "." + std::string("xyzw").substr(0, to.size)
+                   : "write " + to_string(to) + "(" + text + ", 0.0" + (to.size - from.size > 1 ? ", 0.0" : "") + ")";
+    if (from.is_vector()) return "pick a component, " + operand + ".x, or take length(" + text + ")";
+    if (to == bool_type) return "write " + operand + (from == float_type ? " != 0.0" : " != 0");
+    if (to == int_type && from == float_type) return "write int(" + text + "), which drops the fraction";
+    return "write " + to_string(to) + "(" + text + ")";
+}
+
+// The hint is a plain conversion that --fix may apply.
+bool converts_by_constructor(Type from, Type to)
+{
+    if (from == image_type || to == image_type) return false;
+    const bool makes_matrix = to.is_matrix() && (from.is_matrix() || from.is_scalar());
+    return makes_matrix || (from.is_scalar() && !to.is_array() && !to.is_matrix() && !to.is_error() && to != bool_type);
+}
+
+// As it is written.
+std::string zero_of(Type type)
+{
+    if (!type.is_scalar()) return to_string(type) + "(0.0)";
+    return type == bool_type ? "false" : type == float_type ? "0.0" : "0";
+}
+
+// ".x", "[2]", "[0][1]": which part of a variable a bit stands for.
+std::string part_name(Type type, uint32_t part)
+{
+    if (type.is_vector()) return std::string(".") + "xyzw"[part];
+    if (!type.is_matrix()) return "[" + std::to_string(part) + "]";
+    return "[" + std::to_string(part / type.size) + "][" + std::to_string(part % type.size) + "]";
+}
+
+std::string operator_hint(BinaryOp op, Type left, Type right)
+{
+    using enum BinaryOp;
+    const bool vectors = !left.is_scalar() || !right.is_scalar();
+    const bool matrices = left.is_matrix() || right.is_matrix();
+    const bool reals = left.scalar == Scalar::float_ || right.scalar == Scalar::float_;
+    const bool bools = left == bool_type || right == bool_type;
+    if (left.is_array() || right.is_array()) return "an array is used by its elements: a[i]";
+    if (is_integer(left) && is_integer(right))
+        return "int and uint do not mix: write uint(...) or int(...) round one of them";
+    switch (op) {
+    case add:
+    case subtract:
+    case multiply:
+    case divide:
+        if (bools) return "write float(...) round the bool: it is then 0 or 1";
+        if (matrices) return "matrices go with matrices, vectors and columns of their size, and with numbers";
+        return "vectors must have the same size: pick components, for example .xy";
+    case remainder: return reals ? "write mod(x, y)" : "% takes int or uint";
+    case less:
+    case less_equal:
+    case greater:
+    case greater_equal:
+        if (vectors) return "compare components, a.x < b.x, or length(a) < length(b)";
+        return "join comparisons with &&";
+    case equal:
+    case not_equal: return vectors ? "vectors must have the same size" : "both sides must be of one kind";
+    case logical_and:
+    case logical_or:
+    case logical_xor: return "compare first, for example x != 0.0";
+    case bit_and: return bools ? "write && for bool" : "bits are those of int or uint";
+    case bit_or: return bools ? "write || for bool" : "bits are those of int or uint";
+    case bit_xor:
+        if (bools) return "write ^^ for bool";
+        return "^ is exclusive or of bits; a power is pow(x, y)";
+    case shift_left:
+    case shift_right: return "bits are those of int or uint";
+    }
+    return {};
+}
+
+} // namespace
+
+Type BodyChecker::expression(Expression& e)
+{
+    e.type = std::visit([&](auto& node) { return check(e, node); }, e.node);
+    return e.type;
+}
+
+std::string BodyChecker::excerpt(const Expression& e) const
+{
+    std::string text = printable(context.sources.text(e.span));
+    return text.size() <= 32 ? text : "x";
+}
+
+std::string BodyChecker::operand(const Expression& e) const
+{
+    const std::string text = excerpt(e);
+    return is_open(e) && text != "x" ? "(" + text + ")" : text;
+}
+
+bool BodyChecker::require(Expression& e, Type wanted, const std::string& where)
+{
+    if (e.type.is_error() || wanted.is_error()) return false;
+    if (converts_implicitly(e.type, wanted)) return true;
+    if (auto literal = std::get_if<NumberLiteral>(&e.node); literal && e.type == int_type && wanted == uint_type) {
+        e.type = uint_type;
+        return true;
+    }
+    Diagnostic& reported = diagnostics.error(e.span, "type-mismatch",
+                                             "expected " + to_string(wanted) + where + ", found " + to_string(e.type));
+    reported.hint = conversion_hint(e.type, wanted, excerpt(e), operand(e));
+    if (converts_by_constructor(e.type, wanted))
+        reported.fix = FixIt{e.span, to_string(wanted) + "(" + std::string(context.sources.text(e.span)) + ")"};
+    return false;
+}
+
+Type BodyChecker::check(Expression&, ErrorExpression&)
+{
+    return Type::error();
+}
+
+Type BodyChecker::check(Expression& e, NumberLiteral& node)
+{
+    if (node.kind == NumberLiteral::Kind::real) return float_type;
+    const bool is_unsigned = node.kind == NumberLiteral::Kind::unsigned_integer;
+    const bool is_bits = node.text.starts_with("0x") || node.text.starts_with("0X");
+    if (node.integer > (is_unsigned || is_bits ? uint64_t{UINT32_MAX} : uint64_t{INT32_MAX})) {
+        diagnostics
+            .error(e.span, "number",
+                   quoted(node.text) + " does not fit into " + (is_unsigned ? "uint" : "int") + ", which has 32 bits")
+            .hint = is_unsigned ? "the largest is 4294967295u" : "write " + node.text + ".0 for a float";
+        return Type::error();
+    }
+    return is_unsigned ? uint_type : int_type;
+}
+
+Type BodyChecker::check(Expression&, BoolLiteral&)
+{
+    return bool_type;
+}
+
+Type BodyChecker::check(Expression& e, NameExpression& node)
+{
+    return read(e, node, all_parts);
+}
+
+// A name that is read, at least some parts of it.
+Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
+{
+    const Symbol* symbol = find(node.name);
+    const bool is_shared = !symbol || symbol->kind == SymbolKind::input;
+    if (is_shared && may_be_unread(node.name)) {
+        diagnostics.count_consequence();
+        return Type::error();
+    }
+    if (!symbol && scope.is_function(node.name)) {
+        diagnostics.error(e.span, "not-a-value", quoted(node.name) + " is a function, expected a value").hint =
+            "call it: " + node.name + "(...)";
+        return Type::error();
+    }
+    if (!symbol) {
+        report_unknown_name(e.span, node.name);
+        return Type::error();
+    }
+    node.symbol = symbol;
+    mark_read(node.name);
+    switch (symbol->kind) {
+    case SymbolKind::input: reads |= 1u << static_cast<uint32_t>(symbol->input); break;
+    case SymbolKind::function:
+        diagnostics.error(e.span, "not-a-value", quoted(node.name) + " is a function, expected a value").hint =
+            "call it: " + node.name + "(...)";
+        return Type::error();
+    case SymbolKind::local: {
+        const uint64_t whole = parts_of(symbol->type), assigned = flow.variables[symbol->slot].assigned;
+        const uint64_t missing = whole & parts & ~assigned;
+        if (!missing || symbol->type.is_error()) break;
+        if (in_damaged_body) { // most likely what assigns it could not be read
+            diagnostics.count_consequence();
+            flow.variables[symbol->slot].assigned = whole;
+            return Type::error();
+        }
+        std::string name = node.name;
+        if (assigned & whole) name += part_name(symbol->type, static_cast<uint32_t>(std::countr_zero(missing)));
+        Diagnostic& reported =
+            diagnostics.error(e.span, "unassigned", quoted(name) + " is read here before it has a value on every path");
+        reported.hint = symbol->type.is_array()
+                            ? "give each element one: for (int i = 0; i < " + std::to_string(symbol->type.array_size) +
+                                  "; ++i) " + node.name + "[i] = " + zero_of(symbol->type.element()) + ";"
+                            : "give it one where it is declared: " + to_string(symbol->type) + " " + node.name + " = " +
+                                  zero_of(symbol->type) + ";";
+        reported.related.push_back({symbol->span, quoted(node.name) + " is declared here"});
+        flow.variables[symbol->slot].assigned = whole; // one report is enough
+        break;
+    }
+    case SymbolKind::constant:
+    case SymbolKind::table:
+    case SymbolKind::texture_parameter: break;
+    }
+    return symbol->type;
+}
+
+Type BodyChecker::check(Expression& e, Unary& node)
+{
+    auto literal = std::get_if<NumberLiteral>(&node.operand->node);
+    if (literal && node.op == UnaryOp::negate && literal->kind == NumberLiteral::Kind::integer &&
+        literal->integer == uint64_t{INT32_MAX} + 1) {
+        node.operand->type = int_type; // -2147483648 is an int, though 2147483648 is none
+        return int_type;
+    }
+    const Type type = expression(*node.operand);
+    if (type.is_error()) return type;
+    const std::string op = quoted(spelling(node.op));
+    switch (node.op) {
+    case UnaryOp::negate:
+    case UnaryOp::plus:
+        if (type.is_numeric() && !type.is_array()) return type;
+        diagnostics.error(e.span, "type-mismatch", op + " expects a number, found " + to_string(type)).hint =
+            type.is_array() ? "an array is used by its elements: a[i]" : "write !x for a bool";
+        return Type::error();
+    case UnaryOp::logical_not:
+        if (type == bool_type) return type;
+        diagnostics.error(e.span, "type-mismatch", op + " expects bool, found " + to_string(type)).hint =
+            !type.is_scalar() ? "there are no bool vectors: compare the components"
+                              : "compare: " + operand(*node.operand) + (type == float_type ? " == 0.0" : " == 0");
+        return Type::error();
+    case UnaryOp::bit_not:
+        if (is_integer(type)) return type;
+        diagnostics.error(e.span, "type-mismatch", op + " expects int or uint, found " + to_string(type)).hint =
+            type == bool_type ? "write !x for a bool" : "bits are those of int or uint";
+        return Type::error();
+    }
+    return Type::error();
+}
+
+// Left to right and flat: a chain may have tens of thousands of links.
+Type BodyChecker::check(Expression&, Chain& node)
+{
+    Type left = expression(*node.first);
+    Expression* first = node.first.get();
+    for (Chain::Link& link : node.rest) {
+        const Type right = expression(*link.operand);
+        if (left.is_error() || right.is_error()) {
+            left = Type::error();
+            continue; // the other operands deserve their messages
+        }
+        // A whole number beside a uint is meant as one.
+        if (first && left == int_type && right == uint_type && std::holds_alternative<NumberLiteral>(first->node))
+            left = first->type = uint_type;
+        if (left == uint_type && right == int_type && std::holds_alternative<NumberLiteral>(link.operand->node))
+            link.operand->type = uint_type;
+        first = nullptr;
+        const auto types = operator_types(link.op, left, link.operand->type);
+        left = types ? types->result
+                     : report_operator(link.op, join(node.first->span, link.operand->span), left, *link.operand);
+    }
+    return left;
+}
+
+Type BodyChecker::report_operator(BinaryOp op, Span span, Type left, const Expression& right)
+{
+    diagnostics
+        .error(span, "type-mismatch",
+               quoted(spelling(op)) + " does not take " + to_string(left) + " and " + to_string(right.type))
+        .hint = operator_hint(op, left, right.type);
+    return Type::error();
+}
+
+Type BodyChecker::check(Expression& e, Conditional& node)
+{
+    condition(node.condition, "before '?'");
+    const Type a = expression(*node.when_true), b = expression(*node.when_false);
+    if (a.is_error() || b.is_error()) return Type::error();
+    if (a == image_type && b == image_type) {
+        diagnostics.error(e.span, "image", "an image cannot be chosen by '?:'").hint =
+            "choose between what is read of them: c ? sample(a, q) : sample(b, q)";
+        return Type::error();
+    }
+    if (a == b) return a;
+    if (converts_implicitly(a, b)) return b;
+    if (converts_implicitly(b, a)) return a;
+    Diagnostic& reported =
+        diagnostics.error(e.span, "type-mismatch",
+                          "both sides of ':' must have one type, found " + to_string(a) + " and " + to_string(b));
+    reported.hint = conversion_hint(b, a, excerpt(*node.when_false), operand(*node.when_false));
+    return Type::error();
+}
+
+Type BodyChecker::check(Expression& e, Member& node)
+{
+    const auto swizzle = parse_swizzle(node.member.text);
+    Type object;
+    auto name = std::get_if<NameExpression>(&node.object->node);
+    const Symbol* symbol = name ? find(name->name) : nullptr;
+    const bool reads_part = swizzle && symbol && symbol->kind == SymbolKind::local && symbol->type.is_vector() &&
+                            swizzle->highest() < symbol->type.size;
+    object = node.object->type = reads_part ? read(*node.object, *name, swizzle->mask()) : expression(*node.object);
+    if (object.is_error()) return object;
+    if (!object.is_vector()) {
+        diagnostics
+            .error(e.span, "bad-swizzle",
+                   quoted(excerpt(*node.object)) + " is a " + to_string(object) + " and has no components")
+            .hint = object == float_type
+                        ? "leave '." + node.member.text + "' out, or write vec3(" + excerpt(*node.object) + ")"
+                    : object.is_matrix() ? "pick a column, which is a vector: " + excerpt(*node.object) + "[0]"
+                    : object.is_array()  ? "pick an element: " + excerpt(*node.object) + "[i]"
+                                         : std::string{};
+        return Type::error();
+    }
+    if (!swizzle || swizzle->highest() >= object.size) {
+        Diagnostic& reported = diagnostics.error(node.member.span, "bad-swizzle",
+                                                 to_string(object) + " has no component " + quoted(node.member.text));
+        reported.hint = "its components are " + std::string(object.size == 2   ? "x and y"
+                                                            : object.size == 3 ? "x, y and z"
+                                                                               : "x, y, z and w");
+        if (node.member.text.size() > 1)
+            reported.hint += ", picked by up to four letters of one set: xyzw, rgba or stpq";
+        return Type::error();
+    }
+    return vec(swizzle->size);
+}
+
+Type BodyChecker::check(Expression& e, Index& node)
+{
+    auto name = std::get_if<NameExpression>(&node.object->node);
+    const Type index = expression(*node.index); // first: it says which part is read
+    const Symbol* symbol = name ? find(name->name) : nullptr;
+    uint64_t parts = all_parts;
+    if (const ir::IntRange at = range(*node.index); symbol && is_integer(index) && at.is_constant())
+        parts = parts_at(symbol->type, at.minimum);
+    const Type object = node.object->type = name ? read(*node.object, *name, parts) : expression(*node.object);
+    if (object.is_error()) return object;
+    if (object.is_scalar()) {
+        diagnostics.error(e.span, "not-indexable",
+                          quoted(excerpt(*node.object)) + " is a " + to_string(object) +
+                              ", expected an array, a matrix or a vector before '['");
+        return Type::error();
+    }
+    const Type element = object.element();
+    if (index.is_error()) return element;
+    if (!is_integer(index)) {
+        Diagnostic& reported =
+            diagnostics.error(node.index->span, "type-mismatch", "expected int as an index, found " + to_string(index));
+        reported.hint = conversion_hint(index, int_type, excerpt(*node.index), operand(*node.index));
+        return element;
+    }
+    check_index(*node.index, *node.object);
+    return element;
+}
+
+// Certain mistakes only: what cannot be proven in range is clamped in code.
+void BodyChecker::check_index(const Expression& index, const Expression& object)
+{
+    const uint32_t size = object.type.element_count();
+    const std::string of_what = excerpt(object);
+    const ir::IntRange possible = range(index);
+    if (possible.maximum >= 0 && possible.minimum < size) return;
+    std::string found = std::to_string(possible.minimum);
+    if (!possible.is_constant()) found += " .. " + std::to_string(possible.maximum);
+    const std::string last = std::to_string(size - 1);
+    Diagnostic& reported =
+        diagnostics.error(index.span, "index-out-of-range",
+                          "index " + found + " is outside " + quoted(of_what) + ", expected 0 .. " + last);
+    reported.hint = "counted from 0, the last of " + std::to_string(size) + " is " + of_what + "[" + last + "]";
+    auto name = std::get_if<NameExpression>(&object.node);
+    if (name && name->symbol && name->symbol->span.end > 0)
+        reported.related.push_back({name->symbol->span, quoted(name->name) + " is declared here"});
+}
+
+} // namespace haptel::lang

@@ -1,0 +1,282 @@
+// Loops: every one has a trip count that is bounded by what the text says.
+#include "lang/check/body_checker.h"
+#include "lang/ir/verify.h"
+#include "lang/program/completion.h"
+#include "lang/syntax/operators.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+namespace {
+
+using Compare = LoopPlan::Compare;
+
+constexpr const char* loop_form = "a loop counts: for (int i = 0; i < 8; ++i)";
+
+// The names that are assigned to anywhere in a statement.
+void collect_assigned(const Statement& s, std::vector<const NameExpression*>& names)
+{
+    if (auto assignment = std::get_if<Assignment>(&s.node)) {
+        const Expression* object = assignment->target.get();
+        if (auto member = std::get_if<Member>(&object->node)) object = member->object.get();
+        while (auto index = std::get_if<Index>(&object->node)) object = index->object.get();
+        if (auto name = std::get_if<NameExpression>(&object->node)) names.push_back(name);
+    } else if (auto scope = std::get_if<ast::Scope>(&s.node)) {
+        for (const StatementPtr& inner : scope->statements)
+            if (inner) collect_assigned(*inner, names);
+    } else if (auto branch = std::get_if<If>(&s.node)) {
+        for (const If::Arm& arm : branch->arms)
+            if (arm.body) collect_assigned(*arm.body, names);
+    } else if (auto loop = std::get_if<For>(&s.node)) {
+        for (const StatementPtr* inner : {&loop->init, &loop->step, &loop->body})
+            if (*inner) collect_assigned(**inner, names);
+    }
+}
+
+// The first variable in `e` whose name stands in `names`.
+const NameExpression* first_read(const Expression& e, const std::vector<const NameExpression*>& names)
+{
+    const auto any_of = [&](const std::vector<ExpressionPtr>& list) -> const NameExpression* {
+        for (const ExpressionPtr& inner : list)
+            if (auto found = first_read(*inner, names)) return found;
+        return nullptr;
+    };
+    if (auto name = std::get_if<NameExpression>(&e.node)) {
+        const bool listed =
+            std::any_of(names.begin(), names.end(), [&](auto* other) { return other->name == name->name; });
+        return listed ? name : nullptr;
+    }
+    if (auto unary = std::get_if<Unary>(&e.node)) return first_read(*unary->operand, names);
+    if (auto member = std::get_if<Member>(&e.node)) return first_read(*member->object, names);
+    if (auto call = std::get_if<CallExpression>(&e.node)) return any_of(call->arguments);
+    if (auto grad = std::get_if<GradCall>(&e.node)) return any_of(grad->arguments);
+    if (auto index = std::get_if<Index>(&e.node)) {
+        auto found = first_read(*index->object, names);
+        return found ? found : first_read(*index->index, names);
+    }
+    if (auto choice = std::get_if<Conditional>(&e.node)) {
+        for (const ExpressionPtr* inner : {&choice->condition, &choice->when_true, &choice->when_false})
+            if (auto found = first_read(**inner, names)) return found;
+    }
+    if (auto chain = std::get_if<Chain>(&e.node)) {
+        if (auto found = first_read(*chain->first, names)) return found;
+        for (const Chain::Link& link : chain->rest)
+            if (auto found = first_read(*link.operand, names)) return found;
+    }
+    return nullptr;
+}
+
+std::optional<Compare> compare_of(BinaryOp op)
+{
+    if (op == BinaryOp::less) return Compare::less;
+    if (op == BinaryOp::less_equal) return Compare::less_equal;
+    if (op == BinaryOp::greater) return Compare::greater;
+    if (op == BinaryOp::greater_equal) return Compare::greater_equal;
+    return std::nullopt;
+}
+
+Compare mirrored(Compare compare)
+{
+    switch (compare) {
+    case Compare::less: return Compare::greater;
+    case Compare::less_equal: return Compare::greater_equal;
+    case Compare::greater: return Compare::less;
+    case Compare::greater_equal: return Compare::less_equal;
+    }
+    return compare;
+}
+
+bool counts_up(Compare compare)
+{
+    return compare == Compare::less || compare == Compare::less_equal;
+}
+
+bool names_counter(const Expression& e, const Symbol& counter)
+{
+    auto name = std::get_if<NameExpression>(&e.node);
+    return name && name->symbol == &counter;
+}
+
+} // namespace
+
+void BodyChecker::check(Statement& s, For& node)
+{
+    open_scope();
+    Symbol* counter = nullptr;
+    bool is_const = false;
+    if (node.init) {
+        statement(*node.init);
+        if (auto declaration = std::get_if<Declaration>(&node.init->node)) {
+            counter = const_cast<Symbol*>(declaration->symbol);
+            is_const = declaration->is_const;
+        }
+    }
+    if (node.body) forget_ranges_assigned_in(*node.body);
+    if (node.condition) condition(node.condition, "as the condition of a loop");
+    if (counter && !counter->type.is_error() && counter->type != int_type && counter->type != uint_type) {
+        diagnostics.error(counter->span, "unbounded-loop", "a loop counts in int, found " + to_string(counter->type))
+            .hint = "count in int and compute the " + to_string(counter->type) + " from it: float x = 0.1 * i;";
+        counter = nullptr;
+    } else if (counter && is_const && !counter->type.is_error()) {
+        diagnostics.error(counter->span, "read-only", quoted(counter->name) + " counts the loop and cannot be constant")
+            .hint = "leave 'const' out";
+        counter = nullptr;
+    } else if (!counter && in_damaged_body) {
+        diagnostics.count_consequence(); // most likely what declares it could not be read
+    } else if (!counter) {
+        diagnostics
+            .error(node.init ? node.init->span : s.span, "unbounded-loop", "expected a counter declared in the loop")
+            .hint = loop_form;
+    }
+    if (counter && counter->kind == SymbolKind::local) {
+        plan(s, node, *counter);
+        counter->read_only = "it counts the loop";
+        counter->is_read = true;
+    }
+    const Flow before = flow;
+    ++loop_depth;
+    if (node.body) body(*node.body);
+    --loop_depth;
+    const size_t slots = flow.variables.size();
+    const Flow behind = std::exchange(flow, before);
+    flow.variables.resize(slots);
+    // What the body assigns on its way to its end has a value, if it runs at all.
+    const bool reaches_end = node.plan.runs && behind.reachable && !outcome(*node.body).breaks;
+    for (size_t slot = 0; reaches_end && slot < before.variables.size(); ++slot)
+        flow.variables[slot].assigned = behind.variables[slot].assigned;
+    close_scope();
+}
+
+// Ranges of what the body assigns are not known at its start, nor behind it.
+void BodyChecker::forget_ranges_assigned_in(const Statement& s)
+{
+    std::vector<const NameExpression*> names;
+    collect_assigned(s, names);
+    for (const NameExpression* name : names)
+        if (const Symbol* local = find_local(name->name); local && local->kind == SymbolKind::local)
+            flow.variables[local->slot].range =
+                ir::full_range(local->type == uint_type ? ir::Type::u32 : ir::Type::i32);
+}
+
+// Sets loop.plan, and the counter's range inside the body, or says why the loop is not bounded.
+void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
+{
+    auto init = std::get_if<Declaration>(&loop.init->node);
+    if (!init->initializer || init->initializer->type.is_error()) return;
+    auto refuse = [&](Span span, std::string message) -> Diagnostic& {
+        Diagnostic& reported = diagnostics.error(span, "unbounded-loop", std::move(message));
+        reported.hint = loop_form;
+        return reported;
+    };
+    LoopPlan made;
+    made.counter = &counter;
+    made.start = init->initializer.get();
+
+    // the condition: counter against bound
+    if (!loop.condition) {
+        refuse(s.span, "this loop has no condition, expected a bound for " + quoted(counter.name));
+        return;
+    }
+    if (loop.condition->type.is_error()) return;
+    auto chain = std::get_if<Chain>(&loop.condition->node);
+    const bool simple = chain && chain->rest.size() == 1;
+    const bool left = simple && names_counter(*chain->first, counter);
+    const bool right = simple && names_counter(*chain->rest[0].operand, counter);
+    if (left == right) {
+        refuse(loop.condition->span, "expected a comparison of " + quoted(counter.name) + " with a bound");
+        return;
+    }
+    const auto compare = compare_of(chain->rest[0].op);
+    if (!compare) {
+        Diagnostic& reported =
+            refuse(loop.condition->span, "expected <, <=, > or >= between " + quoted(counter.name) + " and its bound");
+        if (chain->rest[0].op == BinaryOp::not_equal) reported.hint = "!= may step over the bound: write < or >";
+        return;
+    }
+    made.compare = left ? *compare : mirrored(*compare);
+    made.bound = left ? chain->rest[0].operand.get() : chain->first.get();
+    if (made.bound->type != counter.type) {
+        refuse(made.bound->span,
+               "expected " + to_string(counter.type) + " as the bound of a loop, found " + to_string(made.bound->type))
+            .hint = "write " + to_string(counter.type) + "(" + excerpt(*made.bound) + ")";
+        return;
+    }
+
+    // the step: ++i, --i, i += c, i -= c
+    auto step = loop.step ? std::get_if<Assignment>(&loop.step->node) : nullptr;
+    auto stepped = step ? std::get_if<NameExpression>(&step->target->node) : nullptr;
+    const bool adds = step && (step->op == AssignOp::add || step->op == AssignOp::subtract);
+    if (!adds || !stepped || stepped->name != counter.name) {
+        refuse(loop.step ? loop.step->span : s.span, "expected a step of " + quoted(counter.name) + ": ++" +
+                                                         counter.name + ", --" + counter.name + ", " + counter.name +
+                                                         " += 2");
+        return;
+    }
+    stepped->symbol = &counter;
+    if (expression(*step->value).is_error()) return;
+    const ir::IntRange by = range(*step->value);
+    if (!by.is_constant() || by.minimum == 0) {
+        refuse(step->value->span, "expected a constant step, not 0");
+        return;
+    }
+    made.step = step->op == AssignOp::add ? by.minimum : -by.minimum;
+    if (counts_up(made.compare) != (made.step > 0)) {
+        refuse(loop.step->span, quoted(counter.name) + " steps away from its bound").hint =
+            made.step > 0 ? "write --" + counter.name : "write ++" + counter.name;
+        return;
+    }
+
+    // what the body must leave alone
+    std::vector<const NameExpression*> assigned;
+    if (loop.body) collect_assigned(*loop.body, assigned);
+    if (auto changed = first_read(*made.bound, assigned)) {
+        refuse(made.bound->span,
+               "the bound of this loop changes in its body: " + quoted(changed->name) + " is assigned there")
+            .hint = "keep the bound in a variable of its own";
+        return;
+    }
+
+    // how often, at most: the distance between the farthest start and bound, in steps
+    const ir::IntRange from = range(*made.start), to = range(*made.bound);
+    const bool up = made.step > 0;
+    const bool inclusive = made.compare == Compare::less_equal || made.compare == Compare::greater_equal;
+    const int64_t stride = up ? made.step : -made.step;
+    const int64_t farthest = up ? to.maximum - from.minimum : from.maximum - to.minimum;
+    const int64_t nearest = up ? to.minimum - from.maximum : from.minimum - to.maximum;
+    const int64_t trips = farthest < 0 ? 0 : inclusive ? farthest / stride + 1 : (farthest + stride - 1) / stride;
+    const ir::IntRange full = ir::full_range(counter.type == uint_type ? ir::Type::u32 : ir::Type::i32);
+    if (trips > static_cast<int64_t>(ir::operations_limit) || farthest > INT32_MAX - stride) {
+        const bool bound_unknown = up ? to.maximum == full.maximum : to.minimum == full.minimum;
+        const bool start_unknown = up ? from.minimum == full.minimum : from.maximum == full.maximum;
+        if (bound_unknown || start_unknown) {
+            const Expression& culprit = bound_unknown ? *made.bound : *made.start;
+            const char* limit = up == bound_unknown ? "min" : "max";
+            diagnostics
+                .error(culprit.span, "unbounded-loop",
+                       "cannot tell how often this loop runs: " + quoted(excerpt(culprit)) + " can be any " +
+                           to_string(counter.type))
+                .hint = std::string("write ") + limit + "(" + excerpt(culprit) + ", " +
+                        (up == bound_unknown ? "16" : "0") + "), or give the parameter a range: in 1 .. 16";
+        } else {
+            diagnostics
+                .error(loop.condition->span, "too-costly",
+                       "this loop may run " + std::to_string(trips) + " times, expected at most " +
+                           std::to_string(ir::operations_limit))
+                .hint = "a texture is computed a thousand times a second: lower the bound";
+        }
+        return;
+    }
+    made.trip_max = static_cast<uint32_t>(trips);
+    made.runs = loop.body && nearest >= (inclusive ? 0 : 1);
+    made.difference_may_wrap = nearest < INT32_MIN;
+    loop.plan = made;
+    ir::IntRange inside = up ? ir::IntRange{from.minimum, to.maximum - (inclusive ? 0 : 1)}
+                             : ir::IntRange{to.minimum + (inclusive ? 0 : 1), from.maximum};
+    if (inside.minimum <= inside.maximum) flow.variables[counter.slot].range = inside;
+}
+
+} // namespace haptel::lang

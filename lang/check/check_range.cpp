@@ -1,0 +1,127 @@
+// What an integer expression can be, as far as it is plain from the text: constants, parameters with a range, loop
+// counters, min, max, clamp and arithmetic of them. Rules of single operations: ir/int_range.h.
+#include "lang/check/body_checker.h"
+#include "lang/ir/semantics.h"
+
+#include <algorithm>
+#include <array>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+namespace {
+
+ir::Type ir_type(Type type)
+{
+    return type == uint_type ? ir::Type::u32 : ir::Type::i32;
+}
+
+// Exact where both operands are known.
+ir::IntRange apply(ir::Op op, Type type, ir::IntRange a, ir::IntRange b)
+{
+    if (a.is_constant() && b.is_constant()) {
+        const auto slot = [](ir::IntRange r) { return ir::Slot<double>{0, static_cast<uint32_t>(r.minimum)}; };
+        ir::Slot<double> result;
+        ir::execute<double>(op, result, slot(a), slot(b), {}, {});
+        const int64_t value = type == uint_type ? int64_t{result.bits} : int64_t{static_cast<int32_t>(result.bits)};
+        return {value, value};
+    }
+    return ir::range_of(op, ir_type(type), std::array{a, b});
+}
+
+std::optional<ir::Op> int_op(BinaryOp op, bool is_unsigned)
+{
+    using enum BinaryOp;
+    switch (op) {
+    case add: return ir::Op::iadd;
+    case subtract: return ir::Op::isub;
+    case multiply: return ir::Op::imul;
+    case divide: return is_unsigned ? ir::Op::udiv : ir::Op::idiv;
+    case remainder: return is_unsigned ? ir::Op::urem : ir::Op::irem;
+    case bit_and: return ir::Op::iand;
+    case bit_or: return ir::Op::ior;
+    case bit_xor: return ir::Op::ixor;
+    case shift_left: return ir::Op::ishl;
+    case shift_right: return is_unsigned ? ir::Op::ushr : ir::Op::ishr;
+    case less:
+    case less_equal:
+    case greater:
+    case greater_equal:
+    case equal:
+    case not_equal:
+    case logical_and:
+    case logical_or:
+    case logical_xor: return std::nullopt;
+    }
+    return std::nullopt;
+}
+
+ir::IntRange absolute(ir::IntRange a)
+{
+    const int64_t low = a.minimum <= 0 && a.maximum >= 0 ? 0 : std::min(std::abs(a.minimum), std::abs(a.maximum));
+    const int64_t high = std::max(std::abs(a.minimum), std::abs(a.maximum));
+    return high > INT32_MAX ? ir::full_range(ir::Type::i32) : ir::IntRange{low, high};
+}
+
+} // namespace
+
+ir::IntRange BodyChecker::range(const Expression& e) const
+{
+    const ir::IntRange full = ir::full_range(ir_type(e.type));
+    if (e.type != int_type && e.type != uint_type) return full;
+    if (auto literal = std::get_if<NumberLiteral>(&e.node)) {
+        const auto bits = static_cast<uint32_t>(literal->integer);
+        const int64_t value = e.type == uint_type ? int64_t{bits} : int64_t{static_cast<int32_t>(bits)};
+        return {value, value};
+    }
+    if (auto name = std::get_if<NameExpression>(&e.node)) {
+        if (!name->symbol) return full;
+        if (name->symbol->kind == SymbolKind::local) return flow.variables[name->symbol->slot].range;
+        return name->symbol->range.value_or(full);
+    }
+    if (auto unary = std::get_if<Unary>(&e.node)) {
+        const ir::IntRange a = range(*unary->operand);
+        switch (unary->op) {
+        case UnaryOp::plus: return a;
+        case UnaryOp::negate: return apply(ir::Op::isub, e.type, {0, 0}, a);
+        case UnaryOp::bit_not: return a.is_constant() ? apply(ir::Op::ixor, e.type, a, {-1, -1}) : full;
+        case UnaryOp::logical_not: return full;
+        }
+    }
+    if (auto chain = std::get_if<Chain>(&e.node)) {
+        ir::IntRange left = range(*chain->first);
+        for (const Chain::Link& link : chain->rest) {
+            const auto op = int_op(link.op, e.type == uint_type);
+            if (!op) return full;
+            left = apply(*op, e.type, left, range(*link.operand));
+        }
+        return left;
+    }
+    if (auto choice = std::get_if<Conditional>(&e.node))
+        return ir::join(range(*choice->when_true), range(*choice->when_false));
+    if (auto call = std::get_if<CallExpression>(&e.node)) {
+        const auto argument = [&](size_t i) { return range(*call->arguments[i]); };
+        if (call->target.is_constructor && call->arguments.size() == 1) {
+            const Type from = call->arguments[0]->type;
+            if (from == e.type) return argument(0);
+            if (from == int_type) return apply(ir::Op::i_as_u, e.type, argument(0), {});
+            if (from == uint_type) return apply(ir::Op::u_as_i, e.type, argument(0), {});
+            if (from == bool_type) return {0, 1};
+            return full;
+        }
+        auto builtin = std::get_if<const BuiltinOverload*>(&call->target.function);
+        if (!builtin) return full;
+        const BuiltinId id = (*builtin)->builtin->id;
+        if (id == BuiltinId::imin || id == BuiltinId::umin || id == BuiltinId::imax || id == BuiltinId::umax)
+            return apply(*(*builtin)->builtin->op, e.type, argument(0), argument(1));
+        if (id == BuiltinId::iclamp)
+            return apply(ir::Op::imin, e.type, apply(ir::Op::imax, e.type, argument(0), argument(1)), argument(2));
+        if (id == BuiltinId::uclamp)
+            return apply(ir::Op::umin, e.type, apply(ir::Op::umax, e.type, argument(0), argument(1)), argument(2));
+        if (id == BuiltinId::iabs) return absolute(argument(0));
+    }
+    return full;
+}
+
+} // namespace haptel::lang

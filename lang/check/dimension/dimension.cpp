@@ -1,0 +1,154 @@
+#include "lang/check/dimension/dimension.h"
+
+#include "lang/text/number.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+namespace haptel::lang {
+namespace {
+
+constexpr int64_t part_max = 10'000; // of an exponent: keeps products of two inside 64 bits by far
+
+std::optional<Exponent> reduced(int64_t numerator, int64_t denominator)
+{
+    const int64_t common = std::gcd(numerator, denominator);
+    numerator /= common;
+    denominator /= common;
+    if (std::abs(numerator) > part_max || denominator > part_max) return std::nullopt;
+    return Exponent{static_cast<int32_t>(numerator), static_cast<int32_t>(denominator)};
+}
+
+std::optional<Exponent> sum(Exponent a, Exponent b)
+{
+    return reduced(int64_t{a.numerator} * b.denominator + int64_t{b.numerator} * a.denominator,
+                   int64_t{a.denominator} * b.denominator);
+}
+
+std::optional<Exponent> product(Exponent a, Exponent b)
+{
+    return reduced(int64_t{a.numerator} * b.numerator, int64_t{a.denominator} * b.denominator);
+}
+
+// " m^2"; empty for power 0.
+std::string unit_power(const char* unit, Exponent power)
+{
+    if (power.numerator == 0) return {};
+    std::string text = std::string(" ") + unit;
+    if (power == Exponent{1, 1}) return text;
+    text += "^" + std::to_string(power.numerator);
+    if (power.denominator != 1) text += "/" + std::to_string(power.denominator);
+    return text;
+}
+
+struct Known {
+    Dimension dimension;
+    const char* description;
+    const char* advice; // how to make a plain number of it
+};
+
+const Known* known(Dimension dimension)
+{
+    static const Known all[] = {
+        {Dimension::plain(), "a plain number", ""},
+        {Dimension::length(), "a length", "divide by a wavelength"},
+        {Dimension::time(), "a time", "divide by a period"},
+        {Dimension::frequency(), "a frequency", "multiply by a time"},
+        {Dimension::of({2, 1}, {}), "an area", "divide by an area"},
+        {Dimension::of({3, 1}, {}), "a volume", "divide by a volume"},
+        {Dimension::of({-1, 1}, {}), "a number per length", "multiply by a length"},
+        {Dimension::of({1, 1}, {-1, 1}), "a speed", "divide by a speed"},
+        {Dimension::of({1, 1}, {-2, 1}), "an acceleration", "divide by an acceleration"},
+    };
+    for (const Known& entry : all)
+        if (entry.dimension == dimension) return &entry;
+    return nullptr;
+}
+
+std::string units_of(Dimension dimension)
+{
+    return (unit_power("m", dimension.length_exponent()) + unit_power("s", dimension.time_exponent())).substr(1);
+}
+
+} // namespace
+
+std::optional<Exponent> exponent_near(double value)
+{
+    constexpr int64_t denominator_max = 100;
+    constexpr double rounding = 1e-12; // relative
+    for (int64_t denominator = 1; denominator <= denominator_max; ++denominator) {
+        const double numerator = std::round(value * static_cast<double>(denominator));
+        if (!(std::fabs(numerator) <= static_cast<double>(part_max))) return std::nullopt;
+        if (std::fabs(numerator / static_cast<double>(denominator) - value) <= rounding * std::fabs(value))
+            return reduced(static_cast<int64_t>(numerator), denominator);
+    }
+    return std::nullopt;
+}
+
+Dimension Dimension::power(Exponent exponent) const
+{
+    if (is_any()) return any();
+    const auto length = product(length_power, exponent), time = product(time_power, exponent);
+    return length && time ? of(*length, *time) : any();
+}
+
+Dimension operator*(Dimension a, Dimension b)
+{
+    if (a.is_any() || b.is_any()) return Dimension::any();
+    const auto length = sum(a.length_power, b.length_power), time = sum(a.time_power, b.time_power);
+    return length && time ? Dimension::of(*length, *time) : Dimension::any();
+}
+
+std::optional<Dimension> join(Dimension a, Dimension b)
+{
+    if (a.is_any()) return b;
+    if (b.is_any() || a == b) return a;
+    return std::nullopt;
+}
+
+Dimension dimension_of_unit(std::string_view unit)
+{
+    const std::string_view si = si_unit(unit);
+    if (si == "m") return Dimension::length();
+    if (si == "s") return Dimension::time();
+    if (si == "Hz") return Dimension::frequency();
+    return Dimension::plain();
+}
+
+std::string description(Dimension dimension)
+{
+    if (dimension.is_any()) return "any number";
+    if (const Known* entry = known(dimension)) return entry->description;
+    return "a quantity in " + units_of(dimension);
+}
+
+std::string advice_to_plain(Dimension dimension)
+{
+    if (const Known* entry = known(dimension)) return entry->advice;
+    return dimension.is_any() ? std::string{} : "divide by a quantity in " + units_of(dimension);
+}
+
+std::string factor_to_plain(Dimension dimension)
+{
+    constexpr int32_t factors_max = 3;
+    if (dimension.is_any()) return {};
+    std::string text;
+    for (const auto& [power, unit] :
+         {std::pair{dimension.length_exponent(), "1m"}, std::pair{dimension.time_exponent(), "1s"}}) {
+        if (power.denominator != 1 || std::abs(power.numerator) > factors_max) return {};
+        for (int32_t i = 0; i < std::abs(power.numerator); ++i)
+            text += std::string(power.numerator > 0 ? " / " : " * ") + unit;
+    }
+    return text;
+}
+
+std::string_view literal_unit(Dimension dimension)
+{
+    if (dimension == Dimension::length()) return "m";
+    if (dimension == Dimension::time()) return "s";
+    if (dimension == Dimension::frequency()) return "Hz";
+    return {};
+}
+
+} // namespace haptel::lang

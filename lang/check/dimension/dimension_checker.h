@@ -1,0 +1,179 @@
+// The two classes that the check of dimensions is made of: DimensionChecker remembers what functions make of the
+// dimensions they are called with, DimensionBody walks one body. Parts of the latter: dimension_expression.cpp,
+// dimension_call.cpp, dimension_statement.cpp.
+#pragma once
+
+#include "lang/check/dimension/dimension.h"
+#include "lang/program/checked_program.h"
+#include "lang/text/diagnostic.h"
+
+#include <deque>
+#include <map>
+#include <span>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace haptel::lang {
+
+using Dimensions = std::vector<Dimension>;
+using FunctionReferences = std::vector<FunctionReference>;
+
+struct DimensionFinding {
+    Span span;
+    std::string message, hint;
+    std::vector<Related> related;
+    std::optional<FixIt> fix;
+};
+
+// A body for one choice of dimensions, or the result of looking at it.
+struct DimensionInstance {
+    std::string name;
+    Dimension result = Dimension::any();
+    std::vector<DimensionFinding> findings;        // in code of the user's own
+    std::vector<const DimensionInstance*> callees; // whose findings are findings of the program too
+    bool is_at_fault = false;                      // library code that these dimensions do not go with
+    Span called_at;                                // the first call in code of the user's own
+    std::string called_with;                       // "a length and a plain number"; empty: nothing is known
+    const uint32_t* choices = nullptr;             // that the same body is looked at for; null: it has no parameters
+};
+
+constexpr uint32_t dimension_nesting_limit = 500; // as in lowering, which reports it: bounds the stack
+
+class DimensionChecker {
+public:
+    DimensionChecker(const SourceSet& all_sources, const CheckedProgram& checked)
+        : sources(all_sources), program(checked)
+    {
+    }
+
+    const std::vector<const DimensionInstance*>& constants();
+    const DimensionInstance& texture(const CheckedTexture& texture);
+    // `arguments` by the parameters that are values, `passed` by those that are functions; no function is a parameter
+    // any more, but it may be unknown.
+    const DimensionInstance& function(const FunctionInfo& info, const FunctionReferences& passed,
+                                      const Dimensions& arguments);
+    bool has_seen(const FunctionInfo& function) const { return choices.contains(&function); }
+    // False once the work is more than a program of sensible size can need: then everything fits.
+    bool spend(size_t steps);
+
+    const SourceSet& sources;
+    const CheckedProgram& program;
+    std::unordered_map<const Symbol*, Dimension> symbols; // constants, tables, parameters of the texture at hand
+    Span user_call;                                       // in code of the user's own, the innermost under work
+    uint32_t nesting = 0;                                 // of expressions and statements under work, over all bodies
+    bool is_exhausted = false;
+
+private:
+    void add_constants(const std::vector<CheckFile>& files, bool is_library);
+
+    struct Key {
+        const FunctionInfo* function;
+        std::vector<const void*> passed;
+        Dimensions arguments;
+        auto operator<=>(const Key&) const = default;
+    };
+    std::map<Key, DimensionInstance> instances; // nodes stay where they are
+    std::deque<DimensionInstance> roots;        // of textures and constants
+    std::vector<const DimensionInstance*> constant_roots;
+    std::unordered_map<const FunctionInfo*, uint32_t> choices; // of dimensions, per function
+    size_t work = 0;
+};
+
+class DimensionBody {
+public:
+    DimensionBody(DimensionChecker& owner, DimensionInstance& instance, bool is_library);
+
+    void function(const FunctionInfo& info, const FunctionReferences& passed, const Dimensions& arguments);
+    void texture(const CheckedTexture& texture);
+    Dimension constant(const ast::Declaration& declaration);
+    Dimension parameter(const CheckedParameter& parameter);
+
+private:
+    struct Variable {
+        Dimension dimension = Dimension::any();
+        Span set; // where it got it
+        // What it is instead after another path that has come together with this one.
+        Dimension other = Dimension::any();
+        Span other_set;
+        bool is_mixed() const { return !other.is_any(); }
+    };
+    using Variables = std::vector<Variable>; // by Symbol::slot
+    struct Flow {
+        Variables variables;
+        bool reachable = true;
+    };
+
+    // ---- expressions
+    Dimension expression(const ast::Expression& e);
+    Dimension find(const ast::Expression& e, const ast::ErrorExpression& node);
+    Dimension find(const ast::Expression& e, const ast::NumberLiteral& node);
+    Dimension find(const ast::Expression& e, const ast::BoolLiteral& node);
+    Dimension find(const ast::Expression& e, const ast::NameExpression& node);
+    Dimension find(const ast::Expression& e, const ast::Unary& node);
+    Dimension find(const ast::Expression& e, const ast::Chain& node);
+    Dimension find(const ast::Expression& e, const ast::Conditional& node);
+    Dimension find(const ast::Expression& e, const ast::CallExpression& node);
+    Dimension find(const ast::Expression& e, const ast::GradCall& node);
+    Dimension find(const ast::Expression& e, const ast::Member& node);
+    Dimension find(const ast::Expression& e, const ast::Index& node);
+    Dimension find(const ast::Expression& e, const ast::BraceList& node);
+    // What the operator makes of both; `whole` and `right_side` for messages.
+    Dimension binary(ast::BinaryOp op, Dimension left, Dimension right, Span whole, const ast::Expression* left_side,
+                     const ast::Expression& right_side);
+    // The one dimension of all parts; `what` they make: "a vector".
+    Dimension common(const std::vector<ast::ExpressionPtr>& parts, const std::string& what);
+
+    // ---- calls
+    Dimension constructor(const ast::Expression& e, const ast::CallExpression& node);
+    Dimension call(const ast::Expression& e, const std::string& name, const CallTarget& target,
+                   const std::vector<ast::ExpressionPtr>& arguments, uint32_t order);
+    Dimension power(const ast::CallExpression& node, Dimension base);
+    void blame_call(const ast::Expression& e, const std::string& name, const FunctionInfo& callee,
+                    const FunctionReferences& passed, const Dimensions& dimensions,
+                    const std::vector<const ast::Expression*>& values);
+    FunctionReference resolved(const FunctionReference& reference) const;
+
+    // ---- statements
+    void statement(const ast::Statement& s);
+    void walk(const ast::Statement& s, const ast::Declaration& node);
+    void walk(const ast::Statement& s, const ast::Assignment& node);
+    void walk(const ast::Statement& s, const ast::ExpressionStatement& node);
+    void walk(const ast::Statement& s, const ast::Scope& node);
+    void walk(const ast::Statement& s, const ast::If& node);
+    void walk(const ast::Statement& s, const ast::For& node);
+    void walk(const ast::Statement& s, const ast::Break& node);
+    void walk(const ast::Statement& s, const ast::Return& node);
+    void body(const ast::Statement& tree, uint32_t slot_count, const Variables& parameters);
+    void merge(Flow& into, const Flow& other) const;
+    void check_outputs();
+    void settle(const ast::For& loop, Variables& at_head);
+
+    // ---- findings; null in library code, which is only marked as at fault
+    DimensionFinding* report(Span span, std::string message);
+    // An argument or operand that should be something else, with how to mend it.
+    // `who` expects it, `where` as a clause: " as argument 2".
+    void report_expected(const std::string& who, const ast::Expression& e, Dimension expected, Dimension found,
+                         const std::string& where = {});
+    void propose(DimensionFinding& finding, const ast::Expression& e, Dimension expected, Dimension found);
+
+    DimensionChecker& owner;
+    DimensionInstance& instance;
+    bool is_library;
+    FunctionReferences functions; // parameters that are functions, by Symbol::slot
+    Flow flow;
+    std::vector<Flow*> loop_exits; // innermost last: what breaks bring together
+    std::unordered_map<const ast::For*, Variables> heads;
+    bool heads_changed = false;
+    const std::vector<CheckedOutput>* outputs = nullptr; // of a texture; null: this is a function
+    bool has_returned = false;
+    Span returned_at; // a value of the result's dimension
+};
+
+// The literal that `e` is, without a unit and perhaps with a sign: it may have been meant in any. Null: it is none.
+const ast::Expression* bare_number(const ast::Expression& e);
+
+// "a length, a length and a plain number"
+std::string description(std::span<const Dimension> dimensions);
+
+} // namespace haptel::lang

@@ -1,0 +1,97 @@
+#include "lang/check/dimension/dimension_rules.h"
+
+#include <array>
+#include <charconv>
+#include <string_view>
+
+namespace haptel::lang {
+namespace {
+
+constexpr size_t builtin_count = 0
+#define OPERATION(...) +1
+#define COMPOSED(...) +1
+#include "lang/program/builtins.def"
+#undef OPERATION
+#undef COMPOSED
+    ;
+
+constexpr std::array<std::string_view, builtin_count> make_rules()
+{
+    std::array<std::string_view, builtin_count> rules{};
+#define DIMENSIONS(id, rule) rules[static_cast<size_t>(BuiltinId::id)] = rule;
+#include "lang/check/dimension/dimension_rules.def"
+#undef DIMENSIONS
+    return rules;
+}
+constexpr auto rules = make_rules();
+
+constexpr bool all_have_rules()
+{
+    for (std::string_view rule : rules)
+        if (rule.empty()) return false;
+    return true;
+}
+static_assert(all_have_rules(), "a function of builtins.def has no rule in dimension_rules.def");
+
+// The dimensions that the letters a, b, c stand for, as far as arguments have said.
+using Letters = std::array<Dimension, 3>;
+
+int parse_whole(std::string_view& text)
+{
+    int value = 0;
+    const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
+    text.remove_prefix(static_cast<size_t>(end - text.data()));
+    return value;
+}
+
+// "1", "a", "ab", "a^-1/2", "am^-1"
+Dimension evaluate(std::string_view term, const Letters& letters)
+{
+    Dimension product = Dimension::plain();
+    while (!term.empty()) {
+        const char letter = term.front();
+        term.remove_prefix(1);
+        if (letter == '1') continue;
+        Exponent exponent{1, 1};
+        if (term.starts_with('^')) {
+            term.remove_prefix(1);
+            exponent.numerator = parse_whole(term);
+            if (term.starts_with('/')) {
+                term.remove_prefix(1);
+                exponent.denominator = parse_whole(term);
+            }
+        }
+        const Dimension base = letter == 'm' ? Dimension::length() : letters[static_cast<size_t>(letter - 'a')];
+        product = product * base.power(exponent);
+    }
+    return product;
+}
+
+} // namespace
+
+DimensionResult apply_rule(BuiltinId id, std::span<const Dimension> arguments)
+{
+    const std::string_view rule = rules[static_cast<size_t>(id)];
+    const size_t open = rule.find('(');
+    std::string_view rest = rule.substr(open + 1, rule.size() - open - 2);
+    Letters letters{Dimension::any(), Dimension::any(), Dimension::any()};
+    DimensionResult made;
+    for (size_t i = 0; i < arguments.size(); ++i) {
+        const std::string_view term = rest.substr(0, rest.find(','));
+        rest.remove_prefix(std::min(rest.size(), term.size() + 1));
+        const Dimension expected = evaluate(term, letters);
+        const auto both = join(expected, arguments[i]);
+        const bool is_letter = term.size() == 1 && term != "1";
+        if (!both && made.fits) {
+            made.fits = false;
+            made.argument = i;
+            made.expected = expected;
+            made.by_letter = is_letter;
+        }
+        if (is_letter) letters[static_cast<size_t>(term.front() - 'a')] = both.value_or(Dimension::any());
+    }
+    made.result = evaluate(rule.substr(0, open), letters);
+    return made;
+}
+
+} // namespace haptel::lang

@@ -1,0 +1,48 @@
+// The lines that the formatter has made, and how one sequence of tokens becomes lines.
+#pragma once
+
+#include "lang/format/format_pieces.h"
+
+#include <span>
+
+namespace haptel::lang {
+
+class Page {
+public:
+    static constexpr size_t width = 100, step = 4; // columns
+
+    // `pieces` as one logical line, broken where it is longer than the page. `lead`: spaces before a piece beyond the
+    // usual one, by its index; may be shorter. `hang`: how much deeper lines go on that stand in no bracket.
+    void put(std::span<const Piece> pieces, size_t indent, const std::vector<size_t>& lead = {}, size_t hang = step);
+    // At the end of the last line, which has no comment.
+    void append(const Piece& piece);
+    // Comments on lines of their own, and the empty line below them.
+    void put_above(const Piece& piece, size_t indent);
+    // At most one in a row, none at the beginning of a page or block.
+    void blank_line();
+    // What is put from here to the end of the list has its trailing comments in one column.
+    void begin_list() { list_begin = lines.size(); }
+    void end_list();
+
+    std::string text();
+
+private:
+    struct Line {
+        std::string text; // with its indent
+        std::string trailing;
+        bool aligned = false; // in a list, where the column is known
+        size_t gap = 1;       // spaces before the trailing comment
+    };
+    void align_runs();
+
+    std::vector<Line> lines;
+    size_t list_begin = 0;
+};
+
+// Columns of `pieces` in one line; nothing if comments break it.
+bool fits(std::span<const Piece> pieces, size_t indent, const std::vector<size_t>& lead = {});
+
+// Whether a space stands between piece `i` (> 0) and the one before.
+bool is_spaced(std::span<const Piece> pieces, size_t i);
+
+} // namespace haptel::lang

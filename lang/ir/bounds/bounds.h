@@ -1,0 +1,71 @@
+// What a function can return at most, over boxes of inputs and parameters: interval evaluation.
+//
+// Calls use the callee's facts (value, slope, curvature and class), intersected with natural evaluation of its body;
+// `if` conditions that the intervals decide leave out the other arm, others narrow the values they compare inside each
+// arm; loops run for every possible number of trips.
+#pragma once
+
+#include "lang/ir/bounds/interval.h"
+#include "lang/ir/bounds/spline_image.h"
+#include "lang/ir/bounds/variation.h"
+#include "lang/ir/ir.h"
+
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace haptel::ir {
+
+// Where a texture is asked about. All inputs that it reads must be set.
+struct BoundsBox {
+    Interval input[input_count] = {};
+    std::vector<Interval> parameters; // by Texture::parameters; integers and booleans as numbers; of an image: any
+    std::vector<const SplineImage*> images = {}; // likewise; null or missing: any image
+    // Spectral norm of the normal's Jacobian, which says more than bounds of its nine numbers.
+    double normal_turn_max_per_m = std::numeric_limits<double>::infinity();
+    // Likewise of the length of each row of the Jacobian of uv.
+    double uv_slope_max_per_m[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+};
+
+// Where a number may end: an operation whose operands are finite, and whose result, or its derivative as an entry
+// computes it, may be not; or a constant that is not finite; or what takes too many operations to be looked at.
+struct Undefined {
+    enum class Why : uint8_t { domain, pole, overflow, derivative, not_looked_at };
+    std::optional<Op> op; // nothing: a constant, or not looked at
+    Why why;
+    Interval operand; // the divisor, the radicand, ...
+    Span span;        // innermost user code
+};
+
+// What is known of a texture over a box; infinite where nothing was found.
+struct TextureBounds {
+    Interval height;            // metres; includes 0 where the height may be not finite
+    double slope_max;           // sup of the Euclidean norm of the gradient by p; at jumps, of the smooth pieces
+    double curvature_max_per_m; // sup of the Hessian's spectral norm; of a texture below C1, of the smooth pieces
+    Smoothness smoothness;      // as a function of p
+    Cause cause;                // of what makes it no smoother
+    std::vector<std::string> declared; // functions whose facts these bounds believe, by name: declared, not proven
+};
+
+// Refined by bisecting point inputs and real parameters, best first, until `evaluations` are spent or 5 % improvement
+// per doubling is missed.
+TextureBounds texture_bounds(const Module& module, const Texture& texture, const BoundsBox& box,
+                             uint32_t evaluations = 4096);
+// What may set a fault bit somewhere in the box; empty where height, gradient and outputs are finite for certain. An
+// input without bounds counts as some number, and so does what is sampled from an image that is not given. Not seen is
+// what overflows within 1e-307 of a place where a derivative rule says 0 in place of what has no bound, as beside the
+// origin of atan2(y, x).
+std::vector<Undefined> undefined_in(const Module& module, const Texture& texture, const BoundsBox& box,
+                                    uint32_t evaluations = 512);
+// Its height alone, which is cheaper.
+Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations = 4096);
+
+// Its material outputs, by bit of Texture::writes. One that may be NaN says so; the rest holds where it is a number.
+std::vector<Interval> output_bounds(const Module& module, const Texture& texture, const BoundsBox& box,
+                                    uint32_t evaluations = 4096);
+
+// Every result of a function that is no entry, for arguments that lie in these intervals.
+std::vector<Interval> function_bounds(const Module& module, uint32_t function, std::span<const Interval> arguments);
+
+} // namespace haptel::ir

@@ -1,0 +1,439 @@
+#include "lang/ir/bounds/interval.h"
+
+#include "lang/ir/int_range.h"
+#include "lang/ir/op_info.h"
+#include "lang/ir/semantics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+namespace haptel::ir {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Interval empty{infinity, -infinity, true};
+using std::numbers::pi;
+
+double down(double value, int steps = 1)
+{
+    for (int i = 0; i < steps; ++i) value = std::nextafter(value, -infinity);
+    return value;
+}
+double up(double value, int steps = 1)
+{
+    return -down(-value, steps);
+}
+
+// A rounded value as the interval that holds the exact one.
+Interval rounded(double value, bool is_exact)
+{
+    return is_exact ? Interval{value, value} : Interval{down(value), up(value)};
+}
+Interval sum(double a, double b)
+{
+    double s = a + b, b_part = s - a, error = (a - (s - b_part)) + (b - b_part);
+    return rounded(s, std::isinf(a) || std::isinf(b) || error == 0);
+}
+Interval product(double a, double b)
+{
+    if (a == 0 || b == 0) return {0, 0}; // an infinite end is a bound, not a value
+    double p = a * b;
+    // the error of a product too small cannot be seen
+    return rounded(p, std::isinf(a) || std::isinf(b) || (std::fabs(p) > 1e-280 && std::fma(a, b, -p) == 0));
+}
+Interval quotient(double a, double b)
+{
+    if (a == 0 || std::isinf(b)) return {0, 0};
+    double q = a / b;
+    return rounded(q, std::isinf(a) || (std::fabs(q) > 1e-280 && std::fabs(a) > 1e-280 && std::fma(-q, b, a) == 0));
+}
+
+Interval hull(std::initializer_list<Interval> parts)
+{
+    Interval all = empty;
+    for (const Interval& part : parts) {
+        all.minimum = std::min(all.minimum, part.minimum);
+        all.maximum = std::max(all.maximum, part.maximum);
+    }
+    all.may_be_nan = false;
+    return all;
+}
+
+bool may_be_infinite(const Interval& a)
+{
+    return a.minimum == -infinity || a.maximum == infinity;
+}
+
+Interval negated(const Interval& a)
+{
+    return {-a.maximum, -a.minimum, a.may_be_nan};
+}
+
+} // namespace
+
+Interval add(const Interval& a, const Interval& b)
+{
+    bool opposite =
+        (a.minimum == -infinity && b.maximum == infinity) || (a.maximum == infinity && b.minimum == -infinity);
+    auto end = [](double x, double y, double unknown) {
+        return std::isinf(x) && std::isinf(y) && x != y ? Interval{unknown, unknown} : sum(x, y);
+    };
+    return {end(a.minimum, b.minimum, -infinity).minimum, end(a.maximum, b.maximum, infinity).maximum, opposite};
+}
+
+Interval multiply(const Interval& a, const Interval& b)
+{
+    Interval all = hull({product(a.minimum, b.minimum), product(a.minimum, b.maximum), product(a.maximum, b.minimum),
+                         product(a.maximum, b.maximum)});
+    all.may_be_nan = (may_be_infinite(a) && b.contains(0)) || (may_be_infinite(b) && a.contains(0));
+    return all;
+}
+
+namespace {
+
+Interval divide(const Interval& a, const Interval& b)
+{
+    bool nan = (a.contains(0) && b.contains(0)) || (may_be_infinite(a) && may_be_infinite(b));
+    if (b.contains(0)) return {-infinity, infinity, nan};
+    Interval all = hull({quotient(a.minimum, b.minimum), quotient(a.minimum, b.maximum), quotient(a.maximum, b.minimum),
+                         quotient(a.maximum, b.maximum)});
+    all.may_be_nan = nan;
+    return all;
+}
+
+// Never with -0 as an end: powers tell it from 0.
+Interval absolute(const Interval& a)
+{
+    double low = std::fabs(a.minimum), high = std::fabs(a.maximum);
+    return {a.contains(0) ? 0.0 : std::min(low, high), std::max(low, high)};
+}
+
+// f rises over the interval and is exact, or right to four units in the last place.
+template <typename F>
+Interval rising(const Interval& a, const F& f, bool is_exact = false)
+{
+    double low = f(a.minimum), high = f(a.maximum);
+    return is_exact ? Interval{low, high} : Interval{down(low, 4), up(high, 4)};
+}
+
+// Part of the operand where the function is defined; elsewhere it is NaN.
+Interval within(const Interval& a, double low, double high, bool& may_be_nan)
+{
+    may_be_nan = a.minimum < low || a.maximum > high;
+    return {std::max(a.minimum, low), std::min(a.maximum, high)};
+}
+
+template <typename F>
+Interval rising_within(const Interval& a, double low, double high, const F& f)
+{
+    bool nan = false;
+    Interval part = within(a, low, high, nan);
+    if (part.is_empty()) return empty;
+    Interval result = rising(part, f);
+    result.may_be_nan = nan;
+    return result;
+}
+
+// A wave between -1 and 1 with a crest at `crest` + k period and a trough half a period later.
+template <typename F>
+Interval wave(const Interval& a, double period, double crest, const F& f)
+{
+    const bool nan = may_be_infinite(a);
+    const double size = std::max(std::fabs(a.minimum), std::fabs(a.maximum));
+    if (!(size < 1e9) || a.maximum - a.minimum >= period) return {-1, 1, nan};
+    const double slack = 1e-15 * (size + period); // crests are placed with rounding
+    auto meets = [&](double at) {
+        double k = std::ceil((a.minimum - slack - at) / period);
+        return at + k * period <= a.maximum + slack;
+    };
+    const double left = f(a.minimum), right = f(a.maximum);
+    return {meets(crest + period / 2) ? -1 : std::max(-1.0, down(std::min(left, right), 4)),
+            meets(crest) ? 1 : std::min(1.0, up(std::max(left, right), 4)), nan};
+}
+
+Interval tangent(const Interval& a)
+{
+    double cell = std::floor(a.minimum / pi + 0.5), other = std::floor(a.maximum / pi + 0.5);
+    double to_pole = std::min(std::fabs(a.minimum - (cell - 0.5) * pi), std::fabs((other + 0.5) * pi - a.maximum));
+    if (cell != other || !(std::fabs(cell) < 1e9) ||
+        to_pole < 1e-15 * (1 + std::fabs(a.minimum) + std::fabs(a.maximum)))
+        return {-infinity, infinity, may_be_infinite(a)};
+    return rising(a, [](double x) { return elementary_f64(Op::tan, x); });
+}
+
+Interval angle(const Interval& y, const Interval& x)
+{
+    const bool cut = y.contains(0) && x.minimum <= 0;
+    if (cut) return {down(-pi, 4), up(pi, 4)};
+    Interval all = empty;
+    for (double b : {y.minimum, y.maximum})
+        for (double a : {x.minimum, x.maximum}) {
+            double value = semantics::angle(b, a);
+            all = {std::min(all.minimum, value), std::max(all.maximum, value), false};
+        }
+    return {down(all.minimum, 4), up(all.maximum, 4)};
+}
+
+Interval fraction(const Interval& a)
+{
+    if (may_be_infinite(a)) return {0, 1, true};
+    double cell = std::floor(a.minimum);
+    if (cell != std::floor(a.maximum)) return {0, 1};
+    Interval rest = add(a, {-cell, -cell});
+    return {std::max(rest.minimum, 0.0), std::min(rest.maximum, 1.0)};
+}
+
+Interval modulo(const Interval& a, const Interval& b)
+{
+    const bool is_bounded = !may_be_infinite(a) && !may_be_infinite(b) && !b.contains(0);
+    if (!is_bounded || may_be_infinite(divide(a, b))) return {-infinity, infinity, true};
+    if (b.is_point()) {
+        double first = std::floor(a.minimum / b.minimum), last = std::floor(a.maximum / b.minimum);
+        if (first == last) return add(a, negated(multiply(b, {first, first})));
+    }
+    // the quotient's rounding, or its underflow, may leave the last cell by as much as the operand's own
+    const double slack = 4 * std::numeric_limits<double>::epsilon() * absolute(a).maximum + 1e-300;
+    return {std::min(b.minimum, 0.0) - slack, std::max(b.maximum, 0.0) + slack};
+}
+
+Interval length(std::span<const Interval> parts)
+{
+    double low[4], high[4];
+    for (size_t i = 0; i < parts.size(); ++i) {
+        Interval part = absolute(parts[i]);
+        low[i] = part.minimum, high[i] = part.maximum;
+    }
+    auto count = static_cast<int>(parts.size());
+    return {std::max(0.0, down(semantics::length(low, count), 4)), up(semantics::length(high, count), 4)};
+}
+
+Interval power(const Interval& a, const Interval& b)
+{
+    auto corners = [&](const Interval& base) { // monotonic in each operand where the base is not negative
+        Interval all = empty;
+        for (double x : {base.minimum, base.maximum})
+            for (double y : {b.minimum, b.maximum}) {
+                double value = elementary_f64(Op::pow, x, y);
+                all = {std::min(all.minimum, value), std::max(all.maximum, value), false};
+            }
+        return Interval{std::max(0.0, down(all.minimum, 4)), up(all.maximum, 4)};
+    };
+    if (a.contains(0) && b.minimum < 0) return {-infinity, infinity, a.minimum < 0}; // pow(-0, -1) is -infinity
+    const Interval size = corners(absolute(a));
+    if (a.minimum >= 0) return size;
+    const bool is_whole = b.is_point() && std::isfinite(b.minimum) && b.minimum == std::floor(b.minimum);
+    if (!is_whole) return {-size.maximum, size.maximum, true};
+    if (std::fmod(b.minimum, 2) == 0) return size;
+    double low = elementary_f64(Op::pow, a.minimum, b.minimum), high = elementary_f64(Op::pow, a.maximum, b.minimum);
+    return {down(std::min(low, high), 4), up(std::max(low, high), 4)};
+}
+
+Interval truth(bool may_be_false, bool may_be_true)
+{
+    return {may_be_false ? 0.0 : 1.0, may_be_true ? 1.0 : 0.0};
+}
+
+Interval to_integer(const Interval& a, Type type)
+{
+    IntRange full = full_range(type);
+    auto low = static_cast<double>(full.minimum), high = static_cast<double>(full.maximum);
+    Interval whole{std::clamp(std::trunc(a.minimum), low, high), std::clamp(std::trunc(a.maximum), low, high)};
+    if (a.is_empty()) return {0, 0};
+    return a.may_be_nan ? hull({whole, {0, 0}}) : whole;
+}
+
+// A comparison is decided where no pair of values says otherwise; of NaN it is false.
+struct Comparison {
+    const Interval &a, &b;
+    bool nan = a.may_be_nan || b.may_be_nan, none = a.is_empty() || b.is_empty();
+
+    Interval less() const { return truth(none || nan || a.maximum >= b.minimum, !none && a.minimum < b.maximum); }
+    Interval less_or_equal() const
+    {
+        return truth(none || nan || a.maximum > b.minimum, !none && a.minimum <= b.maximum);
+    }
+    Interval equal() const
+    {
+        bool overlap = !none && a.minimum <= b.maximum && b.minimum <= a.maximum;
+        return truth(nan || !(overlap && a.is_point() && b.is_point()), overlap);
+    }
+};
+
+Interval exclusive_or(const Interval& a, const Interval& b)
+{
+    bool differ = a.minimum != b.minimum;
+    return a.is_point() && b.is_point() ? truth(!differ, differ) : truth(true, true);
+}
+
+Interval on_integers(Op op, Type type, std::span<const Interval> operands)
+{
+    IntRange ranges[4];
+    for (const Interval& operand : operands)
+        if (operand.is_empty()) return operand; // comes of an arm that is never entered
+    // A parameter without a range has no ends; it has 32 bits all the same.
+    const auto end = [](double value) {
+        return static_cast<int64_t>(std::clamp(value, static_cast<double>(INT32_MIN), static_cast<double>(UINT32_MAX)));
+    };
+    for (size_t i = 0; i < operands.size(); ++i) ranges[i] = {end(operands[i].minimum), end(operands[i].maximum)};
+    IntRange range = range_of(op, type, {ranges, operands.size()});
+    return {static_cast<double>(range.minimum), static_cast<double>(range.maximum)};
+}
+
+Interval value_of(Op op, std::span<const Interval> x)
+{
+    const Interval& a = x[0];
+    const Interval& b = x.size() > 1 ? x[1] : x[0];
+    const auto rounding = [&](double (*f)(double)) { return rising(a, f, true); };
+    const auto elementary = [op](double v) { return elementary_f64(op, v); };
+    switch (op) {
+    case Op::add: return add(a, b);
+    case Op::sub: return add(a, negated(b));
+    case Op::mul: return multiply(a, b);
+    case Op::div: return divide(a, b);
+    case Op::neg: return negated(a);
+    case Op::fma: {
+        Interval both = multiply(a, b), all = add(both, x[2]);
+        all.may_be_nan |= both.may_be_nan;
+        return all;
+    }
+    case Op::min: return {std::min(a.minimum, b.minimum), std::min(a.maximum, b.maximum)};
+    case Op::max: return {std::max(a.minimum, b.minimum), std::max(a.maximum, b.maximum)};
+    case Op::abs: return absolute(a);
+    case Op::sign: return rising(a, [](double v) { return semantics::sign(v); }, true);
+    case Op::floor: return rounding(std::floor);
+    case Op::ceil: return rounding(std::ceil);
+    case Op::trunc: return rounding(std::trunc);
+    case Op::round: return rounding(semantics::round_to_even);
+    case Op::fract: return fraction(a);
+    case Op::mod: return modulo(a, b);
+    case Op::sqrt: {
+        Interval root = rising_within(a, 0, infinity, [](double v) { return std::sqrt(v); });
+        root.minimum = std::max(root.minimum, 0.0);
+        return root;
+    }
+    case Op::length2:
+    case Op::length3:
+    case Op::length4: return length(x);
+    case Op::sin: return wave(a, 2 * pi, pi / 2, elementary);
+    case Op::cos: return wave(a, 2 * pi, 0, elementary);
+    case Op::tan: return tangent(a);
+    case Op::sinturn: return wave(a, 1, 0.25, [](double v) { return semantics::sine_of_turns(v); });
+    case Op::costurn: return wave(a, 1, 0, [](double v) { return semantics::cosine_of_turns(v); });
+    case Op::asin: return rising_within(a, -1, 1, elementary);
+    case Op::acos: return negated(rising_within(a, -1, 1, [](double v) { return -elementary_f64(Op::acos, v); }));
+    case Op::atan: return rising(a, elementary);
+    case Op::atan2: return angle(a, b);
+    case Op::sinh: return rising(a, elementary);
+    case Op::cosh: return rising(absolute(a), elementary);
+    case Op::tanh: return rising(a, elementary);
+    case Op::asinh: return rising(a, elementary);
+    case Op::acosh: return rising_within(a, 1, infinity, elementary);
+    case Op::atanh: return rising_within(a, -1, 1, elementary);
+    case Op::exp: return rising(a, elementary);
+    case Op::exp2: return rising(a, elementary);
+    case Op::log: return rising_within(a, 0, infinity, elementary);
+    case Op::log2: return rising_within(a, 0, infinity, elementary);
+    case Op::pow: return power(a, b);
+    case Op::spline: return {-infinity, infinity, true}; // images are the evaluator's to know
+    case Op::image_width:
+    case Op::image_height: return {1, INT32_MAX};
+    case Op::detach: return a;
+    case Op::lt:
+    case Op::ilt:
+    case Op::ult: return Comparison{a, b}.less();
+    case Op::le:
+    case Op::ile:
+    case Op::ule: return Comparison{a, b}.less_or_equal();
+    case Op::eq:
+    case Op::ieq:
+    case Op::ueq: return Comparison{a, b}.equal();
+    case Op::is_finite: return truth(!a.is_finite(), !a.is_empty());
+    case Op::land: return {std::min(a.minimum, b.minimum), std::min(a.maximum, b.maximum)};
+    case Op::lor: return {std::max(a.minimum, b.minimum), std::max(a.maximum, b.maximum)};
+    case Op::lxor: return exclusive_or(a, b);
+    case Op::lnot: return {1 - a.maximum, 1 - a.minimum};
+    case Op::select: return a.is_point() ? x[a.minimum != 0 ? 1 : 2] : join(x[1], x[2]);
+    case Op::r_to_i: return to_integer(a, Type::i32);
+    case Op::r_to_u: return to_integer(a, Type::u32);
+    case Op::i_to_r:
+    case Op::u_to_r:
+    case Op::b_to_i: return a;
+    case Op::iadd:
+    case Op::isub:
+    case Op::imul:
+    case Op::idiv:
+    case Op::irem:
+    case Op::iand:
+    case Op::ior:
+    case Op::ixor:
+    case Op::ishl:
+    case Op::ishr:
+    case Op::imin:
+    case Op::imax:
+    case Op::u_as_i: return on_integers(op, Type::i32, x);
+    case Op::udiv:
+    case Op::urem:
+    case Op::ushr:
+    case Op::umin:
+    case Op::umax:
+    case Op::i_as_u: return on_integers(op, Type::u32, x);
+    }
+    return {-infinity, infinity, true};
+}
+
+} // namespace
+
+bool holds_pole(Op op, std::span<const Interval> operands)
+{
+    const Interval& a = operands[0];
+    if (op == Op::div) return operands[1].contains(0);
+    if (op == Op::log || op == Op::log2) return a.contains(0);
+    if (op == Op::atanh) return a.contains(-1) || a.contains(1);
+    if (op == Op::pow) return a.contains(0) && operands[1].minimum < 0;
+    return op == Op::tan && may_be_infinite(tangent(a)); // in double never met, only 1e16
+}
+
+bool Interval::is_finite() const
+{
+    return !may_be_nan && minimum > -infinity && maximum < infinity && !is_empty();
+}
+
+Interval everything(Type type)
+{
+    if (type == Type::real) return {-infinity, infinity, true};
+    if (type == Type::image) return any_image;
+    IntRange full = full_range(type);
+    return {static_cast<double>(full.minimum), static_cast<double>(full.maximum)};
+}
+
+Interval join(const Interval& a, const Interval& b)
+{
+    return {std::min(a.minimum, b.minimum), std::max(a.maximum, b.maximum), a.may_be_nan || b.may_be_nan};
+}
+
+Interval intersect(const Interval& a, const Interval& b)
+{
+    return {std::max(a.minimum, b.minimum), std::min(a.maximum, b.maximum), a.may_be_nan && b.may_be_nan};
+}
+
+Interval evaluate(Op op, std::span<const Interval> operands)
+{
+    const OpInfo& info = op_info(op);
+    if (info.operands[0] != 'r' || info.result != 'r') return value_of(op, operands);
+    // reals to a real: no value in, none out; NaN in, NaN out
+    bool may_be_nan = false, is_empty = false;
+    for (const Interval& operand : operands) {
+        is_empty |= operand.is_empty();
+        may_be_nan |= operand.may_be_nan;
+    }
+    Interval result = is_empty ? empty : value_of(op, operands);
+    result.may_be_nan |= may_be_nan;
+    const bool swallows_nan = op == Op::pow && ((operands[0].may_be_nan && operands[1].contains(0)) ||
+                                                (operands[1].may_be_nan && operands[0].contains(1)));
+    return swallows_nan ? join(result, {1, 1}) : result; // pow(NaN, 0) and pow(1, NaN)
+}
+
+} // namespace haptel::ir

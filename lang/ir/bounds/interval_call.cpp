@@ -1,0 +1,217 @@
+// Calls: what a function's facts say of its results, and what its body does.
+#include "lang/ir/bounds/interval_evaluator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace haptel::ir {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr uint32_t depth_max = 1000; // beyond, nothing is known: recursion stays bounded
+constexpr Interval nothing{infinity, -infinity, false};
+
+void collect_makers(const Block& block, std::vector<const Instruction*>& makers)
+{
+    for (const Instruction& made : block.instructions) {
+        for (Value result : made.results) makers[result.index] = &made;
+        if (auto* choice = std::get_if<If>(&made.kind))
+            for (const Block& arm : choice->arms) collect_makers(arm, makers);
+        if (auto* loop = std::get_if<For>(&made.kind)) collect_makers(loop->body[0], makers);
+    }
+}
+
+Interval declared_value(const Facts& facts, bool may_be_nan)
+{
+    if (!facts.value_minimum || !facts.value_maximum) return {-infinity, infinity, true};
+    return {*facts.value_minimum, *facts.value_maximum, may_be_nan};
+}
+
+// Whether facts cover every gradient that code computes of these arguments. Of infinite ones they say nothing, nor of
+// how the result varies with others than the first, even where they move by 0.
+bool tells_derivative(const Function& function, const IntervalEvaluator::Results& arguments, bool are_finite)
+{
+    const auto first = arguments.variations.begin(), last = arguments.variations.end();
+    const auto has_tangent = [](const Variation& argument) { return argument.has_tangent; };
+    const auto stays = [](const Variation& argument) { return argument.has_tangent && !argument.is_active; };
+    return (are_finite || std::none_of(first, last, has_tangent)) &&
+           std::none_of(first + function.first_argument_size, last, stays);
+}
+
+} // namespace
+
+const std::vector<const Instruction*>& IntervalEvaluator::makers_of(uint32_t function)
+{
+    std::vector<const Instruction*>& known = makers[function];
+    if (known.empty()) {
+        known.resize(module.functions[function].value_types.size() + 1);
+        collect_makers(module.functions[function].body, known);
+    }
+    return known;
+}
+
+const std::vector<bool>& IntervalEvaluator::tangents_of(uint32_t index, std::span<const Variation> arguments)
+{
+    static const std::vector<bool> none;
+    if (!varying) return none;
+    const Function& function = module.functions[index];
+    std::vector<bool> given;
+    for (const Variation& argument : arguments) given.push_back(argument.has_tangent);
+    const auto [known, is_new] = tangents.try_emplace({index, given});
+    if (!is_new) return known->second;
+    Activity activity(function.value_types.size(), 1);
+    for (size_t p = 0; p < given.size(); ++p)
+        if (given[p]) activity.set(function.parameters[p], 0);
+    propagate(function, dependences, [](Input input, size_t) { return input <= Input::uv_y; }, activity);
+    for (uint32_t i = 0; i < function.value_types.size(); ++i) known->second.push_back(activity.any(Value{i}));
+    return known->second;
+}
+
+IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const Results& arguments, Span span)
+{
+    const Function& function = module.functions[index];
+    if (depth >= depth_max || left == 0) return unknown(function, function.body.yields, span);
+    ++depth;
+    const size_t count = function.value_types.size();
+    Frame frame{function, std::vector<Interval>(count, nothing), std::vector<Variation>(varying ? count : 0),
+                makers_of(index), tangents_of(index, arguments.variations)};
+    store(frame, function.parameters, arguments);
+    const std::optional<Span> outside = user;
+    if (function.is_library && !user) user = span;
+    block(frame, function.body);
+    user = outside;
+    --depth;
+    Results results = gather(frame, function.body.yields);
+    if (function.is_library)
+        for (Variation& variation : results.variations) variation.cause = {span, {}, true}, variation.kink = 0;
+    return results;
+}
+
+// What the body does with its first argument held still; no variations where no other argument moves.
+IntervalEvaluator::Results IntervalEvaluator::by_other_arguments(uint32_t index, const Results& arguments, Span span)
+{
+    const Function& function = module.functions[index];
+    const auto others = std::span(arguments.variations).subspan(function.first_argument_size);
+    const auto first = std::span(arguments.variations).first(function.first_argument_size);
+    const auto moves = [](const Variation& argument) { return argument.is_active; };
+    const bool has_slope = std::any_of(function.facts.begin(), function.facts.end(),
+                                       [](const Facts& facts) { return facts.slope.has_value(); });
+    if (!has_slope || std::none_of(others.begin(), others.end(), moves) ||
+        std::none_of(first.begin(), first.end(), moves))
+        return {};
+    Results held = arguments;
+    std::fill_n(held.variations.begin(), first.size(), Variation{});
+    return look_inside(index, held, span);
+}
+
+// A gradient that is no number stays one behind a function that is flat there: code multiplies it by the function's
+// derivative, which is 0.
+void IntervalEvaluator::pass_faults(uint32_t index, const Results& arguments, Results& results)
+{
+    const Dependence& depends = dependences.of(index);
+    for (size_t r = 0; r < results.variations.size(); ++r)
+        for (size_t p = 0; p < arguments.variations.size(); ++p)
+            results.variations[r].may_fault |= depends[r][p] && arguments.variations[p].may_fault;
+}
+
+// By the chain rule: of the first argument by the facts, of the others, where they move too, as found (`by_others`;
+// null: not looked for). Of how it bends by both, only the class is known.
+Variation IntervalEvaluator::by_facts(const Function& function, const Facts& facts, const Results& arguments,
+                                      const Variation* by_others) const
+{
+    const std::span<const Variation> all(arguments.variations);
+    const auto first = all.first(function.first_argument_size), others = all.subspan(first.size());
+    const Variation of_first = chain(facts, first);
+    Variation variation = of_first;
+    for (const Variation& other : others) {
+        if (!other.is_active) continue;
+        const Variation before = variation;
+        variation = unknown_variation(other.cause.span);
+        if (by_others) {
+            for (size_t j = 0; j < before.gradient.size(); ++j)
+                variation.gradient[j] = add(of_first.gradient[j], by_others->gradient[j]);
+            variation.slope = (of_first.slope + by_others->slope) * (1 + 1e-15);
+        }
+        variation.smoothness = facts.smoothness.value_or(Smoothness::unknown);
+        roughen(variation, before.smoothness, before.cause);
+        roughen(variation, other.smoothness, other.cause);
+    }
+    if (!facts.smoothness && variation.is_active) variation.smoothness = Smoothness::unknown;
+    return variation;
+}
+
+// Facts speak of arguments that are numbers. An argument without bounds counts as some number; what comes of an
+// infinite one is left open, as NaN is.
+IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results& arguments, Span span)
+{
+    const Function& function = module.functions[index];
+    bool may_be_nan = false, are_finite = true;
+    for (const Interval& argument : arguments.values) {
+        may_be_nan |= argument.may_be_nan || argument.is_empty();
+        are_finite &= argument.is_finite();
+    }
+    const size_t count = function.body.yields.size();
+    if (may_be_nan || function.facts.empty()) return look_inside(index, arguments, span);
+
+    Results declared;
+    const Results others = varying ? by_other_arguments(index, arguments, span) : Results{};
+    bool is_all_told = function.facts.size() >= count; // nothing is left to find out inside
+    const bool is_derivative_told = varying && tells_derivative(function, arguments, are_finite);
+    for (size_t r = 0; r < count; ++r) {
+        const Facts facts = r < function.facts.size() ? function.facts[r] : Facts{};
+        declared.values.push_back(declared_value(facts, !are_finite));
+        const bool says_something = facts.value_minimum || facts.slope || facts.curvature || facts.smoothness;
+        if (varying && says_something && !facts.proven) believed_functions.insert(index);
+        is_all_told &= facts.value_minimum && facts.value_maximum && facts.slope;
+        if (!varying) continue;
+        Variation& variation = declared.variations.emplace_back(
+            by_facts(function, facts, arguments, others.variations.empty() ? nullptr : &others.variations[r]));
+        variation.may_fault |= !is_derivative_told;
+        is_all_told &= is_derivative_told;
+        if (variation.is_active && variation.cause.span.end == 0) variation.cause = {span, {}, function.is_library};
+        is_all_told &= !variation.is_active || (facts.smoothness && variation.curvature < infinity);
+    }
+    const Interval& value = declared.values[0];
+    const std::optional<Interval> near = by_slope(index, arguments, (value.maximum - value.minimum) / 2);
+    // Where the slope says nothing, a box is too wide for natural evaluation to say more than the facts do; unless
+    // there is one value alone.
+    const auto first = std::span(arguments.values).first(function.first_argument_size);
+    const bool is_point =
+        std::all_of(first.begin(), first.end(), [](const Interval& argument) { return argument.is_point(); });
+    if (is_all_told && !near && !is_point) return declared;
+
+    Results results = look_inside(index, arguments, span);
+    for (size_t r = 0; r < count; ++r) {
+        results.values[r] = intersect(results.values[r], declared.values[r]);
+        if (varying) results.variations[r] = intersect(declared.variations[r], results.variations[r]);
+    }
+    if (near) results.values[0] = intersect(results.values[0], *near);
+    return results;
+}
+
+// |f(x) - f(middle)| <= slope |x - middle|.
+std::optional<Interval> IntervalEvaluator::by_slope(uint32_t index, const Results& arguments, double useful_radius)
+{
+    const Function& function = module.functions[index];
+    const std::optional<double> slope = function.facts[0].slope;
+    if (!slope) return std::nullopt;
+    Results middle{arguments.values, {}};
+    double square = 0;
+    for (uint32_t i = 0; i < function.first_argument_size; ++i) {
+        const Interval& argument = arguments.values[i];
+        double at = argument.minimum / 2 + argument.maximum / 2;
+        double reach = std::max(argument.maximum - at, at - argument.minimum);
+        square += reach * reach;
+        middle.values[i] = {at, at};
+    }
+    const double change = *slope * std::sqrt(square) * (1 + 1e-14);
+    if (!(change < useful_radius) || change == 0) return std::nullopt;
+    const bool was_varying = std::exchange(varying, false);
+    const Interval there = look_inside(index, middle, {}).values[0];
+    varying = was_varying;
+    return add(there, {-change, change});
+}
+
+} // namespace haptel::ir

@@ -1,0 +1,118 @@
+// One interval evaluation of a function and everything it calls; where asked for, with bounds of its derivatives.
+//
+// interval_evaluator.cpp walks blocks, interval_call.cpp knows calls and facts, interval_narrow.cpp conditions.
+#pragma once
+
+#include "lang/ir/bounds/bounds.h"
+#include "lang/ir/bounds/variation.h"
+#include "lang/ir/derive/activity.h"
+
+#include <map>
+#include <optional>
+#include <set>
+
+namespace haptel::ir {
+
+class IntervalEvaluator {
+public:
+    // `operations` that one evaluation may execute: a result that needs more is unknown.
+    IntervalEvaluator(const Module& module, uint64_t operations);
+
+    // `box` may be null for functions that are not entries.
+    std::vector<Interval> run(uint32_t function, std::span<const Interval> arguments, const BoundsBox* box);
+    uint64_t operations_used() const { return limit - left; }
+
+    // Values, and how each varies with the point. `variations` is empty where they were not asked for.
+    struct Results {
+        std::vector<Interval> values;
+        std::vector<Variation> variations;
+    };
+    Results run_varying(uint32_t entry, const BoundsBox& box);
+    // Met by the last run_varying(), each place once.
+    const std::vector<Undefined>& undefined() const { return undefined_operations; }
+    // Functions whose facts the last run_varying() believed although they are not proven.
+    const std::set<uint32_t>& believed() const { return believed_functions; }
+
+private:
+    struct Frame {
+        const Function& function;
+        std::vector<Interval> values;      // by Value::index
+        std::vector<Variation> variations; // likewise, or empty
+        const std::vector<const Instruction*>& makers;
+        const std::vector<bool>& has_tangent; // by Value::index; empty where no variations are asked for
+    };
+    struct Narrowed {
+        Value value;
+        Interval before;
+    };
+
+    const Module& module;
+    const uint64_t limit;
+    uint64_t left = 0;
+    uint32_t depth = 0; // blocks and calls inside each other
+    bool varying = false;
+    PartialRules rules;
+    uint32_t kinks = 0;       // numbered as they are met
+    bool is_trying = false;   // arms are evaluated where they meet
+    std::optional<Span> user; // the call, while inside the library
+    std::vector<Undefined> undefined_operations;
+    std::set<uint32_t> believed_functions;
+    const BoundsBox* box = nullptr;
+    std::vector<std::vector<const Instruction*>> makers; // by function, then Value::index; filled when first needed
+
+    Dependences dependences;
+    // By function and which of its parameters have a tangent: which of its values have.
+    std::map<std::pair<uint32_t, std::vector<bool>>, std::vector<bool>> tangents;
+
+    const std::vector<const Instruction*>& makers_of(uint32_t function);
+    const std::vector<bool>& tangents_of(uint32_t function, std::span<const Variation> arguments);
+    Variation variation_at(const Frame& frame, Value value) const;
+    // Arguments and results of calls, carried values of loops, yields of arms.
+    Results gather(const Frame& frame, std::span<const Value> values) const;
+    void store(Frame& frame, Value value, const Interval& interval, const Variation& variation);
+    void store(Frame& frame, std::span<const Value> values, const Results& results);
+    Results nothing_yet(size_t count) const;
+    void join_into(Results& all, const Results& other) const;
+    Results unknown(const Function& function, std::span<const Value> values, Span cause);
+    void roughen_all(Results& results, const Variation& by, Span where) const;
+    void note_undefined(const Instruction& made, Op op, std::span<const Interval> operands, const Interval& result);
+    void note_derivative(const Instruction& made, Op op, std::span<const Interval> operands, const Interval& result);
+    void note(const Undefined& found);
+    bool is_guarded_division(const Frame& frame, const Instruction& made, Op op) const;
+    Interval sharpened(const Frame& frame, const Instruction& made, Op op, const Interval& result) const;
+
+    Results call(uint32_t function, const Results& arguments, Span span);
+    void pass_faults(uint32_t function, const Results& arguments, Results& results);
+    Results look_inside(uint32_t function, const Results& arguments, Span span);
+    Variation by_facts(const Function& function, const Facts& facts, const Results& arguments,
+                       const Variation* by_others) const;
+    Results by_other_arguments(uint32_t function, const Results& arguments, Span span);
+    std::optional<Interval> by_slope(uint32_t function, const Results& arguments, double useful_radius);
+    Variation variation_of(Frame& frame, const Instruction& made, Op op, std::span<const Interval> operands,
+                           const Interval& result);
+    // Operations of images, in interval_image.cpp.
+    Interval of_image(Op op, std::span<const Interval> operands) const;
+    Partials spline_partials(std::span<const Interval> operands) const;
+    Variation chosen(Frame& frame, const Instruction& made, bool first, bool second, const Variation* by) const;
+    void block(Frame& frame, const Block& block);
+    // How smooth each result of an undecided `if` is where its arms meet: they may meet in value, and in slope.
+    std::vector<Smoothness> meeting(Frame& frame, const Instruction& made, const If& choice, const Results& joined);
+    // Arms that cannot be entered give no values at all.
+    Results arm(Frame& frame, const Block& block, Value condition, bool taken, Span span);
+    bool narrow(Frame& frame, Value condition, bool taken, std::vector<Narrowed>& undo);
+    bool narrow_comparison(Frame& frame, const Instruction& comparison, bool taken, std::vector<Narrowed>& undo);
+
+    void visit(Frame& frame, const Instruction& made, const Operation& kind);
+    void visit(Frame& frame, const Instruction& made, const RealConstant& kind);
+    void visit(Frame& frame, const Instruction& made, const IntConstant& kind);
+    void visit(Frame& frame, const Instruction& made, const BoolConstant& kind);
+    void visit(Frame& frame, const Instruction& made, const ReadInput& kind);
+    void visit(Frame& frame, const Instruction& made, const ReadParameter& kind);
+    void visit(Frame& frame, const Instruction& made, const ReadTable& kind);
+    void visit(Frame& frame, const Instruction& made, const Call& kind);
+    void visit(Frame& frame, const Instruction& made, const PointDerivative& kind);
+    void visit(Frame& frame, const Instruction& made, const If& kind);
+    void visit(Frame& frame, const Instruction& made, const For& kind);
+};
+
+} // namespace haptel::ir

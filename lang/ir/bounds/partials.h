@@ -1,0 +1,43 @@
+// First and second partial derivatives of operations over intervals, from the rules of derivative_rules.cpp: each
+// needed case is differentiated once into a straight line of operations, which is then evaluated for every operand box.
+#pragma once
+
+#include "lang/ir/bounds/interval.h"
+
+#include <map>
+
+namespace haptel::ir {
+
+constexpr size_t operands_max = 4;
+
+struct Partials {
+    Interval first[operands_max];
+    Interval second[operands_max][operands_max]; // symmetric
+    bool may_fault[operands_max] = {};           // the first, as code computes it, may be infinite or NaN
+};
+
+class PartialRules {
+public:
+    // Of a real operation of reals, with respect to the operands whose bit is set in `active`; the others are left 0.
+    // May be infinite where the true derivative has no bound. `with_second`: second partials as well.
+    Partials of(Op op, std::span<const Interval> operands, uint32_t active, bool with_second);
+
+private:
+    struct Step {
+        Op op = Op::add;
+        Interval constant{0, 0}; // where the step has no operands
+        std::vector<uint32_t> operands;
+    };
+    struct Line {
+        std::vector<Step> steps;                                      // their values follow the operands'
+        std::vector<std::pair<uint32_t, uint32_t>> first;             // operand, where
+        std::vector<std::tuple<uint32_t, uint32_t, uint32_t>> second; // operand, operand, where
+        size_t steps_for_first = 0;
+    };
+    std::map<std::pair<Op, uint32_t>, Line> lines;
+    std::vector<Interval> values; // of one evaluation; kept for its memory
+
+    static Line differentiated(Op op, uint32_t active);
+};
+
+} // namespace haptel::ir

@@ -1,0 +1,18 @@
+// How smooth one operation is over the intervals that its operands lie in.
+#pragma once
+
+#include "lang/ir/bounds/variation.h"
+
+#include <span>
+
+namespace haptel::ir {
+
+// `active`: a bit per operand that depends on the point. A kink or jump that the intervals exclude does not count, nor
+// does one that only operands can reach which do not depend on the point.
+Smoothness smoothness_of(Op op, std::span<const Interval> operands, uint32_t active, const Interval& result,
+                         const Partials& partials);
+
+// What is known of the jumps of an operation that jumps; `operand`: its first.
+std::optional<Variation::Wrap> wrap_made_by(Op op, std::span<const Interval> operands, const Variation& operand);
+
+} // namespace haptel::ir

@@ -1,0 +1,374 @@
+#include "lang/ir/bounds/variation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace haptel::ir {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr double rounding_up = 1 + 1e-14; // norms are computed to nearest
+constexpr size_t axes = Variation::directions;
+constexpr size_t pair_of[axes][axes] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}; // in `hessian`
+
+double size_of(const Interval& a)
+{
+    return std::max(std::fabs(a.minimum), std::fabs(a.maximum));
+}
+
+// An infinite bound times an exact zero is zero: what is bounded is a finite number.
+double times(double a, double b)
+{
+    return a == 0 || b == 0 ? 0 : a * b;
+}
+
+double norm(std::span<const Interval> parts)
+{
+    double sum = 0;
+    for (const Interval& part : parts) sum += times(size_of(part), size_of(part));
+    return std::sqrt(sum) * rounding_up;
+}
+
+// Spectral norm of a symmetric matrix: at most its largest sum of a row, and at most its Frobenius norm.
+double spectral_norm(const std::array<Interval, 6>& matrix)
+{
+    double rows = 0, squares = 0;
+    for (size_t j = 0; j < axes; ++j) {
+        double row = 0;
+        for (size_t k = 0; k < axes; ++k) {
+            const double part = size_of(matrix[pair_of[j][k]]);
+            row += part;
+            squares += times(part, part);
+        }
+        rows = std::max(rows, row);
+    }
+    return std::min(rows, std::sqrt(squares)) * rounding_up;
+}
+
+Interval square(const Interval& a)
+{
+    Interval product = multiply(a, a);
+    return {std::max(product.minimum, 0.0), product.maximum};
+}
+
+// Spectral norm of the Jacobian whose rows these are.
+double jacobian_norm(std::span<const Variation> rows)
+{
+    double squares = 0;
+    for (const Variation& row : rows) squares += times(row.slope, row.slope);
+    double gram_norm = 0; // largest row sum of J J^T
+    for (const Variation& row : rows) {
+        double sum = 0;
+        for (const Variation& other : rows) {
+            Interval product{0, 0};
+            for (size_t j = 0; j < axes; ++j)
+                product = add(product,
+                              &row == &other ? square(row.gradient[j]) : multiply(row.gradient[j], other.gradient[j]));
+            sum += size_of(product);
+        }
+        gram_norm = std::max(gram_norm, sum);
+    }
+    return std::sqrt(std::min(squares, gram_norm)) * rounding_up;
+}
+
+// Norm of the second derivative of a vector whose components these are.
+double second_norm(std::span<const Variation> rows)
+{
+    double squares = 0;
+    for (const Variation& row : rows) squares += times(row.curvature, row.curvature);
+    return std::sqrt(squares) * rounding_up;
+}
+
+Interval around_zero(double size)
+{
+    return {-size, size};
+}
+
+void tighten(Variation& variation, bool second)
+{
+    variation.slope = std::min(variation.slope, norm(variation.gradient));
+    if (second) variation.curvature = std::min(variation.curvature, spectral_norm(variation.hessian));
+}
+
+Variation roughest_of(std::span<const Variation> parts)
+{
+    Variation all;
+    for (const Variation& part : parts) {
+        if (!part.is_active) continue;
+        all.is_active = true;
+        roughen(all, part.smoothness, part.cause);
+    }
+    return all;
+}
+
+Smoothness of_power(uint32_t power)
+{
+    return power == 1 ? Smoothness::c0 : power == 2 ? Smoothness::c1 : Smoothness::c2;
+}
+
+bool is_length(Op op)
+{
+    return op == Op::length2 || op == Op::length3 || op == Op::length4;
+}
+
+// A length that is not 0 is smooth in the squares of its parts: of kinks where they are 0, twice the power is left.
+void smooth_in_length(std::span<const Variation> parts, Variation& made)
+{
+    Variation rest;
+    for (const Variation& part : parts) {
+        if (!part.is_active) continue;
+        const Smoothness left = part.kink != 0 ? of_power(2 * part.kink_power) : part.smoothness;
+        roughen(rest, std::max(left, part.smoothness), part.cause);
+    }
+    made.smoothness = rest.smoothness;
+    made.cause = rest.cause;
+}
+
+// Operations that keep a kink where the value is 0: products raise it to a power, what is smooth may be a factor.
+void keep_kink(Op op, std::span<const Variation> variations, Variation& made)
+{
+    if (op != Op::mul && op != Op::neg && op != Op::div) return;
+    uint32_t kink = 0, power = 0;
+    for (size_t i = 0; i < variations.size(); ++i) {
+        const Variation& a = variations[i];
+        const bool is_smooth = !a.is_active || a.smoothness >= Smoothness::c2;
+        const bool is_numerator = op != Op::div || i == 0;
+        if (is_smooth && a.kink == 0) continue;
+        if (a.kink == 0 || !is_numerator || (kink != 0 && kink != a.kink)) return;
+        kink = a.kink;
+        power += a.kink_power;
+    }
+    if (kink == 0) return;
+    made.kink = kink;
+    made.kink_power = power;
+    made.smoothness = of_power(power);
+}
+
+using Wrap = Variation::Wrap;
+
+// What does not jump wraps by 0; a constant from where it is.
+Wrap wrap_of(const Variation& a, const Interval& value)
+{
+    if (a.wrap) return *a.wrap;
+    const bool is_constant = !a.is_active && value.is_point();
+    return {0, is_constant ? std::optional(value.minimum) : std::nullopt, a.smoothness};
+}
+
+Wrap negated(const Wrap& a)
+{
+    return {-a.by, a.from ? std::optional(-*a.from) : std::nullopt, a.between};
+}
+
+bool is_whole(double by)
+{
+    return std::isfinite(by) && std::floor(by) == by;
+}
+
+std::optional<Wrap> sum(const Wrap& a, const Wrap& b)
+{
+    const Smoothness between = std::min(a.between, b.between);
+    if (a.by != 0 && b.by != 0)
+        return is_whole(a.by) && is_whole(b.by) ? std::optional(Wrap{1, {}, between}) : std::nullopt;
+    return Wrap{a.by + b.by, a.from && b.from ? std::optional(*a.from + *b.from) : std::nullopt, between};
+}
+
+// A wrap moves with the value; folded at its middle it is a kink, and none to what repeats with every whole number.
+void keep_wrap(Op op, std::span<const Interval> operands, std::span<const Variation> variations, Variation& made)
+{
+    if (std::none_of(variations.begin(), variations.end(), [](const Variation& part) { return part.wrap.has_value(); }))
+        return;
+    const Wrap a = wrap_of(variations[0], operands[0]);
+    if (op == Op::sinturn || op == Op::costurn) made.smoothness = smoothness_but_for_turns(variations[0]);
+    if (op == Op::abs && a.from == -0.5 * a.by) made.smoothness = std::min(a.between, Smoothness::c0);
+    if (op == Op::neg) made.wrap = negated(a);
+    if (variations.size() != 2) return;
+    const Wrap b = wrap_of(variations[1], operands[1]);
+    const auto constant = [](const Wrap& wrap) { return wrap.by == 0 ? wrap.from : std::nullopt; };
+    const auto product = [](const Wrap& wrap, double by) {
+        return Wrap{wrap.by * by, wrap.from ? std::optional(*wrap.from * by) : std::nullopt, wrap.between};
+    };
+    if (op == Op::add) made.wrap = sum(a, b);
+    if (op == Op::sub) made.wrap = sum(a, negated(b));
+    if (op == Op::mul && constant(b)) made.wrap = product(a, *b.from);
+    if (op == Op::mul && constant(a)) made.wrap = product(b, *a.from);
+    if (op == Op::div && constant(b))
+        made.wrap = {a.by / *b.from, a.from ? std::optional(*a.from / *b.from) : std::nullopt, a.between};
+}
+
+bool is_bounded(const std::array<Interval, axes>& gradient)
+{
+    return std::all_of(gradient.begin(), gradient.end(),
+                       [](const Interval& part) { return std::isfinite(size_of(part)); });
+}
+
+// A gradient without bound, of partials and gradients that have some.
+bool overflows(const Partials& partials, std::span<const Variation> variations, const Variation& made)
+{
+    for (size_t i = 0; i < variations.size(); ++i)
+        if (variations[i].is_active &&
+            !(std::isfinite(size_of(partials.first[i])) && is_bounded(variations[i].gradient)))
+            return false;
+    return !is_bounded(made.gradient);
+}
+
+} // namespace
+
+Variation axis(size_t direction)
+{
+    Variation variation;
+    variation.is_active = variation.has_tangent = true;
+    variation.gradient[direction] = {1, 1};
+    variation.slope = 1;
+    return variation;
+}
+
+Variation unknown_variation(Span where)
+{
+    Variation variation;
+    variation.is_active = variation.has_tangent = true;
+    variation.smoothness = Smoothness::unknown;
+    variation.cause = {where, {}};
+    variation.gradient.fill(around_zero(infinity));
+    variation.hessian.fill(around_zero(infinity));
+    variation.slope = variation.curvature = infinity;
+    variation.may_fault = true;
+    return variation;
+}
+
+void roughen(Variation& variation, Smoothness smoothness, const Cause& cause)
+{
+    if (smoothness >= variation.smoothness) return;
+    variation.smoothness = smoothness;
+    variation.cause = cause;
+}
+
+Variation join(const Variation& a, const Variation& b)
+{
+    Variation all;
+    all.is_active = a.is_active || b.is_active;
+    all.has_tangent = a.has_tangent || b.has_tangent;
+    all.may_fault = a.may_fault || b.may_fault;
+    roughen(all, a.smoothness, a.cause);
+    roughen(all, b.smoothness, b.cause);
+    for (size_t j = 0; j < all.gradient.size(); ++j) all.gradient[j] = join(a.gradient[j], b.gradient[j]);
+    for (size_t j = 0; j < all.hessian.size(); ++j) all.hessian[j] = join(a.hessian[j], b.hessian[j]);
+    all.slope = std::max(a.slope, b.slope);
+    all.curvature = std::max(a.curvature, b.curvature);
+    return all;
+}
+
+Smoothness smoothness_but_for_turns(const Variation& variation)
+{
+    return variation.wrap && is_whole(variation.wrap->by) ? variation.wrap->between : variation.smoothness;
+}
+
+Variation intersect(const Variation& a, const Variation& b)
+{
+    Variation both = a.smoothness >= b.smoothness ? a : b;
+    both.is_active = a.is_active && b.is_active;
+    both.may_fault = a.may_fault && b.may_fault;
+    for (size_t j = 0; j < both.gradient.size(); ++j) both.gradient[j] = intersect(a.gradient[j], b.gradient[j]);
+    for (size_t j = 0; j < both.hessian.size(); ++j) both.hessian[j] = intersect(a.hessian[j], b.hessian[j]);
+    both.slope = std::min(a.slope, b.slope);
+    both.curvature = std::min(a.curvature, b.curvature);
+    return both;
+}
+
+Variation chain(Op op, std::span<const Interval> operands, std::span<const Variation> variations,
+                const Partials& partials, bool second)
+{
+    Variation made = roughest_of(variations);
+    for (size_t i = 0; i < variations.size(); ++i)
+        made.may_fault |= variations[i].has_tangent && (variations[i].may_fault || partials.may_fault[i]);
+    if (!made.is_active) return made;
+    // The direction of a length is a unit vector, and turns the slower the longer it is: as an angle does.
+    const bool is_norm = is_length(op), is_angle = op == Op::atan2;
+    Partials by = partials;
+    double shortest = 0;
+    for (size_t i = 0; i < operands.size() && (is_norm || is_angle); ++i) {
+        const double least = std::max({0.0, operands[i].minimum, -operands[i].maximum});
+        shortest += least * least;
+    }
+    shortest = std::sqrt(shortest) / rounding_up;
+    const double steepest = is_norm ? 1 : 1 / shortest;
+    for (size_t i = 0; i < operands.size() && (is_norm || is_angle); ++i)
+        by.first[i] = intersect(by.first[i], around_zero(steepest));
+
+    double slope = 0, curvature = 0;
+    for (size_t i = 0; i < variations.size(); ++i) {
+        const Variation& a = variations[i];
+        if (!a.is_active) continue;
+        slope += times(size_of(by.first[i]), a.slope);
+        curvature += times(size_of(by.first[i]), a.curvature);
+        for (size_t j = 0; j < axes; ++j)
+            made.gradient[j] = add(made.gradient[j], multiply(by.first[i], a.gradient[j]));
+        if (!second) continue;
+        for (size_t j = 0; j < made.hessian.size(); ++j)
+            made.hessian[j] = add(made.hessian[j], multiply(by.first[i], a.hessian[j]));
+        for (size_t l = 0; l < variations.size(); ++l) {
+            const Variation& b = variations[l];
+            if (!b.is_active) continue;
+            curvature += times(size_of(by.second[i][l]), times(a.slope, b.slope));
+            for (size_t j = 0; j < axes; ++j)
+                for (size_t k = j; k < axes; ++k) {
+                    const Interval product =
+                        i == l && j == k ? square(a.gradient[j]) : multiply(a.gradient[j], b.gradient[k]);
+                    Interval& sum = made.hessian[pair_of[j][k]];
+                    sum = add(sum, multiply(by.second[i][l], product));
+                }
+        }
+    }
+    if (is_norm || is_angle) { // second partials: 1 / r at most of a length r, 1 / r^2 of an angle
+        const double turns = jacobian_norm(variations);
+        slope = std::min(slope, times(turns, steepest));
+        const double bend = times(turns * turns, steepest / shortest);
+        curvature = std::min(curvature, bend + times(steepest, second_norm(variations)));
+    }
+    made.may_fault |= overflows(by, variations, made);
+    made.slope = slope * rounding_up;
+    made.curvature = curvature * rounding_up;
+    tighten(made, second);
+    keep_kink(op, variations, made);
+    keep_wrap(op, operands, variations, made);
+    if (is_norm && shortest > 0) smooth_in_length(variations, made);
+    return made;
+}
+
+Variation chain(const Facts& facts, std::span<const Variation> arguments)
+{
+    Variation made = roughest_of(arguments);
+    for (const Variation& argument : arguments) {
+        made.may_fault |= argument.may_fault;
+        made.may_fault |= argument.has_tangent && !facts.slope; // a bound of the slope says that there is one
+    }
+    if (!made.is_active) return made;
+    if (facts.smoothness) roughen(made, *facts.smoothness, arguments.empty() ? Cause{} : arguments[0].cause);
+    const double jacobian = jacobian_norm(arguments), second = second_norm(arguments);
+    const double slope = facts.slope.value_or(infinity), curvature = facts.curvature.value_or(infinity);
+
+    double column[axes];
+    for (size_t j = 0; j < axes; ++j) {
+        double squares = 0;
+        for (const Variation& argument : arguments)
+            squares += times(size_of(argument.gradient[j]), size_of(argument.gradient[j]));
+        column[j] = std::sqrt(squares) * rounding_up;
+        made.gradient[j] = around_zero(times(slope, column[j]));
+    }
+    for (size_t j = 0; j < axes; ++j)
+        for (size_t k = j; k < axes; ++k) {
+            double squares = 0;
+            for (const Variation& argument : arguments) {
+                const double part = size_of(argument.hessian[pair_of[j][k]]);
+                squares += times(part, part);
+            }
+            made.hessian[pair_of[j][k]] =
+                around_zero(times(curvature, column[j] * column[k]) + times(slope, std::sqrt(squares) * rounding_up));
+        }
+    made.slope = times(slope, jacobian) * rounding_up;
+    made.curvature = (times(curvature, jacobian * jacobian) + times(slope, second)) * rounding_up;
+    tighten(made, true);
+    return made;
+}
+
+} // namespace haptel::ir

@@ -1,0 +1,125 @@
+// Textures: their parameters' places in the block, their bodies, their entries.
+#include "lang/lower/lower.h"
+
+#include "lang/abi/abi.h"
+#include "lang/ir/derive/point_derivative.h"
+#include "lang/ir/verify.h"
+#include "lang/lower/lowering.h"
+
+namespace haptel::lang {
+namespace {
+
+uint32_t size_in_block(ir::Type type)
+{
+    if (type == ir::Type::image) return sizeof(const haptel_image*);
+    return type == ir::Type::real ? sizeof(double) : sizeof(int32_t);
+}
+
+uint32_t aligned(uint32_t offset, uint32_t alignment)
+{
+    return (offset + alignment - 1) / alignment * alignment;
+}
+
+void lay_out(ir::Texture& made, const CheckedTexture& texture)
+{
+    uint32_t end = sizeof(haptel_block_head);
+    for (const CheckedParameter& parameter : texture.parameters) {
+        ir::Parameter& place = made.parameters.emplace_back();
+        place.name = parameter.tree->name.text;
+        place.unit = parameter.unit;
+        place.doc = parameter.tree->doc;
+        place.type = ir_type(parameter.symbol->type);
+        place.value = parameter.value;
+        place.minimum = parameter.minimum;
+        place.maximum = parameter.maximum;
+        place.offset = aligned(end, size_in_block(place.type));
+        place.span = parameter.tree->span;
+        end = place.offset + size_in_block(place.type);
+    }
+    made.block_size = aligned(end, alignof(double));
+}
+
+uint32_t reads_bit(ir::Input input)
+{
+    using enum ir::Input;
+    if (input <= p_z) return HAPTEL_READS_POINT;
+    if (input <= n_z) return HAPTEL_READS_NORMAL;
+    if (input <= uv_y) return HAPTEL_READS_UV;
+    if (input == time) return HAPTEL_READS_TIME;
+    if (input < center_x) return 0; // Jacobians come with what they are of
+    if (input <= center_z) return HAPTEL_READS_CENTER;
+    if (input <= extent_z) return HAPTEL_READS_EXTENT;
+    return HAPTEL_READS_FOOTPRINT;
+}
+
+uint32_t reads_of(const ir::Block& block)
+{
+    uint32_t reads = 0;
+    for (const ir::Instruction& made : block.instructions) {
+        if (auto read = std::get_if<ir::ReadInput>(&made.kind)) reads |= reads_bit(read->input);
+        if (auto choice = std::get_if<ir::If>(&made.kind))
+            for (const ir::Block& arm : choice->arms) reads |= reads_of(arm);
+        if (auto loop = std::get_if<ir::For>(&made.kind)) reads |= reads_of(loop->body.front());
+    }
+    return reads;
+}
+
+// 12 000 000 as "1.2e7": nobody counts the digits.
+std::string magnitude(uint64_t count)
+{
+    int exponent = 0;
+    double digits = static_cast<double>(count);
+    for (; digits >= 10; digits /= 10) ++exponent;
+    const std::string tenths = std::to_string(static_cast<int>(digits * 10));
+    return tenths.substr(0, 1) + "." + tenths.substr(1) + "e" + std::to_string(exponent);
+}
+
+} // namespace
+
+void ModuleLowering::texture(const CheckedTexture& texture)
+{
+    ir::Texture made;
+    made.name = texture.tree->name.text;
+    made.doc = texture.tree->doc;
+    made.span = texture.tree->span;
+    lay_out(made, texture);
+
+    BodyLowering body(*this, unique(made.name), texture.slot_count);
+    for (const CheckedOutput& output : texture.outputs) {
+        body.variable(*output.symbol) = {body.builder.real(1)};
+        made.writes |= output.writes;
+        made.output_spans.push_back(output.symbol->span);
+    }
+    Values results = body.whole_body(*texture.tree->body, float_type);
+    for (const CheckedOutput& output : texture.outputs) results.push_back(body.variable(*output.symbol)[0]);
+    made.body = body.builder.finish(results);
+    if (diagnostics.has_errors()) return;
+    made.reads = reads_of(module.functions[made.body].body);
+
+    const auto refuse_costly = [&](uint32_t entry) {
+        const uint64_t count = ir::operations_max(module, entry);
+        if (count > ir::operations_limit)
+            diagnostics
+                .error(texture.tree->name.span, "too-costly",
+                       "'" + made.name + "' takes up to " + magnitude(count) +
+                           " operations at one point, expected at most " + magnitude(ir::operations_limit))
+                .hint = "loops inside loops multiply: lower their bounds";
+        return count > ir::operations_limit;
+    };
+    if (is_too_large(texture.tree->name.span) || refuse_costly(made.body)) return;
+    differentiator.make_entries(made);
+    if (refuse_costly(made.height_gradient)) return;
+    module.textures.push_back(std::move(made));
+}
+
+ir::Module lower(const CheckedProgram& program, std::string_view only_texture, Diagnostics& diagnostics)
+{
+    ir::Module module;
+    ModuleLowering lowering(module, diagnostics);
+    for (const CheckedTexture& texture : program.textures)
+        if (only_texture.empty() || texture.tree->name.text == only_texture) lowering.texture(texture);
+    ir::remove_unresolved(module);
+    return module;
+}
+
+} // namespace haptel::lang

@@ -1,0 +1,378 @@
+// Expressions to instructions.
+#include "lang/lower/lowering.h"
+#include "lang/syntax/operators.h"
+#include "lang/syntax/swizzle.h"
+
+#include <algorithm>
+
+namespace haptel::lang {
+
+using namespace ast;
+using ir::Op;
+using ir::Value;
+
+namespace {
+
+constexpr uint32_t nesting_limit = 500; // of expressions, statements and calls under work: bounds the stack
+
+constexpr ir::Input first_input[input_name_count] = {ir::Input::p_x,      ir::Input::n_x,      ir::Input::uv_x,
+                                                     ir::Input::time,     ir::Input::center_x, ir::Input::extent_x,
+                                                     ir::Input::footprint};
+constexpr uint32_t input_size[input_name_count] = {3, 3, 2, 1, 3, 3, 1};
+
+Value conversion(ir::Builder& builder, Value value, Scalar from, Scalar to)
+{
+    if (from == to) return value;
+    const auto op = [&](Op name, Value a) { return builder.operation(name, {a}); };
+    switch (to) {
+    case Scalar::float_:
+        if (from == Scalar::bool_) return op(Op::i_to_r, op(Op::b_to_i, value));
+        return op(from == Scalar::int_ ? Op::i_to_r : Op::u_to_r, value);
+    case Scalar::int_:
+        if (from == Scalar::bool_) return op(Op::b_to_i, value);
+        return op(from == Scalar::float_ ? Op::r_to_i : Op::u_as_i, value);
+    case Scalar::uint_:
+        if (from == Scalar::bool_) return op(Op::i_as_u, op(Op::b_to_i, value));
+        return op(from == Scalar::float_ ? Op::r_to_u : Op::i_as_u, value);
+    case Scalar::bool_:
+        if (from == Scalar::float_) return op(Op::lnot, builder.operation(Op::eq, {value, builder.real(0)}));
+        if (from == Scalar::int_) return op(Op::lnot, builder.operation(Op::ieq, {value, builder.i32(0)}));
+        return op(Op::lnot, builder.operation(Op::ueq, {value, builder.u32(0)}));
+    case Scalar::error:
+    case Scalar::image_:
+    case Scalar::void_: break;
+    }
+    return value;
+}
+
+// So cheap that choosing between two of them needs no branch.
+bool is_leaf(const Expression& e)
+{
+    if (auto unary = std::get_if<Unary>(&e.node)) return is_leaf(*unary->operand);
+    if (auto member = std::get_if<Member>(&e.node)) return is_leaf(*member->object);
+    return std::holds_alternative<NumberLiteral>(e.node) || std::holds_alternative<NameExpression>(e.node) ||
+           std::holds_alternative<BoolLiteral>(e.node);
+}
+
+} // namespace
+
+ir::Type ir_type(Type type)
+{
+    switch (type.scalar) {
+    case Scalar::int_: return ir::Type::i32;
+    case Scalar::uint_: return ir::Type::u32;
+    case Scalar::bool_: return ir::Type::boolean;
+    case Scalar::image_: return ir::Type::image;
+    case Scalar::error:
+    case Scalar::void_:
+    case Scalar::float_: break;
+    }
+    return ir::Type::real;
+}
+
+Values BodyLowering::zeros(Type type)
+{
+    switch (ir_type(type)) {
+    case ir::Type::i32: return Values(type.components(), builder.i32(0));
+    case ir::Type::u32: return Values(type.components(), builder.u32(0));
+    case ir::Type::boolean: return Values(type.components(), builder.boolean(false));
+    case ir::Type::image: // no variable is one
+    case ir::Type::real: break;
+    }
+    return Values(type.components(), builder.real(0));
+}
+
+bool BodyLowering::too_deep(Span span)
+{
+    if (owner.nesting <= nesting_limit) return false;
+    owner.diagnostics.error(span, "too-deep", "expressions and calls nest too deep here").hint =
+        "put parts into variables";
+    return true;
+}
+
+Values BodyLowering::expression(const Expression& e)
+{
+    const Nesting nesting(owner.nesting);
+    if (too_deep(e.span)) return zeros(e.type);
+    Values made = std::visit([&](const auto& node) { return lower(e, node); }, e.node);
+    builder.span = e.span;
+    return made;
+}
+
+Values BodyLowering::converted(const Expression& e, Type to)
+{
+    return convert(expression(e), e.type, to);
+}
+
+Values BodyLowering::convert(const Values& parts, Type from, Type to)
+{
+    Values made;
+    for (Value part : parts) made.push_back(conversion(builder, part, from.scalar, to.scalar));
+    return made;
+}
+
+Values BodyLowering::lower(const Expression& e, const ErrorExpression&)
+{
+    return zeros(e.type);
+}
+
+Values BodyLowering::lower(const Expression& e, const BraceList& node)
+{
+    Values parts;
+    for (const ExpressionPtr& cell : node.elements) {
+        const Values more = converted(*cell, e.type.element());
+        parts.insert(parts.end(), more.begin(), more.end());
+    }
+    return parts;
+}
+
+Values BodyLowering::lower(const Expression& e, const NumberLiteral& node)
+{
+    builder.span = e.span;
+    if (e.type == float_type) return {builder.real(node.value)};
+    const auto bits = static_cast<uint32_t>(node.integer);
+    if (e.type == uint_type) return {builder.u32(bits)};
+    return {builder.i32(static_cast<int32_t>(bits))};
+}
+
+Values BodyLowering::lower(const Expression& e, const BoolLiteral& node)
+{
+    builder.span = e.span;
+    return {builder.boolean(node.value)};
+}
+
+Values BodyLowering::lower(const Expression& e, const NameExpression& node)
+{
+    builder.span = e.span;
+    const Symbol& symbol = *node.symbol;
+    switch (symbol.kind) {
+    case SymbolKind::local: return variables[symbol.slot];
+    case SymbolKind::constant:
+    case SymbolKind::table: return constant(symbol);
+    case SymbolKind::input: return input(symbol.input);
+    case SymbolKind::texture_parameter: {
+        Value value = builder.texture_parameter(symbol.slot, ir_type(symbol.type));
+        if (symbol.range && symbol.type == int_type) {
+            // Whatever the block holds: loops and tables rely on the range.
+            value = builder.operation(Op::imax, {value, builder.i32(static_cast<int32_t>(symbol.range->minimum))});
+            value = builder.operation(Op::imin, {value, builder.i32(static_cast<int32_t>(symbol.range->maximum))});
+        } else if (symbol.range) {
+            value = builder.operation(Op::umax, {value, builder.u32(static_cast<uint32_t>(symbol.range->minimum))});
+            value = builder.operation(Op::umin, {value, builder.u32(static_cast<uint32_t>(symbol.range->maximum))});
+        }
+        return {value};
+    }
+    case SymbolKind::function: break;
+    }
+    return zeros(e.type);
+}
+
+Values BodyLowering::input(InputName name)
+{
+    const auto index = static_cast<uint32_t>(name);
+    if (!passed_inputs[index].empty()) return passed_inputs[index];
+    Values made; // an entry reads; the builder shares equal reads
+    for (uint32_t i = 0; i < input_size[index]; ++i)
+        made.push_back(builder.input(static_cast<ir::Input>(static_cast<uint32_t>(first_input[index]) + i)));
+    return made;
+}
+
+void BodyLowering::input_parameters(uint32_t reads)
+{
+    for (uint32_t index = 0; index < input_name_count; ++index)
+        for (uint32_t i = 0; (reads >> index & 1) && i < input_size[index]; ++i)
+            passed_inputs[index].push_back(builder.parameter(ir::Type::real));
+}
+
+Values BodyLowering::constant(const Symbol& symbol)
+{
+    Values made;
+    for (const ConstantPart& part : symbol.value) {
+        if (auto real = std::get_if<double>(&part))
+            made.push_back(builder.real(*real));
+        else if (auto truth = std::get_if<bool>(&part))
+            made.push_back(builder.boolean(*truth));
+        else if (symbol.type.scalar == Scalar::uint_)
+            made.push_back(builder.u32(std::get<uint32_t>(part)));
+        else
+            made.push_back(builder.i32(static_cast<int32_t>(std::get<uint32_t>(part))));
+    }
+    return made;
+}
+
+Values BodyLowering::lower(const Expression& e, const Unary& node)
+{
+    Values parts = expression(*node.operand);
+    builder.span = e.span;
+    for (Value& part : parts) {
+        const bool is_real = builder.type(part) == ir::Type::real;
+        const bool is_unsigned = builder.type(part) == ir::Type::u32;
+        const auto zero = [&] { return is_unsigned ? builder.u32(0) : builder.i32(0); };
+        const auto ones = [&] { return is_unsigned ? builder.u32(UINT32_MAX) : builder.i32(-1); };
+        switch (node.op) {
+        case UnaryOp::negate:
+            part = is_real ? builder.operation(Op::neg, {part}) : integer(Op::isub, zero(), part);
+            break;
+        case UnaryOp::plus: break;
+        case UnaryOp::logical_not: part = builder.operation(Op::lnot, {part}); break;
+        case UnaryOp::bit_not: part = integer(Op::ixor, part, ones()); break;
+        }
+    }
+    return parts;
+}
+
+// Flat, left to right: the types follow by the same rules as in the checker.
+Values BodyLowering::lower(const Expression&, const Chain& node)
+{
+    Values left = expression(*node.first);
+    Type left_type = node.first->type;
+    for (const Chain::Link& link : node.rest) {
+        const Values right = expression(*link.operand);
+        builder.span = join(node.first->span, link.operand->span);
+        left = binary(link.op, left, left_type, right, link.operand->type);
+        left_type = operator_types(link.op, left_type, link.operand->type)->result;
+    }
+    return left;
+}
+
+Values BodyLowering::binary(BinaryOp op, const Values& a, Type a_type, const Values& b, Type b_type)
+{
+    const OperatorTypes types = *operator_types(op, a_type, b_type);
+    const Values left = convert(a, a_type, types.left), right = convert(b, b_type, types.right);
+    if (op == BinaryOp::multiply && is_linear_product(a_type, b_type)) return linear_product(left, right, a_type.size);
+    const size_t size = std::max(left.size(), right.size());
+    Values made;
+    for (size_t i = 0; i < size; ++i)
+        made.push_back(binary_scalar(op, left[left.size() == 1 ? 0 : i], right[right.size() == 1 ? 0 : i]));
+    if (types.result.components() == size) return made;
+    // == and != of vectors and matrices: of all components
+    const Op joined = op == BinaryOp::equal ? Op::land : Op::lor;
+    Value all = made[0];
+    for (size_t i = 1; i < size; ++i) all = builder.operation(joined, {all, made[i]});
+    return {all};
+}
+
+// m * v, v * m, m * m, of matrices of `size`. A row vector has a row, a column vector a column.
+Values BodyLowering::linear_product(const Values& left, const Values& right, size_t size)
+{
+    const size_t rows = left.size() / size, columns = right.size() / size;
+    Values made;
+    for (size_t column = 0; column < columns; ++column)
+        for (size_t row = 0; row < rows; ++row) {
+            Value sum{};
+            for (size_t i = 0; i < size; ++i) {
+                const Value term = builder.operation(Op::mul, {left[i * rows + row], right[column * size + i]});
+                sum = i == 0 ? term : builder.operation(Op::add, {sum, term});
+            }
+            made.push_back(sum);
+        }
+    return made;
+}
+
+Value BodyLowering::integer(Op op, Value a, Value b)
+{
+    const auto as_signed = [&](Value v) {
+        return builder.type(v) == ir::Type::u32 ? builder.operation(Op::u_as_i, {v}) : v;
+    };
+    const bool is_unsigned = builder.type(a) == ir::Type::u32;
+    const Value made = builder.operation(op, {as_signed(a), as_signed(b)});
+    return is_unsigned ? builder.operation(Op::i_as_u, {made}) : made;
+}
+
+Value BodyLowering::binary_scalar(BinaryOp op, Value a, Value b)
+{
+    const ir::Type type = builder.type(a);
+    const bool is_real = type == ir::Type::real, is_unsigned = type == ir::Type::u32;
+    const auto make = [&](Op name, Value x, Value y) { return builder.operation(name, {x, y}); };
+    const auto negated = [&](Value x) { return builder.operation(Op::lnot, {x}); };
+    const Op less = is_real ? Op::lt : is_unsigned ? Op::ult : Op::ilt;
+    const Op less_equal = is_real ? Op::le : is_unsigned ? Op::ule : Op::ile;
+    const auto equal = [&] {
+        if (type == ir::Type::boolean) return negated(make(Op::lxor, a, b));
+        return make(is_real ? Op::eq : is_unsigned ? Op::ueq : Op::ieq, a, b);
+    };
+    switch (op) {
+    case BinaryOp::add: return is_real ? make(Op::add, a, b) : integer(Op::iadd, a, b);
+    case BinaryOp::subtract: return is_real ? make(Op::sub, a, b) : integer(Op::isub, a, b);
+    case BinaryOp::multiply: return is_real ? make(Op::mul, a, b) : integer(Op::imul, a, b);
+    case BinaryOp::divide: return make(is_real ? Op::div : is_unsigned ? Op::udiv : Op::idiv, a, b);
+    case BinaryOp::remainder: return make(is_unsigned ? Op::urem : Op::irem, a, b);
+    case BinaryOp::less: return make(less, a, b);
+    case BinaryOp::less_equal: return make(less_equal, a, b);
+    case BinaryOp::greater: return make(less, b, a);
+    case BinaryOp::greater_equal: return make(less_equal, b, a);
+    case BinaryOp::equal: return equal();
+    case BinaryOp::not_equal: return negated(equal());
+    case BinaryOp::logical_and: return make(Op::land, a, b);
+    case BinaryOp::logical_or: return make(Op::lor, a, b);
+    case BinaryOp::logical_xor: return make(Op::lxor, a, b);
+    case BinaryOp::bit_and: return integer(Op::iand, a, b);
+    case BinaryOp::bit_or: return integer(Op::ior, a, b);
+    case BinaryOp::bit_xor: return integer(Op::ixor, a, b);
+    case BinaryOp::shift_left: return integer(Op::ishl, a, b);
+    case BinaryOp::shift_right:
+        if (!is_unsigned) return integer(Op::ishr, a, b);
+        return make(Op::ushr, a, builder.type(b) == ir::Type::i32 ? builder.operation(Op::i_as_u, {b}) : b);
+    }
+    return a;
+}
+
+// `c ? a : b` is a branch, so that only what is needed is computed and only that can be not a number.
+Values BodyLowering::lower(const Expression& e, const Conditional& node)
+{
+    const Value condition = expression(*node.condition)[0];
+    builder.span = e.span;
+    if (is_leaf(*node.when_true) && is_leaf(*node.when_false)) {
+        Values a = converted(*node.when_true, e.type), b = converted(*node.when_false, e.type);
+        for (size_t i = 0; i < a.size(); ++i) a[i] = builder.operation(Op::select, {condition, a[i], b[i]});
+        return a;
+    }
+    const Nesting region(region_depth);
+    depth = std::max(depth, region_depth);
+    return builder.if_else(
+        condition, [&] { return converted(*node.when_true, e.type); },
+        [&] { return converted(*node.when_false, e.type); });
+}
+
+Values BodyLowering::lower(const Expression&, const Member& node)
+{
+    const Values object = expression(*node.object);
+    const Swizzle swizzle = *parse_swizzle(node.member.text);
+    Values made;
+    for (uint8_t i = 0; i < swizzle.size; ++i) made.push_back(object[swizzle.component[i]]);
+    return made;
+}
+
+// i32 in [0, size - 1]
+Value BodyLowering::index_within(const Expression& index, uint32_t size)
+{
+    Value value = expression(index)[0];
+    if (builder.type(value) == ir::Type::u32)
+        value = builder.operation(Op::u_as_i, {builder.operation(Op::umin, {value, builder.u32(size - 1)})});
+    return builder.clamp_index(value, size);
+}
+
+Values BodyLowering::lower(const Expression& e, const Index& node)
+{
+    auto name = std::get_if<NameExpression>(&node.object->node);
+    if (name && name->symbol->kind == SymbolKind::table) {
+        const Value at = index_within(*node.index, name->symbol->type.array_size);
+        builder.span = e.span;
+        Values made;
+        for (uint32_t table : owner.tables(*name->symbol)) made.push_back(builder.table(table, at));
+        return made;
+    }
+    const Values object = expression(*node.object);
+    const Value at = index_within(*node.index, node.object->type.element_count());
+    builder.span = e.span;
+    const size_t size = e.type.components(), count = object.size() / size;
+    Values picked(object.end() - static_cast<std::ptrdiff_t>(size), object.end());
+    for (size_t i = count - 1; i-- > 0;) {
+        const Value is_here = builder.operation(Op::ieq, {at, builder.i32(static_cast<int32_t>(i))});
+        for (size_t part = 0; part < size; ++part)
+            picked[part] = builder.operation(Op::select, {is_here, object[i * size + part], picked[part]});
+    }
+    return picked;
+}
+
+} // namespace haptel::lang

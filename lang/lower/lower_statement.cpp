@@ -1,0 +1,272 @@
+// Statements to regions that yield what they change.
+//
+// The rest of a block behind a statement that may leave it runs only if it did not. Where one arm of an `if` goes on
+// and the others leave, the rest moves into that arm and no flag is needed: the usual early return.
+#include "lang/lower/lowering.h"
+#include "lang/program/completion.h"
+#include "lang/syntax/operators.h"
+#include "lang/syntax/swizzle.h"
+
+#include <algorithm>
+
+namespace haptel::lang {
+
+using namespace ast;
+using ir::Op;
+using ir::Value;
+
+namespace {
+
+constexpr uint32_t region_max = 256;
+
+std::vector<const Statement*> listed(const Statement* first, std::span<const StatementPtr> rest)
+{
+    std::vector<const Statement*> all;
+    if (first) all.push_back(first);
+    for (const StatementPtr& s : rest) all.push_back(s.get());
+    return all;
+}
+
+} // namespace
+
+BodyLowering::BodyLowering(ModuleLowering& module_lowering, std::string name, uint32_t slot_count)
+    : builder(module_lowering.module, std::move(name)), owner(module_lowering), variables(slot_count + 3)
+{
+}
+
+void BodyLowering::value_parameter(uint32_t slot, Type type)
+{
+    Values& parts = variables[slot];
+    for (uint32_t i = 0; i < type.components(); ++i) parts.push_back(builder.parameter(ir_type(type)));
+}
+
+Values BodyLowering::whole_body(const Statement& body, Type result)
+{
+    result_type = result;
+    builder.span = body.span;
+    variables[returned_slot()] = variables[broken_slot()] = {builder.boolean(false)};
+    variables[result_slot()] = zeros(result);
+    sequence(std::get<ast::Scope>(body.node).statements);
+    return variables[result_slot()];
+}
+
+// ---- flow
+
+BodyLowering::Slots BodyLowering::changed_slots(const std::vector<const Statement*>& statements, Outcome ends) const
+{
+    Slots slots = changed_in(statements);
+    if (ends.returns) slots.insert(slots.end(), {returned_slot(), result_slot()});
+    if (ends.breaks) slots.push_back(broken_slot());
+    return slots;
+}
+
+Values BodyLowering::gather(const Slots& slots) const
+{
+    Values flat;
+    for (uint32_t slot : slots) flat.insert(flat.end(), variables[slot].begin(), variables[slot].end());
+    return flat;
+}
+
+void BodyLowering::scatter(const Slots& slots, std::span<const Value> parts)
+{
+    for (uint32_t slot : slots)
+        for (Value& part : variables[slot]) {
+            part = parts.front();
+            parts = parts.subspan(1);
+        }
+}
+
+// Runs both arms from the same state; afterwards the changed slots hold what the arm that was taken made of them.
+void BodyLowering::choose(Value condition, const Slots& changed, const std::function<void()>& then_arm,
+                          const std::function<void()>& else_arm)
+{
+    if (region_depth >= region_max) {
+        owner.diagnostics.error(builder.span, "too-deep",
+                                "ifs, loops and early returns nest more than " + std::to_string(region_max) +
+                                    " deep here");
+        return;
+    }
+    ++region_depth;
+    depth = std::max(depth, region_depth);
+    const Values before = gather(changed);
+    const auto run = [&](const std::function<void()>& arm) {
+        scatter(changed, before);
+        arm();
+        return gather(changed);
+    };
+    const Values after = builder.if_else(condition, [&] { return run(then_arm); }, [&] { return run(else_arm); });
+    scatter(changed, after);
+    --region_depth;
+}
+
+Value BodyLowering::left()
+{
+    return builder.operation(Op::lor, {variables[returned_slot()][0], variables[broken_slot()][0]});
+}
+
+void BodyLowering::sequence(Statements statements)
+{
+    for (; !statements.empty(); statements = statements.subspan(1)) {
+        const Statement& s = *statements.front();
+        const Statements rest = statements.subspan(1);
+        const Outcome ends = outcome(s);
+        if (!ends.may_leave()) {
+            statement(s, {});
+            continue;
+        }
+        if (!ends.falls_through || rest.empty()) return statement(s, {});
+        if (auto branch = std::get_if<If>(&s.node)) {
+            size_t going_on = branch->arms.back().condition ? 1 : 0;
+            for (const If::Arm& arm : branch->arms) going_on += !arm.body || outcome(*arm.body).falls_through;
+            if (going_on == 1) return statement(s, rest);
+        }
+        statement(s, {});
+        const Slots changed = changed_slots(listed(nullptr, rest), outcome(rest));
+        return choose(left(), changed, [] {}, [&] { sequence(rest); });
+    }
+}
+
+// `rest` follows inside the arm of an `if` that goes on; empty for other statements.
+void BodyLowering::statement(const Statement& s, Statements rest)
+{
+    const Nesting nesting(owner.nesting);
+    if (too_deep(s.span)) return;
+    builder.span = s.span;
+    if (auto declaration = std::get_if<Declaration>(&s.node)) {
+        lower(*declaration);
+    } else if (auto assignment = std::get_if<Assignment>(&s.node)) {
+        lower(*assignment);
+    } else if (auto scope = std::get_if<ast::Scope>(&s.node)) {
+        sequence(scope->statements);
+    } else if (auto branch_node = std::get_if<If>(&s.node)) {
+        const Outcome own = outcome(s), later = outcome(rest);
+        const Outcome either{true, own.returns || later.returns, own.breaks || later.breaks};
+        const Slots changed = changed_slots(listed(&s, rest), either);
+        branch(*branch_node, 0, rest, changed);
+    } else if (auto loop = std::get_if<For>(&s.node)) {
+        lower(*loop);
+    } else if (std::holds_alternative<Break>(s.node)) {
+        variables[broken_slot()] = {builder.boolean(true)};
+    } else if (auto leave = std::get_if<Return>(&s.node)) {
+        variables[result_slot()] = converted(*leave->value, result_type);
+        variables[returned_slot()] = {builder.boolean(true)};
+    }
+}
+
+// From arm `index` on: "if (c) a else (the others)".
+void BodyLowering::branch(const If& node, size_t index, Statements rest, const Slots& changed)
+{
+    if (index == node.arms.size()) return sequence(rest);
+    const If::Arm& arm = node.arms[index];
+    const auto take = [&] {
+        if (arm.body) statement(*arm.body, {});
+        if (rest.empty() || (arm.body && !outcome(*arm.body).falls_through)) return;
+        if (!arm.body || !outcome(*arm.body).may_leave()) return sequence(rest);
+        choose(left(), changed, [] {}, [&] { sequence(rest); });
+    };
+    if (!arm.condition) return take();
+    const Value condition = converted(*arm.condition, bool_type)[0];
+    choose(condition, changed, take, [&] { branch(node, index + 1, rest, changed); });
+}
+
+// ---- variables
+
+void BodyLowering::lower(const Declaration& node)
+{
+    if (node.symbol->kind != SymbolKind::local) return; // constants and tables stand where they are used
+    variables[node.symbol->slot] =
+        node.initializer ? converted(*node.initializer, node.symbol->type) : zeros(node.symbol->type);
+}
+
+void BodyLowering::lower(const Assignment& node)
+{
+    const Expression& target = *node.target;
+    const auto operation = operation_of(node.op);
+    Values value = expression(*node.value);
+    Type type = node.value->type;
+    if (operation) {
+        const Values before = expression(target);
+        builder.span = join(target.span, node.value->span);
+        value = binary(*operation, before, target.type, value, type);
+        type = operator_types(*operation, target.type, type)->result;
+    }
+    value = convert(value, type, target.type);
+    store(target, value);
+}
+
+// Replaces the part of a variable that `target` names.
+void BodyLowering::store(const Expression& target, const Values& value)
+{
+    if (auto name = std::get_if<NameExpression>(&target.node)) {
+        variables[name->symbol->slot] = value;
+        return;
+    }
+    auto member = std::get_if<Member>(&target.node);
+    auto index = std::get_if<Index>(&target.node);
+    const Expression& object = member ? *member->object : *index->object;
+    if (owner.is_too_large(target.span, builder.function().value_types.size())) return; // a choice per element adds up
+    Values whole = expression(object);
+    if (member) {
+        const Swizzle swizzle = *parse_swizzle(member->member.text);
+        for (uint8_t i = 0; i < swizzle.size; ++i) whole[swizzle.component[i]] = value[i];
+    } else {
+        const Value at = index_within(*index->index, object.type.element_count());
+        for (size_t i = 0; i < whole.size(); ++i) {
+            const auto element = static_cast<int32_t>(i / value.size());
+            const Value is_here = builder.operation(Op::ieq, {at, builder.i32(element)});
+            whole[i] = builder.operation(Op::select, {is_here, value[i % value.size()], whole[i]});
+        }
+    }
+    store(object, whole);
+}
+
+// ---- loops
+
+void BodyLowering::lower(const For& node)
+{
+    const LoopPlan& plan = node.plan;
+    const Type type = plan.counter->type;
+    const bool up = plan.step > 0;
+    const bool inclusive =
+        plan.compare == LoopPlan::Compare::less_equal || plan.compare == LoopPlan::Compare::greater_equal;
+    const auto stride = static_cast<int32_t>(up ? plan.step : -plan.step);
+    const Value start = converted(*plan.start, type)[0], bound = converted(*plan.bound, type)[0];
+    builder.span = join(plan.start->span, plan.bound->span);
+    const auto as_signed = [&](Value v) { return type == uint_type ? builder.operation(Op::u_as_i, {v}) : v; };
+
+    // bound - start, rounded up to whole strides; the checker has proven that it does not wrap where it matters
+    Value trips = as_signed(up ? integer(Op::isub, bound, start) : integer(Op::isub, start, bound));
+    trips = builder.operation(Op::iadd, {trips, builder.i32(inclusive ? stride : stride - 1)});
+    trips = builder.operation(Op::idiv, {trips, builder.i32(stride)});
+    if (plan.difference_may_wrap) {
+        const Value beyond = binary_scalar(BinaryOp::less, up ? bound : start, up ? start : bound);
+        trips = builder.operation(Op::select, {beyond, builder.i32(0), trips});
+    }
+
+    const Outcome ends = node.body ? outcome(*node.body) : Outcome{};
+    const Slots changed = node.body ? changed_slots(listed(node.body.get(), {}), ends) : Slots{};
+    if (region_depth >= region_max) return choose(builder.boolean(true), {}, [] {}, [] {}); // which reports it
+    ++region_depth;
+    depth = std::max(depth, region_depth);
+    const Values broken_before = variables[broken_slot()];
+    variables[broken_slot()] = {builder.boolean(false)};
+    const Values before = gather(changed);
+    const Values after =
+        builder.for_loop(trips, plan.trip_max, before, [&](Value iteration, std::span<const Value> carried) {
+            scatter(changed, carried);
+            const Value step = builder.i32(static_cast<int32_t>(plan.step));
+            Value offset = builder.operation(Op::imul, {iteration, step});
+            if (type == uint_type) offset = builder.operation(Op::i_as_u, {offset});
+            variables[plan.counter->slot] = {integer(Op::iadd, start, offset)};
+            if (ends.may_leave())
+                choose(left(), changed, [] {}, [&] { statement(*node.body, {}); });
+            else if (node.body)
+                statement(*node.body, {});
+            return gather(changed);
+        });
+    scatter(changed, after);
+    variables[broken_slot()] = broken_before;
+    --region_depth;
+}
+
+} // namespace haptel::lang

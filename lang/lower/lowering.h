@@ -1,0 +1,166 @@
+// The two classes that lowering is made of: ModuleLowering makes functions and tables once each, BodyLowering turns one
+// body into instructions. Parts of the latter: lower_expression.cpp, lower_call.cpp, lower_builtin.cpp,
+// lower_statement.cpp.
+#pragma once
+
+#include "lang/ir/builder.h"
+#include "lang/ir/derive/differentiate.h"
+#include "lang/program/builtins.h"
+#include "lang/program/checked_program.h"
+#include "lang/program/completion.h"
+#include "lang/text/diagnostic.h"
+
+#include <functional>
+#include <map>
+#include <span>
+#include <vector>
+
+namespace haptel::lang {
+
+// The components of a value.
+using Values = std::vector<ir::Value>;
+
+struct LoweredFunction {
+    uint32_t index = 0;
+    uint32_t reads = 0; // HAPTEL_READS_*: inputs that are passed behind the arguments, in the order of the bits
+    uint32_t depth = 0; // regions and calls inside each other, at most
+};
+
+// Counts how deep the lowering itself is in recursion.
+class Nesting {
+public:
+    explicit Nesting(uint32_t& counter) : depth(counter) { ++depth; }
+    ~Nesting() { --depth; }
+    Nesting(const Nesting&) = delete;
+
+private:
+    uint32_t& depth;
+};
+
+class ModuleLowering {
+public:
+    ModuleLowering(ir::Module& target, Diagnostics& sink) : module(target), diagnostics(sink), differentiator(target) {}
+
+    // `function` and what is passed to it are no parameters any more, but functions of the source or built in. `order`
+    // counts derivatives with respect to the first argument.
+    LoweredFunction function(const FunctionReference& function,
+                             const std::vector<FunctionReference>& function_arguments, uint32_t order);
+    void texture(const CheckedTexture& texture);
+    // One table per component of the elements.
+    const std::vector<uint32_t>& tables(const Symbol& symbol);
+
+    // 0 up to 0, 1 from 1 on, 3 t^2 - 2 t^3 between: what smoothstep is made of, as a function that tells its facts.
+    uint32_t smooth_ramp();
+
+    // Derivatives and functions as arguments can multiply code: reports, once, when there is too much.
+    bool is_too_large(Span span, size_t under_work = 0);
+
+    ir::Module& module;
+    Diagnostics& diagnostics;
+    uint32_t nesting = 0; // of the lowering itself, over all bodies under work
+
+private:
+    struct Key {
+        std::vector<const void*> functions;
+        uint32_t order;
+        auto operator<=>(const Key&) const = default;
+    };
+    LoweredFunction make(const FunctionInfo& info, const std::vector<FunctionReference>& function_arguments);
+    LoweredFunction make(const BuiltinOverload& overload);
+    LoweredFunction make_derivative(const LoweredFunction& of);
+    std::string unique(std::string name);
+
+    std::map<Key, LoweredFunction> functions;
+    std::map<const Symbol*, std::vector<uint32_t>> component_tables;
+    std::map<std::string, uint32_t> names;
+    std::optional<uint32_t> ramp;
+    size_t value_count = 0, counted_functions = 0; // of those made so far
+    bool reported_size = false;
+    ir::Differentiator differentiator;
+};
+
+class BodyLowering {
+public:
+    BodyLowering(ModuleLowering& owner, std::string name, uint32_t slot_count);
+
+    // Parameters first: values, then inputs. A texture has neither: it reads.
+    void value_parameter(uint32_t slot, Type type);
+    void input_parameters(uint32_t reads);
+    void bind_functions(const std::vector<FunctionReference>& passed) { functions = passed; }
+    Values& variable(const Symbol& local) { return variables[local.slot]; }
+
+    Values whole_body(const ast::Statement& body, Type result);
+    Values converted(const ast::Expression& e, Type to);
+
+    ir::Builder builder;
+    uint32_t depth = 0; // LoweredFunction::depth
+
+private:
+    // ---- expressions
+    Values expression(const ast::Expression& e);
+    Values lower(const ast::Expression& e, const ast::ErrorExpression& node);
+    Values lower(const ast::Expression& e, const ast::NumberLiteral& node);
+    Values lower(const ast::Expression& e, const ast::BoolLiteral& node);
+    Values lower(const ast::Expression& e, const ast::NameExpression& node);
+    Values lower(const ast::Expression& e, const ast::Unary& node);
+    Values lower(const ast::Expression& e, const ast::Chain& node);
+    Values lower(const ast::Expression& e, const ast::Conditional& node);
+    Values lower(const ast::Expression& e, const ast::CallExpression& node);
+    Values lower(const ast::Expression& e, const ast::GradCall& node);
+    Values lower(const ast::Expression& e, const ast::Member& node);
+    Values lower(const ast::Expression& e, const ast::Index& node);
+    Values lower(const ast::Expression& e, const ast::BraceList& node);
+    Values convert(const Values& parts, Type from, Type to);
+    Values binary(ast::BinaryOp op, const Values& a, Type a_type, const Values& b, Type b_type);
+    Values linear_product(const Values& left, const Values& right, size_t size);
+    ir::Value binary_scalar(ast::BinaryOp op, ir::Value a, ir::Value b);
+    ir::Value integer(ir::Op op, ir::Value a, ir::Value b); // signed operation, on the bits where operands are u32
+    ir::Value index_within(const ast::Expression& index, uint32_t size);
+    Values input(InputName name);
+    Values constant(const Symbol& symbol);
+    Values zeros(Type type);
+    bool too_deep(Span span);
+
+    // ---- calls
+    Values call(const ast::Expression& e, const CallTarget& target, const std::vector<ast::ExpressionPtr>& arguments,
+                uint32_t order);
+    Values constructor(const ast::Expression& e, const ast::CallExpression& node);
+    FunctionReference resolved(const FunctionReference& reference) const;
+
+    // ---- statements. Besides the variables three more slots hold the flow: whether the function has returned, with
+    // what, and whether the loop was left.
+    using Statements = std::span<const ast::StatementPtr>;
+    using Slots = std::vector<uint32_t>;
+    void sequence(Statements statements);
+    void statement(const ast::Statement& s, Statements rest);
+    void lower(const ast::Declaration& node);
+    void lower(const ast::Assignment& node);
+    void store(const ast::Expression& target, const Values& value);
+    void lower(const ast::For& node);
+    void branch(const ast::If& node, size_t arm, Statements rest, const Slots& changed);
+    void choose(ir::Value condition, const Slots& changed, const std::function<void()>& then_arm,
+                const std::function<void()>& else_arm);
+    // Variables that the statements change, and what of the flow they can change.
+    Slots changed_slots(const std::vector<const ast::Statement*>& statements, Outcome ends) const;
+    Values gather(const Slots& slots) const;
+    void scatter(const Slots& slots, std::span<const ir::Value> parts);
+    ir::Value left();
+    uint32_t returned_slot() const { return static_cast<uint32_t>(variables.size()) - 3; }
+    uint32_t result_slot() const { return static_cast<uint32_t>(variables.size()) - 2; }
+    uint32_t broken_slot() const { return static_cast<uint32_t>(variables.size()) - 1; }
+
+    ModuleLowering& owner;
+    std::vector<Values> variables;            // by Symbol::slot, then the three of the flow
+    std::vector<FunctionReference> functions; // parameters that are functions, by Symbol::slot
+    Values passed_inputs[input_name_count];
+    Type result_type;
+    uint32_t region_depth = 0;
+};
+
+// A built-in function of arguments that already have its parameters' types.
+Values lower_builtin(ModuleLowering& owner, ir::Builder& builder, const BuiltinOverload& overload,
+                     std::span<const Values> arguments);
+
+ir::Type ir_type(Type type); // of its components
+
+} // namespace haptel::lang

@@ -1,0 +1,99 @@
+#include "lang/parameter_value.h"
+
+#include "lang/text/number.h"
+
+#include <charconv>
+#include <cmath>
+
+namespace haptel::lang {
+
+namespace {
+
+std::string_view trimmed(std::string_view text)
+{
+    const size_t first = text.find_first_not_of(" \t");
+    return first == text.npos ? std::string_view{} : text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::string_view si_unit(std::string_view unit)
+{
+    if (unit.ends_with("Hz")) return "Hz";
+    if (unit == "deg" || unit == "rad") return "rad";
+    if (unit == "s" || unit == "ms") return "s";
+    return unit.empty() ? unit : "m";
+}
+
+// What values of this unit look like, for messages.
+std::string expected_number(std::string_view si)
+{
+    if (si == "m") return "a length such as 0.5mm or 60um";
+    if (si == "rad") return "an angle such as 30deg";
+    if (si == "s") return "a time such as 5ms";
+    if (si == "Hz") return "a frequency such as 250Hz";
+    return "a plain number";
+}
+
+std::string shown(double value)
+{
+    char text[32];
+    return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+ParameterValue fail(std::string error, std::string hint = {})
+{
+    return {0, std::move(error), std::move(hint)};
+}
+
+ParameterValue read_boolean(std::string_view text)
+{
+    if (text == "true") return {1};
+    if (text == "false") return {0};
+    return fail("expected true or false, found '" + printable(text) + "'");
+}
+
+ParameterValue read_whole(std::string_view text, bool negative, const Number& number, const ir::Parameter& parameter)
+{
+    const bool is_signed = parameter.type == ir::Type::i32;
+    const double low = std::fmax(parameter.minimum, is_signed ? -2147483648.0 : 0.0);
+    const double high = std::fmin(parameter.maximum, is_signed ? 2147483647.0 : 4294967295.0);
+    const std::string range = "a whole number in " + shown(low) + " .. " + shown(high);
+    if (number.kind == Number::Kind::real || !number.unit.empty())
+        return fail("expected " + range + ", found '" + printable(text) + "'");
+    const double value = negative ? -number.value : number.value;
+    if (value < low || value > high) return fail(printable(text) + " is outside its range: expected " + range);
+    return {value == 0 ? 0 : value};
+}
+
+ParameterValue read_real(std::string_view text, bool negative, const Number& number, const ir::Parameter& parameter)
+{
+    if (!number.unit.empty() && si_unit(number.unit) != parameter.unit)
+        return fail("expected " + expected_number(parameter.unit) + ", found '" + printable(text) + "'");
+    ParameterValue read{negative ? -number.value : number.value};
+    if (read.value < parameter.minimum || read.value > parameter.maximum)
+        read.warning = printable(text) + " is outside of its range " + shown(parameter.minimum) + " .. " +
+                       shown(parameter.maximum) + (parameter.unit.empty() ? "" : " " + parameter.unit);
+    return read;
+}
+
+} // namespace
+
+ParameterValue parse_value(std::string_view text, const ir::Parameter& parameter)
+{
+    text = trimmed(text);
+    if (parameter.type == ir::Type::image) // whoever reads files knows more
+        return text.empty() ? fail("expected the name of a picture's file") : ParameterValue{};
+    if (parameter.type == ir::Type::boolean) return read_boolean(text);
+    const bool has_sign = !text.empty() && (text[0] == '-' || text[0] == '+');
+    std::string digits(text.substr(has_sign));
+    const size_t blank = digits.find_first_of(" \t"); // "60 um"
+    if (blank != digits.npos) digits.erase(blank, digits.find_first_not_of(" \t", blank) - blank);
+    const Number number = read_number(digits);
+    if (!number.error.empty())
+        return fail(number.code == "unknown-unit" ? number.error : number.error + ", found '" + printable(text) + "'",
+                    number.hint);
+    const bool negative = has_sign && text[0] == '-';
+    return parameter.type == ir::Type::real ? read_real(text, negative, number, parameter)
+                                            : read_whole(text, negative, number, parameter);
+}
+
+} // namespace haptel::lang

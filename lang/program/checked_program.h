@@ -1,0 +1,59 @@
+// A program whose every name has a meaning: what the checker makes and lowering reads.
+#pragma once
+
+#include "lang/syntax/ast.h"
+
+#include <deque>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace haptel::lang {
+
+struct CheckedLibrary;
+
+// One file of the compilation as the parser left it, with the files whose names it sees.
+struct CheckFile {
+    ast::File tree;
+    std::vector<uint32_t> imported; // indices of files; not transitive
+};
+
+struct CheckedParameter {
+    const Symbol* symbol = nullptr;
+    const ast::TextureParameter* tree = nullptr;
+    std::string unit; // SI: "m", "rad", "s", "Hz"; empty: a plain number
+    double value = 0; // SI; int, uint and bool as numbers
+    double minimum = -std::numeric_limits<double>::infinity();
+    double maximum = std::numeric_limits<double>::infinity();
+};
+
+// "out float stiffness_scale": a variable of the body that is 1 until the body assigns it.
+struct CheckedOutput {
+    const Symbol* symbol = nullptr;
+    uint32_t writes = 0; // its bit, HAPTEL_WRITES_*
+};
+
+struct CheckedTexture {
+    const ast::Texture* tree = nullptr;
+    std::vector<CheckedParameter> parameters;
+    std::vector<CheckedOutput> outputs; // by bit
+    uint32_t slot_count = 0;            // local variables
+    std::vector<FunctionInfo::Mention> mentions;
+};
+
+// Keeps the trees and everything they point to. Move it, do not copy it.
+struct CheckedProgram {
+    std::shared_ptr<const CheckedLibrary> library; // that all files see; null: none, or it is the library itself
+    std::vector<CheckFile> files;                  // by Span::file; without those of the library
+    std::deque<Symbol> symbols;
+    std::deque<FunctionInfo> functions;
+    std::vector<CheckedTexture> textures; // of file 0, in source order
+
+    CheckedProgram() = default;
+    CheckedProgram(CheckedProgram&&) = default;
+    CheckedProgram& operator=(CheckedProgram&&) = default;
+    CheckedProgram(const CheckedProgram&) = delete;
+};
+
+} // namespace haptel::lang

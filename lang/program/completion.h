@@ -1,0 +1,22 @@
+// How a statement can end, on some path: by going on, by returning, by leaving the loop round it.
+#pragma once
+
+#include "lang/syntax/ast.h"
+
+#include <span>
+#include <vector>
+
+namespace haptel::lang {
+
+struct Outcome {
+    bool falls_through = false, returns = false, breaks = false;
+    bool may_leave() const { return returns || breaks; }
+};
+
+Outcome outcome(const ast::Statement& s);
+Outcome outcome(std::span<const ast::StatementPtr> statements);
+
+// Slots of variables that are assigned in statements that follow each other, and declared outside of them; sorted.
+std::vector<uint32_t> changed_in(std::span<const ast::Statement* const> statements);
+
+} // namespace haptel::lang

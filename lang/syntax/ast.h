@@ -1,0 +1,269 @@
+// The tree that the parser makes and the checker annotates. Plain data; every node knows its span.
+//
+// Chains of binary operators of one precedence ("a + b - c + ...") are one flat node, so that a chain of 50 000 terms
+// needs no recursion anywhere; other nesting is limited to 256 by the parser, so that recursion over the tree is
+// bounded. A subtree that could not be parsed is an ErrorExpression or is left out; the diagnostics say why.
+#pragma once
+
+#include "lang/syntax/resolution.h"
+#include "lang/syntax/type.h"
+#include "lang/text/source.h"
+
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace haptel::lang::ast {
+
+struct Expression;
+struct Statement;
+struct Function;
+using ExpressionPtr = std::unique_ptr<Expression>;
+using StatementPtr = std::unique_ptr<Statement>;
+
+struct Name {
+    std::string text;
+    Span span;
+};
+
+// "vec3", "float[3]", "const float A[3]": the base name and, for arrays, the size (absent in `float A[] = {...}`).
+struct TypeName {
+    Name base;
+    bool is_array = false;
+    ExpressionPtr array_size;
+};
+
+enum class UnaryOp { negate, plus, logical_not, bit_not };
+enum class BinaryOp {
+    add,
+    subtract,
+    multiply,
+    divide,
+    remainder,
+    less,
+    less_equal,
+    greater,
+    greater_equal,
+    equal,
+    not_equal,
+    logical_and,
+    logical_or,
+    logical_xor,
+    bit_and,
+    bit_or,
+    bit_xor,
+    shift_left,
+    shift_right,
+};
+enum class AssignOp {
+    assign,
+    add,
+    subtract,
+    multiply,
+    divide,
+    remainder,
+    bit_and,
+    bit_or,
+    bit_xor,
+    shift_left,
+    shift_right
+};
+
+struct ErrorExpression {};
+// A literal as written; `value` is the f64 nearest to the decimal value times the unit's factor (SI).
+struct NumberLiteral {
+    enum class Kind { real, integer, unsigned_integer } kind = Kind::real;
+    double value = 0;     // real
+    uint64_t integer = 0; // integer kinds, before range checking
+    std::string unit;     // as written: "mm", "deg"; empty: none. A literal with a unit is real.
+    std::string text;
+};
+struct BoolLiteral {
+    bool value = false;
+};
+struct NameExpression {
+    std::string name;
+    const Symbol* symbol = nullptr; // set by the checker; null: a function, or an error
+};
+struct Unary {
+    UnaryOp op;
+    ExpressionPtr operand;
+};
+// first op[0] rest[0] op[1] rest[1] ...: evaluated from the left. All operators have the same precedence.
+struct Chain {
+    struct Link {
+        BinaryOp op;
+        Span op_span;
+        ExpressionPtr operand;
+    };
+    ExpressionPtr first;
+    std::vector<Link> rest;
+};
+struct Conditional {
+    ExpressionPtr condition, when_true, when_false;
+};
+// Function, constructor or built-in: the checker decides.
+struct CallExpression {
+    Name callee;
+    std::vector<ExpressionPtr> arguments;
+    CallTarget target = {}; // set by the checker
+};
+// grad(f)(args), grad(grad(f))(args): `order` counts the grads.
+struct GradCall {
+    Name function;
+    uint32_t order = 1;
+    std::vector<ExpressionPtr> arguments;
+    CallTarget target = {}; // set by the checker
+};
+struct Member {
+    ExpressionPtr object;
+    Name member;
+}; // swizzle
+struct Index {
+    ExpressionPtr object, index;
+};
+// Elements of an array: "{1.0, 2.0}", only behind '=' of a declaration, or "float[2](1.0, 2.0)" with a type.
+struct BraceList {
+    std::vector<ExpressionPtr> elements;
+    std::optional<TypeName> type = std::nullopt;
+    bool is_damaged = false; // nobody knows how many elements were meant
+};
+
+struct Expression {
+    Span span;
+    std::variant<ErrorExpression, NumberLiteral, BoolLiteral, NameExpression, Unary, Chain, Conditional, CallExpression,
+                 GradCall, Member, Index, BraceList>
+        node;
+    Type type; // set by the checker; Type::error() where something was reported
+};
+
+// Operators outside of parentheses: what is written behind it would go to its last operand.
+inline bool is_open(const Expression& e)
+{
+    const auto chain = std::get_if<Chain>(&e.node);
+    const auto conditional = std::get_if<Conditional>(&e.node);
+    const Expression* first = chain ? chain->first.get() : conditional ? conditional->condition.get() : nullptr;
+    return first && first->span.begin == e.span.begin;
+}
+
+struct Declaration { // one name; "float a = 1, b;" makes two in a row
+    bool is_const = false;
+    TypeName type;
+    Name name;
+    ExpressionPtr initializer;      // may be null
+    const Symbol* symbol = nullptr; // set by the checker
+};
+struct Assignment { // target: name, swizzle or index of one. "++i;" and "i++;" are "i += 1".
+    ExpressionPtr target;
+    AssignOp op = AssignOp::assign;
+    Span op_span;
+    ExpressionPtr value;
+};
+struct ExpressionStatement {
+    ExpressionPtr expression;
+}; // useless in a pure language: the checker says so
+struct Scope {
+    std::vector<StatementPtr> statements;
+};
+// "if (a) .. else if (b) .. else ..": flat, so that a long chain does not nest. The last condition is null for `else`.
+struct If {
+    struct Arm {
+        ExpressionPtr condition;
+        StatementPtr body;
+    };
+    std::vector<Arm> arms;
+};
+struct For {
+    StatementPtr init;
+    ExpressionPtr condition;
+    StatementPtr step;
+    StatementPtr body;
+    LoopPlan plan = {}; // set by the checker
+}; // parts may be null
+struct Break {};
+struct Return {
+    ExpressionPtr value;
+}; // may be null
+
+struct Statement {
+    Span span;
+    std::variant<Declaration, Assignment, ExpressionStatement, Scope, If, For, Break, Return> node;
+};
+
+// Parameter of a function: a value, or a function ("float basis(vec3)") resolved at compile time.
+struct FunctionParameter {
+    TypeName type; // of a function parameter: its result
+    Name name;
+    bool is_function = false;
+    std::vector<TypeName> signature; // argument types where is_function
+    Span span;
+};
+
+// "@facts value -0.866 .. 0.866, slope 2.179, curvature 11.59, class C1" in a doc comment, as numbers.
+struct FactsComment {
+    std::optional<double> value_minimum, value_maximum, slope, curvature;
+    std::string continuity; // "jump", "C0", "C1", "C2"; empty: not given
+    Span span;
+};
+
+// Syntax errors were reported inside: what may follow from them ("no return") is better not said.
+struct Damage {
+    bool any = false;
+    bool in_head = false;                      // in the parameters: nobody knows how it is called
+    std::set<std::string, std::less<>> unread; // names in text that could not be read: it may have declared them
+};
+
+struct Function {
+    std::string doc; // without the slashes, without @facts
+    std::optional<FactsComment> facts;
+    TypeName result;
+    Name name;
+    std::vector<FunctionParameter> parameters;
+    StatementPtr body; // a Scope; null where there is none, or where its braces do not fit
+    Damage damage;
+    Span span;
+};
+
+struct TextureParameter {
+    std::string doc;
+    TypeName type;
+    Name name;
+    bool is_output = false;                // "out float stiffness_scale"
+    ExpressionPtr value, minimum, maximum; // default and range; range may be absent
+    Span span;
+};
+
+struct Texture {
+    std::string doc;
+    Name name;
+    std::vector<TextureParameter> parameters;
+    StatementPtr body; // as in Function
+    Damage damage;
+    Span span;
+};
+
+struct Constant {
+    std::string doc;
+    Declaration declaration;
+    Span span;
+}; // global const, tables too
+struct Import {
+    std::string path;
+    bool is_library = false;
+    Span span;
+}; // "wood/oak.haptel" or wood.oak
+
+struct File {
+    std::vector<Import> imports;
+    std::vector<Constant> constants;
+    std::vector<Function> functions;
+    std::vector<Texture> textures;
+    // Functions that could not be read may have any name, other declarations one of those that stand there.
+    bool lacks_functions = false;
+    std::set<std::string, std::less<>> unread;
+};
+
+} // namespace haptel::lang::ast

@@ -1,0 +1,151 @@
+// The grammar of Haptel, one function per rule, each with its rule above it. Recursive descent; see parser.h for the
+// promise and token_cursor.h for recovery.
+#pragma once
+
+#include "lang/syntax/ast.h"
+#include "lang/syntax/foreign.h"
+#include "lang/syntax/token_cursor.h"
+
+#include <span>
+#include <vector>
+
+namespace haptel::lang {
+
+class Grammar : private TokenCursor {
+public:
+    Grammar(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink);
+
+    ast::File parse_file();                 // parser.cpp
+    ast::FactsComment parse_facts(Span at); // parse_facts.cpp; the tokens are those of one "@facts" line
+
+private:
+    // parser.cpp
+    bool top_level_name(ast::File& result);
+    void report_stray(ast::File& result);
+    void find_top_level(bool strayed);
+
+    using Statements = std::vector<ast::StatementPtr>;
+
+    // parse_declaration.cpp
+    void import_declaration(ast::File& result);
+    void texture(ast::File& result);
+    ast::TextureParameter texture_parameter();
+    void constants(ast::File& result);
+    void function_or_variable(ast::File& result);
+    void function(ast::File& result, ast::TypeName result_type, ast::Name name, size_t doc_token);
+    ast::FunctionParameter function_parameter();
+    void function_signature(ast::FunctionParameter& parameter);
+
+    // parse_statement.cpp
+    void statement(Statements& into);
+    ast::StatementPtr block();
+    ast::StatementPtr rest_of_block(Span opener);
+    ast::StatementPtr single_statement(std::string_view after);
+    ast::StatementPtr if_statement();
+    ast::StatementPtr for_statement();
+    ast::StatementPtr return_statement();
+    ast::StatementPtr assignment_or_expression();
+    void declarations(Statements& into);
+    void declaration_list(Statements& into);
+    ast::Declaration declarator(bool is_const, ast::TypeName type);
+    ast::ExpressionPtr initializer();
+    bool at_declaration() const;
+    bool is_used_as_name() const;
+    bool at_top_level_start() const;
+
+    // parse_head.cpp
+    void close_head(Span opener);
+    ast::StatementPtr body_of(std::string_view what);
+    bool ends_parameter(Span opener);
+    bool next_parameter();
+    void find_next_parameter(size_t first_position);
+    void find_body();
+    bool body_follows() const;
+    bool is_texture_without_its_word() const;
+    void skip_doubled_bracket();
+    void mend_words_of_head();
+
+    // parse_slip.cpp
+    std::optional<ast::Name> declared_name(ast::TypeName& type);
+    void read_misspelt_in();
+    bool statements_follow() const;
+
+    // parse_recovery.cpp
+    void find_footing();
+    void forget(std::span<ast::StatementPtr> statements);
+    void forget(ast::TextureParameter& parameter);
+    ast::ExpressionPtr unknown_value(const ast::Expression& read);
+    void note_unread(size_t first_position);
+    ast::Damage take_damage(uint32_t mistakes_before, ast::StatementPtr& body);
+
+    // parse_expression.cpp
+    ast::ExpressionPtr expression();
+    ast::ExpressionPtr conditional();
+    ast::ExpressionPtr binary(int lowest_precedence);
+    ast::ExpressionPtr unary();
+    ast::ExpressionPtr postfix();
+    ast::ExpressionPtr primary();
+    ast::ExpressionPtr behind_stray_operator();
+    ast::ExpressionPtr number();
+    ast::ExpressionPtr brace_list();
+
+    // parse_call.cpp
+    ast::ExpressionPtr name_or_call();
+    ast::ExpressionPtr grad_call(Span first);
+    std::vector<ast::ExpressionPtr> arguments(Span opener);
+    ast::ExpressionPtr array_constructor(ast::Name type);
+
+    // parse_foreign.cpp
+    void skip_foreign_qualifiers();
+    void skip_type_arguments();
+    void skip_foreign_declaration(const ForeignWord& word);
+    void skip_global_in_or_out();
+    void foreign_statement(const ForeignWord& word, Statements& into);
+    void read_misspelt_keyword();
+    Token foreign_operator();
+    ast::ExpressionPtr cast();
+    ast::ExpressionPtr method_call(ast::ExpressionPtr object);
+
+    // Small rules that all share, parse_declaration.cpp and parse_facts.cpp
+    ast::TypeName type_name();
+    void array_suffix(ast::TypeName& type);
+    std::optional<ast::Name> name(std::string_view what); // reports if there is none
+    std::string doc_before(size_t token_index, std::optional<ast::FactsComment>* facts);
+    template <class Node>
+    ast::ExpressionPtr make(Span where, Node node);
+    template <class Node>
+    ast::StatementPtr make_statement(Span where, Node node);
+
+    // Of the function or texture that is being read:
+    std::set<std::string, std::less<>> unread; // as in Damage
+    bool is_head_damaged = false;              // likewise
+    bool is_misshapen = false;                 // its braces do not fit
+    bool has_stray_brace = false;              // nor can they: one was found where none can stand
+};
+
+// Of a binary operator, higher binds tighter; 0 for any other token.
+int precedence_of(Token token);
+
+bool is_own_type(std::string_view word);
+// Those of other languages too.
+bool is_type_word(std::string_view word);
+
+template <class Node>
+ast::ExpressionPtr Grammar::make(Span where, Node node)
+{
+    auto result = std::make_unique<ast::Expression>();
+    result->span = where;
+    result->node = std::move(node);
+    return result;
+}
+
+template <class Node>
+ast::StatementPtr Grammar::make_statement(Span where, Node node)
+{
+    auto result = std::make_unique<ast::Statement>();
+    result->span = where;
+    result->node = std::move(node);
+    return result;
+}
+
+} // namespace haptel::lang

@@ -1,0 +1,327 @@
+// What stands at the top of a file: imports, constants, functions, textures; and the small rules that all share.
+#include "lang/syntax/grammar.h"
+
+#include <algorithm>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+bool is_own_type(std::string_view word)
+{
+    constexpr std::string_view words[] = {"float", "int",  "uint", "bool", "vec2",  "vec3",
+                                          "vec4",  "mat2", "mat3", "mat4", "image", "void"};
+    return std::find(std::begin(words), std::end(words), word) != std::end(words);
+}
+
+bool is_type_word(std::string_view word)
+{
+    return is_own_type(word) || foreign_word(ForeignKind::type, word);
+}
+
+std::optional<Name> Grammar::name(std::string_view what)
+{
+    if (at(Token::name)) {
+        Name result{std::string(text()), span()};
+        advance();
+        return result;
+    }
+    const std::string word = kind() >= Token::kw_texture ? std::string(text()) : std::string();
+    Diagnostic& reported = error(span(), "syntax", "expected a name " + std::string(what) + found());
+    if (!word.empty()) reported.hint = "'" + word + "' is a word of the language and cannot be a name";
+    return std::nullopt;
+}
+
+// type = name ["[" [expression] "]"]
+TypeName Grammar::type_name()
+{
+    TypeName type;
+    skip_foreign_qualifiers();
+    std::optional<Name> base = name("of a type");
+    if (!base) return type;
+    type.base = std::move(*base);
+    if (const ForeignWord* foreign = foreign_word(ForeignKind::type, type.base.text)) {
+        Diagnostic& reported =
+            diagnostics.error(type.base.span, "foreign-word", "'" + type.base.text + "' is not a type of Haptel");
+        reported.hint = foreign->hint;
+        if (!foreign->replacement.empty()) {
+            reported.fix = FixIt{type.base.span, std::string(foreign->replacement)};
+            type.base.text = foreign->replacement;
+        }
+    }
+    skip_type_arguments();
+    array_suffix(type);
+    return type;
+}
+
+void Grammar::array_suffix(TypeName& type)
+{
+    while (at(Token::left_bracket)) {
+        const Span opener = span();
+        if (type.is_array) {
+            error(opener, "nested-table", "tables have one dimension").hint =
+                "write the rows one behind the other and index by row * columns + column";
+            type.base.text.clear(); // of no type: nothing more is said about it
+        }
+        advance();
+        type.is_array = true;
+        if (!at(Token::right_bracket)) type.array_size = expression();
+        close(Token::right_bracket, opener);
+    }
+}
+
+// import = "import" (string | name {"." name}) ";"
+void Grammar::import_declaration(File& result)
+{
+    const Span first = span();
+    advance();
+    Import import;
+    if (at(Token::string)) {
+        const std::string_view quoted = text();
+        import.path = quoted.substr(1, quoted.size() - 2);
+        if (import.path.empty()) diagnostics.error(span(), "import", "expected a path between the quotes");
+        advance();
+    } else {
+        std::optional<Name> part = name("of a library or a path in quotes after 'import'");
+        import.is_library = true;
+        while (part) {
+            import.path += part->text;
+            if (!accept(Token::dot)) break;
+            import.path += '.';
+            part = name("after '.'");
+        }
+    }
+    if (!lost) expect_semicolon("the import");
+    import.span = since(first);
+    if (!import.path.empty() && import.path.back() != '.') result.imports.push_back(std::move(import));
+}
+
+// constants = "const" type name [...] "=" initializer {"," ...} ";"
+void Grammar::constants(File& result)
+{
+    std::string doc = doc_before(position, nullptr);
+    Statements made;
+    declarations(made);
+    if (lost) forget(made);
+    for (StatementPtr& statement : made) {
+        Declaration& declaration = std::get<Declaration>(statement->node);
+        if (!declaration.initializer && !lost) {
+            diagnostics.error(declaration.name.span, "syntax",
+                              "expected '=' and the value of the constant '" + declaration.name.text + "'");
+            declaration.initializer = make(declaration.name.span, ErrorExpression{});
+        }
+        result.constants.push_back({doc, std::move(declaration), statement->span});
+    }
+}
+
+// function = type name "(" [function_parameter {"," function_parameter}] ")" block
+// variable = type name ...         is reported: only constants are global
+void Grammar::function_or_variable(File& result)
+{
+    const Span first = span();
+    const size_t first_token = position;
+    const bool is_head = body_follows();
+    if (is_head) mend_words_of_head();
+    if (kind(1) == Token::name && kind(2) != Token::left_paren && !is_head) {
+        Diagnostic& reported =
+            diagnostics.error(first, "global-variable", "a variable of a whole file must be constant");
+        reported.hint = "write 'const' before it, or make it a parameter of the texture";
+        reported.fix = FixIt{{first.file, first.begin, first.begin}, "const "};
+        constants(result);
+        if (!result.constants.empty()) result.constants.back().declaration.is_const = true;
+        return;
+    }
+    TypeName type;
+    if (kind(1) == Token::left_paren && !is_type_word(text())) // "f(float x) {...}"
+        error(span(), "syntax", "expected the type of the result before '" + std::string(text()) + "'").hint =
+            "write float " + std::string(text());
+    else
+        type = type_name();
+    if (type.base.text.empty()) stand_again();
+    std::optional<Name> function_name = lost ? std::nullopt : name("after '" + type.base.text + "'");
+    if (function_name) function(result, std::move(type), std::move(*function_name), first_token);
+}
+
+void Grammar::function(File& result, TypeName result_type, Name function_name, size_t doc_token)
+{
+    Function made;
+    made.doc = doc_before(doc_token, &made.facts);
+    if (function_name.text == "grad") {
+        diagnostics.error(function_name.span, "reserved-name", "'grad' is the derivative of functions").hint =
+            "choose another name";
+    }
+    const Span first = result_type.base.span;
+    made.result = std::move(result_type);
+    made.name = std::move(function_name);
+    const uint32_t mistakes_before = mistakes;
+    const Span opener = span();
+    if (expect(Token::left_paren, "after the name of the function")) {
+        const bool takes_void = text() == "void" && kind(1) == Token::right_paren;
+        if (takes_void) advance();
+        skip_doubled_bracket();
+        if (!at(Token::right_paren) && !at(Token::left_brace)) {
+            do {
+                const size_t first_position = position;
+                made.parameters.push_back(function_parameter());
+                if (ends_parameter(opener)) continue;
+                is_head_damaged = true;
+                find_next_parameter(first_position);
+            } while (next_parameter());
+        }
+        close_head(opener);
+    }
+    if (lost && !made.parameters.empty()) made.parameters.back().type = {};
+    is_head_damaged |= lost;
+    if (at(Token::semicolon) && !lost) {
+        advance();
+        Diagnostic& reported = diagnostics.warning(since(first), "prototype",
+                                                   "functions may stand in any order: a prototype does nothing");
+        reported.hint = "leave it out";
+        reported.fix = FixIt{since(first), ""};
+        return;
+    }
+    made.body = body_of("the function '" + made.name.text + "'");
+    made.damage = take_damage(mistakes_before, made.body);
+    result.lacks_functions |= is_head_damaged;
+    made.span = since(first);
+    result.functions.push_back(std::move(made));
+}
+
+// function_parameter = ["const"] ["in"] type name | type name "(" [type [name] {"," type [name]}] ")"
+FunctionParameter Grammar::function_parameter()
+{
+    FunctionParameter parameter;
+    const Span first = span();
+    accept(Token::kw_const);
+    accept(Token::kw_in); // as GLSL writes it: all parameters are
+    if (at(Token::kw_out) || text() == "inout") {
+        diagnostics.error(span(), "output-parameter", "a function cannot write its parameters").hint =
+            "return the result; several results fit into a vector";
+        advance();
+    }
+    parameter.type = type_name();
+    if (lost) return parameter;
+    if (at(Token::star) || at(Token::ampersand)) {
+        error(span(), "no-pointers", "there are no pointers or references in Haptel");
+        return parameter;
+    }
+    std::optional<Name> declared = declared_name(parameter.type);
+    if (!declared) return parameter;
+    parameter.name = std::move(*declared);
+    array_suffix(parameter.type);
+    if (at(Token::left_paren)) function_signature(parameter);
+    parameter.span = since(first);
+    if (at(Token::assign) && !lost) {
+        error(span(), "default-argument", "parameters of functions have no default").hint =
+            "write a second function with fewer parameters that calls this one";
+    }
+    return parameter;
+}
+
+void Grammar::function_signature(FunctionParameter& parameter)
+{
+    const Span opener = span();
+    parameter.is_function = true;
+    advance();
+    if (accept(Token::right_paren)) return;
+    do {
+        accept(Token::kw_in);
+        parameter.signature.push_back(type_name());
+        if (at(Token::name)) advance();
+    } while (!lost && accept(Token::comma));
+    close(Token::right_paren, opener, true);
+}
+
+// texture = "texture" name "(" [texture_parameter {"," texture_parameter}] ")" block
+void Grammar::texture(File& result)
+{
+    Texture made;
+    std::optional<FactsComment> facts;
+    made.doc = doc_before(position, &facts);
+    if (facts)
+        diagnostics.error(facts->span, "facts",
+                          "facts belong to functions; those of a texture are found by the compiler");
+    const Span first = span();
+    const uint32_t mistakes_before = mistakes;
+    accept(Token::kw_texture); // missing and reported, or here
+    std::optional<Name> texture_name = name("after 'texture'");
+    if (!texture_name) return;
+    made.name = std::move(*texture_name);
+    const Span opener = span();
+    if (at(Token::left_brace)) {
+        diagnostics.error(made.name.span, "syntax", "expected '(' after the name of the texture").hint =
+            "write 'texture " + made.name.text + "()' if it has no parameters";
+    } else if (expect(Token::left_paren, "after the name of the texture")) {
+        skip_doubled_bracket();
+        if (!at(Token::right_paren) && !at(Token::left_brace)) {
+            do {
+                if (at(Token::right_paren)) break; // a comma behind the last parameter
+                const size_t first_position = position;
+                TextureParameter parameter = texture_parameter();
+                if (!ends_parameter(opener)) {
+                    forget(parameter);
+                    is_head_damaged = true;
+                    find_next_parameter(first_position);
+                }
+                if (!parameter.name.text.empty()) made.parameters.push_back(std::move(parameter));
+            } while (next_parameter());
+        }
+        close_head(opener);
+    } else {
+        return;
+    }
+    made.body = body_of("the texture '" + made.name.text + "'");
+    made.damage = take_damage(mistakes_before, made.body);
+    made.span = since(first);
+    result.textures.push_back(std::move(made));
+}
+
+// texture_parameter = ["out"] type name ["=" expression ["in" binary ".." binary]]
+TextureParameter Grammar::texture_parameter()
+{
+    TextureParameter parameter;
+    const Span first = span();
+    parameter.doc = doc_before(position, nullptr);
+    parameter.is_output = accept(Token::kw_out);
+    if (const ForeignWord* foreign = foreign_word(ForeignKind::declaration, text());
+        foreign && kind(1) == Token::name) {
+        diagnostics.error(span(), "foreign-word", "there is no '" + std::string(text()) + "' in Haptel").hint =
+            "leave it out";
+        advance();
+    }
+    parameter.type = type_name();
+    if (lost) return parameter;
+    std::optional<Name> declared = declared_name(parameter.type);
+    if (!declared) return parameter;
+    parameter.name = std::move(*declared);
+    array_suffix(parameter.type);
+    const bool needs_default = !parameter.is_output && parameter.type.base.text != "image";
+    if (accept(Token::assign)) {
+        parameter.value = expression();
+    } else if (needs_default && !lost && !is_type_word(parameter.type.base.text)) {
+        parameter.value = make(parameter.name.span, ErrorExpression{}); // of no type: enough is said
+    } else if (needs_default && !lost) {
+        diagnostics
+            .error(parameter.name.span, "missing-default",
+                   "the parameter '" + parameter.name.text + "' needs a default value")
+            .hint = "for example " + parameter.type.base.text + " " + parameter.name.text + " = 1.0 in 0.0 .. 10.0";
+        parameter.value = make(parameter.name.span, ErrorExpression{});
+        lost = !at(Token::kw_in) && !at(Token::comma) && !at(Token::right_paren); // "float depth 1mm": enough is said
+    }
+    read_misspelt_in();
+    if (!lost && accept(Token::kw_in)) {
+        parameter.minimum = binary(1);
+        if (!lost && at(Token::dot_dot)) {
+            advance();
+            parameter.maximum = binary(1);
+        } else {
+            error(span(), "range", "expected '..' and the upper end of the range" + found()).hint =
+                "a range is written 0.2mm .. 5mm";
+        }
+        if (!parameter.maximum) parameter.maximum = make(previous_span(), ErrorExpression{});
+    }
+    parameter.span = since(first);
+    return parameter;
+}
+
+} // namespace haptel::lang

@@ -1,0 +1,108 @@
+// Doc comments, and the facts in them: "/// @facts value -0.866 .. 0.866, slope 2.179, curvature 11.59, class C1".
+#include "lang/syntax/grammar.h"
+#include "lang/text/number.h"
+
+#include <algorithm>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+namespace {
+
+constexpr std::string_view marker = "@facts";
+
+std::string_view without_slashes(std::string_view line)
+{
+    line.remove_prefix(3);
+    while (!line.empty() && (line.back() == ' ' || line.back() == '\t')) line.remove_suffix(1);
+    if (line.starts_with(' ')) line.remove_prefix(1);
+    return line;
+}
+
+bool is_facts(std::string_view line)
+{
+    const size_t first = line.find_first_not_of(" \t");
+    return first != std::string_view::npos && line.substr(first).starts_with(marker);
+}
+
+} // namespace
+
+// The doc lines that stand right above the token, without slashes. A blank line separates them from what is further up.
+std::string Grammar::doc_before(size_t token_index, std::optional<FactsComment>* facts)
+{
+    const auto before = [](const DocLine& line, size_t index) { return line.before_token < index; };
+    const auto first = std::lower_bound(list.docs.begin(), list.docs.end(), token_index, before);
+    auto last = first;
+    while (last != list.docs.end() && last->before_token == token_index) ++last;
+    auto begin = last;
+    while (begin != first) {
+        if (begin != last) {
+            const Span gap{file, (begin - 1)->span.end, begin->span.begin};
+            const std::string_view between = sources.text(gap);
+            if (std::count(between.begin(), between.end(), '\n') > 1) break;
+        }
+        --begin;
+    }
+    std::string doc;
+    for (auto line = begin; line != last; ++line) {
+        const std::string_view words = without_slashes(sources.text(line->span));
+        if (is_facts(words)) {
+            if (!facts) continue;
+            const std::string_view whole = sources.text(line->span);
+            const auto skipped = static_cast<uint32_t>(whole.find(marker));
+            const Span where{file, line->span.begin + skipped, line->span.end};
+            const Span inside{file, where.begin + static_cast<uint32_t>(marker.size()), where.end};
+            *facts = Grammar(sources, file, lex(sources, inside, diagnostics), diagnostics).parse_facts(where);
+            continue;
+        }
+        if (!doc.empty()) doc += '\n';
+        doc += words;
+    }
+    return doc;
+}
+
+// facts = fact {"," fact}
+// fact  = "value" number ".." number | "slope" number | "curvature" number | "class" ("jump" | "C0" | "C1" | "C2")
+FactsComment Grammar::parse_facts(Span where)
+{
+    FactsComment facts;
+    facts.span = where;
+    const auto signed_number = [&]() -> std::optional<double> {
+        const bool negative = accept(Token::minus);
+        const Number read = read_number(at(Token::number) ? text() : std::string_view{});
+        if (!read.error.empty()) {
+            error(span(), "facts", at(Token::number) ? read.error : "expected a number" + found()).hint = read.hint;
+            return std::nullopt;
+        }
+        advance();
+        return negative ? -read.value : read.value;
+    };
+    do {
+        const std::string_view what = text();
+        advance();
+        if (what == "value") {
+            facts.value_minimum = signed_number();
+            if (facts.value_minimum && expect(Token::dot_dot, "between least and greatest value"))
+                facts.value_maximum = signed_number();
+        } else if (what == "slope") {
+            facts.slope = signed_number();
+        } else if (what == "curvature") {
+            facts.curvature = signed_number();
+        } else if (what == "class") {
+            constexpr std::string_view classes[] = {"jump", "C0", "C1", "C2"};
+            if (std::find(std::begin(classes), std::end(classes), text()) != std::end(classes))
+                facts.continuity = text();
+            else
+                error(span(), "facts", "expected jump, C0, C1 or C2" + found());
+            if (!lost) advance();
+        } else {
+            error(where, "facts", "expected value, slope, curvature or class in the facts").hint =
+                "write /// @facts value -1 .. 1, slope 2.5, curvature 10, class C1";
+        }
+    } while (!lost && accept(Token::comma));
+    if (!lost && !at(Token::end)) error(span(), "facts", "expected ','" + found());
+    return facts;
+}
+
+} // namespace haptel::lang

@@ -1,0 +1,187 @@
+// What is written as in another language, or misspelt: said once, with what to write, and read as it was meant.
+#include "lang/syntax/grammar.h"
+
+#include <algorithm>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+// "static const float A", "highp float x": words before a type.
+void Grammar::skip_foreign_qualifiers()
+{
+    while (at(Token::name) && (kind(1) == Token::name || kind(1) == Token::kw_const)) {
+        const ForeignWord* word = foreign_word(ForeignKind::qualifier, text());
+        const bool stands_before_type = kind(2) == Token::name ||
+                                        (kind(2) == Token::left_bracket && is_type_word(text(1))) ||
+                                        kind(2) == Token::less || kind(1) == Token::kw_const;
+        if (!word || !stands_before_type) return; // "flat x": a type that is misspelt
+        Diagnostic& reported =
+            diagnostics.error(span(), "foreign-word", "there is no '" + std::string(text()) + "' in Haptel");
+        reported.hint = word->hint;
+        reported.fix = word->replacement.empty() ? FixIt{{file, span().begin, span(1).begin}, ""}
+                                                 : FixIt{span(), std::string(word->replacement)};
+        ++mistakes;
+        advance();
+    }
+}
+
+// "vec3<f32>"
+void Grammar::skip_type_arguments()
+{
+    if (!at(Token::less) || kind(1) != Token::name || kind(2) != Token::greater) return;
+    const Span whole = join(span(), span(2));
+    Diagnostic& reported = diagnostics.error(whole, "foreign-word", "types take no arguments in angle brackets");
+    reported.hint = "write float, vec3, mat3 ...; precision is chosen when the texture is compiled";
+    reported.fix = FixIt{whole, ""};
+    ++mistakes;
+    for (int i = 0; i < 3; ++i) advance();
+}
+
+// "retrun 1.0;": a word that nothing else explains is read as the keyword it resembles.
+void Grammar::read_misspelt_keyword()
+{
+    if (!at(Token::name) || text().size() < 2 || is_type_word(text()) || is_used_as_name() ||
+        kind(1) == Token::left_bracket)
+        return;
+    constexpr std::pair<std::string_view, Token> keywords[] = {
+        {"return", Token::kw_return}, {"if", Token::kw_if},       {"else", Token::kw_else},
+        {"for", Token::kw_for},       {"break", Token::kw_break}, {"const", Token::kw_const}};
+    // Between a name that is misspelt and a type that is, the nearer decides.
+    std::vector<std::string_view> words{"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4"};
+    for (const auto& [word, token] : keywords) words.push_back(word);
+    const std::string_view meant = nearest_name(text(), words);
+    const auto keyword =
+        std::find_if(std::begin(keywords), std::end(keywords), [&](const auto& known) { return known.first == meant; });
+    if (keyword == std::end(keywords) || foreign_word(ForeignKind::statement, text())) return;
+    // What follows must be able to follow the keyword, and be no use of a name.
+    const Token next = kind(1), then = keyword->second;
+    const bool fits = then == Token::kw_if || then == Token::kw_for ? next == Token::left_paren
+                      : then == Token::kw_break                     ? next == Token::semicolon
+                      : then == Token::kw_const                     ? next == Token::name
+                      : then == Token::kw_else
+                          ? next != Token::left_paren && next != Token::semicolon
+                          : next == Token::name || next == Token::number || next == Token::left_paren ||
+                                next == Token::minus || next == Token::kw_true || next == Token::kw_false;
+    if (!fits) return;
+    Diagnostic& reported =
+        diagnostics.error(span(), "syntax", "expected a statement, found '" + std::string(text()) + "'");
+    reported.hint = "did you mean '" + std::string(meant) + "'?";
+    reported.fix = FixIt{span(), std::string(meant)};
+    ++mistakes;
+    list.tokens[position].kind = then;
+}
+
+// "a and b"; nothing but an operator can stand here. `name` where there is none.
+Token Grammar::foreign_operator()
+{
+    const ForeignWord* word = at(Token::name) ? foreign_word(ForeignKind::operation, text()) : nullptr;
+    if (!word || lost) return Token::name;
+    Diagnostic& reported =
+        diagnostics.error(span(), "foreign-word", "there is no '" + std::string(text()) + "' in Haptel");
+    reported.hint = word->hint;
+    reported.fix = FixIt{span(), std::string(word->replacement)};
+    ++mistakes;
+    list.tokens[position].kind = word->word == "and"   ? Token::logical_and
+                                 : word->word == "or"  ? Token::logical_or
+                                 : word->word == "xor" ? Token::logical_xor
+                                                       : Token::bang;
+    return kind();
+}
+
+// "(float)x", at the opening bracket.
+ExpressionPtr Grammar::cast()
+{
+    const Span first = span();
+    Name type{std::string(text(1)), span(1)};
+    for (int i = 0; i < 3; ++i) advance();
+    ExpressionPtr operand = unary();
+    const Span whole = since(first);
+    const std::string written = type.text + "(" + std::string(sources.text(operand->span)) + ")";
+    Diagnostic& reported = diagnostics.error(whole, "foreign-word", "a value is converted by the type's constructor");
+    reported.hint = "write " + printable(written);
+    reported.fix = FixIt{whole, written};
+    ++mistakes;
+    std::vector<ExpressionPtr> arguments;
+    arguments.push_back(std::move(operand));
+    return make(whole, CallExpression{std::move(type), std::move(arguments)});
+}
+
+// "q.length()", at the bracket behind the member.
+ExpressionPtr Grammar::method_call(ExpressionPtr object)
+{
+    const Span first = object->span, opener = span();
+    Member& member = std::get<Member>(object->node);
+    std::string written = member.member.text + "(" + std::string(sources.text(member.object->span));
+    Name callee = std::move(member.member);
+    std::vector<ExpressionPtr> values;
+    values.push_back(std::move(member.object));
+    advance();
+    for (ExpressionPtr& argument : arguments(opener)) {
+        written += ", " + std::string(sources.text(argument->span));
+        values.push_back(std::move(argument));
+    }
+    const Span whole = since(first);
+    if (!lost) {
+        Diagnostic& reported = diagnostics.error(whole, "not-callable", "values have no functions of their own");
+        reported.hint = "write " + printable(written + ")");
+        reported.fix = FixIt{whole, written + ")"};
+    }
+    ++mistakes;
+    return make(whole, CallExpression{std::move(callee), std::move(values)});
+}
+
+// "in vec2 uv;" at the top of a file.
+void Grammar::skip_global_in_or_out()
+{
+    error(span(), "foreign-word", "a file has no inputs and outputs of its own").hint =
+        at(Token::kw_in) ? "the point of contact is p, its normal n, its mesh coordinates uv"
+                         : "a texture returns its height: return 1mm;";
+    skip_to({});
+    accept(Token::semicolon);
+    lost = false;
+}
+
+// "struct S {...};", "uniform float x;": says what to write, skips the whole.
+void Grammar::skip_foreign_declaration(const ForeignWord& word)
+{
+    error(span(), "foreign-word", "there is no '" + std::string(word.word) + "' in Haptel").hint = word.hint;
+    advance();
+    skip_to({Token::left_brace});
+    if (at(Token::left_brace)) skip_brackets();
+    while (at(Token::name)) advance(); // "struct S {...} s;"
+    accept(Token::semicolon);
+    lost = false;
+}
+
+// "while (...) {...}", "switch (...) {...}": says what to write. A loop's body, which may never
+// run, is still read for its own mistakes.
+void Grammar::foreign_statement(const ForeignWord& word, Statements& into)
+{
+    Diagnostic& reported = error(span(), "foreign-word", "there is no '" + std::string(word.word) + "' in Haptel");
+    reported.hint = word.hint;
+    if (!word.replacement.empty()) reported.fix = FixIt{span(), std::string(word.replacement)};
+    advance();
+    const bool is_loop = word.word == "while" || word.word == "do";
+    const Span head = since(span());
+    if (at(Token::left_paren)) skip_brackets();
+    if (is_loop) {
+        lost = false;
+        If::Arm arm;
+        arm.condition = make(head, ErrorExpression{});
+        arm.body = single_statement("the loop's head");
+        If loop;
+        loop.arms.push_back(std::move(arm));
+        into.push_back(make_statement(since(head), std::move(loop)));
+        if (word.word == "do" && at(Token::name) && text() == "while") advance(), skip_to({});
+    } else if (at(Token::left_brace)) {
+        skip_brackets();
+    } else {
+        skip_to({Token::colon}); // "case 1:", "default:", "continue;"
+        accept(Token::colon);
+    }
+    accept(Token::semicolon);
+    lost = false;
+}
+
+} // namespace haptel::lang

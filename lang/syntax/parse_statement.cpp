@@ -1,0 +1,356 @@
+// Statements.
+#include "lang/syntax/grammar.h"
+
+#include <algorithm>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+namespace {
+
+struct Assigner {
+    Token token;
+    AssignOp op;
+};
+constexpr Assigner assigners[] = {
+    {Token::assign, AssignOp::assign},
+    {Token::plus_assign, AssignOp::add},
+    {Token::minus_assign, AssignOp::subtract},
+    {Token::star_assign, AssignOp::multiply},
+    {Token::slash_assign, AssignOp::divide},
+    {Token::percent_assign, AssignOp::remainder},
+    {Token::and_assign, AssignOp::bit_and},
+    {Token::or_assign, AssignOp::bit_or},
+    {Token::xor_assign, AssignOp::bit_xor},
+    {Token::shift_left_assign, AssignOp::shift_left},
+    {Token::shift_right_assign, AssignOp::shift_right},
+};
+
+const Assigner* assigner_of(Token token)
+{
+    const auto found =
+        std::find_if(std::begin(assigners), std::end(assigners), [&](const Assigner& a) { return a.token == token; });
+    return found == std::end(assigners) ? nullptr : found;
+}
+
+bool begins_expression(Token token)
+{
+    constexpr Token starts[] = {Token::name,  Token::number, Token::kw_true, Token::kw_false, Token::left_paren,
+                                Token::minus, Token::plus,   Token::bang,    Token::tilde,    Token::invalid};
+    return std::find(std::begin(starts), std::end(starts), token) != std::end(starts);
+}
+
+} // namespace
+
+// statement = block | if | for | "break" ";" | return | declaration | assignment | ";"
+// Appends none, one, or, for "float a, b;", several.
+void Grammar::statement(Statements& into)
+{
+    lost = false;
+    const Span first = span();
+    const size_t first_position = position, first_made = into.size();
+    if (accept(Token::semicolon)) return;
+    skip_foreign_qualifiers();
+    read_misspelt_keyword();
+    if (at(Token::left_brace)) {
+        into.push_back(block());
+    } else if (at(Token::kw_if)) {
+        into.push_back(if_statement());
+    } else if (at(Token::kw_for)) {
+        into.push_back(for_statement());
+    } else if (at(Token::kw_return)) {
+        into.push_back(return_statement());
+    } else if (accept(Token::kw_break)) {
+        expect_semicolon("'break'");
+        into.push_back(make_statement(since(first), Break{}));
+    } else if (at(Token::kw_else)) {
+        error(first, "else-without-if", "this 'else' belongs to no 'if'").hint =
+            "an 'if' with several statements needs braces around them";
+        advance();
+        into.push_back(single_statement("'else'"));
+    } else if (const ForeignWord* word = at(Token::name) ? foreign_word(ForeignKind::statement, text()) : nullptr;
+               word && !is_used_as_name()) {
+        foreign_statement(*word, into);
+    } else if (const ForeignWord* other = at(Token::name) ? foreign_word(ForeignKind::declaration, text()) : nullptr;
+               other && kind(1) == Token::name) {
+        skip_foreign_declaration(*other);
+    } else if (at_declaration()) {
+        declarations(into);
+    } else {
+        StatementPtr made = assignment_or_expression();
+        if (!lost) expect_semicolon("the statement");
+        into.push_back(std::move(made));
+    }
+    if (lost) {
+        find_footing();
+        forget(std::span(into).subspan(first_made));
+        note_unread(first_position);
+        stand_again();
+    }
+    if (position == first_position) advance();
+}
+
+// "default = 2;": a word that only other languages reserve.
+bool Grammar::is_used_as_name() const
+{
+    return assigner_of(kind(1)) || kind(1) == Token::dot || kind(1) == Token::plus_plus ||
+           kind(1) == Token::minus_minus;
+}
+
+// A function or texture begins here: a '}' must be missing above.
+bool Grammar::at_top_level_start() const
+{
+    if (at_texture_or_import()) return true;
+    if (kind() != Token::name || kind(1) != Token::name || kind(2) != Token::left_paren) return false;
+    size_t open = 0;
+    constexpr size_t longest_head = 1000; // tokens; keeps the whole parse linear
+    for (size_t ahead = 2; ahead < longest_head; ++ahead) {
+        const Token here = kind(ahead);
+        if (here == Token::left_paren) ++open;
+        if (here == Token::right_paren && --open == 0) return kind(ahead + 1) == Token::left_brace;
+        if (here == Token::end || here == Token::semicolon || here == Token::left_brace || here == Token::right_brace)
+            break;
+    }
+    return false;
+}
+
+// block = "{" {statement} "}"
+StatementPtr Grammar::block()
+{
+    const Span opener = span();
+    const Nesting nesting(*this, Nesting::bracket);
+    if (nesting.too_deep()) {
+        skip_brackets();
+        return make_statement(since(opener), Scope{});
+    }
+    advance();
+    return rest_of_block(opener);
+}
+
+// Behind '{'.
+StatementPtr Grammar::rest_of_block(Span opener)
+{
+    Scope scope;
+    while (!at(Token::right_brace) && !at(Token::end) && !at_top_level_start()) statement(scope.statements);
+    if (!accept(Token::right_brace)) {
+        lost = false;
+        const bool is_news = sources.text(opener) == "{" && !has_stray_brace; // or else enough has been said
+        if (is_news) report_unclosed(Token::right_brace, opener);
+        is_misshapen = true;
+    }
+    return make_statement(since(opener), std::move(scope));
+}
+
+// The body of an if or for: one statement, or several from one declaration, which are then a scope.
+StatementPtr Grammar::single_statement(std::string_view after)
+{
+    const Span first = span();
+    if (at(Token::left_brace)) return block();
+    if (at(Token::right_brace) || at(Token::end)) {
+        error(first, "syntax", "expected a statement after " + std::string(after) + found());
+        return make_statement(first, Scope{});
+    }
+    const Nesting nesting(*this, Nesting::bracket);
+    if (nesting.too_deep()) {
+        while (!at(Token::right_brace) && !at(Token::end) && !at_texture_or_import()) {
+            if (at(Token::left_brace))
+                skip_brackets();
+            else
+                advance();
+        }
+        return make_statement(first, Scope{});
+    }
+    Scope scope;
+    statement(scope.statements);
+    if (scope.statements.size() == 1) return std::move(scope.statements.front());
+    return make_statement(since(first), std::move(scope));
+}
+
+// if = "if" "(" expression ")" statement {"else" "if" "(" expression ")" statement} ["else" statement]
+StatementPtr Grammar::if_statement()
+{
+    const Span first = span();
+    If result;
+    for (bool conditional_arm = true; conditional_arm;) {
+        If::Arm arm;
+        conditional_arm = accept(Token::kw_if); // false behind the last "else"
+        if (conditional_arm) {
+            const Span opener = span();
+            const bool opened = expect(Token::left_paren, "after 'if'");
+            arm.condition = expression();
+            if (opened)
+                close(Token::right_paren, opener);
+            else
+                accept(Token::right_paren);
+            if (lost) arm.condition = unknown_value(*arm.condition);
+        }
+        arm.body = single_statement(conditional_arm ? "the condition" : "'else'");
+        result.arms.push_back(std::move(arm));
+        if (!conditional_arm || !accept(Token::kw_else)) break;
+    }
+    return make_statement(since(first), std::move(result));
+}
+
+// for = "for" "(" [declaration | assignment] ";" [expression] ";" [assignment] ")" statement
+StatementPtr Grammar::for_statement()
+{
+    const Span first = span();
+    const size_t first_position = position;
+    advance();
+    For loop;
+    const Span opener = span();
+    const auto end_part = [&](std::string_view part) {
+        if (lost) skip_to({Token::right_paren});
+        if (accept(Token::semicolon)) return;
+        error(span(), "syntax", "expected ';' after the " + std::string(part) + " of the loop" + found()).hint =
+            "write for (int i = 0; i < count; i++)";
+    };
+    if (expect(Token::left_paren, "after 'for'")) {
+        if (at_declaration()) {
+            Statements made;
+            declaration_list(made);
+            if (made.size() > 1)
+                error(made[1]->span, "syntax", "a loop has one variable, found a second").hint =
+                    "declare the others above the loop";
+            if (!made.empty()) loop.init = std::move(made.front());
+        } else if (!at(Token::semicolon)) {
+            loop.init = assignment_or_expression();
+        }
+        end_part("start");
+        if (!at(Token::semicolon) && !at(Token::right_paren)) loop.condition = expression();
+        end_part("condition");
+        if (!at(Token::right_paren)) loop.step = assignment_or_expression();
+        if (at(Token::comma) && !lost)
+            error(span(), "syntax", "a loop has one step, found a second").hint =
+                "put the others at the end of its body";
+        while (!close(Token::right_paren, opener) && accept(Token::semicolon)) {
+        }
+    }
+    if (lost) {
+        if (loop.init) forget({&loop.init, 1});
+        if (loop.condition) loop.condition = unknown_value(*loop.condition);
+        note_unread(first_position);
+    }
+    loop.body = single_statement("the loop's head");
+    return make_statement(since(first), std::move(loop));
+}
+
+// return = "return" [expression] ";"
+StatementPtr Grammar::return_statement()
+{
+    const Span first = span();
+    advance();
+    Return result;
+    if (!at(Token::semicolon) && !at(Token::right_brace)) result.value = expression();
+    if (!lost) expect_semicolon("'return'");
+    return make_statement(since(first), std::move(result));
+}
+
+// assignment = postfix ("=" | "+=" | ...) expression | postfix ("++" | "--") | ("++" | "--") postfix
+// Without its ';': it may stand in the head of a loop.
+StatementPtr Grammar::assignment_or_expression()
+{
+    const Span first = span();
+    const auto step_by_one = [&](ExpressionPtr target, bool up, Span op) {
+        const Span whole = since(first);
+        NumberLiteral one{NumberLiteral::Kind::integer, 1, 1, {}, "1"};
+        return make_statement(whole, Assignment{std::move(target), up ? AssignOp::add : AssignOp::subtract, op,
+                                                make(op, std::move(one))});
+    };
+    if (at(Token::plus_plus) || at(Token::minus_minus)) {
+        const Span op = span();
+        const bool up = at(Token::plus_plus);
+        advance();
+        return step_by_one(postfix(), up, op);
+    }
+    if (!begins_expression(kind())) error(first, "syntax", "expected a statement" + found());
+    ExpressionPtr target = conditional();
+    if (at(Token::plus_plus) || at(Token::minus_minus)) {
+        const Span op = span();
+        const bool up = at(Token::plus_plus);
+        advance();
+        return step_by_one(std::move(target), up, op);
+    }
+    if (const Assigner* assigner = assigner_of(kind())) {
+        const Span op = span();
+        advance();
+        ExpressionPtr value = expression();
+        const Span whole = since(first);
+        return make_statement(whole, Assignment{std::move(target), assigner->op, op, std::move(value)});
+    }
+    const Span whole = target->span;
+    return make_statement(whole, ExpressionStatement{std::move(target)});
+}
+
+// A type is followed by a name: "vec3 q", "float[3] a", "const ...". A type's own word is enough ("float = 1" is a
+// slip).
+bool Grammar::at_declaration() const
+{
+    if (at(Token::kw_const)) return true;
+    if (!at(Token::name)) return false;
+    if (kind(1) == Token::name) return true;
+    if (kind(1) == Token::left_bracket) {
+        constexpr size_t longest_size = 1000; // tokens; keeps the whole parse linear
+        size_t ahead = 2;
+        for (size_t open = 1; open > 0 && ahead < longest_size; ++ahead) {
+            const Token here = kind(ahead);
+            if (here == Token::left_bracket) ++open;
+            if (here == Token::right_bracket) --open;
+            if (here == Token::end || here == Token::semicolon || here == Token::left_brace) return false;
+        }
+        return kind(ahead) == Token::name;
+    }
+    return is_own_type(text()) && kind(1) != Token::left_paren && kind(1) != Token::dot;
+}
+
+// declaration = ["const"] type declarator {"," declarator} ";"
+void Grammar::declarations(Statements& into)
+{
+    declaration_list(into);
+    if (!lost) expect_semicolon("the declaration");
+}
+
+void Grammar::declaration_list(Statements& into)
+{
+    const Span first = span();
+    const bool is_const = accept(Token::kw_const);
+    const size_t type_position = position;
+    do {
+        // Each name has a type of its own: the type is read again for the second and later ones.
+        const size_t name_position = position;
+        position = type_position;
+        TypeName type = type_name();
+        if (name_position > position) position = name_position;
+        if (at(Token::star) || at(Token::ampersand)) {
+            error(span(), "no-pointers", "there are no pointers or references in Haptel");
+            return;
+        }
+        const Span begin = into.empty() ? first : span();
+        Declaration made = declarator(is_const, std::move(type));
+        if (made.name.text.empty()) return;
+        into.push_back(make_statement(since(begin), std::move(made)));
+    } while (!lost && accept(Token::comma));
+}
+
+// declarator = name ["[" [expression] "]"] ["=" initializer]      The name is empty where there is none.
+Declaration Grammar::declarator(bool is_const, TypeName type)
+{
+    Declaration result;
+    result.is_const = is_const;
+    std::optional<Name> declared = declared_name(type);
+    if (!declared) return result;
+    result.name = std::move(*declared);
+    array_suffix(type);
+    result.type = std::move(type);
+    if (accept(Token::assign)) result.initializer = initializer();
+    return result;
+}
+
+// initializer = expression | brace_list
+ExpressionPtr Grammar::initializer()
+{
+    return at(Token::left_brace) ? brace_list() : expression();
+}
+
+} // namespace haptel::lang

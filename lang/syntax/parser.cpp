@@ -1,0 +1,142 @@
+#include "lang/syntax/parser.h"
+
+#include "lang/syntax/grammar.h"
+
+#include <algorithm>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+File parse(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics)
+{
+    return parse(sources, file, lex(sources, file, diagnostics), diagnostics);
+}
+
+File parse(const SourceSet& sources, uint32_t file, TokenList tokens, Diagnostics& diagnostics)
+{
+    return Grammar(sources, file, std::move(tokens), diagnostics).parse_file();
+}
+
+Grammar::Grammar(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink)
+    : TokenCursor(all_sources, file_index, std::move(token_list), sink)
+{
+}
+
+// file = {import | constants | texture | function | ";"}
+File Grammar::parse_file()
+{
+    File result;
+    while (!at(Token::end)) {
+        lost = false;
+        unread.clear();
+        is_head_damaged = is_misshapen = has_stray_brace = false;
+        depth = Nesting::bracket;
+        const size_t first_position = position;
+        if (accept(Token::semicolon)) continue;
+        bool strayed = false;
+        skip_foreign_qualifiers();
+        if (at(Token::kw_import)) {
+            import_declaration(result);
+        } else if (at(Token::kw_const)) {
+            constants(result);
+        } else if (at(Token::kw_texture)) {
+            texture(result);
+        } else if ((at(Token::kw_in) || at(Token::kw_out)) && kind(1) == Token::name) {
+            skip_global_in_or_out();
+        } else if (at(Token::name)) {
+            strayed = !top_level_name(result);
+        } else {
+            strayed = true;
+        }
+        if (strayed) report_stray(result);
+        if (lost) {
+            find_top_level(strayed);
+            note_unread(first_position);
+            result.unread.merge(unread);
+            result.lacks_functions = true;
+            stand_again();
+        }
+        if (position == first_position) advance();
+    }
+    return result;
+}
+
+// Statements outside of any body: a '}' too many above, or a slip.
+void Grammar::report_stray(File& result)
+{
+    const bool statement_like = kind() >= Token::kw_if || at(Token::name) || at(Token::right_brace);
+    Diagnostic& reported = error(span(), "syntax", "expected a texture, function, constant or import" + found());
+    if (!statement_like) return;
+    reported.hint = "statements stand inside functions and textures; is there a '}' too many above?";
+    // Then the body above has ended too early.
+    const auto spoil = [](auto& above) {
+        above.damage.any = true;
+        above.body = nullptr;
+    };
+    const bool has_texture = !result.textures.empty(), has_function = !result.functions.empty();
+    const bool is_texture =
+        has_texture && (!has_function || result.functions.back().span.end < result.textures.back().span.end);
+    if (is_texture)
+        spoil(result.textures.back());
+    else if (has_function)
+        spoil(result.functions.back());
+}
+
+// A name at the top: a function's type; or a slip. False if nothing at all can begin like this.
+bool Grammar::top_level_name(File& result)
+{
+    const ForeignWord* foreign = foreign_word(ForeignKind::declaration, text());
+    if (foreign && foreign->replacement.empty()) {
+        skip_foreign_declaration(*foreign);
+        return true;
+    }
+    std::string_view guess =
+        is_type_word(text()) ? std::string_view{} : nearest_name(text(), {"texture", "import", "const"});
+    if (foreign) guess = foreign->replacement;
+    const bool follows = kind(1) == Token::name || (guess == "import" && kind(1) == Token::string);
+    if (!guess.empty() && follows) {
+        const ErrorCode code = foreign ? ErrorCode("foreign-word") : ErrorCode("syntax");
+        Diagnostic& reported = diagnostics.error(
+            span(), code, "expected 'texture' or the type of a function, found '" + std::string(text()) + "'");
+        reported.hint = foreign ? std::string(foreign->hint) : "did you mean '" + std::string(guess) + "'?";
+        reported.fix = FixIt{span(), std::string(guess)};
+        ++mistakes;
+        if (guess == "const") list.tokens[position].kind = Token::kw_const;
+        if (guess == "texture") list.tokens[position].kind = Token::kw_texture;
+        guess == "texture" ? texture(result) : guess == "import" ? import_declaration(result) : constants(result);
+        return true;
+    }
+    if (kind(1) != Token::name && kind(1) != Token::left_bracket && !is_type_word(text()) && !body_follows())
+        return false;
+    if (statements_follow()) return false;
+    if (is_texture_without_its_word()) {
+        const Span before{file, span().begin, span().begin};
+        error(span(), "syntax", "expected 'texture' before '" + std::string(text()) + "'").fix =
+            FixIt{before, "texture "};
+        lost = false;
+        texture(result);
+        return true;
+    }
+    function_or_variable(result);
+    return true;
+}
+
+// After a mistake: before the next declaration, or behind the ';' or '}' that ends this one; but statements that have
+// strayed here have many of those, and end only where a declaration begins.
+void Grammar::find_top_level(bool strayed)
+{
+    uint32_t open_braces = 0;
+    if (!strayed && position > 0 && list.tokens[position - 1].kind == Token::right_brace) return;
+    for (; !at(Token::end) && !at_texture_or_import(); advance()) {
+        if (at(Token::left_brace)) ++open_braces;
+        const bool closes = at(Token::right_brace) && open_braces > 0 && --open_braces == 0;
+        if (!strayed && (closes || (at(Token::semicolon) && open_braces == 0))) {
+            advance();
+            return;
+        }
+        if (open_braces == 0 && on_new_line() && (at(Token::kw_const) || at_top_level_start())) return;
+    }
+}
+
+} // namespace haptel::lang

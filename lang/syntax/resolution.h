@@ -1,0 +1,116 @@
+// What the checker finds out about names, calls and loops. The tree (ast.h) points here; lowering reads it.
+#pragma once
+
+#include "lang/ir/int_range.h"
+#include "lang/syntax/type.h"
+#include "lang/text/source.h"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace haptel::lang {
+
+namespace ast {
+struct Function;
+struct Expression;
+} // namespace ast
+
+struct BuiltinOverload;
+struct FunctionInfo;
+struct Symbol;
+
+// Inputs of a texture; the value is the bit number in HAPTEL_READS_*.
+enum class InputName : uint8_t { p, n, uv, time, center, extent, footprint };
+constexpr uint32_t input_name_count = 7;
+
+// One component of a constant: a real number, the bits of an int or uint, or a bool. The same as ir::Scalar<double>.
+using ConstantPart = std::variant<double, uint32_t, bool>;
+
+enum class SymbolKind : uint8_t {
+    local,             // variable, value parameter of a function, loop counter
+    constant,          // `const` whose value is known; `value` holds it
+    table,             // constant table; `value` holds the cells, component after component
+    texture_parameter, // `slot` is its index in the texture
+    input,             // `input` says which
+    function,          // parameter that is a function, known when its owner is lowered; `slot` counts such parameters
+};
+
+// A parameter of something that can be called. Two are equal if overloads cannot be told apart by them.
+struct ParameterInfo {
+    Type type; // of a function: its result
+    std::string name = {};
+    bool is_function = false;
+    std::vector<Type> signature = {}; // of a function: types of its arguments
+    const Symbol* symbol = nullptr;   // inside the function that has it; null if it has no name
+    bool operator==(const ParameterInfo& other) const
+    {
+        return type == other.type && is_function == other.is_function && signature == other.signature;
+    }
+};
+
+// What a name stands for. Owned by CheckedProgram.
+struct Symbol {
+    SymbolKind kind = SymbolKind::local;
+    std::string name;
+    Type type; // of a function: its result
+    Span span; // of the name where it was declared; empty for inputs
+    uint32_t slot = 0;
+    InputName input = InputName::p;
+    std::optional<ir::IntRange>
+        range; // constants and texture parameters; nothing: of reals, and of locals, where only flow knows
+    std::vector<ConstantPart> value;       // constants and tables
+    std::vector<ParameterInfo> parameters; // of a function
+    const char* read_only = nullptr;       // why it cannot be assigned to, as a clause; null: it can
+    bool is_parameter = false;             // of a function or texture, for messages
+    bool is_read = false;
+    bool is_assigned = false; // behind its declaration
+};
+
+// A function that is called or passed: from source, built in, or a parameter of the function around the call.
+using FunctionReference = std::variant<std::monostate, const FunctionInfo*, const BuiltinOverload*, const Symbol*>;
+
+struct CallTarget {
+    bool is_constructor = false; // then the expression's type says of what
+    FunctionReference function;
+    std::vector<FunctionReference> function_arguments; // one per argument; empty where the argument is a value
+};
+
+// A loop whose trip count is bounded: `for (int i = start; i COMPARE bound; i += step)`.
+struct LoopPlan {
+    enum class Compare : uint8_t { less, less_equal, greater, greater_equal };
+    const Symbol* counter = nullptr;
+    const ast::Expression* start = nullptr;
+    const ast::Expression* bound = nullptr; // not changed by the body, so it is evaluated once
+    Compare compare = Compare::less;
+    int64_t step = 1;
+    uint32_t trip_max = 0;
+    bool runs = false;                // certainly, at least once, and there is a body
+    bool difference_may_wrap = false; // bound - start does not fit into 32 bits for every value in range
+};
+
+// A function of the source.
+struct FunctionInfo {
+    // A function mentioned in the body, called or passed on: an edge of the call graph.
+    struct Mention {
+        const FunctionInfo* function = nullptr; // null: built in, or a parameter
+        Span span;
+        uint32_t order = 0;                    // how often grad is applied to it
+        const FunctionInfo* through = nullptr; // the function it is passed to, which may differentiate it
+    };
+
+    std::string name;
+    Type result;
+    std::vector<ParameterInfo> parameters;
+    const ast::Function* tree = nullptr;
+    uint32_t file = 0;
+    bool is_library = false;
+    uint32_t slot_count = 0; // local variables, parameters included
+    uint32_t reads = 0;      // HAPTEL_READS_* of itself and of every function it mentions
+    std::vector<Mention> mentions;
+    bool is_valid = true; // false: its head has errors; calls to it are not checked
+};
+
+} // namespace haptel::lang

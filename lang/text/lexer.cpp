@@ -1,0 +1,369 @@
+#include "lang/text/lexer.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <span>
+#include <utility>
+
+namespace haptel::lang {
+
+namespace {
+
+using Spelling = std::pair<Token, std::string_view>;
+
+constexpr Spelling symbols[] = {
+#define SYMBOL(name, spelling) {Token::name, spelling},
+#define KEYWORD(name, spelling)
+#include "lang/text/token.def"
+#undef SYMBOL
+#undef KEYWORD
+};
+
+constexpr Spelling keywords[] = {
+#define SYMBOL(name, spelling)
+#define KEYWORD(name, spelling) {Token::name, spelling},
+#include "lang/text/token.def"
+#undef SYMBOL
+#undef KEYWORD
+};
+
+// Characters that word processors and web pages put where ASCII was meant.
+struct Lookalike {
+    char32_t character;
+    std::string_view meant;
+};
+constexpr Lookalike lookalikes[] = {
+    {0x00A0, " "}, {0x00D7, "*"},  {0x00F7, "/"},  {0x2010, "-"},  {0x2011, "-"},  {0x2013, "-"}, {0x2014, "-"},
+    {0x2018, "'"}, {0x2019, "'"},  {0x201C, "\""}, {0x201D, "\""}, {0x2026, ".."}, {0x2212, "-"}, {0x2215, "/"},
+    {0x22C5, "*"}, {0x2264, "<="}, {0x2265, ">="}, {0x2260, "!="}, {0x037E, ";"},
+};
+
+constexpr uint32_t longest_file = 64u << 20;
+
+constexpr uint8_t index_of(char c)
+{
+    return static_cast<uint8_t>(c);
+}
+
+bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+bool is_name_start(char c)
+{
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+}
+constexpr auto name_parts = [] {
+    std::array<bool, 256> is_part{};
+    for (char c = 'a'; c <= 'z'; ++c) is_part[index_of(c)] = true;
+    for (char c = 'A'; c <= 'Z'; ++c) is_part[index_of(c)] = true;
+    for (char c = '0'; c <= '9'; ++c) is_part[index_of(c)] = true;
+    is_part['_'] = true;
+    return is_part;
+}();
+bool is_name_part(char c)
+{
+    return name_parts[index_of(c)];
+}
+
+// Spellings by their first character, so that a text is read at the speed of its bytes and not of the list.
+template <size_t count>
+struct ByFirstCharacter {
+    std::array<Spelling, count> spellings;
+    std::array<uint8_t, 256> begins{}, ends{};
+
+    constexpr explicit ByFirstCharacter(const Spelling (&listed)[count]) : spellings(std::to_array(listed))
+    {
+        for (size_t i = 1; i < count; ++i) // which of them comes first matters: as listed
+            for (size_t at = i; at > 0 && first(at) < first(at - 1); --at) std::swap(spellings[at], spellings[at - 1]);
+        for (size_t i = count; i-- > 0;) begins[first(i)] = static_cast<uint8_t>(i);
+        for (size_t i = 0; i < count; ++i) ends[first(i)] = static_cast<uint8_t>(i + 1);
+    }
+    constexpr uint8_t first(size_t i) const { return index_of(spellings[i].second[0]); }
+    std::span<const Spelling> with(char c) const
+    {
+        const uint8_t begin = begins[index_of(c)];
+        return std::span(spellings).subspan(begin, static_cast<size_t>(ends[index_of(c)] - begin));
+    }
+};
+constexpr ByFirstCharacter symbols_by_character(symbols);
+constexpr ByFirstCharacter keywords_by_character(keywords);
+
+class Lexer {
+public:
+    Lexer(std::string_view file_text, Span part, Diagnostics& sink)
+        : text(file_text.substr(0, part.end)), file(part.file), at(part.begin), diagnostics(sink)
+    {
+    }
+
+    TokenList run()
+    {
+        skip_byte_order_mark();
+        list.tokens.reserve(std::min<size_t>(text.size() / 4, 1 << 16)); // as texts go
+        while (at < text.size() && !diagnostics.full()) next();
+        list.tokens.push_back({Token::end, size(), size()});
+        return std::move(list);
+    }
+
+private:
+    void next()
+    {
+        const char c = text[at];
+        const uint32_t begin = at;
+        if (c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f') {
+            ++at;
+        } else if (c == '/' && peek(1) == '/') {
+            line_comment();
+        } else if (c == '/' && peek(1) == '*') {
+            block_comment();
+        } else if (is_name_start(c)) {
+            while (is_name_part(peek())) ++at;
+            push(keyword_or_name(text.substr(begin, at - begin)), begin);
+        } else if (is_digit(c) || (c == '.' && is_digit(peek(1)))) {
+            number();
+        } else if (c == '"') {
+            string();
+        } else if (c == '#') {
+            directive();
+        } else if (!symbol()) {
+            unexpected();
+        }
+    }
+
+    std::string_view rest() const { return text.substr(at); }
+    char peek(uint32_t ahead = 0) const { return at + ahead < text.size() ? text[at + ahead] : '\0'; }
+    uint32_t size() const { return static_cast<uint32_t>(text.size()); }
+    bool at_line_end() const { return at >= text.size() || text[at] == '\n' || text[at] == '\r'; }
+
+    Span span_from(uint32_t begin) const { return {file, begin, at}; }
+    void push(Token kind, uint32_t begin) { list.tokens.push_back({kind, begin, at}); }
+
+    static Token keyword_or_name(std::string_view word)
+    {
+        for (const auto& [token, spelling] : keywords_by_character.with(word[0]))
+            if (word == spelling) return token;
+        return Token::name;
+    }
+
+    void skip_byte_order_mark()
+    {
+        if (at == 0 && text.starts_with("\xEF\xBB\xBF")) at = 3;
+        if (at == 0 && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))) {
+            diagnostics.error({file, 0, 2}, "not-text", "this file is UTF-16, expected UTF-8").hint =
+                "save it as UTF-8 in your editor";
+            give_up();
+        }
+    }
+
+    // The rest is not worth reading: silence the parser too.
+    void give_up()
+    {
+        const uint32_t begin = at;
+        at = size();
+        push(Token::invalid, begin);
+    }
+
+    void line_comment()
+    {
+        const uint32_t begin = at;
+        const bool doc = rest().starts_with("///") && !rest().starts_with("////");
+        const std::string_view line = rest().substr(0, rest().find('\n'));
+        at += static_cast<uint32_t>(std::min(line.size(), line.find('\r')));
+        if (doc) list.docs.push_back({span_from(begin), static_cast<uint32_t>(list.tokens.size())});
+    }
+
+    void block_comment()
+    {
+        const size_t end = text.find("*/", at + 2);
+        if (end != std::string_view::npos) {
+            at = static_cast<uint32_t>(end + 2);
+            return;
+        }
+        diagnostics.error({file, at, at + 2}, "open-comment",
+                          "this comment is never closed: expected '*/' before the end of the file");
+        give_up();
+    }
+
+    // number = (digit {digit} ["." {digit}] | "." digit {digit}) [("e" | "E") ["+" | "-"] digit {digit}] [suffix]
+    // (a sign without digits behind is taken too, for its message)
+    //        | "0" ("x" | "X") hex_digit {hex_digit} [suffix]
+    // suffix = letter {letter | digit}, glued to the number: a unit, "f" or "u".
+    // A dot that is followed by another dot begins a range: "0..1" is 0, "..", 1.
+    void number()
+    {
+        const uint32_t begin = at;
+        const bool hex = text[at] == '0' && (peek(1) == 'x' || peek(1) == 'X');
+        if (!hex) {
+            while (is_digit(peek())) ++at;
+            if (peek() == '.' && peek(1) != '.') {
+                ++at;
+                while (is_digit(peek())) ++at;
+            }
+            const uint32_t sign = peek(1) == '+' || peek(1) == '-' ? 1 : 0;
+            if ((peek() == 'e' || peek() == 'E') && (sign == 1 || is_digit(peek(1)))) { // no unit ends with e
+                at += 1 + sign;
+                while (is_digit(peek())) ++at;
+            }
+        }
+        while (is_name_part(peek()) || static_cast<unsigned char>(peek()) >= 0x80)
+            ++at; // the suffix; "µm" too, for its message
+        push(Token::number, begin);
+    }
+
+    void string()
+    {
+        const uint32_t begin = at++;
+        while (!at_line_end() && text[at] != '"') ++at;
+        if (peek() == '"' && at < text.size()) {
+            ++at;
+            push(Token::string, begin);
+            return;
+        }
+        diagnostics.error({file, begin, begin + 1}, "open-string",
+                          "this string is not closed: expected '\"' before the end of the line");
+        push(Token::invalid, begin);
+    }
+
+    // "#define", "#version" and the like of other shading languages: one message, the line is skipped.
+    void directive()
+    {
+        const uint32_t begin = at++;
+        while (is_name_part(peek())) ++at;
+        const Span word = span_from(begin);
+        while (!at_line_end()) {
+            if (text[at] == '\\') ++at; // a continued line
+            if (at < text.size() && text[at] == '\r' && peek(1) == '\n') ++at;
+            if (at < text.size()) ++at;
+        }
+        const bool define = text.substr(begin, word.end - begin) == "#define";
+        Diagnostic& found = diagnostics.error(word, "preprocessor", "Haptel has no preprocessor");
+        found.hint = define ? "write a constant, \"const float WIDTH = 2mm;\", or a function" : "leave this line out";
+        const std::string_view ignored[] = {"#version", "#extension", "#pragma", "#line"}; // what changes nothing here
+        for (const std::string_view known : ignored)
+            if (text.substr(begin, word.end - begin) == known) found.fix = FixIt{span_from(begin), ""};
+    }
+
+    bool symbol()
+    {
+        for (const auto& [token, spelling] : symbols_by_character.with(text[at])) {
+            if (spelling.size() > 1 && !rest().starts_with(spelling)) continue;
+            const uint32_t begin = at;
+            at += static_cast<uint32_t>(spelling.size());
+            push(token, begin);
+            return true;
+        }
+        return false;
+    }
+
+    void unexpected()
+    {
+        const uint32_t begin = at;
+        if (text[at] == '\0') {
+            diagnostics.error({file, at, at + 1}, "not-text", "this is not text: found a zero byte");
+            give_up();
+            return;
+        }
+        const CodePoint point = decode_utf8(text, at);
+        at += point.length;
+        const Span first = span_from(begin);
+        for (const Lookalike& lookalike : lookalikes) {
+            if (point.value != lookalike.character) continue;
+            Diagnostic& found = diagnostics.error(
+                first, "unexpected-character",
+                point.value == 0xA0 ? "unexpected no-break space"
+                                    : "unexpected character '" + printable(text.substr(begin, point.length)) + "'");
+            found.hint = lookalike.meant == " " ? "write an ordinary space" : "write " + std::string(lookalike.meant);
+            found.fix = FixIt{first, std::string(lookalike.meant)};
+            push(Token::invalid, begin);
+            return;
+        }
+        // One report for a whole run: binary garbage and text in another script would drown the rest.
+        while (at < text.size() && static_cast<unsigned char>(text[at]) >= 0x80) ++at;
+        std::string message = "unexpected character '" + printable(text.substr(begin, point.length)) + "'";
+        if (point.value == invalid_code_point) message = "this is not UTF-8 text";
+        Diagnostic& found = diagnostics.error(
+            first, point.value == invalid_code_point ? ErrorCode("not-text") : ErrorCode("unexpected-character"),
+            message);
+        if (point.value < 0x80)
+            found.hint = text[begin] == '\'' || text[begin] == '`' ? "strings are written with double quotes" : "";
+        else if (point.value != invalid_code_point)
+            found.hint = "names are made of a-z, A-Z, 0-9 and _; anything may stand in comments";
+        push(Token::invalid, begin);
+    }
+
+    std::string_view text; // of the whole file up to the end of the part
+    uint32_t file;
+    uint32_t at;
+    Diagnostics& diagnostics;
+    TokenList list;
+};
+
+// Where a file that is no text stops being one: at a zero byte, or at the first of many bytes that no text has.
+std::optional<uint32_t> first_of_garbage(std::string_view text)
+{
+    constexpr size_t tolerated = 16, one_in = 20;
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return std::nullopt; // the lexer knows better
+    static constexpr auto plain = [] { // characters that every text has
+        std::array<bool, 256> is_plain{};
+        for (char c = ' '; c < 127; ++c) is_plain[index_of(c)] = true;
+        is_plain['\n'] = true;
+        return is_plain;
+    }();
+    size_t odd = 0;
+    uint32_t first = 0;
+    for (uint32_t at = 0; at < text.size();) {
+        while (at < text.size() && plain[index_of(text[at])]) ++at; // nearly all
+        if (at == text.size()) break;
+        const char c = text[at];
+        if (c == '\0') return odd > 0 ? first : at;
+        const bool is_control =
+            (c > 0 && c < ' ' && c != '\t' && c != '\n' && c != '\r' && c != '\v' && c != '\f') || c == 127;
+        const CodePoint point = decode_utf8(text, at);
+        if ((is_control || point.value == invalid_code_point) && odd++ == 0) first = at;
+        at += point.length;
+    }
+    return odd > tolerated && odd > text.size() / one_in ? std::optional(first) : std::nullopt;
+}
+
+} // namespace
+
+std::string_view describe(Token token)
+{
+    switch (token) {
+    case Token::end: return "the end of the file";
+    case Token::invalid: return "something unreadable";
+    case Token::name: return "a name";
+    case Token::number: return "a number";
+    case Token::string: return "a string";
+#define SYMBOL(name, spelling)                                                                                         \
+    case Token::name: return "'" spelling "'";
+#define KEYWORD(name, spelling) SYMBOL(name, spelling)
+#include "lang/text/token.def"
+#undef SYMBOL
+#undef KEYWORD
+    }
+    return {};
+}
+
+TokenList lex(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics)
+{
+    const std::string& text = sources.file(file).text;
+    if (text.size() > longest_file) {
+        diagnostics.error({file, 0, 0}, "too-large", "this file is larger than 64 MiB");
+        return {{{Token::invalid, 0, 0}, {Token::end, 0, 0}}, {}};
+    }
+    if (const auto garbage = first_of_garbage(text)) {
+        diagnostics.error({file, *garbage, *garbage + 1}, "not-text", "this file is not text, expected UTF-8").hint =
+            "is it the right file, and saved as UTF-8?";
+        return {{{Token::invalid, *garbage, *garbage}, {Token::end, *garbage, *garbage}}, {}};
+    }
+    return lex(sources, {file, 0, static_cast<uint32_t>(text.size())}, diagnostics);
+}
+
+TokenList lex(const SourceSet& sources, Span part, Diagnostics& diagnostics)
+{
+    return Lexer(sources.file(part.file).text, part, diagnostics).run();
+}
+
+} // namespace haptel::lang

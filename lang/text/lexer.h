@@ -1,0 +1,51 @@
+// Text to tokens. Takes any bytes: what cannot be a token is reported once per run and becomes one `invalid` token, at
+// which the parser stays silent.
+#pragma once
+
+#include "lang/text/diagnostic.h"
+#include "lang/text/source.h"
+
+#include <string_view>
+#include <vector>
+
+namespace haptel::lang {
+
+enum class Token : uint8_t {
+    end,     // last token of every file, empty span
+    invalid, // already reported
+    name,
+    number, // with its unit suffix; not yet converted
+    string, // with its quotes
+#define SYMBOL(name, spelling) name,
+#define KEYWORD(name, spelling) name,
+#include "lang/text/token.def"
+#undef SYMBOL
+#undef KEYWORD
+};
+
+// "';'", "'texture'", "a name": for messages.
+std::string_view describe(Token token);
+
+struct PlacedToken {
+    Token kind = Token::end;
+    uint32_t begin = 0, end = 0; // bytes of the file
+};
+
+// A "///" line. It documents the token that follows it.
+struct DocLine {
+    Span span;             // without the line end
+    uint32_t before_token; // index of the token after it
+};
+
+struct TokenList {
+    std::vector<PlacedToken> tokens; // ends with Token::end
+    std::vector<DocLine> docs;
+};
+
+// Stops early once `diagnostics` is full.
+TokenList lex(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics);
+
+// Only the bytes of `part`: for what is written inside a comment.
+TokenList lex(const SourceSet& sources, Span part, Diagnostics& diagnostics);
+
+} // namespace haptel::lang
