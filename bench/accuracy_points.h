@@ -2,8 +2,8 @@
 #pragma once
 
 #include "bench/accuracy_bench.h"
-#include "jit/oracle.h"
-#include "jit/texture.h"
+#include "jit/check/oracle.h"
+#include "jit/texture/texture.h"
 
 #include <vector>
 

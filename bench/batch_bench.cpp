@@ -1,6 +1,6 @@
 #include "bench/batch_bench.h"
 
-#include "jit/check_points.h"
+#include "jit/check/check_points.h"
 #include "lang/abi/abi.h"
 
 #include <algorithm>

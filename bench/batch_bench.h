@@ -2,7 +2,7 @@
 #pragma once
 
 #include "bench/timing.h"
-#include "jit/texture.h"
+#include "jit/texture/texture.h"
 
 #include <functional>
 #include <string>

@@ -1,6 +1,6 @@
 #include "bench/bumpy_ball.h"
 
-#include "jit/texture.h"
+#include "jit/texture/texture.h"
 #include "runtime/shapes.h"
 
 #include <cmath>

@@ -2,7 +2,7 @@
 
 #include "bench/example_textures.h"
 #include "bench/generated_texture.h"
-#include "jit/texture.h"
+#include "jit/texture/texture.h"
 #include "lang/compile.h"
 #include "stdlib/stdlib.h"
 

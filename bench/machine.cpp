@@ -1,6 +1,6 @@
 #include "bench/machine.h"
 
-#include "jit/engine.h"
+#include "jit/engine/engine.h"
 
 #include <fstream>
 #include <thread>

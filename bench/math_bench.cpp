@@ -1,7 +1,7 @@
 #include "bench/math_bench.h"
 
 #include "bench/library_functions.h"
-#include "jit/engine.h"
+#include "jit/engine/engine.h"
 #include "lang/ir/elementary.h"
 #include "lang/ir/op_info.h"
 #include "lang/ir/run/elementary_truth.h"

@@ -1,8 +1,8 @@
 // Haptel in a program of your own: a texture from text, called directly; then a scene from a file, felt by the
 // simulated hand.   embed examples/scenes/rock.toml
 #include "device/device_factory.h"
-#include "jit/resolver.h"
-#include "jit/texture.h"
+#include "jit/texture/resolver.h"
+#include "jit/texture/texture.h"
 #include "runtime/files/scene_file.h"
 #include "runtime/servo_thread.h"
 

@@ -1,6 +1,6 @@
 // haptel cache: the machine code that is kept on disk, so that the next start need not make it.
-#include "jit/object_cache.h"
-#include "jit/texture.h"
+#include "jit/engine/object_cache.h"
+#include "jit/texture/texture.h"
 #include "lang/text/diagnostic.h"
 #include "stdlib/stdlib.h"
 #include "tools/command.h"

@@ -1,6 +1,6 @@
 // haptel check: what is wrong with a texture file, and what is known of its textures before anybody touches them.
-#include "jit/image_file.h"
-#include "jit/source_file.h"
+#include "jit/picture/image_file.h"
+#include "jit/texture/source_file.h"
 #include "lang/parameter_value.h"
 #include "stdlib/stdlib.h"
 #include "tools/check_report.h"

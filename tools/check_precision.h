@@ -1,7 +1,7 @@
 // The precision that check --max-error picks, as it is shown.
 #pragma once
 
-#include "jit/precision_choice.h"
+#include "jit/check/precision_choice.h"
 #include "tools/json.h"
 
 #include <string>

@@ -1,5 +1,5 @@
 // haptel eval: height and gradient of a texture at points, by any engine.
-#include "jit/oracle.h"
+#include "jit/check/oracle.h"
 #include "lang/abi/evaluate.h"
 #include "tools/command.h"
 #include "tools/eval_table.h"

@@ -1,6 +1,6 @@
 #include "tools/explore_scene.h"
 
-#include "jit/file_watch.h"
+#include "jit/live/file_watch.h"
 
 #include <algorithm>
 #include <chrono>

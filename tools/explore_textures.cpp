@@ -1,7 +1,7 @@
 #include "tools/explore_textures.h"
 
-#include "jit/live_texture.h"
-#include "jit/resolver.h"
+#include "jit/live/live_texture.h"
+#include "jit/texture/resolver.h"
 
 #include <utility>
 

@@ -1,5 +1,5 @@
 // haptel fmt: source text in the one style.
-#include "jit/source_file.h"
+#include "jit/texture/source_file.h"
 #include "lang/format/format.h"
 #include "tools/command.h"
 #include "tools/replace_file.h"

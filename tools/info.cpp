@@ -1,5 +1,5 @@
 // haptel info: what there is to call, and what a file's textures are.
-#include "jit/source_file.h"
+#include "jit/texture/source_file.h"
 #include "lang/compile.h"
 #include "lang/syntax/parser.h"
 #include "stdlib/stdlib.h"

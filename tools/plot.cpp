@@ -1,6 +1,6 @@
 // haptel plot: pictures of a texture.
-#include "jit/oracle.h"
-#include "jit/texture.h"
+#include "jit/check/oracle.h"
+#include "jit/texture/texture.h"
 #include "lang/abi/evaluate.h"
 #include "tools/command.h"
 #include "tools/plot_texture.h"

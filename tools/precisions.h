@@ -1,7 +1,7 @@
 // The precisions of machine code by the names that a command line gives them.
 #pragma once
 
-#include "jit/precision.h"
+#include "jit/codegen/precision.h"
 
 #include <string_view>
 

@@ -1,5 +1,5 @@
 // haptel test: is every texture's gradient the gradient of its height, to rounding?
-#include "jit/check_gradient.h"
+#include "jit/check/check_gradient.h"
 #include "tools/command.h"
 #include "tools/quantity.h"
 #include "tools/terminal.h"

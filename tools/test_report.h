@@ -1,7 +1,7 @@
 // What `haptel test` found out about each texture, as a table, as JSON and as JUnit's XML.
 #pragma once
 
-#include "jit/check_gradient.h"
+#include "jit/check/check_gradient.h"
 #include "tools/json.h"
 
 #include <optional>

@@ -1,6 +1,6 @@
 #include "tools/texture_files.h"
 
-#include "jit/source_file.h"
+#include "jit/texture/source_file.h"
 #include "lang/syntax/parser.h"
 
 #include <filesystem>

@@ -1,7 +1,7 @@
 // The values of every file of cases/ in every form of code: each precision, one point and many, hardly and fully
 // optimised. In f64 all have the same bits. In mixed and f32 a value is no further from the exact one than rounding
 // each operation to f32 can lead; a height is the same with and without its gradient, and in a batch as alone.
-#include "jit/entry_inputs.h"
+#include "jit/check/entry_inputs.h"
 #include "tests/conformance/folder.h"
 #include "tests/conformance/request.h"
 #include "tests/jit/batch.h"

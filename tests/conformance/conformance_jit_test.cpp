@@ -1,5 +1,5 @@
 // The values of every file of cases/ through machine code: as expected, and bit for bit those of the interpreter.
-#include "jit/oracle.h"
+#include "jit/check/oracle.h"
 #include "tests/conformance/case.h"
 #include "tests/conformance/folder.h"
 #include "tests/conformance/request.h"

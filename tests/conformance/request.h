@@ -1,7 +1,7 @@
 // The last texture of a case, with the box and the parameters of an evaluation.
 #pragma once
 
-#include "jit/texture.h"
+#include "jit/texture/texture.h"
 #include "tests/conformance/case.h"
 
 namespace haptel::lang::test {

@@ -1,5 +1,5 @@
 // Files that claim to be pictures.
-#include "jit/picture.h"
+#include "jit/picture/picture.h"
 #include "lang/ir/bounds/spline_image.h"
 #include "lang/math/spline.h"
 #include "tests/fuzz/target.h"

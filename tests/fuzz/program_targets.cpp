@@ -1,6 +1,6 @@
 // Random programs: every engine gives the same, and what is measured lies in the bounds.
-#include "jit/engine.h"
-#include "jit/entry_inputs.h"
+#include "jit/check/entry_inputs.h"
+#include "jit/engine/engine.h"
 #include "lang/compile.h"
 #include "lang/ir/bounds/bounds.h"
 #include "lang/ir/verify.h"

@@ -1,5 +1,5 @@
 // The check that finds wrong gradients: it must pass what is right and fail what is wrong by little.
-#include "jit/check_gradient.h"
+#include "jit/check/check_gradient.h"
 #include "tests/jit/samples.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // One module on every engine: interpreter, code of every effort, batches of all.
 #pragma once
 
-#include "jit/engine.h"
+#include "jit/engine/engine.h"
 #include "lang/ir/run/interpret.h"
 #include "tests/support/catch.h"
 

@@ -1,6 +1,6 @@
 // Bounds against what can be found: dense sampling and climbing from the best points, for every texture of the library.
 // What is found never leaves the bounds, and at the default parameters the bounds are not far from it.
-#include "jit/texture.h"
+#include "jit/texture/texture.h"
 #include "tests/jit/samples.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Every kind of picture, to the last bit of its numbers; and pictures that are none.
-#include "jit/image_file.h"
-#include "jit/picture.h"
+#include "jit/picture/image_file.h"
+#include "jit/picture/picture.h"
 #include "tests/jit/pictures.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"

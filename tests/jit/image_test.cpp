@@ -1,7 +1,7 @@
 // Pictures as textures: from the file to the gradient, against arithmetic of this test alone.
-#include "jit/check_gradient.h"
-#include "jit/image_file.h"
-#include "jit/oracle.h"
+#include "jit/check/check_gradient.h"
+#include "jit/check/oracle.h"
+#include "jit/picture/image_file.h"
 #include "tests/jit/samples.h"
 #include "tests/support/folder.h"
 

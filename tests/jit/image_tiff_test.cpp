@@ -1,5 +1,5 @@
 // TIFF files as other programs write them.
-#include "jit/picture.h"
+#include "jit/picture/picture.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"
 

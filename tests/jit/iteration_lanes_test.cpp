@@ -1,6 +1,6 @@
 // Iterations of a loop side by side, for one point: which loops allow it, and that it changes nothing but the order of
 // additions.
-#include "jit/uniformity.h"
+#include "jit/codegen/uniformity.h"
 #include "tests/jit/samples.h"
 
 #include <cstring>

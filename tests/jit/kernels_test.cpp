@@ -1,5 +1,5 @@
 // Library functions compiled apart change no bit, and are told apart by all that decides their code.
-#include "jit/content_hash.h"
+#include "jit/codegen/content_hash.h"
 #include "lang/ir/text.h"
 #include "stdlib/stdlib.h"
 #include "tests/jit/samples.h"

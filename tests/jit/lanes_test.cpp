@@ -1,5 +1,5 @@
 // Many points at once: each sample of a batch is that of the entry for one point, bit for bit.
-#include "jit/uniformity.h"
+#include "jit/codegen/uniformity.h"
 #include "lang/ir/text.h"
 #include "tests/jit/batch.h"
 #include "tests/jit/samples.h"

@@ -1,7 +1,7 @@
 // What the language offers, through machine code: second derivatives, matrices, arrays and left loops agree with the
 // oracle, and with closed forms where there are some.
-#include "jit/oracle.h"
-#include "jit/resolver.h"
+#include "jit/check/oracle.h"
+#include "jit/texture/resolver.h"
 #include "tests/jit/samples.h"
 #include "tests/support/folder.h"
 

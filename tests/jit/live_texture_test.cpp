@@ -1,7 +1,7 @@
 // Textures that follow their files, however the files are written. Times here are patience, not claims.
-#include "jit/file_watch.h"
-#include "jit/live_texture.h"
-#include "jit/resolver.h"
+#include "jit/live/file_watch.h"
+#include "jit/live/live_texture.h"
+#include "jit/texture/resolver.h"
 #include "tests/jit/samples.h"
 #include "tests/support/folder.h"
 

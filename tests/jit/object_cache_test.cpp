@@ -1,5 +1,5 @@
 // Objects on disk: whole or absent, whatever lies in the folder and whoever else is at work there.
-#include "jit/object_cache.h"
+#include "jit/engine/object_cache.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"
 

@@ -1,5 +1,5 @@
 // Code for another processor: the object file is read by what its format says, not by LLVM.
-#include "jit/object.h"
+#include "jit/engine/object.h"
 #include "tests/jit/samples.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Quick code becomes fast code in the background: the same pointers, the same bits, at any moment.
-#include "jit/background_optimiser.h"
-#include "jit/program_cache.h"
+#include "jit/texture/background_optimiser.h"
+#include "jit/texture/program_cache.h"
 #include "tests/jit/samples.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"

@@ -1,7 +1,7 @@
 // Short ways to a compiled texture and to its value at a point.
 #pragma once
 
-#include "jit/texture.h"
+#include "jit/texture/texture.h"
 #include "tests/jit/engines.h"
 
 #include <array>

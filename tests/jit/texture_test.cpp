@@ -1,6 +1,6 @@
 // Text to textures: what the C interface says, bindings, the resolver, and code that goes when its program goes.
-#include "jit/oracle.h"
-#include "jit/resolver.h"
+#include "jit/check/oracle.h"
+#include "jit/texture/resolver.h"
 #include "tests/jit/samples.h"
 #include "tests/support/folder.h"
 

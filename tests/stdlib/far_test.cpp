@@ -4,8 +4,8 @@
 // With a wavelength that is a power of two, a coordinate divided by it is exact, and what is left is the arithmetic of
 // the library: it must keep the place within a cell, by exact reductions. With any wavelength the division rounds; no
 // more than eight times what half an ulp of the coordinates changes may come from that.
-#include "jit/oracle.h"
-#include "jit/texture.h"
+#include "jit/check/oracle.h"
+#include "jit/texture/texture.h"
 #include "tests/support/catch.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // A library expression as a field over q, a point in plain numbers: compiled, then called.
 #pragma once
 
-#include "jit/texture.h"
+#include "jit/texture/texture.h"
 
 #include <array>
 #include <memory>

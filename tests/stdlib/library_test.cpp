@@ -1,6 +1,6 @@
 // The library as a whole: what it offers is documented, tried and right.
-#include "jit/check_gradient.h"
-#include "jit/texture.h"
+#include "jit/check/check_gradient.h"
+#include "jit/texture/texture.h"
 #include "lang/check/library.h"
 #include "lang/ir/text.h"
 #include "lang/syntax/parser.h"

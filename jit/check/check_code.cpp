@@ -1,0 +1,132 @@
+#include "jit/check/check_code.h"
+
+#include "jit/check/check_smoothness.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace haptel::jit {
+
+namespace {
+
+constexpr double kinks_share_max = 0.01;
+
+haptel_sample sample_at(const TextureBinding& binding, const haptel_point& point)
+{
+    haptel_sample sample{};
+    binding.texture->height_gradient(&point, binding.block, &sample);
+    return sample;
+}
+
+bool is_sound(const haptel_sample& sample)
+{
+    return sample.faults == 0 && std::isfinite(sample.height_m) && std::isfinite(sample.gradient[0]) &&
+           std::isfinite(sample.gradient[1]) && std::isfinite(sample.gradient[2]);
+}
+
+// By the trapezoid rule, which for a closed curve converges as fast as the integrand is smooth.
+double loop_integral_m(const TextureBinding& binding, const CheckPoints& points, uint64_t index)
+{
+    constexpr int steps = 8192;
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+        const CheckPoints::CirclePoint at = points.circle(index, i / static_cast<double>(steps));
+        const haptel_sample sample = sample_at(binding, at.point);
+        for (size_t axis = 0; axis < 3; ++axis) sum += sample.gradient[axis] * at.tangent_m[axis];
+    }
+    return sum / steps;
+}
+
+// Central difference of the height along p_axis, f64. n and uv follow.
+double central_difference(const TextureBinding& binding, const CheckPoints& points, const haptel_point& point,
+                          size_t axis, double step_m)
+{
+    double ends[2][3];
+    for (int end = 0; end < 2; ++end) {
+        std::copy(point.p, point.p + 3, ends[end]);
+        ends[end][axis] += end ? step_m : -step_m;
+    }
+    const double rise_m =
+        sample_at(binding, points.at(ends[1])).height_m - sample_at(binding, points.at(ends[0])).height_m;
+    return rise_m / (ends[1][axis] - ends[0][axis]);
+}
+
+// Distance of the gradient from the nearest of differences at steps between 2^-10 and 2^-30 of the box: one of them
+// fits the texture, whatever its wavelengths.
+double difference_error(const TextureBinding& binding, const CheckPoints& points, const haptel_point& point,
+                        const haptel_sample& sample)
+{
+    double best = HUGE_VAL;
+    for (int exponent = -10; exponent >= -30; --exponent) {
+        double error[3];
+        for (size_t axis = 0; axis < 3; ++axis)
+            error[axis] = central_difference(binding, points, point, axis, std::ldexp(points.side_m(), exponent)) -
+                          sample.gradient[axis];
+        best = std::fmin(best, std::hypot(error[0], error[1], error[2]));
+    }
+    return best;
+}
+
+} // namespace
+
+void expect_at_most(GradientCheck& check, std::string_view what, double found, double allowed)
+{
+    if (found <= allowed) return;
+    char numbers[96];
+    std::snprintf(numbers, sizeof numbers, ": %.3g, at most %.3g is allowed", found, allowed);
+    check.failures.push_back(std::string(what) + numbers);
+}
+
+void check_code(GradientCheck& check, const TextureBinding& binding, const CheckPoints& points)
+{
+    for (uint32_t i = 0; i < check.points; ++i) {
+        const haptel_sample sample = sample_at(binding, points.random(i));
+        check.not_finite += !is_sound(sample);
+        check.bounds_exceeded +=
+            !(sample.height_m >= binding.facts.height_min_m && sample.height_m <= binding.facts.height_max_m);
+    }
+    for (const haptel_point& point : points.edges()) check.not_finite += !is_sound(sample_at(binding, point));
+    for (uint64_t circle = 0; circle < 4; ++circle)
+        check.loop_integral_m = std::max(check.loop_integral_m, std::fabs(loop_integral_m(binding, points, circle)));
+    expect_at_most(check, "points where height or gradient is not finite (edges and huge coordinates included)",
+                   static_cast<double>(check.not_finite), 0);
+    expect_at_most(check, "points where the height leaves its bounds", static_cast<double>(check.bounds_exceeded), 0);
+    check_smoothness(check, binding, points);
+}
+
+GradientCheck check_gradient(const TextureBinding& binding, const CheckBox& box, uint32_t count, uint64_t seed)
+{
+    constexpr double tolerance = 1e-5;
+    const CheckPoints points(box, seed);
+    GradientCheck check;
+    check.points = count;
+    std::vector<double> errors;
+    double largest = 0, worst = -1;
+    for (uint32_t i = 0; i < count; ++i) {
+        const haptel_point point = points.random(i);
+        const haptel_sample sample = sample_at(binding, point);
+        largest = std::fmax(largest, std::hypot(sample.gradient[0], sample.gradient[1], sample.gradient[2]));
+        errors.push_back(difference_error(binding, points, point, sample));
+        if (errors.back() <= worst) continue;
+        worst = errors.back();
+        std::copy(point.p, point.p + 3, check.worst_point_m);
+    }
+    // Differences do not tell a kink from a mistake: where they never agree is taken for kinks as long as that is rare.
+    if (largest > 0)
+        for (double& error : errors) error /= largest;
+    const auto agrees = [](double error) { return error <= tolerance; };
+    const auto disagree = count - static_cast<uint32_t>(std::count_if(errors.begin(), errors.end(), agrees));
+    const bool rare = disagree <= kinks_share_max * count;
+    check.points_at_kinks = rare ? disagree : 0;
+    check.gradient_error_difference = 0;
+    for (double error : errors)
+        if (agrees(error) || !rare)
+            check.gradient_error_difference = std::fmax(*check.gradient_error_difference, error);
+    expect_at_most(check, "gradient differs from differences of the height", *check.gradient_error_difference,
+                   tolerance);
+    check_code(check, binding, points);
+    return check;
+}
+
+} // namespace haptel::jit

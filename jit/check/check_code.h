@@ -1,0 +1,17 @@
+// The part of a gradient check that needs nothing but the code: values that are not finite, bounds, loop integrals.
+#pragma once
+
+#include "jit/check/check_gradient.h"
+#include "jit/check/check_points.h"
+
+#include <string_view>
+
+namespace haptel::jit {
+
+// Adds a failure "what: found, allowed" unless `found` is at most `allowed`.
+void expect_at_most(GradientCheck& check, std::string_view what, double found, double allowed);
+
+// Fills not_finite, bounds_exceeded and loop_integral_m, with their failures. Looks at check.points random points.
+void check_code(GradientCheck& check, const TextureBinding& binding, const CheckPoints& points);
+
+} // namespace haptel::jit

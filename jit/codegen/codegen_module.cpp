@@ -1,0 +1,179 @@
+#include "jit/codegen/codegen_module.h"
+
+#include "jit/codegen/codegen_function.h"
+#include "jit/codegen/kernels.h"
+#include "jit/codegen/uniformity.h"
+
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+namespace haptel::jit {
+
+namespace {
+
+bool any(const std::vector<bool>& flags)
+{
+    return std::find(flags.begin(), flags.end(), true) != flags.end();
+}
+
+// A loop that is not split, and all of whose sums are f64.
+bool can_be_ordered(const ValueForms& forms, const LaneLoops::value_type& found)
+{
+    const auto& [loop, in_lanes] = found;
+    const std::vector<ir::Value>& parameters = loop->body[0].parameters;
+    bool can = in_lanes.waits.empty();
+    for (size_t i = 0; i < in_lanes.carried.size(); ++i) {
+        const bool is_single = forms.is_varying(parameters[i + 1]) && !forms.is_wide(parameters[i + 1]);
+        can = can && !(in_lanes.carried[i].kind == Carried::Kind::sum && is_single);
+    }
+    return can;
+}
+
+} // namespace
+
+// Beyond the array's end nothing is fetched, and nothing is wrong.
+void ask_ahead(llvm::IRBuilder<>& builder, llvm::Type* element, llvm::Value* array, llvm::Value* first, uint32_t lanes,
+               bool to_write)
+{
+    constexpr uint32_t line_bytes = 64;
+    const uint32_t per_line = line_bytes * 8 / element->getScalarSizeInBits();
+    for (uint32_t lane = 0; lane < lanes; lane += per_line) {
+        llvm::Value* index = builder.CreateAdd(first, builder.getInt64(points_ahead + lane));
+        builder.CreateIntrinsic(llvm::Intrinsic::prefetch, {array->getType()},
+                                {builder.CreateGEP(element, array, index), builder.getInt32(to_write ? 1 : 0),
+                                 builder.getInt32(3), builder.getInt32(1)});
+    }
+}
+
+llvm::Type* ModuleEmitter::type(ir::Type type, Form held)
+{
+    llvm::LLVMContext& context = target.getContext();
+    const auto lanes_of = [&](llvm::Type* scalar) -> llvm::Type* {
+        return held.in_lanes ? llvm::FixedVectorType::get(scalar, lanes) : scalar;
+    };
+    switch (type) {
+    case ir::Type::real:
+        return lanes_of(held.is_single ? llvm::Type::getFloatTy(context) : llvm::Type::getDoubleTy(context));
+    case ir::Type::i32:
+    case ir::Type::u32: return lanes_of(llvm::Type::getInt32Ty(context));
+    case ir::Type::boolean: return lanes_of(llvm::Type::getInt1Ty(context));
+    case ir::Type::image: return llvm::PointerType::getUnqual(context); // the same for every point
+    }
+    return nullptr;
+}
+
+llvm::GlobalVariable* ModuleEmitter::table(uint32_t index, bool is_single)
+{
+    llvm::GlobalVariable*& made = tables[{index, is_single}];
+    if (made) return made;
+    const ir::Table& table = source.tables[index];
+    llvm::LLVMContext& context = target.getContext();
+    const std::vector<float> singles(table.reals.begin(), table.reals.end());
+    llvm::Constant* cells = table.element != ir::Type::real ? llvm::ConstantDataArray::get(context, table.words)
+                            : is_single                     ? llvm::ConstantDataArray::get(context, singles)
+                                                            : llvm::ConstantDataArray::get(context, table.reals);
+    made = new llvm::GlobalVariable(target, cells->getType(), true, llvm::GlobalValue::InternalLinkage, cells);
+    made->setUnnamedAddr(llvm::GlobalValue::UnnamedAddr::Global);
+    return made;
+}
+
+ValueForms ModuleEmitter::forms(uint32_t index, const Signature& signature) const
+{
+    const ir::Function& from = source.functions[index];
+    ValueForms made{
+        from, varying_values(from, signature.arguments), {}, plan.wide_values(index, signature.wide_results), {}, {},
+        {}};
+    if (form == LaneForm::points) {
+        made.in_lanes = made.varies;
+        return made;
+    }
+    if (form == LaneForm::iterations && !any(signature.in_lanes) && !any(signature.in_order))
+        made.loops = lane_loops(from, made.varies);
+    for (auto loop = made.loops.begin(); is_draft && loop != made.loops.end();)
+        if (const auto next = std::next(loop); can_be_ordered(made, *loop))
+            made.ordered.insert(made.loops.extract(std::exchange(loop, next)));
+        else
+            loop = next;
+    made.in_lanes = varying_iterations(from, signature.in_lanes, made.loops);
+    made.in_order = varying_iterations(from, signature.in_order, made.ordered);
+    return made;
+}
+
+// The results of a function vary together.
+Form ModuleEmitter::result(const Key& key, size_t i) const
+{
+    const ir::Function& of = source.functions[key.first];
+    const bool is_real = of.type(of.body.yields[i]) == ir::Type::real;
+    return {any(key.second.in_lanes), is_real && any(key.second.arguments) && !key.second.wide_results[i]};
+}
+
+std::string Signature::text() const
+{
+    static_assert(sizeof(Signature) == 4 * sizeof(std::vector<bool>), "what a signature gains belongs into its text");
+    std::string bits;
+    for (const std::vector<bool>* flags : {&arguments, &in_lanes, &wide_results, &in_order}) {
+        for (bool flag : *flags) bits += flag ? '1' : '0';
+        bits += ';';
+    }
+    return bits;
+}
+
+const ModuleEmitter::Function& ModuleEmitter::function(uint32_t index, const Signature& signature)
+{
+    const auto [place, is_new] = functions.try_emplace({index, signature});
+    Function& made = place->second;
+    if (!is_new) return made;
+    const ir::Function& from = source.functions[index];
+    made.forms = std::make_shared<const ValueForms>(forms(index, signature));
+    std::vector<llvm::Type*> parameters, results;
+    for (ir::Value parameter : from.parameters)
+        parameters.push_back(type(from.type(parameter), (*made.forms)[parameter]));
+    for (size_t i = 0; i < from.body.yields.size(); ++i)
+        results.push_back(type(from.type(from.body.yields[i]), result(place->first, i)));
+    llvm::Type* returned = results.size() == 1 ? results[0] : llvm::StructType::get(target.getContext(), results);
+    made.code = llvm::Function::Create(llvm::FunctionType::get(returned, parameters, false),
+                                       llvm::GlobalValue::InternalLinkage, from.name, target);
+    made.code->setCallingConv(llvm::CallingConv::Fast);
+    made.code->setDoesNotThrow();
+    const bool reads_images = std::any_of(from.parameters.begin(), from.parameters.end(),
+                                          [&](ir::Value value) { return from.type(value) == ir::Type::image; });
+    reads_images ? made.code->setOnlyReadsMemory() : made.code->setDoesNotAccessMemory();
+    made.code->setWillReturn();
+    const std::string kernel = kernels ? kernels->call({index, signature, form, plan.precision}) : "";
+    if (kernel.empty()) {
+        unfinished.push_back(place);
+    } else {
+        made.code->setLinkage(llvm::GlobalValue::ExternalLinkage);
+        made.code->setName(kernel);
+    }
+    return made;
+}
+
+// A list, not a recursion: functions may call each other in long chains.
+void ModuleEmitter::finish()
+{
+    while (!unfinished.empty()) {
+        const auto next = unfinished.back();
+        unfinished.pop_back();
+        write_body(next->first, next->second);
+    }
+}
+
+void ModuleEmitter::write_body(const Key& key, const Function& function)
+{
+    const ir::Function& from = source.functions[key.first];
+    llvm::BasicBlock::Create(target.getContext(), "", function.code);
+    FunctionEmitter emitter(*this, from, *function.code, *function.forms);
+    for (size_t i = 0; i < from.parameters.size(); ++i)
+        emitter.define(from.parameters[i], function.code->getArg(static_cast<unsigned>(i)));
+    std::vector<Form> results;
+    for (size_t i = 0; i < from.body.yields.size(); ++i) results.push_back(result(key, i));
+    const std::vector<llvm::Value*> yields = emitter.body(results);
+    if (yields.size() == 1)
+        emitter.at_end().CreateRet(yields[0]);
+    else
+        emitter.at_end().CreateAggregateRet(yields.data(), static_cast<unsigned>(yields.size()));
+}
+
+} // namespace haptel::jit

@@ -1,0 +1,34 @@
+// The instruction set that code is made for: all that the host has, or less where HAPTEL_ISA says so.
+//
+//   host      every feature of this processor; what an empty or absent HAPTEL_ISA means
+//   baseline  what every processor of this architecture has (x86-64: SSE2)
+//   avx2      x86-64-v3: AVX2 and FMA, gathers
+//   avx512    x86-64-v4: AVX-512 F, BW, CD, DQ, VL, without the byte permutes that came later
+//
+// A program gives the same bits under each of them in f64; how fast differs.
+#pragma once
+
+#include "jit/codegen/codegen.h"
+
+#include <string>
+#include <string_view>
+
+namespace llvm {
+class TargetMachine;
+namespace orc {
+class JITTargetMachineBuilder;
+}
+} // namespace llvm
+
+namespace haptel::jit {
+
+// Leaves to `host`, which describes this processor, only what the named set has. Empty, or why not and what there is.
+std::string restrict_to_isa(llvm::orc::JITTargetMachineBuilder& host, std::string_view name);
+
+// What generated code may use and should be like on such a machine.
+Processor processor_of(const llvm::TargetMachine& machine);
+
+// The largest set above that the machine's code may use, and what it has beyond: "avx512 vbmi".
+std::string isa_of(const llvm::TargetMachine& machine);
+
+} // namespace haptel::jit

@@ -1,0 +1,219 @@
+#include "jit/codegen/precision.h"
+
+#include "lang/ir/op_info.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace haptel::jit {
+
+namespace {
+
+using ir::Op;
+using Sinks = PrecisionPlan::Sinks;
+
+constexpr double unknown = std::numeric_limits<double>::infinity();
+constexpr double large = 8; // f32 resolves what is smaller to 5e-7
+
+// A whole number of cells must not be rounded on its way to an integer either.
+bool is_reducing(Op op)
+{
+    return ir::op_info(op).reducing || op == Op::r_to_i || op == Op::r_to_u;
+}
+
+// |result| of an operation on values of at most those sizes.
+double bound_of(Op op, const std::vector<double>& of)
+{
+    switch (op) {
+    case Op::add:
+    case Op::sub: return of[0] + of[1];
+    case Op::mul: return of[0] == 0 || of[1] == 0 ? 0 : of[0] * of[1];
+    case Op::neg:
+    case Op::abs:
+    case Op::detach: return of[0];
+    case Op::min:
+    case Op::max: return std::fmax(of[0], of[1]);
+    case Op::select: return std::fmax(of[1], of[2]);
+    case Op::sign:
+    case Op::fract:
+    case Op::sin:
+    case Op::cos:
+    case Op::sinturn:
+    case Op::costurn:
+    case Op::tanh: return 1;
+    case Op::asin:
+    case Op::acos:
+    case Op::atan:
+    case Op::atan2: return 3.2;
+    case Op::mod: return of[1];
+    default: return unknown;
+    }
+}
+
+Sinks result_sink(size_t result)
+{
+    return Sinks{1} << std::min<size_t>(result + 1, 63);
+}
+
+// One function, its callees known: sizes forwards, then sinks backwards.
+class SinkAnalysis {
+public:
+    SinkAnalysis(const ir::Module& whole, const std::vector<PrecisionPlan::Summary>& known, const ir::Function& of)
+        : module(whole)
+        , callees(known)
+        , function(of)
+        , bounds(of.value_types.size(), unknown)
+        , sinks(of.value_types.size())
+    {
+        measure(function.body);
+        for (size_t i = 0; i < function.body.yields.size(); ++i) flow(function.body.yields[i], result_sink(i));
+        trace(function.body);
+    }
+    PrecisionPlan::Summary summary() { return {std::move(sinks), result_bounds()}; }
+
+private:
+    const ir::Module& module;
+    const std::vector<PrecisionPlan::Summary>& callees;
+    const ir::Function& function;
+    std::vector<double> bounds; // by value
+    std::vector<Sinks> sinks;   // likewise
+
+    std::vector<double> result_bounds() const
+    {
+        std::vector<double> of_results;
+        for (size_t i = 0; i < function.body.yields.size(); ++i) {
+            double bound = bounds[function.body.yields[i].index];
+            if (i < function.facts.size() && function.facts[i].value_minimum && function.facts[i].value_maximum)
+                bound = std::fmin(bound, std::fmax(std::fabs(*function.facts[i].value_minimum),
+                                                   std::fabs(*function.facts[i].value_maximum)));
+            of_results.push_back(bound);
+        }
+        return of_results;
+    }
+
+    // ---- sizes
+    void measure(const ir::Block& block)
+    {
+        for (const ir::Instruction& made : block.instructions)
+            std::visit([&](const auto& kind) { measure(made, kind); }, made.kind);
+    }
+    template <typename Kind>
+    void measure(const ir::Instruction&, const Kind&)
+    {
+    }
+    void measure(const ir::Instruction& made, const ir::RealConstant& constant)
+    {
+        bounds[made.results[0].index] = std::fabs(constant.value);
+    }
+    void measure(const ir::Instruction& made, const ir::Operation& operation)
+    {
+        std::vector<double> of;
+        for (ir::Value operand : made.operands) of.push_back(bounds[operand.index]);
+        bounds[made.results[0].index] = bound_of(operation.op, of);
+    }
+    void measure(const ir::Instruction& made, const ir::ReadTable& read)
+    {
+        double largest = 0;
+        for (double cell : module.tables[read.table].reals) largest = std::fmax(largest, std::fabs(cell));
+        bounds[made.results[0].index] = largest;
+    }
+    void measure(const ir::Instruction& made, const ir::Call& call)
+    {
+        for (size_t i = 0; i < made.results.size(); ++i)
+            bounds[made.results[i].index] = callees[call.function].result_bounds[i];
+    }
+    void measure(const ir::Instruction& made, const ir::If& choice)
+    {
+        for (const ir::Block& arm : choice.arms) measure(arm);
+        for (size_t i = 0; i < made.results.size(); ++i)
+            bounds[made.results[i].index] =
+                std::fmax(bounds[choice.arms[0].yields[i].index], bounds[choice.arms[1].yields[i].index]);
+    }
+    void measure(const ir::Instruction&, const ir::For& loop) { measure(loop.body[0]); } // what is carried: unknown
+
+    // ---- sinks
+    bool changed = false;
+
+    void flow(ir::Value value, Sinks to)
+    {
+        if (function.type(value) != ir::Type::real || bounds[value.index] <= large) return;
+        changed = changed || (to & ~sinks[value.index]) != 0;
+        sinks[value.index] |= to;
+    }
+    Sinks sinks_of(ir::Value value) const { return sinks[value.index]; }
+
+    void trace(const ir::Block& block)
+    {
+        for (auto made = block.instructions.rbegin(); made != block.instructions.rend(); ++made)
+            std::visit([&](const auto& kind) { trace(*made, kind); }, made->kind);
+    }
+    template <typename Kind>
+    void trace(const ir::Instruction&, const Kind&)
+    {
+    }
+    void trace(const ir::Instruction& made, const ir::Operation& operation)
+    {
+        for (ir::Value operand : made.operands) {
+            if (function.type(made.results[0]) == ir::Type::real) flow(operand, sinks_of(made.results[0]));
+            if (is_reducing(operation.op)) flow(operand, 1);
+        }
+    }
+    void trace(const ir::Instruction& made, const ir::Call& call)
+    {
+        const ir::Function& callee = module.functions[call.function];
+        for (size_t i = 0; i < made.operands.size(); ++i) {
+            const Sinks inside = callees[call.function].sinks[callee.parameters[i].index];
+            flow(made.operands[i], inside & 1);
+            for (size_t j = 0; j < made.results.size(); ++j)
+                if (inside & result_sink(j)) flow(made.operands[i], sinks_of(made.results[j]));
+        }
+    }
+    void trace(const ir::Instruction& made, const ir::If& choice)
+    {
+        for (const ir::Block& arm : choice.arms) {
+            for (size_t i = 0; i < made.results.size(); ++i) flow(arm.yields[i], sinks_of(made.results[i]));
+            trace(arm);
+        }
+    }
+    // Backwards round the loop until nothing changes.
+    void trace(const ir::Instruction& made, const ir::For& loop)
+    {
+        const ir::Block& body = loop.body[0];
+        for (size_t i = 0; i < made.results.size(); ++i) flow(body.parameters[i + 1], sinks_of(made.results[i]));
+        bool changed_ever = changed;
+        do {
+            changed = false;
+            for (size_t i = 0; i < made.results.size(); ++i) flow(body.yields[i], sinks_of(body.parameters[i + 1]));
+            trace(body);
+            for (size_t i = 0; i < made.results.size(); ++i) flow(made.results[i], sinks_of(body.parameters[i + 1]));
+            changed_ever = changed_ever || changed;
+        } while (changed);
+        changed = changed_ever;
+        for (size_t i = 0; i < made.results.size(); ++i) flow(made.operands[i + 1], sinks_of(body.parameters[i + 1]));
+    }
+};
+
+} // namespace
+
+PrecisionPlan::PrecisionPlan(const ir::Module& of, Precision wanted) : module(of), precision(wanted)
+{
+    if (precision != Precision::mixed) return;
+    functions.reserve(module.functions.size());
+    for (const ir::Function& function : module.functions)
+        functions.push_back(SinkAnalysis(module, functions, function).summary());
+}
+
+std::vector<bool> PrecisionPlan::wide_values(uint32_t function, const std::vector<bool>& wide_results) const
+{
+    std::vector<bool> wide(module.functions[function].value_types.size(), precision == Precision::f64);
+    if (precision != Precision::mixed) return wide;
+    Sinks wanted = 1;
+    for (size_t i = 0; i < wide_results.size(); ++i)
+        if (wide_results[i]) wanted |= result_sink(i);
+    const std::vector<Sinks>& sinks = functions[function].sinks;
+    for (size_t i = 0; i < wide.size(); ++i) wide[i] = (sinks[i] & wanted) != 0;
+    return wide;
+}
+
+} // namespace haptel::jit

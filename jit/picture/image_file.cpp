@@ -1,0 +1,96 @@
+#include "jit/picture/image_file.h"
+
+#include "jit/codegen/content_hash.h"
+#include "jit/picture/picture.h"
+#include "lang/text/diagnostic.h"
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <mutex>
+
+namespace haptel::jit {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+ImageFile fail(std::string error, std::string hint = {})
+{
+    return {nullptr, std::move(error), std::move(hint)};
+}
+
+ImageFile decode(const std::string& bytes, const std::string& shown)
+{
+    const Picture picture = read_picture(bytes);
+    if (!picture.error.empty()) return fail("'" + shown + "' " + lang::printable(picture.error), picture.hint);
+    ImageFile made;
+    made.image = ir::SplineImage::make(picture.gray, picture.width, picture.height, made.error);
+    if (!made.image) made.error = "'" + shown + "': " + made.error;
+    return made;
+}
+
+// The clock of a file system may tick slowly: within a tick of its last change a file may change unseen.
+constexpr auto tick_longest = std::chrono::milliseconds(100);
+
+// What the file was when it was read.
+struct Known {
+    fs::file_time_type written, read; // the latter: when reading began
+    uintmax_t size = 0;
+    ContentHash content = {};
+    std::weak_ptr<const ir::SplineImage> image;
+};
+
+} // namespace
+
+std::string image_file(const std::string& path, const std::string& folder)
+{
+    std::error_code fault;
+    return fs::absolute(fs::path(folder) / path, fault).lexically_normal().string();
+}
+
+ImageFile read_image(const std::string& path, const std::string& folder)
+{
+    static std::mutex mutex;
+    static std::map<std::string, Known> all; // by absolute path
+
+    const std::string shown = lang::printable(path);
+    std::error_code fault;
+    const fs::path file = image_file(path, folder);
+    if (!fs::exists(file, fault))
+        return fail("there is no file '" + shown + "'", "it was looked for at " + lang::printable(file.string()) +
+                                                            "; a scene's pictures lie beside the scene");
+    if (!fs::is_regular_file(file, fault)) return fail("'" + shown + "' is not a file");
+    const uintmax_t size = fs::file_size(file, fault);
+    if (fault || size > image_bytes_max) return fail("'" + shown + "' is too large to read");
+    const auto written = fs::last_write_time(file, fault);
+
+    const std::lock_guard lock(mutex);
+    std::erase_if(all, [](const auto& known) { return known.second.image.expired(); });
+    Known& known = all[file.string()];
+    const auto image = known.image.lock();
+    if (image && known.size == size && known.written == written && known.read > written + tick_longest)
+        return {image, {}, {}};
+    const auto now = fs::file_time_type::clock::now();
+    std::ifstream in(file, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    if (!in.is_open() || in.bad()) return fail("'" + shown + "' cannot be read", "may you read it?");
+    const ContentHash content = content_hash(bytes);
+    ImageFile made = image && known.content == content ? ImageFile{image, {}, {}} : decode(bytes, shown);
+    known = {written, now, size, content, made.image};
+    return made;
+}
+
+const ir::SplineImage& flat_image()
+{
+    static const auto image = [] {
+        std::string error;
+        const double zero[] = {0};
+        return ir::SplineImage::make(zero, 1, 1, error);
+    }();
+    return *image;
+}
+
+} // namespace haptel::jit

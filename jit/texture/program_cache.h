@@ -1,0 +1,31 @@
+// Texture files compiled once per process, known by path and content: what the resolver and live reload share. Only
+// height_gradient becomes code: a draft, which becomes fast code in the background.
+#pragma once
+
+#include "jit/texture/texture.h"
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace haptel::jit {
+
+class ProgramCache {
+public:
+    // The file as it is on disk now: compiled if it or an import of it has changed since it was asked for last. Any
+    // thread; one compiles at a time.
+    std::shared_ptr<const CompiledTextures> load(const std::string& path);
+
+    // What load() gave last for this path, without a look at the disk; null: it was never asked for.
+    std::shared_ptr<const CompiledTextures> known(const std::string& path);
+
+    // The one of this process.
+    static const std::shared_ptr<ProgramCache>& shared();
+
+private:
+    std::mutex mutex;
+    std::map<std::string, std::shared_ptr<const CompiledTextures>> newest; // by path
+};
+
+} // namespace haptel::jit

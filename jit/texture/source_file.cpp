@@ -1,0 +1,103 @@
+#include "jit/texture/source_file.h"
+
+#include "lang/text/diagnostic.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <vector>
+
+namespace haptel::jit {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+constexpr std::size_t listed_max = 5; // of the files of a folder
+
+// A texture file of nearly that name in the same folder, or else where it was looked for and what is there.
+std::string did_you_mean(const fs::path& path)
+{
+    std::error_code ignored, unreadable;
+    std::vector<std::string> names;
+    const fs::path folder = fs::absolute(path, ignored).parent_path();
+    for (fs::directory_iterator entry(folder, unreadable), end; !unreadable && entry != end && names.size() < 1000;
+         entry.increment(unreadable))
+        if (entry->path().extension() == ".haptel") names.push_back(entry->path().filename());
+    const std::string wanted = path.filename();
+    const std::string_view nearest = lang::nearest_name(wanted, {names.begin(), names.end()});
+    if (!nearest.empty()) return "did you mean '" + lang::printable(nearest) + "'?";
+    const std::string there = "'" + lang::printable(folder.lexically_normal().string()) + "'";
+    if (!fs::is_directory(folder, ignored)) return "there is no folder " + there;
+    if (unreadable) return "it was looked for in " + there + ", which cannot be listed";
+    if (names.empty()) return "it was looked for in " + there + ", which holds no texture file (*.haptel)";
+    std::sort(names.begin(), names.end());
+    std::string list;
+    for (std::size_t i = 0; i < std::min(names.size(), listed_max); ++i)
+        list += (i == 0 ? "" : ", ") + lang::printable(names[i]);
+    return "it was looked for in " + there + ", which holds " + list + (names.size() > listed_max ? ", ..." : "");
+}
+
+bool is_name(std::string_view text)
+{
+    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    if (text.empty() || !is_letter(text[0])) return false;
+    for (char c : text)
+        if (!is_letter(c) && !(c >= '0' && c <= '9')) return false;
+    return true;
+}
+
+} // namespace
+
+SourceText read_source(const std::string& path)
+{
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found)
+        return {{}, "cannot read this file: it does not exist", did_you_mean(path)};
+    if (error) return {{}, "cannot read this file: " + error.message(), {}};
+    if (fs::is_directory(status))
+        return {{}, "cannot read this file: it is a folder", "name a texture file inside it: FILE.haptel"};
+    if (!fs::is_regular_file(status)) return {{}, "cannot read this file: it is not a regular file", {}};
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return {{}, std::string("cannot read this file: ") + std::strerror(errno), {}};
+    SourceText result;
+    if (fs::file_size(path, error) <= source_bytes_max && !error)
+        result.text.assign(std::istreambuf_iterator<char>(file), {});
+    else
+        return {{}, "this file is larger than any texture: at most 16 MiB are read", {}};
+    if (file.bad()) return {{}, "cannot read this file: the disk reports an error", {}};
+    return result;
+}
+
+std::optional<lang::SourceFile> load_beside(std::string_view path, std::string_view importer)
+{
+    const fs::path full = (fs::path(importer).parent_path() / fs::path(path)).lexically_normal();
+    SourceText source = read_source(full);
+    if (!source.error.empty()) return std::nullopt;
+    return lang::SourceFile{full, std::move(source.text)};
+}
+
+TextureReference split_reference(std::string_view reference)
+{
+    const size_t colon = reference.rfind(':');
+    if (colon == reference.npos || !is_name(reference.substr(colon + 1))) return {std::string(reference), {}};
+    return {std::string(reference.substr(0, colon)), std::string(reference.substr(colon + 1))};
+}
+
+std::string about_file(const std::string& file, std::string_view messages)
+{
+    std::string told;
+    while (!messages.empty()) {
+        const std::string_view line = messages.substr(0, messages.find('\n'));
+        if (!line.starts_with(' ')) told += lang::printable(file) + ": ";
+        told.append(line).append("\n");
+        messages.remove_prefix(std::min(messages.size(), line.size() + 1));
+    }
+    return told;
+}
+
+} // namespace haptel::jit

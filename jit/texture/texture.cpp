@@ -1,0 +1,163 @@
+#include "jit/texture/texture.h"
+
+#include "jit/texture/facts.h"
+#include "jit/texture/source_file.h"
+#include "lang/ir/verify.h"
+#include "stdlib/stdlib.h"
+
+#include <algorithm>
+#include <atomic>
+#include <future>
+
+namespace haptel::jit {
+
+namespace {
+
+// Of the texture h among the names of entry points: h' with the gradient, h* and h'* for many points.
+constexpr char with_gradient = '\'', of_many = '*';
+
+haptel_parameter described(const ir::Parameter& parameter)
+{
+    uint32_t type = HAPTEL_FLOAT;
+    switch (parameter.type) {
+    case ir::Type::real: type = HAPTEL_FLOAT; break;
+    case ir::Type::i32: type = HAPTEL_INT; break;
+    case ir::Type::u32: type = HAPTEL_UINT; break;
+    case ir::Type::boolean: type = HAPTEL_BOOL; break;
+    case ir::Type::image: type = HAPTEL_IMAGE; break;
+    }
+    return {parameter.name.c_str(), parameter.unit.c_str(), parameter.doc.c_str(), type,
+            parameter.offset,       parameter.value,        parameter.minimum,     parameter.maximum};
+}
+
+std::vector<EntryPoint> entry_points(const ir::Module& module, const TextureOptions& options)
+{
+    const Entries wanted = options.entries;
+    const Precision precision = options.precision.value_or(Precision::f64),
+                    of_many_precision = options.precision.value_or(Precision::mixed);
+    const LaneForm one =
+        options.iterations_in_lanes.value_or(precision != Precision::f64) ? LaneForm::iterations : LaneForm::one;
+    std::vector<EntryPoint> entries;
+    for (const ir::Texture& texture : module.textures) {
+        if (texture.height != UINT32_MAX && wanted != Entries::height_gradient)
+            entries.push_back({texture.name, &texture, EntryPoint::Kind::height, one, precision});
+        if (texture.height_gradient != UINT32_MAX)
+            entries.push_back(
+                {texture.name + with_gradient, &texture, EntryPoint::Kind::height_gradient, one, precision});
+    }
+    const size_t of_one = wanted == Entries::both_and_batches ? entries.size() : 0;
+    for (size_t i = 0; i < of_one; ++i)
+        entries.push_back(
+            {entries[i].name + of_many, entries[i].texture, entries[i].kind, LaneForm::points, of_many_precision});
+    return entries;
+}
+
+lang::CompileOptions language_options(const TextureOptions& options)
+{
+    lang::CompileOptions language;
+    if (options.standard_library)
+        for (const stdlib::LibraryFile& file : stdlib::library())
+            language.library.push_back({std::string(file.name), std::string(file.text)});
+    language.load_import = options.load_import;
+    language.only_texture = options.only_texture;
+    return language;
+}
+
+} // namespace
+
+CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, std::vector<EntryPoint> of_code,
+                                 std::shared_ptr<const Code> machine_code, bool has_facts)
+    : program(std::move(checked)), entries(std::move(of_code)), code(std::move(machine_code))
+{
+    parameters.reserve(module().textures.size());
+    for (const ir::Texture& texture : module().textures) {
+        std::vector<haptel_parameter>& list = parameters.emplace_back();
+        for (const ir::Parameter& parameter : texture.parameters) list.push_back(described(parameter));
+        table.push_back({HAPTEL_ABI_VERSION, sizeof(haptel_texture), texture.reads, texture.writes, texture.block_size,
+                         static_cast<uint32_t>(list.size()), texture.name.c_str(), list.data(),
+                         has_facts ? facts_over_ranges(module(), texture) : no_facts(module(), texture),
+                         code->entry(texture.name), code->entry(texture.name + with_gradient),
+                         code->batch_entry(texture.name + of_many),
+                         code->batch_entry(texture.name + with_gradient + of_many)});
+    }
+}
+
+void CompiledProgram::optimise() const
+{
+    if (is_optimised()) return;
+    CodeResult made = compile_code(module(), entries, {.effort = Effort::full, .kernels = true});
+    if (made.code) code->replace_by(std::move(made.code));
+    prepare_kernels(module(), entries); // of which a draft has drafts: the next edit gets better ones
+}
+
+const haptel_texture* CompiledProgram::find(std::string_view name) const
+{
+    const auto found =
+        std::find_if(table.begin(), table.end(), [&](const haptel_texture& texture) { return texture.name == name; });
+    return found == table.end() ? nullptr : &*found;
+}
+
+const ir::Texture& CompiledProgram::source_of(const haptel_texture& texture) const
+{
+    return module().textures[static_cast<size_t>(&texture - table.data())];
+}
+
+namespace {
+
+// Beside the front end of the first text: neither needs the other.
+std::future<void> start_engine_once()
+{
+    static std::atomic<bool> has_begun{false};
+    if (has_begun.exchange(true)) return {};
+    return std::async(std::launch::async, [] { engine_name(); });
+}
+
+} // namespace
+
+TextureOptions servo_options()
+{
+    TextureOptions options;
+    options.entries = Entries::height_gradient;
+    options.effort = Effort::draft;
+    options.iterations_in_lanes = true;
+    return options;
+}
+
+CompiledTextures compile_texture(std::string_view text, const TextureOptions& options)
+{
+    const std::future<void> starting = start_engine_once();
+    lang::CompileResult checked = lang::compile({options.name, std::string(text)}, language_options(options));
+    CompiledTextures result{nullptr, std::move(checked.diagnostics), std::move(checked.sources),
+                            std::move(checked.files)};
+    if (!checked.program) return result;
+    // lang has verified it too; a servo trusts whoever hands out the pointer.
+    std::string fault = ir::verify(checked.program->module);
+    std::vector<EntryPoint> entries = entry_points(checked.program->module, options);
+    CodeResult code;
+    if (fault.empty()) {
+        code = compile_code(checked.program->module, entries, {options.effort, options.kernels});
+        fault = code.error;
+    }
+    if (!fault.empty()) {
+        result.diagnostics.error({}, "no-code", "no machine code could be made: " + fault);
+        return result;
+    }
+    result.program = std::make_shared<CompiledProgram>(std::move(checked.program), std::move(entries),
+                                                       std::move(code.code), options.facts_over_ranges);
+    return result;
+}
+
+CompiledTextures compile_texture_file(const std::string& path, TextureOptions options)
+{
+    options.name = path;
+    options.load_import = load_beside;
+    SourceText source = read_source(path);
+    if (source.error.empty()) return compile_texture(source.text, options);
+    CompiledTextures result;
+    result.files = {path};
+    result.sources.add({path, {}});
+    result.diagnostics.error({}, "unreadable-file", source.error).hint = source.hint;
+    return result;
+}
+
+} // namespace haptel::jit
