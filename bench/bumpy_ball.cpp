@@ -1,7 +1,7 @@
 #include "bench/bumpy_ball.h"
 
 #include "jit/texture/texture.h"
-#include "runtime/shapes.h"
+#include "runtime/surface/shapes.h"
 
 #include <cmath>
 #include <cstdint>

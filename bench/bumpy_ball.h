@@ -2,7 +2,7 @@
 // hand over it, which differs between rows only in what the ball is made of.
 #pragma once
 
-#include "runtime/scene.h"
+#include "runtime/scene/scene.h"
 
 #include <cstdint>
 #include <memory>

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "bench/timing.h"
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 
 #include <cstdint>
 #include <functional>

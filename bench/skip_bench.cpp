@@ -1,7 +1,7 @@
 #include "bench/skip_bench.h"
 
 #include "bench/bumpy_ball.h"
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 
 #include <algorithm>
 #include <chrono>

@@ -4,7 +4,7 @@
 //   replay:FILE                 a trace.csv
 #pragma once
 
-#include "runtime/haptic_device.h"
+#include "runtime/hand/haptic_device.h"
 
 #include <string>
 #include <vector>

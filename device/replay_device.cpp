@@ -1,6 +1,6 @@
 #include "device/replay_device.h"
 
-#include "runtime/recording.h"
+#include "runtime/servo/recording.h"
 
 #include <algorithm>
 #include <cmath>

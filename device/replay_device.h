@@ -4,7 +4,7 @@
 // after missed deadlines and interruptions included.
 #pragma once
 
-#include "runtime/haptic_device.h"
+#include "runtime/hand/haptic_device.h"
 
 #include <cstddef>
 #include <filesystem>

@@ -5,7 +5,7 @@
 // surface, sinks onto it, and only then presses and moves.
 #pragma once
 
-#include "runtime/haptic_device.h"
+#include "runtime/hand/haptic_device.h"
 
 #include <cstdint>
 #include <functional>

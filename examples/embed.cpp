@@ -4,7 +4,7 @@
 #include "jit/texture/resolver.h"
 #include "jit/texture/texture.h"
 #include "runtime/files/scene_file.h"
-#include "runtime/servo_thread.h"
+#include "runtime/servo/servo_thread.h"
 
 #include <fmt/core.h>
 

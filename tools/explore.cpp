@@ -1,7 +1,7 @@
 // haptel explore: the main job. A scene, a device, textures that follow their files, and the servo between them.
 #include "device/device_factory.h"
-#include "runtime/allocation_count.h"
 #include "runtime/files/scene_file.h"
+#include "runtime/servo/allocation_count.h"
 #include "tools/command.h"
 #include "tools/explore_hands.h"
 #include "tools/explore_scene.h"

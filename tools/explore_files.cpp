@@ -1,6 +1,6 @@
 #include "tools/explore_files.h"
 
-#include "runtime/recording.h"
+#include "runtime/servo/recording.h"
 
 #include <fmt/format.h>
 #include <system_error>

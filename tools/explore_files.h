@@ -2,7 +2,7 @@
 // end.
 #pragma once
 
-#include "runtime/telemetry.h"
+#include "runtime/servo/telemetry.h"
 #include "tools/explore_report.h"
 #include "tools/plot_run.h"
 

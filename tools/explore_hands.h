@@ -2,8 +2,8 @@
 #pragma once
 
 #include "runtime/files/scene_file.h"
-#include "runtime/servo_thread.h"
-#include "runtime/servo_turns.h"
+#include "runtime/servo/servo_thread.h"
+#include "runtime/servo/servo_turns.h"
 #include "tools/explore_files.h"
 #include "tools/explore_report.h"
 #include "tools/explore_status.h"

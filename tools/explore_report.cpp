@@ -1,7 +1,7 @@
 #include "tools/explore_report.h"
 
 #include "lang/abi/abi.h"
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 
 #include <fmt/format.h>
 #include <utility>

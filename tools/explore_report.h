@@ -1,7 +1,7 @@
 // What an exploration was like, for scripts and for people.
 #pragma once
 
-#include "runtime/servo_report.h"
+#include "runtime/servo/servo_report.h"
 #include "tools/json.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // What is shown while an exploration runs: one line that rewrites itself on a terminal, a line now and then elsewhere.
 #pragma once
 
-#include "runtime/telemetry.h"
+#include "runtime/servo/telemetry.h"
 
 #include <chrono>
 #include <span>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "lang/abi/texture_binding.h"
-#include "runtime/scene.h"
+#include "runtime/scene/scene.h"
 
 #include <atomic>
 #include <cstdint>

@@ -1,9 +1,9 @@
 // Pictures of an exploration: what was felt, where, and how long the servo took.
 #pragma once
 
-#include "runtime/haptic_device.h"
-#include "runtime/histogram.h"
-#include "runtime/telemetry.h"
+#include "runtime/hand/haptic_device.h"
+#include "runtime/servo/histogram.h"
+#include "runtime/servo/telemetry.h"
 #include "tools/plot_picture.h"
 
 #include <functional>

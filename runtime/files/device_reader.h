@@ -2,8 +2,8 @@
 #pragma once
 
 #include "runtime/files/table_reader.h"
-#include "runtime/hand.h"
-#include "runtime/haptic_device.h"
+#include "runtime/hand/hand.h"
+#include "runtime/hand/haptic_device.h"
 
 #include <array>
 #include <filesystem>

@@ -1,9 +1,9 @@
 // The parts of a scene file that say what is felt beside contact.
 #pragma once
 
-#include "runtime/effects.h"
 #include "runtime/files/table_reader.h"
-#include "runtime/placement.h"
+#include "runtime/force/effects.h"
+#include "runtime/geometry/placement.h"
 
 #include <vector>
 

@@ -1,6 +1,6 @@
 #include "runtime/files/joining.h"
 
-#include "runtime/joined_surfaces.h"
+#include "runtime/surface/build/joined_surfaces.h"
 
 #include <algorithm>
 #include <memory>

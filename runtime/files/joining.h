@@ -3,7 +3,7 @@
 
 #include "runtime/files/surface_cache.h"
 #include "runtime/files/table_reader.h"
-#include "runtime/scene.h"
+#include "runtime/scene/scene.h"
 
 #include <cstdint>
 #include <string>

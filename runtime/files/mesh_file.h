@@ -1,7 +1,7 @@
 // Meshes from files, by assimp. What is read is a soup that nobody has checked yet: build_surface() does.
 #pragma once
 
-#include "runtime/mesh.h"
+#include "runtime/surface/mesh.h"
 
 #include <filesystem>
 #include <optional>

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "runtime/files/table_reader.h"
-#include "runtime/motion.h"
+#include "runtime/scene/motion.h"
 
 #include <memory>
 

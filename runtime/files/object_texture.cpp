@@ -1,7 +1,7 @@
 #include "runtime/files/object_texture.h"
 
-#include "runtime/shading.h"
-#include "runtime/surface.h"
+#include "runtime/surface/surface.h"
+#include "runtime/texture/shading.h"
 
 #include <algorithm>
 #include <array>

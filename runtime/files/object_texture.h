@@ -3,7 +3,7 @@
 
 #include "lang/abi/texture_binding.h"
 #include "runtime/files/table_reader.h"
-#include "runtime/scene.h"
+#include "runtime/scene/scene.h"
 
 #include <filesystem>
 #include <string>

@@ -1,6 +1,6 @@
 #include "runtime/files/open_hands.h"
 
-#include "runtime/surface.h"
+#include "runtime/surface/surface.h"
 
 #include <algorithm>
 #include <limits>

@@ -4,7 +4,7 @@
 #include "runtime/files/device_reader.h"
 #include "runtime/files/scene_file.h"
 #include "runtime/files/table_reader.h"
-#include "runtime/scene.h"
+#include "runtime/scene/scene.h"
 
 #include <memory>
 #include <span>

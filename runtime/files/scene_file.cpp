@@ -10,8 +10,8 @@
 #include "runtime/files/open_hands.h"
 #include "runtime/files/table_reader.h"
 #include "runtime/files/toml_syntax.h"
-#include "runtime/shading.h"
-#include "runtime/shapes.h"
+#include "runtime/surface/shapes.h"
+#include "runtime/texture/shading.h"
 
 #include <algorithm>
 #include <exception>

@@ -4,9 +4,9 @@
 
 #include "lang/abi/texture_binding.h"
 #include "runtime/files/surface_cache.h"
-#include "runtime/hand.h"
-#include "runtime/haptic_device.h"
-#include "runtime/scene.h"
+#include "runtime/hand/hand.h"
+#include "runtime/hand/haptic_device.h"
+#include "runtime/scene/scene.h"
 
 #include <filesystem>
 #include <memory>

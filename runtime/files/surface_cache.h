@@ -2,7 +2,7 @@
 // built anew, and a hand goes on touching them. A surface that nobody holds any more is forgotten.
 #pragma once
 
-#include "runtime/surface.h"
+#include "runtime/surface/surface.h"
 
 #include <filesystem>
 #include <map>

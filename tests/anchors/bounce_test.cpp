@@ -1,5 +1,5 @@
 // Damping acts: what is dropped on a wall leaves it as much slower as the law of the damper says; and limits are on.
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
 

@@ -1,5 +1,5 @@
 // The proxy never wedges between facets that lie nearly in one plane, however many there are.
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/anchors/geodesic.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"

@@ -1,5 +1,5 @@
 // What the hand feels of a plain wall: its normal alone, from zero on.
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/anchors/geodesic.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"

@@ -1,6 +1,6 @@
 #include "tests/anchors/geodesic.h"
 
-#include "runtime/shapes.h"
+#include "runtime/surface/shapes.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Closed surfaces whose true shape is known, in any number of triangles.
 #pragma once
 
-#include "runtime/mesh.h"
+#include "runtime/surface/mesh.h"
 
 #include <cstdint>
 

@@ -1,5 +1,5 @@
 // The line probe: what a point or a ball cannot feel.
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
 

@@ -1,7 +1,7 @@
 // What a servo may rely on: a tick that survives a bad pose, allocates nothing, is timed, and shares its scene.
-#include "runtime/allocation_count.h"
-#include "runtime/renderer.h"
-#include "runtime/servo_thread.h"
+#include "runtime/render/renderer.h"
+#include "runtime/servo/allocation_count.h"
+#include "runtime/servo/servo_thread.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
 #include "tests/support/touch_scenes.h"

@@ -1,6 +1,6 @@
 #include "device/device_factory.h"
-#include "runtime/recording.h"
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
+#include "runtime/servo/recording.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
 

@@ -1,6 +1,6 @@
 // Files that claim to be meshes: what reads them may crash in its own process, what is made of them here may not.
 #include "runtime/files/mesh_file.h"
-#include "runtime/surface.h"
+#include "runtime/surface/surface.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/folder.h"
 #include "tests/support/mesh_bytes.h"

@@ -14,7 +14,7 @@
 // Of a face narrower than what its grid resolves, 1/1024 unit, the side cannot be shown: `sideless` counts these.
 #pragma once
 
-#include "runtime/proxy.h"
+#include "runtime/contact/proxy.h"
 #include "tests/runtime/exact_mesh.h"
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // Where force shading ends: creases, and how fast shading normals turn between them.
-#include "runtime/contact.h"
-#include "runtime/renderer.h"
-#include "runtime/shading.h"
+#include "runtime/contact/contact.h"
+#include "runtime/render/renderer.h"
+#include "runtime/texture/shading.h"
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"

@@ -1,7 +1,7 @@
 // Nothing falls through. The hand behaves as badly as it can; the judge knows nothing of the predicates or the walk: on
 // a closed mesh wound outward a probe that came from outside may touch only front sides, and while it is free the
 // winding number around it is 0.
-#include "runtime/contact.h"
+#include "runtime/contact/contact.h"
 
 #include "tests/runtime/meshes.h"
 #include "tests/runtime/wild_hand.h"

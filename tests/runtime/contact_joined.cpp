@@ -1,8 +1,8 @@
 // Objects at rest that meet, as one surface: what is felt of them together, against closed forms of their union.
-#include "runtime/contact.h"
-#include "runtime/joined_surfaces.h"
-#include "runtime/nearest_point.h"
-#include "runtime/shapes.h"
+#include "runtime/contact/contact.h"
+#include "runtime/geometry/nearest_point.h"
+#include "runtime/surface/build/joined_surfaces.h"
+#include "runtime/surface/shapes.h"
 
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"

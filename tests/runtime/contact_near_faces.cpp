@@ -1,7 +1,7 @@
 // What holds a ball: nearest points of half-spaces and triangles, and the faces near it.
-#include "runtime/half_spaces.h"
-#include "runtime/near_faces.h"
-#include "runtime/nearest_point.h"
+#include "runtime/contact/near_faces.h"
+#include "runtime/geometry/half_spaces.h"
+#include "runtime/geometry/nearest_point.h"
 #include "tests/runtime/distance.h"
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"

@@ -1,6 +1,6 @@
 // Sheets that pierce each other without sharing an edge: where the proxy is, against the nearest point of the cell that
 // the sheets bound, and how the force changes from tick to tick.
-#include "runtime/contact.h"
+#include "runtime/contact/contact.h"
 
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"

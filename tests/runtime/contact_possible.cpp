@@ -1,7 +1,7 @@
 // Every step of the proxy is possible, on any mesh: shown by an accomplice (accomplice.h) that goes the same way in
 // free space, by exact arithmetic that shares nothing with what it judges.
-#include "runtime/contact.h"
-#include "runtime/stylus_contact.h"
+#include "runtime/contact/contact.h"
+#include "runtime/contact/stylus_contact.h"
 
 #include "tests/runtime/accomplice.h"
 #include "tests/runtime/long_run.h"

@@ -1,6 +1,6 @@
-#include "runtime/predicates.h"
+#include "runtime/geometry/predicates.h"
 
-#include "runtime/lattice.h"
+#include "runtime/geometry/lattice.h"
 #include "tests/runtime/big_integer.h"
 #include "tests/support/catch.h"
 

@@ -1,6 +1,6 @@
 // The first crossing of a segment: the runtime's predicates and tree against another engine with its own
 // (exact_mesh.h).
-#include "runtime/collision.h"
+#include "runtime/surface/collision.h"
 
 #include "tests/runtime/exact_mesh.h"
 #include "tests/runtime/long_run.h"

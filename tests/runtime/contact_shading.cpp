@@ -1,6 +1,6 @@
-#include "runtime/shading.h"
+#include "runtime/texture/shading.h"
 
-#include "runtime/contact.h"
+#include "runtime/contact/contact.h"
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"
 

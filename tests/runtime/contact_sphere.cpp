@@ -1,5 +1,5 @@
 // A ball as probe: closed forms on simple shapes, and that nothing comes nearer to its centre than its radius.
-#include "runtime/sphere_contact.h"
+#include "runtime/contact/sphere_contact.h"
 #include "tests/runtime/distance.h"
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"

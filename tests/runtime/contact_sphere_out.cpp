@@ -1,6 +1,6 @@
 // A ball that was put down into something and goes out of it: as far as it must, not through anything.
-#include "runtime/allocation_count.h"
-#include "runtime/sphere_contact.h"
+#include "runtime/contact/sphere_contact.h"
+#include "runtime/servo/allocation_count.h"
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"
 

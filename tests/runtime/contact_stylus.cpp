@@ -1,5 +1,5 @@
 // The stylus against closed forms of its geometry, and its ideal shaft against all triangles in exact arithmetic.
-#include "runtime/stylus_contact.h"
+#include "runtime/contact/stylus_contact.h"
 
 #include "tests/runtime/exact_mesh.h"
 #include "tests/runtime/meshes.h"

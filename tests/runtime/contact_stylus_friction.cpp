@@ -1,10 +1,10 @@
 // A stylus in a crease: friction holds its tip beside an edge on which its shaft leans, by a lever of a hundredth of
 // its length. What it costs is counted; what it feels is checked against the balance of a stiff shaft, Coulomb's law,
 // and what friction does to energy: it only takes.
-#include "runtime/held_ends.h"
-#include "runtime/joined_surfaces.h"
-#include "runtime/shapes.h"
-#include "runtime/stylus_contact.h"
+#include "runtime/contact/contact_qp.h"
+#include "runtime/contact/stylus_contact.h"
+#include "runtime/surface/build/joined_surfaces.h"
+#include "runtime/surface/shapes.h"
 
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"

@@ -1,5 +1,5 @@
 // A stylus that slides slowly through hollows, over many small facets: it is never caught at a vertex.
-#include "runtime/stylus_contact.h"
+#include "runtime/contact/stylus_contact.h"
 
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"

@@ -1,5 +1,5 @@
 // The pushes on a shaft against what makes them optimal, and that they stay bounded where contacts are nearly the same.
-#include "runtime/held_ends.h"
+#include "runtime/contact/contact_qp.h"
 
 #include "tests/support/catch.h"
 

@@ -2,7 +2,7 @@
 // agree within a tick. Its springs have a potential, half the stiffness times the squares of what both are drawn by.
 // What is told pushes as these pull, in every tick; and with the hand at rest no tick may draw them further. So no path
 // of the hand gains energy.
-#include "runtime/stylus_contact.h"
+#include "runtime/contact/stylus_contact.h"
 
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"

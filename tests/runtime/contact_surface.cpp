@@ -1,8 +1,8 @@
-#include "runtime/surface.h"
+#include "runtime/surface/surface.h"
 
-#include "runtime/contact.h"
-#include "runtime/fan.h"
-#include "runtime/shapes.h"
+#include "runtime/contact/contact.h"
+#include "runtime/surface/corner.h"
+#include "runtime/surface/shapes.h"
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"
 

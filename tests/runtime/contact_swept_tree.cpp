@@ -1,7 +1,7 @@
 // The tree that a shaft asks for triangles: it loses none, and a surface has one, however many styluses touch it.
-#include "runtime/allocation_count.h"
-#include "runtime/stylus_contact.h"
-#include "runtime/swept_tree.h"
+#include "runtime/contact/stylus_contact.h"
+#include "runtime/contact/swept_tree.h"
+#include "runtime/servo/allocation_count.h"
 
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"

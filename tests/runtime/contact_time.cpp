@@ -1,7 +1,7 @@
 // How long a tick of contact takes, by size of the mesh. Reported, never asserted: run it with contact_test "[.time]".
-#include "runtime/contact.h"
-#include "runtime/sphere_contact.h"
-#include "runtime/stylus_contact.h"
+#include "runtime/contact/contact.h"
+#include "runtime/contact/sphere_contact.h"
+#include "runtime/contact/stylus_contact.h"
 
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"

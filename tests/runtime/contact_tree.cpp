@@ -1,6 +1,6 @@
-#include "runtime/box_tree.h"
+#include "runtime/surface/box_tree.h"
 
-#include "runtime/collision.h"
+#include "runtime/surface/collision.h"
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"
 

@@ -1,6 +1,6 @@
 // Where the proxy is, against closed forms: planes, edges, spheres, friction.
-#include "runtime/contact.h"
-#include "runtime/stylus_contact.h"
+#include "runtime/contact/contact.h"
+#include "runtime/contact/stylus_contact.h"
 
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"

@@ -1,5 +1,5 @@
 // What a tick looks at does not grow with the mesh or the scene: counted, not timed.
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"

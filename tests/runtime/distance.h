@@ -1,7 +1,7 @@
 // How far a point is from a triangle or a surface, by other means than those under test; and directions to look in.
 #pragma once
 
-#include "runtime/surface.h"
+#include "runtime/surface/surface.h"
 
 #include <glm/glm.hpp>
 

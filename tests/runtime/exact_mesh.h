@@ -3,7 +3,7 @@
 // the point. A rounded determinant with a generous bound goes first, integers of any size decide what it cannot.
 #pragma once
 
-#include "runtime/surface.h"
+#include "runtime/surface/surface.h"
 
 #include <array>
 #include <cstdint>

@@ -1,8 +1,8 @@
 // Meshes that several tests touch, and an independent opinion on what is inside them.
 #pragma once
 
-#include "runtime/shapes.h"
-#include "runtime/surface.h"
+#include "runtime/surface/shapes.h"
+#include "runtime/surface/surface.h"
 
 #include <memory>
 #include <string>

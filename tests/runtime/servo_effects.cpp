@@ -1,6 +1,6 @@
 // What is felt beside contact, held to closed forms: vibrations, and what all effects have in common.
-#include "runtime/allocation_count.h"
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
+#include "runtime/servo/allocation_count.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
 

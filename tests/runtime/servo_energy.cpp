@@ -2,7 +2,7 @@
 // its edges and corners - the proxy is the projection onto a convex set, and the force the gradient of half its squared
 // distance times stiffness (Moreau 1965): a closed path gives nothing. Outside of a body the proxy holds on to a facet
 // until it is past its edge: that may only take.
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
 

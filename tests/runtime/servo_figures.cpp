@@ -1,8 +1,8 @@
 // What the servo measures and writes down: histogram, ring, trace, allocations.
-#include "runtime/allocation_count.h"
-#include "runtime/histogram.h"
-#include "runtime/recording.h"
-#include "runtime/telemetry.h"
+#include "runtime/servo/allocation_count.h"
+#include "runtime/servo/histogram.h"
+#include "runtime/servo/recording.h"
+#include "runtime/servo/telemetry.h"
 #include "tests/support/catch.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Force models: the published formulae, and which of them give energy away on closed paths.
-#include "runtime/force_model.h"
-#include "runtime/renderer.h"
+#include "runtime/force/force_model.h"
+#include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
 #include "tests/support/touch_scenes.h"

@@ -1,5 +1,5 @@
 // What the hand feels: force models, friction, damping, shading, fades.
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
 #include "tests/support/touch_scenes.h"

@@ -1,6 +1,6 @@
 // A gripper's two fingers against closed forms.
-#include "runtime/renderer.h"
-#include "runtime/servo_thread.h"
+#include "runtime/render/renderer.h"
+#include "runtime/servo/servo_thread.h"
 #include "tests/runtime/scene_folder.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"

@@ -1,6 +1,6 @@
 // Several hands on one scene: each as if it were alone.
-#include "runtime/allocation_count.h"
-#include "runtime/servo_turns.h"
+#include "runtime/servo/allocation_count.h"
+#include "runtime/servo/servo_turns.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
 #include "tests/support/touch_scenes.h"

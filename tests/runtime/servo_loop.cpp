@@ -1,7 +1,7 @@
 // The servo thread: how it starts, keeps time, reports and ends.
-#include "runtime/allocation_count.h"
-#include "runtime/real_time.h"
-#include "runtime/servo_thread.h"
+#include "runtime/servo/allocation_count.h"
+#include "runtime/servo/real_time.h"
+#include "runtime/servo/servo_thread.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
 #include "tests/support/touch_scenes.h"

@@ -1,5 +1,5 @@
 // Materials from point to point: stiffness and friction of objects and of textures, sticking and sliding.
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
 #include "tests/support/touch_scenes.h"

@@ -1,7 +1,7 @@
 // Scenes of many objects and of objects that move: who is felt, who is left alone, and that nothing slips through.
-#include "runtime/motion.h"
-#include "runtime/reach.h"
-#include "runtime/renderer.h"
+#include "runtime/render/reach.h"
+#include "runtime/render/renderer.h"
+#include "runtime/scene/motion.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
 #include "tests/support/touch_scenes.h"

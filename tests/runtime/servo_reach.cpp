@@ -1,7 +1,7 @@
 // Objects that move and are out of reach: what a tick looks at does not grow with them, and nobody feels it.
-#include "runtime/allocation_count.h"
-#include "runtime/motion.h"
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
+#include "runtime/scene/motion.h"
+#include "runtime/servo/allocation_count.h"
 #include "tests/runtime/wild_motion.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"

@@ -1,5 +1,5 @@
 // Surfaces that are built anew while a hand presses on them, as after an edit of a scene's file.
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/runtime/meshes.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"

@@ -1,6 +1,6 @@
 // Scenes from files: what they mean.
 #include "runtime/files/quantity.h"
-#include "runtime/shading.h"
+#include "runtime/texture/shading.h"
 #include "tests/runtime/scene_folder.h"
 
 #include <cmath>

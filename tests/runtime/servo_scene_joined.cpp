@@ -1,5 +1,5 @@
 // Which objects of a scene file are joined to one surface.
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/runtime/scene_folder.h"
 
 #include <cmath>

@@ -1,7 +1,7 @@
 // From one object at rest to another that it meets: no step of the force that neither of them has by itself.
-#include "runtime/joined_surfaces.h"
-#include "runtime/renderer.h"
-#include "runtime/shapes.h"
+#include "runtime/render/renderer.h"
+#include "runtime/surface/build/joined_surfaces.h"
+#include "runtime/surface/shapes.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
 #include "tests/support/touch_scenes.h"

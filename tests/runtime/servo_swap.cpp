@@ -1,6 +1,6 @@
 // A scene in the place of another one while a hand is in it: what goes on, and who frees what is gone.
-#include "runtime/allocation_count.h"
-#include "runtime/servo_thread.h"
+#include "runtime/servo/allocation_count.h"
+#include "runtime/servo/servo_thread.h"
 #include "tests/runtime/swap_stage.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"

@@ -1,6 +1,6 @@
 // The slot: what a servo feels while others publish.
-#include "runtime/surface_texture.h"
-#include "runtime/texture_slot.h"
+#include "runtime/texture/surface_texture.h"
+#include "runtime/texture/texture_slot.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
 

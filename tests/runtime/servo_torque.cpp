@@ -1,5 +1,5 @@
 // Force and torque of a stylus as the renderer sends them.
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
 

@@ -1,6 +1,6 @@
 // Viscous media, held to closed forms, and what they do with energy.
-#include "runtime/renderer.h"
-#include "runtime/viscosity.h"
+#include "runtime/force/viscosity.h"
+#include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
 

@@ -1,5 +1,5 @@
 // A hand that reaches into a larger, turned or shifted scene: what it feels, and what that does with energy.
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
 #include "tests/support/touch_scenes.h"

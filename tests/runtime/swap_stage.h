@@ -1,8 +1,8 @@
 // A hand in a scene that another one takes the place of.
 #pragma once
 
-#include "runtime/renderer.h"
-#include "runtime/renderer_slot.h"
+#include "runtime/render/renderer.h"
+#include "runtime/render/renderer_slot.h"
 #include "tests/support/touch_scenes.h"
 
 #include <memory>

@@ -2,7 +2,7 @@
 // through them, exactly along edges and axes.
 #pragma once
 
-#include "runtime/surface.h"
+#include "runtime/surface/surface.h"
 
 #include <cmath>
 #include <random>

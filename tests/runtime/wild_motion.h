@@ -1,7 +1,7 @@
 // Objects that move in all ways, and a hand that comes to them in all ways.
 #pragma once
 
-#include "runtime/motion.h"
+#include "runtime/scene/motion.h"
 #include "tests/support/touch_scenes.h"
 
 #include <cmath>

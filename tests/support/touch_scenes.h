@@ -2,8 +2,8 @@
 #pragma once
 
 #include "lang/abi/texture_binding.h"
-#include "runtime/scene.h"
-#include "runtime/shapes.h"
+#include "runtime/scene/scene.h"
+#include "runtime/surface/shapes.h"
 
 #include <cmath>
 #include <functional>

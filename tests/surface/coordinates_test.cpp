@@ -1,6 +1,6 @@
 // Where a texture is on a mesh: mesh coordinates, the two-stage maps, three planes; each with its exact gradient.
-#include "runtime/shading.h"
-#include "runtime/surface_texture.h"
+#include "runtime/texture/shading.h"
+#include "runtime/texture/surface_texture.h"
 #include "tests/surface/textured.h"
 
 #include <algorithm>

@@ -1,8 +1,8 @@
 // Compiled textures on meshes, as a scene puts them there.
 #pragma once
 
-#include "runtime/renderer.h"
-#include "runtime/shading.h"
+#include "runtime/render/renderer.h"
+#include "runtime/texture/shading.h"
 #include "tests/jit/samples.h"
 #include "tests/support/touch_scenes.h"
 

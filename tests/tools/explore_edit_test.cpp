@@ -1,5 +1,5 @@
 // haptel explore while its files are edited: scene, meshes and textures.
-#include "runtime/recording.h"
+#include "runtime/servo/recording.h"
 #include "tests/tools/explore_stage.h"
 
 #include <algorithm>

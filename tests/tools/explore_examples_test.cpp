@@ -1,5 +1,5 @@
 // Examples show what their first lines say.
-#include "runtime/recording.h"
+#include "runtime/servo/recording.h"
 #include "tests/support/catch.h"
 #include "tests/tools/run_command.h"
 #include "tools/json.h"

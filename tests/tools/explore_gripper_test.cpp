@@ -1,5 +1,5 @@
 // A gripper in the simulated hand, through the command: what pushes its fingers apart, in report, trace and replay.
-#include "runtime/recording.h"
+#include "runtime/servo/recording.h"
 #include "tests/support/catch.h"
 #include "tests/tools/run_command.h"
 #include "tools/json.h"

@@ -1,4 +1,4 @@
-#include "runtime/renderer.h"
+#include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
 #include "tools/explore_report.h"
 

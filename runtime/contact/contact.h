@@ -1,0 +1,138 @@
+// Contact of a probe with one surface: the proxy, a point that stays on the free side of the surface, as near to the
+// hand as it can slide.
+//
+// The proxy is (position, feature, side). In free space it is the hand, and each move is swept against the object: its
+// box, then the boxes of its triangles, then triangles, all decided exactly. On the surface it walks by steepest
+// descent of its distance to the hand, from feature to feature by the links of surface.h: a cost that does not depend
+// on the size of the mesh, no wedging in creases, and no query. It lifts off only when the hand lies on the free side
+// of the nearest feature around it. Which side it is on is a stored bit, not a distance, so that no tolerance can lose
+// it.
+//
+// One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
+// sequence of poses. Everything is in the object's space, metres: transform the hand into it first.
+//
+// Where faces pierce each other without sharing edges (walls.h) up to three sheets at once hold the proxy. Known
+// limit: where a vertex lies within rounding on another sheet the proxy may rest before the nearest point for a tick.
+#pragma once
+
+#include "runtime/contact/proxy.h"
+#include "runtime/surface/surface.h"
+
+#include <cstdint>
+#include <memory>
+
+namespace haptel::runtime {
+
+// Coulomb friction coefficients, no unit; negative or not finite counts as 0, dynamic is held at most static.
+struct Friction {
+    double static_coefficient = 0, dynamic_coefficient = 0;
+};
+WalkFriction checked(const Friction& friction) noexcept;
+
+// Of a probe that has two ends, which may touch what is different. One for both of them: Friction.
+struct EndsFriction {
+    Friction tip, tail;
+
+    EndsFriction() = default;
+    EndsFriction(const Friction& both) : tip(both), tail(both) {}
+    EndsFriction(const Friction& of_tip, const Friction& of_tail) : tip(of_tip), tail(of_tail) {}
+};
+
+// Where and how the probe touches after a tick. If !touching, proxy_m is the hand and the rest is meaningless.
+struct Contact {
+    bool touching = false;
+    bool sliding = false;        // friction: the proxy moved this tick and dynamic friction holds
+    bool hand_held = false;      // the pose was not finite: the last good one was used
+    bool hand_clamped = false;   // the hand was farther than four half extents from the object's centre
+    uint32_t face = 0, side = 0; // the face under the proxy and the side touched; 0: front
+    glm::dvec3 proxy_m{0};
+    glm::dvec3 hand_m{0};             // the tip as used: held, clamped, rounded to the lattice
+    glm::dvec3 barycentric{1, 0, 0};  // of the proxy in its face, each >= 0, sum 1
+    glm::dvec3 facet_normal{0, 0, 1}; // of the face, unit, toward the free side
+    // Unit, toward the free side: the facet's on a face, between those of the faces that meet on an edge or a vertex or
+    // where they pierce each other.
+    glm::dvec3 normal{0, 0, 1};
+    double depth_m = 0;    // >= 0: how deep the hand is below the proxy along `normal`
+    double along = 0;      // of a stylus or a gripper: where it touches, 0 at its tip, 1 at its tail
+    bool by_shaft = false; // of a stylus: between its ends, on an edge
+    // Of a stylus, `by_shaft`: what its springs pull besides, held by what ends and shaft have not come to agree on. It
+    // is told at an end, and at no place of the surface.
+    bool unsettled = false;
+    // A crease where its own surface may have no edge: with an object that it is joined to (body.h), or of sheets that
+    // pierce each other.
+    bool on_crease = false;
+    glm::dvec3 lag_m{0}; // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
+};
+
+// Since construction or reset().
+struct ContactCounters {
+    uint64_t ticks = 0, touching_ticks = 0;
+    uint64_t skipped = 0;                        // free ticks that a known clearance spared a query
+    uint64_t sweeps = 0;                         // segments tested against the object
+    uint64_t object_boxes_missed = 0;            // of those, ended by the first stage: the object's box
+    uint64_t triangles_tested = 0;               // by the last stage: triangles whose box the tree delivered
+    uint64_t walk_steps = 0, walk_steps_max = 0; // over all ticks; in one tick
+    uint64_t walks_cut = 0;  // ticks that reached the step limit; the proxy is valid and goes on next tick
+    uint64_t hands_held = 0; // poses that were not finite
+};
+
+// A ball that holds no triangle: while the hand is inside, there is nothing to collide with. Lattice units.
+struct Clearance {
+    glm::dvec3 centre{0};
+    double radius = 0;
+    double next_radius = 0; // to try when the hand has left the ball; 0: not tried yet
+};
+
+class PointContact {
+public:
+    // `skips_free_space`: a known clearance spares queries.
+    explicit PointContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true);
+
+    // One tick. The first after construction or reset() puts the probe down where the hand is, wherever that is: a hand
+    // that starts inside a closed object is inside it, free, and feels the wall from within.
+    const Contact& update(const glm::dvec3& hand_m, const Friction& friction = {}) noexcept
+    {
+        return update(hand_m, nullptr, friction);
+    }
+    // One tick of a probe that is free and known to have met nothing on its way: the same as update, for nothing.
+    void follow(const glm::dvec3& hand_m) noexcept;
+    void reset() noexcept;
+
+    // At least so far is it from the hand to the nearest triangle; 0: not known.
+    double gap_m(const glm::dvec3& hand_m) const noexcept;
+
+    const Contact& contact() const noexcept { return contact_; }
+    const ContactCounters& counters() const noexcept { return counters_; }
+    const Surface& surface() const noexcept { return *surface_; }
+
+private:
+    friend class StylusContact;
+
+    const Contact& update(const glm::dvec3& hand_m, const glm::dvec3* tail, const Friction& friction) noexcept;
+    bool take(const glm::dvec3& hand_m) noexcept;
+    void aim(const glm::dvec3& hand) noexcept;
+    void go(const Friction& friction, WalkPath* path) noexcept;
+    void move_freely(const glm::dvec3& hand) noexcept;
+    bool sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept;
+    void refresh_clearance(double step) noexcept;
+    void finish(const Friction& friction, WalkPath* path) noexcept;
+    void describe() noexcept;
+
+    std::shared_ptr<const Surface> surface_;
+    bool skips_free_space_;
+    Contact contact_;
+    ContactCounters counters_;
+    Proxy proxy_;
+    glm::dvec3 hand_{0};                  // lattice units, and below: a lattice point of the workspace
+    glm::dvec3 true_hand_{0}, before_{0}; // neither rounded nor clamped: the hand in this tick and in the last
+    bool placed_ = false;
+    Clearance clear_;
+};
+
+// Torque (N m) about the grip of a force (N) that acts at a point.
+inline glm::dvec3 torque_about(const glm::dvec3& grip_m, const glm::dvec3& point_m, const glm::dvec3& force_n)
+{
+    return glm::cross(point_m - grip_m, force_n);
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,42 @@
+// A gripper of two fingers: two points, each with a proxy of its own, held by one hand. Its tip is one finger, its tail
+// the other; between them is nothing, so that an object fits there.
+#pragma once
+
+#include "runtime/contact/contact.h"
+
+#include <memory>
+#include <span>
+
+namespace haptel::runtime {
+
+class GripperContact {
+public:
+    explicit GripperContact(const std::shared_ptr<const Surface>& surface, bool skips_free_space = true);
+
+    // One tick: where its fingers touch, the tip first. A finger whose pose is not finite is held where it was.
+    std::span<const Contact> update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
+                                    const EndsFriction& friction = {}) noexcept;
+    // One tick of a probe that is free and known to have met nothing on its way.
+    void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
+
+    void reset() noexcept;
+
+    // At least so far is it from a finger to the nearest triangle; 0: not known.
+    double gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept;
+
+    std::span<const Contact> contacts() const noexcept { return {contacts_, count_}; }
+    // Of both fingers; a tick is skipped if both are spared a query.
+    const ContactCounters& counters() const noexcept { return counters_; }
+    const Surface& surface() const noexcept { return tip_.surface(); }
+
+private:
+    void count() noexcept;
+
+    PointContact tip_, tail_;
+    Contact contacts_[2];
+    std::size_t count_ = 0;
+    ContactCounters counters_;
+    uint64_t skipped_before_ = 0; // by the two together
+};
+
+} // namespace haptel::runtime

@@ -1,0 +1,132 @@
+#include "runtime/contact/near_faces.h"
+
+#include "runtime/geometry/nearest_point.h"
+#include "runtime/surface/box_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::runtime {
+
+namespace {
+
+// Lattice units: what rounding may take from a distance.
+constexpr double rounding = 1;
+
+// Faces that follow each other here are far apart in memory: each is asked for so many ahead.
+constexpr std::size_t lookahead = 8;
+
+} // namespace
+
+NearFaces::NearFaces(const Surface& surface) : surface_(&surface)
+{
+    const std::size_t room = std::min(faces_most, surface.faces.size());
+    faces_.reserve(room);
+    planes_.reserve(room);
+    corners_.reserve(room);
+    laid_.reserve(room);
+    picked_.reserve(room);
+    place_of_.reserve(room);
+}
+
+bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) noexcept
+{
+    picked_.clear();
+    place_of_.clear();
+    see_from(centre);
+    const bool all = surface_->tree->ball(centre, radius, std::min(most, faces_.capacity()), faces_);
+    boxes_ = faces_.size();
+    if (!all) faces_.clear();
+    const auto& faces = surface_->faces;
+    const auto& vertices = surface_->vertices;
+    const std::size_t boxes = faces_.size();
+    planes_.resize(boxes);
+    corners_.resize(boxes);
+    // Which of them stay is as good as random: all are written, and those that stay are counted.
+    std::size_t found = 0;
+    for (std::size_t i = 0; i < boxes; ++i) {
+        if (i + 2 * lookahead < boxes) __builtin_prefetch(&faces[faces_[i + 2 * lookahead]]);
+        if (i + lookahead < boxes)
+            for (const uint32_t corner : faces[faces_[i + lookahead]].vertex) __builtin_prefetch(&vertices[corner]);
+        const Face& face = faces[faces_[i]];
+        const glm::dvec3 &a = vertices[face.vertex[0]], &b = vertices[face.vertex[1]], &c = vertices[face.vertex[2]];
+        // For a start a plane at right angles to the way to its middle, which costs less than its nearest point.
+        const glm::dvec3 away = centre - (a + b + c) * (1.0 / 3);
+        const double square = glm::dot(away, away);
+        const glm::dvec3 normal = square > 0 ? away * (1 / std::sqrt(square)) : face.normal;
+        const HalfSpace plane{normal, std::max({glm::dot(normal, a), glm::dot(normal, b), glm::dot(normal, c)})};
+        faces_[found] = faces_[i];
+        planes_[found] = plane;
+        corners_[found] = {a, b, c};
+        found += !(ahead(plane) > radius + rounding);
+    }
+    faces_.resize(found);
+    planes_.resize(found);
+    corners_.resize(found);
+    laid_.assign(found, 0);
+    return all;
+}
+
+void NearFaces::pick(const glm::dvec3& centre, double radius, double reach) noexcept
+{
+    picked_.clear();
+    see_from(centre);
+    radius_ = radius;
+    const double near = radius + reach + rounding;
+    place_of_.resize(planes_.size());
+    std::size_t close = 0;
+    for (std::size_t place = 0; place < planes_.size(); ++place) {
+        place_of_[close] = static_cast<uint32_t>(place);
+        close += !(ahead(planes_[place]) > near);
+    }
+    std::size_t picked = 0;
+    for (std::size_t i = 0; i < close; ++i) {
+        const uint32_t place = place_of_[i];
+        if (laid_[place] != centres_) lay(place);
+        if (ahead(planes_[place]) > near) continue;
+        picked_.push_back({planes_[place].normal, planes_[place].offset + radius});
+        place_of_[picked++] = place;
+    }
+    place_of_.resize(picked);
+}
+
+bool NearFaces::renew(uint32_t picked, const glm::dvec3& centre) noexcept
+{
+    see_from(centre);
+    const std::size_t place = place_of_[picked];
+    if (laid_[place] == centres_) return false;
+    lay(place);
+    picked_[picked] = {planes_[place].normal, planes_[place].offset + radius_};
+    return true;
+}
+
+double NearFaces::distance(const glm::dvec3& centre, double most) noexcept
+{
+    see_from(centre);
+    double least = most;
+    for (std::size_t place = 0; place < planes_.size(); ++place) {
+        if (ahead(planes_[place]) >= least) continue;
+        lay(place);
+        least = std::min(least, ahead(planes_[place]));
+    }
+    return least;
+}
+
+void NearFaces::see_from(const glm::dvec3& centre) noexcept
+{
+    if (centre == centre_) return;
+    centre_ = centre;
+    ++centres_;
+}
+
+void NearFaces::lay(std::size_t place) noexcept
+{
+    const auto& [a, b, c] = corners_[place];
+    const glm::dvec3 away = centre_ - nearest_point(a, b, c, centre_).at;
+    const double distance = glm::length(away);
+    const glm::dvec3 normal = distance > 0 ? away / distance : surface_->faces[faces_[place]].normal;
+    planes_[place] = {normal, glm::dot(normal, centre_) - distance};
+    laid_[place] = centres_;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,62 @@
+// The triangles around the centre of a ball, each with a plane that it lies behind. The plane touches the triangle
+// where it was nearest when it was last looked at, and the triangle is convex: it lies behind that plane wherever the
+// ball has gone since. How far that plane is says which of the hundreds of triangles within reach on a fine mesh need
+// not be looked at, and a step towards what holds the ball lays anew only the planes that do.
+//
+// Lattice units. One servo thread owns one; only the constructor allocates.
+#pragma once
+
+#include "runtime/geometry/half_spaces.h"
+#include "runtime/surface/surface.h"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace haptel::runtime {
+
+class NearFaces {
+public:
+    explicit NearFaces(const Surface& surface);
+
+    // Room for so many.
+    static constexpr std::size_t faces_most = 1 << 14;
+
+    // Finds all that come within `radius` of the centre; false: their boxes are more than `most`, and none is kept.
+    bool find(const glm::dvec3& centre, double radius, std::size_t most = faces_most) noexcept;
+    std::size_t count() const noexcept { return faces_.size(); }
+    std::size_t boxes() const noexcept { return boxes_; } // that the tree delivered
+
+    // Picks those that a ball of this radius may meet within `reach` of the centre, their planes laid as seen from
+    // there.
+    void pick(const glm::dvec3& centre, double radius, double reach) noexcept;
+    // Where its centre may be: in front of each of them by the radius.
+    std::span<const HalfSpace> picked() const noexcept { return picked_; }
+    uint32_t face(uint32_t picked) const noexcept { return faces_[place_of_[picked]]; }
+    // Lays the plane of one picked anew, as seen from the centre; false if that has been done.
+    bool renew(uint32_t picked, const glm::dvec3& centre) noexcept;
+
+    // Distance of the nearest one, but at most `most`.
+    double distance(const glm::dvec3& centre, double most) noexcept;
+
+private:
+    void see_from(const glm::dvec3& centre) noexcept;
+    void lay(std::size_t place) noexcept;
+    double ahead(const HalfSpace& plane) const noexcept { return glm::dot(plane.normal, centre_) - plane.offset; }
+
+    const Surface* surface_;
+    std::vector<uint32_t> faces_; // room for all is made beforehand
+    std::size_t boxes_ = 0;
+    std::vector<HalfSpace> planes_;
+    std::vector<std::array<glm::dvec3, 3>> corners_; // of each, side by side in memory
+    std::vector<uint64_t> laid_;                     // seen from which centre
+    std::vector<HalfSpace> picked_;
+    std::vector<uint32_t> place_of_; // of those picked, above
+    double radius_ = 0;              // they were picked for
+    glm::dvec3 centre_{0};           // seen from here
+    uint64_t centres_ = 1;           // so far
+};
+
+} // namespace haptel::runtime

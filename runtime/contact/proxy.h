@@ -1,0 +1,74 @@
+// The proxy's state between ticks and the walk that moves it over the surface. Lattice units.
+#pragma once
+
+#include "runtime/surface/collision.h"
+#include "runtime/surface/surface.h"
+
+#include <cstdint>
+
+namespace haptel::runtime {
+
+struct Proxy {
+    enum class On : uint8_t { nothing, face, edge, vertex };
+
+    On on = On::nothing;
+    uint32_t face = 0, side = 0; // of the sheet it touches; a face next to the feature it is on
+    uint32_t index = 0;          // the edge or corner of `face`
+    bool sliding = false;        // friction: it moved in the last tick
+    bool at_wall = false;        // a sheet that pierces its own holds it, too
+    glm::dvec3 crease{0};        // then: the direction in which it may slide, unit; zero in a corner of three
+    glm::dvec3 at{0};            // on nothing: the hand, a lattice point; else within rounding of the feature
+
+    bool touches() const { return on != On::nothing; }
+};
+
+struct WalkCount {
+    // Turns from wall to wall in one walk. Each but the last few leads nearer; those may go round in a corner that
+    // rounding does not resolve.
+    static constexpr uint32_t most_wall_turns = 64;
+
+    CollisionCount collision;
+    uint32_t steps = 0;      // in this walk
+    uint32_t wall_turns = 0; // of these, decided beside walls; goes on from walk to walk
+    bool cut = false;        // ended by the step limit, or by too many turns
+};
+
+// Coulomb coefficients, checked: 0 <= dynamic <= static, finite.
+struct WalkFriction {
+    double static_coefficient = 0, dynamic_coefficient = 0;
+};
+
+// Where a walk led: a point just above the surface after each step, for what the proxy drags along.
+struct WalkPath {
+    static constexpr uint32_t most = 64;
+
+    uint32_t count = 0;
+    glm::dvec3 at[most];
+
+    void add(const glm::dvec3& point)
+    {
+        if (count < most) at[count++] = point;
+    }
+};
+
+// A lattice point just above what the proxy is on, on its side; where that is too sharp for one, on it.
+glm::dvec3 beside(const Surface& surface, const Proxy& proxy) noexcept;
+
+// In one tick; the walk goes on in the next.
+inline constexpr uint32_t walk_steps_max = 4096;
+
+// Moves a proxy that is on the surface toward the hand (a lattice point) by steepest descent of their distance, until
+// nothing nearer can be reached by sliding, friction holds, or it has left the surface and is the hand. The proxy is
+// valid at every step, so the walk may end anywhere.
+//
+// At each feature it asks for the nearest point, to the hand, of the surface around (a face, the two faces of an edge,
+// the fan of a vertex). There the sign of the hand's height says whether the hand is on the free side: if so the proxy
+// leaves, if not it slides there.
+void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count,
+          uint32_t step_limit = walk_steps_max, WalkPath* path = nullptr) noexcept;
+
+// Puts a free proxy on the face that its way crosses.
+void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const glm::dvec3& from,
+          const glm::dvec3& to) noexcept;
+
+} // namespace haptel::runtime

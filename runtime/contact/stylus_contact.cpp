@@ -1,0 +1,307 @@
+// A tick of the stylus: from the pose to contacts. How its ends and its shaft come to agree is in stylus_ends.cpp, how
+// the shaft moves in stylus_shaft.cpp.
+#include "runtime/contact/stylus_contact.h"
+
+#include "runtime/geometry/finite.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace haptel::runtime {
+
+using namespace shaft_tolerance;
+
+namespace {
+
+// Of a stylus that reaches beyond the workspace what is farther out than this is left out: there is nothing, and the
+// ideal stylus is not quite where the hand's is.
+constexpr double drawn_in = 0.75 * Lattice::workspace;
+
+// Lattice units. A shaft shorter than this has no direction.
+constexpr double least_length = 4096;
+
+// Lattice units, and share of what the springs are drawn by: what is not known and pushes less is not told.
+constexpr double least_push = 4096, least_push_share = 1e-6;
+
+// Of what the springs are drawn by: sides that push more than that push against each other, as in a fold, by what
+// rounding makes of the angle between them. What they push together is told as what is left.
+constexpr double against_each_other = 4;
+
+// A clear region is worth looking for if the hand needs several ticks to cross it.
+constexpr double ticks_per_region = 4;
+
+} // namespace
+
+StylusContact::StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space)
+    : tip_(surface, skips_free_space)
+    , tail_(surface, skips_free_space)
+    , skips_free_space_(skips_free_space)
+    , tree_(&surface->swept_tree())
+{
+}
+
+void StylusContact::reset() noexcept
+{
+    tip_.reset();
+    tail_.reset();
+    has_tail_ = tracked_ = astray_ = false;
+    side_count_ = contact_count_ = 0;
+    clear_ = {};
+    collision_ = {};
+    counters_ = {};
+}
+
+std::optional<Shaft> StylusContact::ideal() const noexcept
+{
+    return tracked_ ? std::optional(shaft_) : std::nullopt;
+}
+
+const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
+                                     const EndsFriction& friction) noexcept
+{
+    if (!finite(tip_m)) { // what touches goes on touching
+        tip_.update(tip_m, friction.tip);
+        for (Contact& contact : contacts_) contact.hand_held = true;
+        count();
+        return tip_.contact();
+    }
+    const bool had_tip = begin_ == 0, had_tail = end_ == 1;
+    const uint64_t sweeps = counters_.sweeps;
+    has_shaft_ = take(tip_m, tail_m);
+    if (!has_shaft_) {
+        tracked_ = false;
+        tip_.update(tip_m, friction.tip);
+    } else if (!tracked_) {
+        start(tip_m, friction.tip);
+    } else if (!pass_freely(tip_m, tail_m)) {
+        if (!had_tip || begin_ > 0) restart(tip_, begin_ > 0 ? Lattice::snap_units(hand_.tip) : shaft_.tip);
+        if (!had_tail || end_ < 1) restart(tail_, end_ < 1 ? Lattice::snap_units(hand_.tail) : shaft_.tail);
+        ++tip_.counters_.ticks;
+        resolve(friction);
+    }
+    report();
+    count();
+    counters_.skipped += contact_count_ == 0 && counters_.sweeps == sweeps;
+    counters_.touching_ticks += contact_count_ > 0;
+    return tip_.contact();
+}
+
+void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
+{
+    ++counters_.skipped;
+    tip_.follow(tip_m);
+    tracked_ = has_shaft_ = finite(tip_m) && take(tip_m, tail_m);
+    astray_ = false;
+    side_count_ = 0;
+    if (tracked_) {
+        aim_ = reached_ = hand_;
+        shaft_ = within(hand_.tip, hand_.tail);
+        restart(tail_, shaft_.tail);
+    }
+    contact_count_ = 0;
+    count();
+}
+
+// Takes the pose; false if there is no shaft in the workspace.
+bool StylusContact::take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
+{
+    const Lattice& lattice = surface().lattice;
+    has_tail_ = finite(tail_m);
+    if (!has_tail_) return false;
+    const Shaft hand{lattice.units(tip_m), lattice.units(tail_m)};
+    if (!std::isfinite(glm::length(hand.tail - hand.tip))) return false; // too far out to have a direction
+    hand_ = hand;
+    if (tip_.proxy_.touches()) hand_.tip = Lattice::snap_units(hand_.tip); // it does not let go of a hand that is far
+    const glm::dvec3 along = hand_.tail - hand_.tip;
+    begin_ = 0, end_ = 1;
+    for (int k = 0; k < 3; ++k) {
+        const double low = -drawn_in - hand_.tip[k], high = drawn_in - hand_.tip[k];
+        if (along[k] == 0 && (low > 0 || high < 0)) return false;
+        if (along[k] == 0) continue;
+        begin_ = std::max(begin_, std::min(low / along[k], high / along[k]));
+        end_ = std::min(end_, std::max(low / along[k], high / along[k]));
+    }
+    const auto in_workspace = [](const glm::dvec3& end) {
+        return glm::all(glm::lessThanEqual(glm::abs(end), glm::dvec3(Lattice::workspace)));
+    };
+    if (in_workspace(hand_.tip)) begin_ = 0, hand_.tip = glm::round(hand_.tip); // as the hand of a point is
+    if (in_workspace(hand_.tail)) end_ = 1, hand_.tail = glm::round(hand_.tail);
+    return (end_ - begin_) * glm::length(along) > least_length; // false for what is not finite, too
+}
+
+// The part of a stylus that is in the workspace.
+Shaft StylusContact::within(const glm::dvec3& tip, const glm::dvec3& tail) const noexcept
+{
+    const auto at = [&](double share) {
+        return Lattice::snap_units(share == 0 ? tip : share == 1 ? tail : tip + share * (tail - tip));
+    };
+    return {at(begin_), at(end_)};
+}
+
+// The whole stylus of which a part is in the workspace.
+Shaft StylusContact::extended(const Shaft& part) const noexcept
+{
+    const double share = end_ - begin_;
+    return {begin_ == 0 ? part.tip : part.at(-begin_ / share), end_ == 1 ? part.tail : part.at((1 - begin_) / share)};
+}
+
+// A stylus that is put down, or that could not be held yet.
+void StylusContact::start(const glm::dvec3& tip_m, const Friction& friction) noexcept
+{
+    const Shaft whole = within(hand_.tip, hand_.tail);
+    Crossing crossing;
+    const bool first = !tip_.placed_;
+    const bool crosses =
+        first && first_crossing(surface(), whole.tail, whole.tip, StartsOn::nothing(), crossing, collision_);
+    tip_.update(tip_m, crosses ? &whole.tail : nullptr, friction);
+    restart(tail_, whole.tail);
+    aim_ = reached_ = hand_;
+    side_count_ = 0;
+    astray_ = false;
+    stuck_ticks_ = 0;
+    shaft_ = goal();
+    tracked_ = first && !crosses;
+    if (!tracked_)
+        tracked_ = !first_crossing(surface(), shaft_.tip, shaft_.tail, StartsOn::nothing(), crossing, collision_);
+}
+
+// Where nothing is near nothing is touched: to the hand, if so.
+bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
+{
+    if (side_count_ > 0 || astray_ || tip_.proxy_.touches() || tail_.proxy_.touches()) return false;
+    const Shaft to = within(hand_.tip, hand_.tail);
+    if (!(farther(clear_.at, to) < clear_.radius)) {
+        ++collision_.sweeps;
+        clear_.radius = 0;
+        if (!tree_->is_empty(SweptRegion(shaft_.tip, shaft_.tail, to.tip, to.tail, rest_gap + reach))) return false;
+        const double step = farther(shaft_, to);
+        shaft_ = to;
+        if (skips_free_space_) refresh_clearance(step);
+    }
+    shaft_ = to;
+    aim_ = reached_ = hand_;
+    tip_.follow(tip_m);
+    tail_.follow(tail_m);
+    return true;
+}
+
+// Tries larger regions after success and smaller ones after failure, and none while even a success would not pay.
+void StylusContact::refresh_clearance(double step) noexcept
+{
+    if (clear_.next_radius == 0) clear_.next_radius = 0.25 * Lattice::extent;
+    if (clear_.next_radius < ticks_per_region * step) {
+        clear_.next_radius *= 1.1;
+    } else if (tree_->is_empty(SweptRegion(shaft_.tip, shaft_.tail, shaft_.tip, shaft_.tail, clear_.next_radius))) {
+        clear_.at = shaft_;
+        clear_.radius = clear_.next_radius;
+        clear_.next_radius = std::min(1.4 * clear_.next_radius, Lattice::extent);
+    } else {
+        clear_.next_radius *= 0.5;
+    }
+}
+
+void StylusContact::report() noexcept
+{
+    contact_count_ = 0;
+    if (tip_.contact().touching) contacts_[contact_count_++] = tip_.contact();
+    if (!tracked_) return;
+
+    const uint32_t first = contact_count_;
+    const double drawn = away(shaft_);
+    for (uint32_t i = 0; i < side_count_; ++i) {
+        const Side& side = sides_[i];
+        if (!(side.push > 0 && side.push < against_each_other * drawn)) continue;
+        const SideEdge other = surface().faces[side.face].link[side.edge][0];
+        const auto facing = [&](uint32_t face) {
+            return std::fabs(glm::dot(side.normal, surface().facet_normal(face)));
+        };
+        const uint32_t face = facing(other.face()) > facing(side.face) ? other.face() : side.face;
+        tell(glm::clamp(side.share, 0.0, 1.0), face, side.point, side.normal, side.push);
+    }
+    std::sort(contacts_.begin() + first, contacts_.begin() + contact_count_,
+              [](const Contact& a, const Contact& b) { return a.depth_m > b.depth_m; });
+    if (end_ == 1 && tail_.contact().touching) {
+        contacts_[contact_count_] = tail_.contact();
+        contacts_[contact_count_++].along = 1;
+    }
+    tell_what_is_left();
+}
+
+// One more contact of the shaft, by a push in lattice units.
+void StylusContact::tell(double along, uint32_t face, const glm::dvec3& point, const glm::dvec3& normal,
+                         double push) noexcept
+{
+    const Lattice& lattice = surface().lattice;
+    Contact contact;
+    contact.touching = contact.by_shaft = true;
+    contact.along = along;
+    contact.face = face;
+    contact.side = glm::dot(normal, surface().facet_normal(face)) >= 0 ? 0 : 1;
+    contact.proxy_m = lattice.metres(point);
+    contact.hand_m = lattice.metres(hand_.at(along));
+    contact.barycentric = barycentric_of(surface(), face, point);
+    contact.facet_normal = surface().facet_normal(face, contact.side);
+    contact.normal = normal;
+    contact.depth_m = push * lattice.unit_m;
+    contacts_[contact_count_++] = contact;
+}
+
+// What the springs of the ends are drawn by, and none of the contacts known by now makes up for: where ends and shaft
+// have not come to agree it is held by what it does not know yet. So the force is that of the potential in every tick.
+void StylusContact::tell_what_is_left() noexcept
+{
+    const Shaft ideal = extended(shaft_);
+    glm::dvec3 tip = ideal.tip - hand_.tip, tail = ideal.tail - hand_.tail;
+    const double least = std::max(least_push / (end_ - begin_), least_push_share * away(shaft_));
+    for (uint32_t i = 0; i < contact_count_; ++i) {
+        const Contact& contact = contacts_[i];
+        const glm::dvec3 push = (contact.depth_m * contact.normal + contact.lag_m) / surface().lattice.unit_m;
+        tip -= (1 - contact.along) * push;
+        tail -= contact.along * push;
+    }
+    const double tip_push = glm::length(tip), tail_push = glm::length(tail);
+    const uint32_t told = contact_count_;
+    if (tip_push > least) tell(0, nearest_face(tip_, 0), ideal.tip, tip / tip_push, tip_push);
+    if (tail_push > least) tell(1, nearest_face(tail_, 1), ideal.tail, tail / tail_push, tail_push);
+    for (uint32_t i = told; i < contact_count_; ++i) contacts_[i].unsettled = true;
+}
+
+// Of those that are known: it has the material of its object.
+uint32_t StylusContact::nearest_face(const PointContact& end, double along) const noexcept
+{
+    if (end.contact().touching) return end.contact().face;
+    const Side* nearest = nullptr;
+    for (const Side& side : std::span(sides_.data(), side_count_))
+        if (!nearest || std::fabs(side.share - along) < std::fabs(nearest->share - along)) nearest = &side;
+    return nearest ? nearest->face : met_.face;
+}
+
+void StylusContact::count() noexcept
+{
+    const ContactCounters &tip = tip_.counters(), &tail = tail_.counters();
+    counters_.ticks = tip.ticks;
+    counters_.hands_held = tip.hands_held;
+    counters_.sweeps = tip.sweeps + tail.sweeps + collision_.sweeps;
+    counters_.object_boxes_missed = tip.object_boxes_missed + tail.object_boxes_missed + collision_.object_boxes_missed;
+    counters_.triangles_tested = tip.triangles_tested + tail.triangles_tested + collision_.triangles_tested;
+    counters_.walk_steps = tip.walk_steps + tail.walk_steps;
+    counters_.walk_steps_max = std::max(tip.walk_steps_max, tail.walk_steps_max);
+}
+
+double StylusContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept
+{
+    const bool at_hand = tracked_ ? shaft_ == within(hand_.tip, hand_.tail) : !has_shaft_;
+    return at_hand ? surface().gap_to_box_m(tip_m, tail_m) : 0;
+}
+
+bool StylusContact::shaft_crosses() const noexcept
+{
+    if (!has_tail_ || tracked_ || !tip_.placed_ || tip_.contact_.touching) return false;
+    const Shaft whole = within(hand_.tip, hand_.tail);
+    Crossing crossing;
+    CollisionCount count;
+    return first_crossing(surface(), whole.tail, whole.tip, StartsOn::nothing(), crossing, count);
+}
+
+} // namespace haptel::runtime

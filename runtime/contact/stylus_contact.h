@@ -1,0 +1,175 @@
+// Contact of a stylus with one surface: both ends, each held as a point is, and the shaft between them, which rests on
+// edges and, by two of them, on vertices.
+//
+// The hand's stylus is the pair (p, q) of its tip and its tail. The ideal one is the pair (P, Q) that is nearest to it,
+// by |P - p|^2 + |Q - q|^2, of those that it can come to without passing through the surface. It is as if both ends
+// hung on springs of the object's stiffness: the force of all contacts is minus the gradient of a potential over the
+// poses of the stylus, so that without friction no closed path gains energy. That holds in ticks, too, in which ends
+// and shaft do not come to agree: the pair is where it was nearest to the hand, never farther away than before the
+// tick (while all of it is in the workspace), and what the contacts known by then do not hold is told as held by the
+// ends. A contact at the share s of the shaft pushes with the stiffness times depth / ((1 - s)^2 + s^2): like a point
+// at the tip, twice as hard in the middle.
+//
+// Ends are tracked by PointContact, each toward where the pushes of the shaft's contacts would have the hand's end. The
+// shaft that follows them has lattice points for ends. It moves straight, meets edges in the order of time, and takes
+// no place in which exact arithmetic finds it crossing a triangle, so that nothing is passed through at any speed;
+// what it met becomes a contact. Contacts that pull are none; what slides off the end of an edge meets the next.
+//
+// A stylus that is put down across the surface, or comes from beyond the workspace of the lattice with its whole
+// length, is held by its tip alone until it crosses nothing; so is one of which the shaft could not follow for 64 ticks
+// on end.
+//
+// One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
+// sequence of poses. Everything is in the object's space, metres. Friction holds the ends; the shaft slides freely. Its
+// pushes and what friction does to the ends are found together (stylus_friction.h): an end that friction keeps in its
+// place does not make way for an edge, so the other has to, and friction bears what the edge pushes the kept end with.
+#pragma once
+
+#include "runtime/contact/contact.h"
+#include "runtime/contact/contact_qp.h"
+#include "runtime/contact/shaft.h"
+#include "runtime/contact/stylus_friction.h"
+#include "runtime/contact/swept_tree.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+
+namespace haptel::runtime {
+
+class StylusContact {
+public:
+    // `skips_free_space`: a known clearance spares queries.
+    explicit StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true);
+
+    // One tick. The first puts the stylus down from its tail: one that enters the object by a front side touches there,
+    // with its tip. A tail that is not finite is none: the tip is a point. Returns the contact of the tip, touching or
+    // not.
+    const Contact& update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
+                          const EndsFriction& friction = {}) noexcept;
+    void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
+    void reset() noexcept;
+
+    // Where the stylus touches: the tip first, then the shaft, then the tail, then what is not known yet (`unsettled`,
+    // at an end). The depth of each is what it pushes over the stiffness: with the ends' lags, by friction, the depths
+    // times the normals add up to (P - p) + (Q - q).
+    std::span<const Contact> contacts() const noexcept { return {contacts_.data(), contact_count_}; }
+    const Contact& contact() const noexcept { return tip_.contact(); } // the tip's
+
+    // The ideal stylus, lattice units, of which both ends are lattice points: crosses no triangle. Nothing while the
+    // tip alone is held. Of a stylus that reaches beyond the workspace it is the part within.
+    std::optional<Shaft> ideal() const noexcept;
+
+    // At least so far is it from any point of the stylus, where it was last, to the nearest triangle; 0: not known.
+    double gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept;
+
+    // The shaft passes through the surface while the tip does not press: it was put down so. A query, made only for who
+    // asks.
+    bool shaft_crosses() const noexcept;
+
+    const ContactCounters& counters() const noexcept { return counters_; }
+    const Surface& surface() const noexcept { return tip_.surface(); }
+
+private:
+    static constexpr uint32_t sides_max = 4;
+    static constexpr uint32_t rounds_max = 24, sweeps_max = 80;
+
+    // A contact of the shaft with an edge.
+    struct Side {
+        uint32_t face = 0, edge = 0;
+        bool fresh = true;    // met in this round
+        bool reached = false; // the shaft has passed over it
+        double sign = 1;      // of the shaft's height over it, as `passing` has it
+        double push = 0;      // lattice units
+        double share = 0;     // of the stylus, where it touches
+        glm::dvec3 normal{0}, point{0};
+    };
+    struct Obstacle {
+        uint32_t face = 0, edge = 0;
+        double time = 0; // share of the move
+        int side = 0;
+        bool exact = false; // not met on the way, but crossed at the end of it
+        double on_shaft = 0;
+    };
+    struct Grips {
+        EndGrip tip, tail;
+    };
+    // A region known to be empty: the shaft is free while each end is within the radius of where it was.
+    struct Clear {
+        Shaft at;
+        double radius = 0, next_radius = 0;
+    };
+
+    // All that a tick changes of where it is held.
+    struct Place {
+        Shaft shaft, reached;
+        Proxy tip, tail;
+        std::array<Side, sides_max> sides;
+        uint32_t side_count;
+        bool astray;
+    };
+
+    const glm::dvec3& edge_end(uint32_t face, uint32_t edge, uint32_t which) const noexcept;
+    Passing passing_of(const Side& side, const Shaft& shaft) const noexcept;
+
+    bool take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
+    Shaft within(const glm::dvec3& tip, const glm::dvec3& tail) const noexcept;
+    Shaft extended(const Shaft& part) const noexcept;
+    Shaft goal() const noexcept;
+    void start(const glm::dvec3& tip_m, const Friction& friction) noexcept;
+    bool pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
+    void refresh_clearance(double step) noexcept;
+    void restart(PointContact& end, const glm::dvec3& at) noexcept;
+    void restart_ends() noexcept;
+
+    void resolve(const EndsFriction& friction) noexcept;
+    enum class Turning : uint8_t { with_the_shaft, not_at_all };
+    double solve(const Shaft& hand, Shaft& aim, Grips& grips, Turning normals = Turning::with_the_shaft) noexcept;
+    Shaft clear_of_sides(const Shaft& to, EndsGive gives) const noexcept;
+    void take_hold(EndGrip& grip, const PointContact& end, const glm::dvec3& on_shaft) const noexcept;
+    bool drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept;
+    bool move(Shaft to) noexcept;
+    bool blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept;
+    bool is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Shaft& to) const noexcept;
+    void approach(const Shaft& to, const Obstacle& obstacle) noexcept;
+    void touch(const Obstacle& obstacle) noexcept;
+    void let_go_of_ended() noexcept;
+    bool let_go_of_unreached() noexcept;
+    Place place() const noexcept;
+    void go_back(const Place& to) noexcept;
+    double away(const Shaft& part) const noexcept;
+    void hold_hand_from_here(Grips& grips) noexcept;
+    void drop(uint32_t side) noexcept;
+    void report() noexcept;
+    void tell(double along, uint32_t face, const glm::dvec3& point, const glm::dvec3& normal, double push) noexcept;
+    void tell_what_is_left() noexcept;
+    uint32_t nearest_face(const PointContact& end, double along) const noexcept;
+    void count() noexcept;
+
+    PointContact tip_, tail_;
+    bool skips_free_space_;
+    const SweptTree* tree_;                         // of the surface, which the ends hold
+    Shaft hand_;                                    // lattice units, neither rounded nor clamped
+    double begin_ = 0, end_ = 1;                    // shares of the stylus that lie in the workspace
+    Shaft aim_;                                     // where the pushes of the sides would have the hand's ends
+    Shaft reached_;                                 // the hand for which the shaft was held last
+    Shaft shaft_;                                   // lattice points
+    bool has_tail_ = false, has_shaft_ = false;     // of the last tick
+    bool tracked_ = false;                          // the shaft crosses nothing
+    bool astray_ = false;                           // the shaft could not follow its ends
+    bool tip_walked_ = false, tail_walked_ = false; // in this move, on the surface
+    Obstacle met_;                                  // by the last move
+    std::array<Side, sides_max> sides_;
+    uint32_t side_count_ = 0;
+    Clear clear_;
+    std::array<Contact, sides_max + 4> contacts_;
+    uint32_t contact_count_ = 0;
+    uint32_t sweeps_left_ = 0; // in this tick
+    uint32_t stuck_ticks_ = 0; // in a row
+    CollisionCount collision_; // of the shaft
+    ContactCounters counters_;
+};
+
+} // namespace haptel::runtime

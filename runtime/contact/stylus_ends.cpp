@@ -1,0 +1,315 @@
+// How the ends of a stylus and its shaft come to agree: the pushes of the shaft's contacts say where the ends are
+// aimed, the ends walk there, the shaft follows and meets new contacts.
+#include "runtime/contact/stylus_contact.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace haptel::runtime {
+
+using namespace shaft_tolerance;
+
+namespace {
+
+// Within which the ends are where they should be: two units, and this share of how far the hand is away. What friction
+// holds on a short lever is known less well: this share.
+constexpr double settled = 2, settled_share = 1e-10, dragged_share = 1e-4;
+// Of its limit. Where both ends drag none is free to make way for an edge: they have to be right within the gap.
+constexpr double friction_settled = 1e-6, both_settled = 1e-9;
+
+// A contact that slides off its edge does so by this many units and this share of its way, so that it is not found
+// there again, wherever the way bends.
+constexpr double beyond = 16, past_the_end = 0.05;
+
+// Share of the shaft: on a shorter lever an end does not make way. The edge is passing by the other end.
+constexpr double least_lever = 1e-4;
+
+// How often the directions of contacts follow the shaft that they turn.
+constexpr int turns_max = 48;
+
+// For so long a shaft may fall behind its ends, after a jump around things or where it is jammed; then it is let go.
+constexpr uint32_t patience_ticks = 64;
+constexpr double far_behind = 0x1p20; // lattice units: a millionth of the object
+
+// Lattice units: what a tick may draw the springs of the ends out by, the hand being where it is. More than gaps and
+// rounding do.
+constexpr double uphill = 4096;
+
+// What a way that was blocked by nothing new is cut to.
+constexpr double shorter = 0.25;
+
+} // namespace
+
+// Where the ends that are tracked want the shaft to be.
+Shaft StylusContact::goal() const noexcept
+{
+    Shaft goal = within(begin_ == 0 ? tip_.proxy_.at : aim_.tip, end_ == 1 ? tail_.proxy_.at : aim_.tail);
+    if (begin_ == 0) goal.tip = beside(surface(), tip_.proxy_);
+    if (end_ == 1) goal.tail = beside(surface(), tail_.proxy_);
+    return goal;
+}
+
+// An end that begins anew at a free place.
+void StylusContact::restart(PointContact& end, const glm::dvec3& at) noexcept
+{
+    end.proxy_.on = Proxy::On::nothing;
+    end.proxy_.at = end.hand_ = end.true_hand_ = at;
+    end.placed_ = true;
+    end.clear_.radius = 0;
+    end.describe();
+}
+
+void StylusContact::restart_ends() noexcept
+{
+    if (begin_ == 0) restart(tip_, shaft_.tip);
+    if (end_ == 1) restart(tail_, shaft_.tail);
+    astray_ = false;
+}
+
+// Ends and shaft in turn, until they agree. Where they led away from the hand, back to where they were nearest to it:
+// what the springs hold is given by the hand, not by how it is looked for where they give way.
+void StylusContact::resolve(const EndsFriction& friction) noexcept
+{
+    const double away_first = away(shaft_);
+    Place nearest = place();
+    double nearest_away = away_first;
+    if (astray_) restart_ends();
+    bool stopped = false, tip_slides = false, tail_slides = false;
+    WalkPath tip_path, tail_path;
+    double stride = 1; // share of the hand's way that is tried at once
+    uint32_t round = 0;
+    sweeps_left_ = sweeps_max;
+    Grips grips;
+    grips.tip.friction = checked(friction.tip);
+    grips.tail.friction = checked(friction.tail);
+    grips.tip.slides = tip_.proxy_.sliding;
+    grips.tail.slides = tail_.proxy_.sliding;
+    for (; round < rounds_max && sweeps_left_ > 0; ++round) {
+        Shaft aim, to = hand_;
+        const double share = std::min(stride, solve(to, aim, grips));
+        if (share < 1) {
+            to = {reached_.tip + share * (to.tip - reached_.tip), reached_.tail + share * (to.tail - reached_.tail)};
+            solve(to, aim, grips);
+        }
+        const bool drags = grips.tip.drags() || grips.tail.drags();
+        if (round > 0 && !stopped && share == 1 &&
+            farther(aim, aim_) <= settled + (drags ? dragged_share : settled_share) * farther(aim, hand_))
+            break;
+        if (astray_) restart_ends();
+        aim_ = aim;
+        tip_path.count = tail_path.count = 0;
+        Shaft clear = aim_;
+        const auto go_tip = [&] {
+            if (begin_ > 0) return;
+            tip_.aim(clear.tip);
+            tip_.go(grips.tip.of_walk(), &tip_path);
+            tip_slides |= tip_.proxy_.sliding;
+        };
+        const auto go_tail = [&] {
+            if (end_ < 1) return;
+            tail_.aim(clear.tail);
+            tail_.go(grips.tail.of_walk(), &tail_path);
+            tail_slides |= tail_.proxy_.sliding;
+        };
+        // What friction drags goes first: a little off its aim, on a short lever that is far for the other end.
+        if (grips.tail.drags() && !grips.tip.touches) {
+            go_tail();
+            clear.tail = tail_.proxy_.at;
+            clear = clear_of_sides(clear, {true, false});
+            go_tip();
+        } else {
+            go_tip();
+            if (grips.tip.drags() && !grips.tail.touches) {
+                clear.tip = tip_.proxy_.at;
+                clear = clear_of_sides(clear, {false, true});
+            }
+            go_tail();
+        }
+        const uint32_t known = side_count_;
+        astray_ = !drag(tip_path, tail_path);
+        stopped = astray_ || share < 1;
+        if (!astray_) {
+            reached_ = to;
+            stride = std::min(1.0, 2 * stride);
+        } else if (side_count_ == known) {
+            stride *= shorter;
+            reached_ = extended(shaft_);
+        }
+        let_go_of_ended();
+        if (const double now = away(shaft_); now < nearest_away) nearest = place(), nearest_away = now;
+    }
+    const bool behind = stopped && farther(shaft_, goal()) > far_behind;
+    if (begin_ == 0 && end_ == 1 && away(shaft_) > nearest_away + uphill) {
+        go_back(nearest);
+        stopped = true;
+    }
+    counters_.walks_cut += stopped;
+    stuck_ticks_ = behind && away_first - away(shaft_) < far_behind ? stuck_ticks_ + 1 : 0;
+    if (stuck_ticks_ == patience_ticks) tracked_ = false;
+    if (let_go_of_unreached() || stopped) hold_hand_from_here(grips);
+    tip_.proxy_.sliding = tip_slides;
+    tail_.proxy_.sliding = tail_slides;
+    tip_.describe();
+    tail_.describe();
+    if (!grips.tip.drags()) tip_.contact_.lag_m = glm::dvec3(0); // nothing holds it
+    if (!grips.tail.drags()) tail_.contact_.lag_m = glm::dvec3(0);
+    for (uint32_t i = side_count_; i-- > 0;)
+        if (sides_[i].push == 0 && sides_[i].sign * passing_of(sides_[i], shaft_).height > 4 * rest_gap) drop(i);
+}
+
+StylusContact::Place StylusContact::place() const noexcept
+{
+    return {shaft_, reached_, tip_.proxy_, tail_.proxy_, sides_, side_count_, astray_};
+}
+
+void StylusContact::go_back(const Place& to) noexcept
+{
+    shaft_ = to.shaft, reached_ = to.reached;
+    tip_.proxy_ = to.tip, tail_.proxy_ = to.tail;
+    sides_ = to.sides, side_count_ = to.side_count;
+    astray_ = to.astray;
+    tip_.clear_.radius = tail_.clear_.radius = clear_.radius = 0; // it may be out of these
+}
+
+// How far the springs of both ends are drawn where the part in the workspace is there: their energy is half the
+// stiffness times its square.
+double StylusContact::away(const Shaft& part) const noexcept
+{
+    const Shaft whole = extended(part);
+    const glm::dvec3 tip = whole.tip - hand_.tip, tail = whole.tail - hand_.tail;
+    return std::sqrt(glm::dot(tip, tip) + glm::dot(tail, tail));
+}
+
+// What pushes the hand while the shaft is not where it should be: the ends were aimed at less of the hand's way, or at
+// what a side left them that is gone. It is all of the hand that is held, by the contacts as they are here.
+void StylusContact::hold_hand_from_here(Grips& grips) noexcept
+{
+    solve(hand_, aim_, grips, Turning::not_at_all);
+    if (begin_ == 0 && tip_.proxy_.touches()) tip_.aim(aim_.tip);
+    if (end_ == 1 && tail_.proxy_.touches()) tail_.aim(aim_.tail);
+}
+
+// With the end that gives where it clears the sides that push, the other being where it is.
+Shaft StylusContact::clear_of_sides(const Shaft& to, EndsGive gives) const noexcept
+{
+    std::array<ShaftContact, shaft_contacts_max> contacts;
+    Shaft at = to;
+    for (int turn = 0; turn < turns_max; ++turn) {
+        uint32_t count = 0;
+        for (uint32_t i = 0; i < side_count_; ++i) {
+            const Passing here = passing_of(sides_[i], {at.at(begin_), at.at(end_)});
+            if (here.parallel || sides_[i].push == 0) continue;
+            const glm::dvec3 normal = sides_[i].sign * here.normal;
+            const double share = begin_ + here.on_shaft * (end_ - begin_);
+            if ((gives.tip ? 1 - share : share) < least_lever) continue;
+            contacts[count++] = {normal, share, glm::dot(normal, here.edge_point) + rest_gap};
+        }
+        const auto push = pushes({contacts.data(), count}, to.tip, to.tail, gives);
+        Shaft next = to;
+        for (uint32_t i = 0; i < count; ++i) {
+            if (gives.tip) next.tip += (1 - contacts[i].share) * push[i] * contacts[i].normal;
+            if (gives.tail) next.tail += contacts[i].share * push[i] * contacts[i].normal;
+        }
+        const double change = farther(next, at);
+        at = next;
+        if (change < 0.25) break;
+    }
+    return at;
+}
+
+// An end as it begins. One that went where the shaft could not follow comes back first.
+void StylusContact::take_hold(EndGrip& grip, const PointContact& end, const glm::dvec3& on_shaft) const noexcept
+{
+    grip.touches = end.proxy_.touches();
+    grip.normal = end.contact_.normal;
+    grip.at = end.proxy_.at;
+    if (astray_) grip.at = on_shaft + glm::dot(grip.normal, grip.at - on_shaft) * grip.normal;
+    grip.take_hold(side_count_ > 0);
+}
+
+// Where the ends are to be aimed for the sides to hold a hand; and the share of the way there on which each side that
+// pushes stays within its edge and the shaft. `normals`: of the sides; not turned they are those where the shaft is.
+double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips, Turning normals) noexcept
+{
+    std::array<ShaftContact, shaft_contacts_max> contacts;
+    EndGrip &tip = grips.tip, &tail = grips.tail;
+    take_hold(tip, tip_, shaft_.tip);
+    take_hold(tail, tail_, shaft_.tail);
+    aim = hand;
+    if (side_count_ == 0) return 1;
+    if (tip.sticks) tail.sticks = false; // else no side could push; it may stay where it is for all that
+
+    Shaft at = shaft_;
+    for (int turn = 0; turn < turns_max; ++turn) {
+        for (uint32_t i = 0; i < side_count_; ++i) {
+            Side& side = sides_[i];
+            const Passing here = passing_of(side, normals == Turning::with_the_shaft ? at : shaft_);
+            if (!here.parallel) {
+                side.normal = side.sign * here.normal;
+                side.point = here.edge_point;
+                side.share = begin_ + here.on_shaft * (end_ - begin_);
+            }
+            contacts[i] = {side.normal, side.share, glm::dot(side.normal, side.point) + rest_gap};
+        }
+        uint32_t count = side_count_;
+        const auto add_end = [&](const EndGrip& grip, double share) {
+            if (grip.touches && !grip.sticks) contacts[count++] = {grip.normal, share, glm::dot(grip.normal, grip.at)};
+        };
+        add_end(tip, 0);
+        add_end(tail, 1);
+        if (normals == Turning::not_at_all) // the shaft is where it may be: no more is held than the springs are drawn
+            for (ShaftContact& contact : std::span(contacts.data(), count))
+                contact.offset = std::min(contact.offset, glm::dot(contact.normal, extended(shaft_).at(contact.share)));
+        const std::span<const ShaftContact> all(contacts.data(), count);
+        const EndsGive gives{!tip.sticks, !tail.sticks};
+        aim = hand;
+        Shaft held{gives.tip ? hand.tip + tip.lag : tip.at, gives.tail ? hand.tail + tail.lag : tail.at};
+        const auto push = pushes(all, held.tip, held.tail, gives);
+        for (uint32_t i = 0; i < count; ++i) {
+            const ShaftContact& contact = contacts[i];
+            const glm::dvec3 by = push[i] * contact.normal;
+            if (i < side_count_) {
+                sides_[i].push = push[i];
+                aim.tip += (1 - contact.share) * by;
+                aim.tail += contact.share * by;
+            }
+            if (gives.tip) held.tip += (1 - contact.share) * by;
+            if (gives.tail) held.tail += contact.share * by;
+        }
+        const Shaft next{held.at(begin_), held.at(end_)};
+        bool agreed = farther(next, at) < 0.25;
+        at = next;
+        double news = 0;
+        if (tip.drags()) news = tip.follow(aim.tip, held.tip, give_of(ShaftEnd::tip, all, push, gives));
+        if (tail.drags())
+            news = std::max(news, tail.follow(aim.tail, held.tail, give_of(ShaftEnd::tail, all, push, gives)));
+        agreed &= news < (tip.drags() && tail.drags() ? both_settled : friction_settled);
+        for (EndGrip* grip : {&tip, &tail}) {
+            if (!agreed || !grip->drags() || !grip->moves || grip->slides) continue;
+            grip->slides = true; // more than static friction holds: from here on dynamic friction does
+            agreed = false;
+        }
+        if (agreed) break;
+    }
+
+    double share = 1;
+    for (uint32_t i = 0; i < side_count_; ++i) {
+        if (sides_[i].push == 0) continue;
+        const Passing now = passing_of(sides_[i], shaft_), then = passing_of(sides_[i], at);
+        if (now.parallel || then.parallel) continue;
+        const auto stay = [&](double from, double to, double low, double high) {
+            const double over = past_the_end * std::fabs(to - from);
+            low -= over, high += over;
+            const double end = to < low ? low : to > high ? high : to;
+            if (end != to && from > low && from < high) share = std::min(share, (end - from) / (to - from));
+        };
+        const double off = let_go + beyond, off_shaft = (let_go_by_end + beyond) / now.shaft_length;
+        stay(now.on_edge, then.on_edge, -off, now.edge_length + off);
+        stay(now.on_shaft, then.on_shaft, -off_shaft, 1 + off_shaft);
+    }
+    return share;
+}
+
+} // namespace haptel::runtime

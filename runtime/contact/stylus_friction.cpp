@@ -1,0 +1,105 @@
+#include "runtime/contact/stylus_friction.h"
+
+#include "runtime/geometry/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace haptel::runtime {
+
+namespace {
+
+constexpr int steps_max = 24;
+constexpr double settled = 1e-12; // of the limit
+
+// Less than any lever leaves: where an end cannot move at all, rounding must not choose its friction.
+constexpr double least_give = 1e-9;
+
+// An end that is jammed between a face and an edge would bear whatever the lever of the shaft makes of the hand. Where
+// that would be aimed at beyond the workspace it slips: the walk could not follow.
+constexpr double deepest = Lattice::workspace - Lattice::extent;
+
+} // namespace
+
+void EndGrip::take_hold(bool of_sides) noexcept
+{
+    if (!touches) lag = glm::dvec3(0);
+    sticks = of_sides && drags() && !slips;
+    limit_before_ = limit_;
+}
+
+double EndGrip::follow(const glm::dvec3& aim, const glm::dvec3& held, const glm::dmat3& give) noexcept
+{
+    const double height = glm::dot(normal, at - aim);
+    const double found = coefficient() * glm::clamp(height, 0.0, deepest);
+    if (sticks) {
+        lag = at - aim - height * normal;
+        if (glm::length(lag) <= found && height <= deepest) return 0;
+        lag = glm::dvec3(0);
+        sticks = false;
+        slips = slides = true;
+        limit_ = limit_before_ = coefficient() * glm::clamp(height, 0.0, deepest);
+        return HUGE_VAL;
+    }
+    const glm::dvec3 before = lag;
+    const double most = limited(found);
+    const bool moved = std::exchange(moves, oppose(held - at - give * lag, give, most));
+    if (moves != moved) return HUGE_VAL;
+    const double change = std::max(moves ? glm::distance(lag, before) : 0.0, std::fabs(most - found));
+    return change == 0 ? 0 : change / most;
+}
+
+// The limit to try next. Where more friction makes the sides press the end less, taking what was found would swing to
+// and fro: a secant goes between.
+double EndGrip::limited(double found) noexcept
+{
+    const double step = limit_ - limit_before_, slope = step != 0 ? (found - found_before_) / step : 0.0;
+    const double next = std::max(0.0, limit_ + (found - limit_) / (1 - std::min(0.0, slope)));
+    limit_before_ = std::exchange(limit_, next);
+    found_before_ = found;
+    return limit_;
+}
+
+// The lag of an end that without friction would go by `way`. Of the disc of all that are no longer than `most` it is
+// the one for which way + give lag = -slip lag, where slip >= 0, and 0 inside of the disc: an end slips against its
+// friction or not at all. That is where a quadratic form is least in the disc: along the axes of `give` one equation
+// for the slip is left, solved as in More and Sorensen 1983, Computing a trust region step, algorithm 3.2. Returns
+// whether the end slips.
+bool EndGrip::oppose(const glm::dvec3& way, const glm::dmat3& give, double most) noexcept
+{
+    lag = glm::dvec3(0);
+    if (!(most > 0)) return true;
+    const glm::dvec3 off = std::fabs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 u = glm::normalize(glm::cross(normal, off)), v = glm::cross(normal, u);
+    const double uu = glm::dot(u, give * u), uv = glm::dot(u, give * v), vv = glm::dot(v, give * v);
+    const double half = 0.5 * (uu - vv), root = std::sqrt(half * half + uv * uv);
+    glm::dvec3 axis[2] = {u, v};
+    if (root > 0) {
+        axis[0] = glm::normalize(half > 0 ? (half + root) * u + uv * v : uv * u + (root - half) * v);
+        axis[1] = glm::cross(normal, axis[0]);
+    }
+    const double gives[2] = {std::max(least_give, 0.5 * (uu + vv) + root),
+                             std::max(least_give, 0.5 * (uu + vv) - root)};
+    const double ways[2] = {glm::dot(way, axis[0]), glm::dot(way, axis[1])};
+
+    double slip = 0;
+    for (int i = 0; i < 2; ++i) slip = std::max(slip, std::fabs(ways[i]) / most - gives[i]);
+    for (int step = 0; step < steps_max; ++step) {
+        double square = 0, slope = 0;
+        lag = glm::dvec3(0);
+        for (int i = 0; i < 2; ++i) {
+            if (ways[i] == 0) continue;
+            const double along = -ways[i] / (gives[i] + slip);
+            lag += along * axis[i];
+            square += along * along;
+            slope += along * along / (gives[i] + slip);
+        }
+        const double length = std::sqrt(square);
+        if (!(length > (1 + settled) * most)) break;
+        slip += square / slope * (length / most - 1);
+    }
+    return slip > 0;
+}
+
+} // namespace haptel::runtime

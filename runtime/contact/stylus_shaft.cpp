@@ -1,0 +1,241 @@
+// How the shaft of a stylus follows its ends: straight moves past edges, and what it meets on the way.
+#include "runtime/contact/stylus_contact.h"
+#include "runtime/geometry/predicates.h"
+#include "runtime/surface/collision.h"
+#include "runtime/surface/corner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace haptel::runtime {
+
+using namespace shaft_tolerance;
+
+namespace {
+
+// Lattice units. What is so near to an end that walks on the surface is left to the walk: a plane of which the vertices
+// are rounded is not plane.
+constexpr double at_the_end = 4096;
+
+// An end in a fold too sharp for `beside` is drawn back along the shaft by one of these, if what it crosses there is at
+// the end.
+constexpr double drawn_back[] = {64, 1024};
+
+// A sweep past so many triangles counts as another one.
+constexpr uint64_t per_sweep = 256;
+
+} // namespace
+
+const glm::dvec3& StylusContact::edge_end(uint32_t face, uint32_t edge, uint32_t which) const noexcept
+{
+    return surface().vertices[surface().faces[face].vertex[which ? next(edge) : edge]];
+}
+
+Passing StylusContact::passing_of(const Side& side, const Shaft& shaft) const noexcept
+{
+    return passing(shaft, edge_end(side.face, side.edge, 0), edge_end(side.face, side.edge, 1));
+}
+
+// Takes the shaft to where its ends want it: straight if nothing is in the way, else along their paths. False: it met
+// something, which now is a contact.
+bool StylusContact::drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept
+{
+    const Shaft from = shaft_, to = goal();
+    tip_walked_ = tip_.contact_.touching || tip_path.count > 0; // one that has left its border by now, too
+    tail_walked_ = tail_.contact_.touching || tail_path.count > 0;
+    if (move(to)) return true;
+    Shaft leg = to;
+    const uint32_t legs = std::max(tip_path.count, tail_path.count);
+    for (uint32_t k = 1; k <= legs && sweeps_left_ > 0; ++k) {
+        const auto at = [&](const WalkPath& path, const glm::dvec3& begin, const glm::dvec3& end) {
+            if (path.count > 0) return path.at[(k * path.count + legs - 1) / legs - 1];
+            return glm::round(begin + double(k) / legs * (end - begin));
+        };
+        leg = {at(tip_path, from.tip, to.tip), at(tail_path, from.tail, to.tail)};
+        if (!move(leg)) break;
+        leg = to;
+    }
+    if (legs > 0 && leg == to && move(to)) return true;
+    approach(leg, met_);
+    touch(met_);
+    return false;
+}
+
+bool StylusContact::move(Shaft to) noexcept
+{
+    if (to == shaft_) return true;
+    if (!blocked(shaft_, to, met_)) {
+        shaft_ = to;
+        return true;
+    }
+    for (const double back : drawn_back) {
+        if (!met_.exact) return false;
+        const glm::dvec3 along = to.tail - to.tip;
+        const double length = glm::length(along);
+        Shaft drawn = to;
+        if (met_.on_shaft * length < at_the_end)
+            drawn.tip = glm::round(to.tip + back / length * along);
+        else if ((1 - met_.on_shaft) * length < at_the_end)
+            drawn.tail = glm::round(to.tail - back / length * along);
+        else
+            return false;
+        if (blocked(shaft_, drawn, met_)) continue;
+        shaft_ = drawn;
+        return true;
+    }
+    return false;
+}
+
+// Whether an edge cannot be met by a shaft that goes to a place above one of its sides: the side's own edge, and what
+// lies below it beside it. Where the shaft turns about a side the straight ways of its ends lead a little below, and
+// where it slides over the end of one it would get caught between that and the next.
+bool StylusContact::is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Shaft& to) const noexcept
+{
+    const Surface& s = surface();
+    for (uint32_t i = 0; i < side_count_; ++i) {
+        const auto& corners = s.faces[sides_[i].face].vertex;
+        const uint32_t a = corners[sides_[i].edge], b = corners[next(sides_[i].edge)];
+        const bool shares0 = vertex0 == a || vertex0 == b, shares1 = vertex1 == a || vertex1 == b;
+        if (!shares0 && !shares1) continue;
+        const Passing there = passing_of(sides_[i], to);
+        if (there.parallel || sides_[i].sign * there.height <= 0) continue;
+        if (shares0 && shares1) return true;
+        const glm::dvec3 away = s.vertices[shares0 ? vertex1 : vertex0] - s.vertices[shares0 ? vertex0 : vertex1];
+        if (sides_[i].sign * glm::dot(there.normal, away) < rest_gap) return true;
+    }
+    return false;
+}
+
+// Whether the straight move meets an edge, or ends across a triangle.
+bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept
+{
+    const Surface& s = surface();
+    const double tip_off = tip_walked_ ? at_the_end : 0, tail_off = tail_walked_ ? at_the_end : 0;
+    bool met = false;
+    obstacle.time = 1;
+    obstacle.exact = false;
+    ++collision_.sweeps;
+    const uint64_t tested = collision_.triangles_tested;
+    tree_->for_each(SweptRegion(from.tip, from.tail, to.tip, to.tail, reach), [&](uint32_t f) {
+        ++collision_.triangles_tested;
+        const Face& face = s.faces[f];
+        for (uint32_t edge = 0; edge < 3; ++edge) {
+            if (std::min(face.link[edge][0].face(), face.link[edge][1].face()) < f) continue; // tested from there
+            const glm::dvec3 &a = edge_end(f, edge, 0), &b = edge_end(f, edge, 1);
+            EdgeMeeting meeting;
+            if (!meets(from, to, a, b, tip_off, tail_off, obstacle.time, meeting) ||
+                is_below_a_side(face.vertex[edge], face.vertex[next(edge)], to))
+                continue;
+            obstacle = {f, edge, meeting.time, meeting.side, false, 0};
+            met = true;
+        }
+        return true;
+    });
+    const uint64_t cost = 1 + (collision_.triangles_tested - tested) / per_sweep;
+    sweeps_left_ -= static_cast<uint32_t>(std::min<uint64_t>(cost, sweeps_left_));
+    if (met) return true;
+
+    Crossing crossing;
+    if (!first_crossing(s, to.tip, to.tail, StartsOn::nothing(), crossing, collision_)) return false;
+    // Where the straight ways led below a vertex it is the next edge that stops the shaft, not one below that.
+    obstacle = {crossing.face, 0, 1, 0, true, crossing.fraction()};
+    const auto& corners = s.faces[crossing.face].vertex;
+    for (const bool below : {false, true}) {
+        double nearest = HUGE_VAL;
+        for (uint32_t edge = 0; edge < 3; ++edge) {
+            const glm::dvec3 &a = edge_end(crossing.face, edge, 0), &b = edge_end(crossing.face, edge, 1);
+            const Passing then = passing(to, a, b), now = passing(from, a, b);
+            if (then.parallel || now.parallel || !then.within(0, 0, reach)) continue;
+            if (std::fabs(then.height) >= nearest) continue;
+            if (is_below_a_side(corners[edge], corners[next(edge)], to) != below) continue;
+            nearest = std::fabs(then.height);
+            obstacle.edge = edge;
+            obstacle.side = -side_of_line(from.tip, from.tail, a, b);
+        }
+        if (obstacle.side != 0) break;
+    }
+    return true;
+}
+
+// As far toward what was met as leaves a gap.
+void StylusContact::approach(const Shaft& to, const Obstacle& obstacle) noexcept
+{
+    if (obstacle.exact) return;
+    const glm::dvec3 &a = edge_end(obstacle.face, obstacle.edge, 0), &b = edge_end(obstacle.face, obstacle.edge, 1);
+    const double height = std::fabs(passing(shaft_, a, b).height);
+    if (!(height > 2 * rest_gap)) return;
+    double time = obstacle.time * (1 - rest_gap / height);
+    for (int attempt = 0; attempt < 3; ++attempt, time *= 0.5) {
+        const Shaft there{glm::round(shaft_.tip + time * (to.tip - shaft_.tip)),
+                          glm::round(shaft_.tail + time * (to.tail - shaft_.tail))};
+        Obstacle other;
+        if (blocked(shaft_, there, other)) continue;
+        shaft_ = there;
+        return;
+    }
+}
+
+// One more contact, in the place of what pushes least if there are too many.
+void StylusContact::touch(const Obstacle& obstacle) noexcept
+{
+    if (obstacle.side == 0) return;
+    const glm::dvec3 &a = edge_end(obstacle.face, obstacle.edge, 0), &b = edge_end(obstacle.face, obstacle.edge, 1);
+    for (uint32_t i = 0; i < side_count_; ++i) {
+        const glm::dvec3 &c = edge_end(sides_[i].face, sides_[i].edge, 0),
+                         &d = edge_end(sides_[i].face, sides_[i].edge, 1);
+        if ((a == c && b == d) || (a == d && b == c)) return;
+    }
+    if (side_count_ == sides_max) {
+        const auto least = std::min_element(sides_.begin(), sides_.end(),
+                                            [](const Side& x, const Side& y) { return x.push < y.push; });
+        drop(static_cast<uint32_t>(least - sides_.begin()));
+    }
+    Side& side = sides_[side_count_++];
+    side = {};
+    side.face = obstacle.face;
+    side.edge = obstacle.edge;
+    side.sign = obstacle.side;
+}
+
+// Of edges that the shaft does not pass over any more, or does not come to pass over.
+void StylusContact::let_go_of_ended() noexcept
+{
+    for (uint32_t i = side_count_; i-- > 0;) {
+        Side& side = sides_[i];
+        const Passing now = passing_of(side, shaft_);
+        // Met beyond an end of the shaft, as by a tip that goes over a border: only now is it seen on which side.
+        const int exact = now.parallel || !now.within(0, 0, 0)
+                              ? 0
+                              : -side_of_line(shaft_.tip, shaft_.tail, edge_end(side.face, side.edge, 0),
+                                              edge_end(side.face, side.edge, 1));
+        if (exact != 0) side.sign = exact;
+        const bool over =
+            !now.parallel && now.within(let_go_by_end, let_go_by_end, let_go) && side.sign * now.height > -rest_gap;
+        const bool ahead = !side.reached && (side.fresh || side.push > 0);
+        side.reached |= over;
+        side.fresh = false;
+        if (!over && !ahead) drop(i);
+    }
+}
+
+// Of edges that the shaft was stopped by on its way, and has not come to pass over: it found another way. Nothing is
+// there to push. Returns whether one did.
+bool StylusContact::let_go_of_unreached() noexcept
+{
+    bool pushed = false;
+    for (uint32_t i = side_count_; i-- > 0;) {
+        if (sides_[i].reached) continue;
+        pushed |= sides_[i].push > 0;
+        drop(i);
+    }
+    return pushed;
+}
+
+void StylusContact::drop(uint32_t side) noexcept
+{
+    for (uint32_t i = side + 1; i < side_count_; ++i) sides_[i - 1] = sides_[i];
+    --side_count_;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,352 @@
+#include "runtime/contact/walk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::runtime {
+
+using namespace tolerance;
+
+namespace {
+
+// Length of the sum of two unit normals below which the faces nearly fold onto each other.
+constexpr double sharp = 1.0 / 16;
+
+// Lattice units: how far above its feature a proxy is `beside` it, so that rounding does not matter.
+constexpr double clear_beside = 8;
+
+} // namespace
+
+void Walk::run(uint32_t step_limit, WalkPath* path)
+{
+    Step step = Step::again;
+    for (count_.steps = 0; step == Step::again && count_.steps < step_limit; ++count_.steps) {
+        proxy_.at_wall = false;
+        settle();
+        switch (proxy_.on) {
+        case Proxy::On::face: step = from_face(); break;
+        case Proxy::On::edge: step = from_edge(); break;
+        case Proxy::On::vertex: step = from_vertex(); break;
+        case Proxy::On::nothing: step = Step::stop; break;
+        }
+        if (path && proxy_.touches()) path->add(beside(surface_, proxy_));
+    }
+    count_.cut = step == Step::again || count_.wall_turns > WalkCount::most_wall_turns;
+    proxy_.sliding = moved_;
+}
+
+// Onto the lowest feature at the proxy's place: what may be reached next is decided there.
+void Walk::settle()
+{
+    if (proxy_.on == Proxy::On::face) {
+        double nearest = feature;
+        uint32_t edge = 3;
+        for (uint32_t i = 0; i < 3; ++i) {
+            const glm::dvec3 in = inward(proxy_.face, i);
+            const double away = glm::dot(in, proxy_.at - vertex(proxy_.face, i)), square = glm::dot(in, in);
+            if (away > 0 && away * away > feature * feature * square) continue; // nearly always
+            const double distance = away / std::sqrt(square);
+            if (distance >= nearest) continue;
+            nearest = distance;
+            edge = i;
+        }
+        if (edge == 3) return;
+        step_onto_edge(proxy_.face, proxy_.side, edge);
+    } else if (proxy_.on == Proxy::On::edge) {
+        step_onto_edge(proxy_.face, proxy_.side, proxy_.index);
+    }
+}
+
+// Onto the near edge of the face that the proxy is on, or rather onto an end of it that is near. Where a wall is in the
+// way the proxy stays: false.
+bool Walk::step_onto_edge(uint32_t face, uint32_t side, uint32_t edge)
+{
+    const glm::dvec3 along = edge_vector(face, edge);
+    const double length = glm::length(along);
+    const double way = glm::dot(proxy_.at - vertex(face, edge), along) / length;
+    const bool near_begin = way < feature, near_end = length - way < feature;
+    if (near_begin || near_end) {
+        const uint32_t corner = near_begin && (!near_end || 2 * way < length) ? edge : next(edge);
+        if (step(face, side, edge, vertex(face, corner))) {
+            proxy_.on = Proxy::On::vertex;
+            proxy_.index = corner;
+            return true;
+        }
+    }
+    if (!step(face, side, edge, vertex(face, edge) + way / length * along)) return false;
+    proxy_.on = Proxy::On::edge;
+    proxy_.index = edge;
+    return true;
+}
+
+// To a place on the edge, unless a wall of one of its faces is in the way.
+bool Walk::step(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& place)
+{
+    const uint32_t other = surface_.faces[face].link[edge][side].face();
+    if (!may_step(surface_, face, proxy_.at, place) || !may_step(surface_, other, proxy_.at, place)) return false;
+    proxy_.face = face;
+    proxy_.side = side;
+    proxy_.at = place;
+    return true;
+}
+
+// --- what to do on a face, an edge, a vertex
+
+Walk::Step Walk::from_face()
+{
+    const uint32_t face = proxy_.face;
+    const double height = glm::dot(hand_ - vertex(face, 0), surface_.facet_normal(face, proxy_.side));
+    if (height < lift_off) return has_walls(surface_, face) ? from_face_among_walls() : slide(face, proxy_.side, 3, 3);
+
+    // Deep in a sharp fold the opposite face may be nearer than rounding: then links say on which side of it
+    // the proxy is, not the sweep.
+    StartsOn start = StartsOn::nothing();
+    for (uint32_t i = 0; i < 3; ++i) {
+        const SideEdge link = surface_.faces[face].link[i][proxy_.side];
+        if (!touches_across(link, face, i)) continue;
+        const glm::dvec3 normal = surface_.facet_normal(link.face(), link.side());
+        if (glm::dot(hand_ - vertex(face, i), normal) >= 0) {
+            start.also(link.face());
+            continue;
+        }
+        proxy_.face = link.face();
+        proxy_.side = link.side();
+        return Step::again;
+    }
+    return leave(start, clear_above * surface_.facet_normal(face, proxy_.side));
+}
+
+// Whether the neighbour over a concave edge lies on the proxy within rounding.
+bool Walk::touches_across(const SideEdge& link, uint32_t face, uint32_t edge) const
+{
+    const uint32_t other = link.face();
+    if (other == face) return false;
+    const glm::dvec3& corner = vertex(face, edge);
+    const glm::dvec3 normal = surface_.facet_normal(other, link.side());
+    if (glm::dot(proxy_.at - corner, normal) > on_plane) return false;
+    const glm::dvec3& tip = vertex(other, previous(link.edge()));
+    if (glm::dot(tip - corner, surface_.facet_normal(face, proxy_.side)) <= 0) return false;
+    for (uint32_t i = 0; i < 3; ++i)
+        if (glm::dot(inward(other, i), proxy_.at - vertex(other, i)) < 0) return false;
+    return true;
+}
+
+Walk::Step Walk::from_edge()
+{
+    const uint32_t face = proxy_.face, edge = proxy_.index;
+    const Face& data = surface_.faces[face];
+    const SideEdge link = data.link[edge][proxy_.side];
+    const glm::dvec3 to_hand = hand_ - proxy_.at;
+    const double pull_here = glm::dot(to_hand, glm::normalize(inward(face, edge)));
+    const double pull_there = glm::dot(to_hand, glm::normalize(inward(link.face(), link.edge())));
+    if (std::max(pull_here, pull_there) > 0) {
+        const SideEdge to = pull_here >= pull_there ? SideEdge(face, edge, proxy_.side) : link;
+        const glm::dvec3 normal = surface_.facet_normal(to.face(), to.side());
+        if (glm::dot(hand_ - vertex(face, edge), normal) >= lift_off) return leave_edge(face, edge, link);
+        if (Cell cell; walls_at_edge(face, edge, proxy_.side, cell)) return from_edge_among_walls(cell, edge);
+        return slide(to.face(), to.side(), to.edge(), 3);
+    }
+    if (free_of_edge(face, edge, proxy_.side)) return leave_edge(face, edge, link);
+    if (Cell cell; walls_at_edge(face, edge, proxy_.side, cell)) return from_edge_among_walls(cell, edge);
+    return slide_along(face, edge, proxy_.side);
+}
+
+// The hand is in the free wedge of the edge. The way starts above both faces if that is near, which suits any
+// wedge; else above the one that the hand is above, if the wedge is wider than a half-space: its plane then
+// has the way on one side and the object on the other. In a fold too sharp for that, and beside a border, the
+// faces are passed over.
+Walk::Step Walk::leave_edge(uint32_t face, uint32_t edge, const SideEdge& link)
+{
+    const glm::dvec3 here = surface_.facet_normal(face, proxy_.side);
+    const glm::dvec3 there = surface_.facet_normal(link.face(), link.side());
+    const glm::dvec3 between = here + there;
+    const double square = glm::dot(between, between);
+    if (square > sharp * sharp) return leave(StartsOn::nothing(), 2 * clear_above / square * between);
+
+    const glm::dvec3 to_hand = hand_ - vertex(face, edge);
+    const double above_here = glm::dot(to_hand, here), above_there = glm::dot(to_hand, there);
+    const bool border = link.face() == face;
+    const bool wide = border || glm::dot(vertex(link.face(), previous(link.edge())) - vertex(face, edge), here) < 0;
+    if (wide && std::max(above_here, above_there) >= lift_off)
+        return leave(StartsOn::nothing(), clear_above * (above_here >= above_there ? here : there));
+    const auto& corners = surface_.faces[face].vertex;
+    return leave(StartsOn::on_edge(corners[edge], corners[next(edge)]), glm::dvec3(0));
+}
+
+// Whether the hand, to which the edge is nearer than both its faces, is on the free side of it.
+bool Walk::free_of_edge(uint32_t face, uint32_t edge, uint32_t side) const
+{
+    const SideEdge link = surface_.faces[face].link[edge][side];
+    const glm::dvec3 to_hand = hand_ - vertex(face, edge);
+    const glm::dvec3 outward = surface_.facet_normal(face, side) + surface_.facet_normal(link.face(), link.side());
+    if (link.face() != face && glm::dot(hand_ - proxy_.at, outward) <= 0) return false;
+    const glm::dvec3 along = edge_vector(face, edge);
+    return glm::length(glm::cross(to_hand, along)) >= lift_off * glm::length(along);
+}
+
+Walk::Step Walk::from_vertex()
+{
+    const glm::dvec3 to_hand = hand_ - proxy_.at;
+    NearestInFan nearest;
+    bool free_of_vertex = true;
+    const uint32_t own = surface_.faces[proxy_.face].fan[proxy_.index][proxy_.side];
+    uint32_t fan = own;
+    do { // the fan walked on, and others that it meets in this vertex
+        const Fan& data = surface_.fans[fan];
+        const Sector start =
+            fan == own ? Sector{proxy_.face, proxy_.index, proxy_.side} : Sector{data.face, data.corner, data.side};
+        const bool closed = nearest.consider(surface_, start, to_hand);
+        free_of_vertex = free_of_vertex && (!closed || glm::dot(data.normal, to_hand) > 0);
+        fan = data.next;
+    } while (fan != own);
+
+    const auto [face, corner, side] = nearest.sector;
+    const StartsOn here = StartsOn::on_vertex(surface_.faces[proxy_.face].vertex[proxy_.index]);
+    if (nearest.way == 0)
+        return free_of_vertex && glm::length(to_hand) >= lift_off ? leave(here, glm::dvec3(0)) : Step::stop;
+    if (nearest.edge == NearestInFan::into_sector) {
+        if (glm::dot(to_hand, surface_.facet_normal(face, side)) >= lift_off) return leave(here, glm::dvec3(0));
+        return nearest.way > departure ? slide(face, side, corner, previous(corner)) : Step::stop;
+    }
+    if (free_of_edge(face, nearest.edge, side)) return leave(here, glm::dvec3(0));
+    return nearest.way > departure ? slide_along(face, nearest.edge, side) : Step::stop;
+}
+
+// --- moves
+
+// Straight to the hand unless the object is in the way. The way starts on a lattice point beside the proxy, by an
+// offset that keeps rounding from putting it below the surface: a grazing way could pass under the next face.
+Walk::Step Walk::leave(const StartsOn& start, const glm::dvec3& offset)
+{
+    const glm::dvec3 from = glm::round(proxy_.at + offset);
+    Crossing crossing;
+    if (first_crossing(surface_, from, hand_, start, crossing, count_.collision)) {
+        land(surface_, proxy_, crossing, from, hand_);
+        return Step::again;
+    }
+    proxy_.on = Proxy::On::nothing;
+    proxy_.at = hand_;
+    return Step::stop;
+}
+
+// Friction is a way that ends early: by coefficient times depth, or does not begin. Returns the share of the
+// way that remains; 0: it holds.
+double Walk::share_past_friction(double way, double depth)
+{
+    const double coefficient = proxy_.sliding || moved_ ? friction_.dynamic_coefficient : friction_.static_coefficient;
+    if (way <= coefficient * depth) return 0;
+    const double remaining = way - friction_.dynamic_coefficient * depth;
+    if (remaining > 1) moved_ = true; // one lattice unit: less is rounding
+    return remaining / way;
+}
+
+// Over the face toward the foot of the hand on it, as far as the face goes. Edges from which the walk comes are
+// not crossed again (3: none).
+Walk::Step Walk::slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge)
+{
+    const glm::dvec3 normal = surface_.facet_normal(face, side);
+    const double height = glm::dot(hand_ - vertex(face, 0), normal);
+    const glm::dvec3 way = hand_ - height * normal - proxy_.at;
+    const double share = share_past_friction(glm::length(way), std::max(0.0, -height));
+    proxy_.on = Proxy::On::face;
+    proxy_.face = face;
+    proxy_.side = side;
+    if (share == 0) return Step::stop;
+    return go_within(face, side, proxy_.at + share * way, from_edge, or_edge);
+}
+
+// Over the face to the target in its plane, at most to its edges or to the first wall.
+Walk::Step Walk::go_within(uint32_t face, uint32_t side, const glm::dvec3& target, uint32_t from_edge, uint32_t or_edge)
+{
+    double exit_at = 1;
+    uint32_t exit = 3;
+    for (uint32_t i = 0; i < 3; ++i) {
+        if (i == from_edge || i == or_edge) continue;
+        const glm::dvec3 in = inward(face, i);
+        const double end = glm::dot(in, target - vertex(face, i));
+        if (end >= 0) continue;
+        const double begin = std::max(0.0, glm::dot(in, proxy_.at - vertex(face, i)));
+        const double at = begin / (begin - end);
+        if (at >= exit_at && exit != 3) continue;
+        exit_at = at;
+        exit = i;
+    }
+    const glm::dvec3 end = exit == 3 ? target : proxy_.at + exit_at * (target - proxy_.at);
+    const glm::dvec3 from = proxy_.at;
+    if (const double share = open_share(surface_, face, from, end); share < 1) {
+        proxy_.at += share * (end - from);
+        return went(from);
+    }
+    proxy_.at = end;
+    if (exit == 3) return Step::stop;
+    return step_onto_edge(face, side, exit) ? Step::again : went(from);
+}
+
+// Along the edge toward the foot of the hand on it, at most to its end.
+Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
+{
+    const glm::dvec3& begin = vertex(face, edge);
+    const glm::dvec3 along = edge_vector(face, edge);
+    const double length = glm::length(along);
+    const double here = glm::dot(proxy_.at - begin, along) / length;
+    const double way = glm::dot(hand_ - begin, along) / length - here;
+    const double depth = glm::length(glm::cross(hand_ - begin, along)) / length;
+    const double share = share_past_friction(std::abs(way), depth);
+    proxy_.on = Proxy::On::edge;
+    proxy_.face = face;
+    proxy_.side = side;
+    proxy_.index = edge;
+    if (share == 0) return Step::stop;
+    const double there = here + share * way;
+    const glm::dvec3 end = begin + glm::clamp(there, 0.0, length) / length * along;
+    const glm::dvec3 from = proxy_.at;
+    const uint32_t other = surface_.faces[face].link[edge][side].face();
+    if (const double open = std::min(open_share(surface_, face, from, end), open_share(surface_, other, from, end));
+        open < 1) {
+        proxy_.at += open * (end - from);
+        return went(from);
+    }
+    proxy_.at = end;
+    if (!step_onto_edge(face, side, edge)) return went(from);
+    return proxy_.on == Proxy::On::vertex && proxy_.at != from ? Step::again : Step::stop;
+}
+
+void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count,
+          uint32_t step_limit, WalkPath* path) noexcept
+{
+    Walk(surface, proxy, hand, friction, count).run(step_limit, path);
+}
+
+glm::dvec3 beside(const Surface& surface, const Proxy& proxy) noexcept
+{
+    const Face& face = surface.faces[proxy.face];
+    const glm::dvec3 normal = surface.facet_normal(proxy.face, proxy.side);
+    switch (proxy.on) {
+    case Proxy::On::nothing: return proxy.at;
+    case Proxy::On::face: return glm::round(proxy.at + clear_beside * normal);
+    case Proxy::On::vertex:
+        return glm::round(proxy.at + clear_beside * surface.fans[face.fan[proxy.index][proxy.side]].normal);
+    case Proxy::On::edge: break;
+    }
+    const SideEdge link = face.link[proxy.index][proxy.side];
+    const glm::dvec3 between = normal + surface.facet_normal(link.face(), link.side());
+    const double square = glm::dot(between, between);
+    if (square > sharp * sharp) return glm::round(proxy.at + 2 * clear_beside / square * between);
+    const glm::dvec3& begin = surface.vertices[face.vertex[proxy.index]];
+    const glm::dvec3 along = surface.vertices[face.vertex[next(proxy.index)]] - begin;
+    const glm::dvec3 outward = glm::normalize(glm::cross(along, face.normal));
+    const glm::dvec3& tip = surface.vertices[surface.faces[link.face()].vertex[previous(link.edge())]];
+    const bool ridge = link.face() == proxy.face || glm::dot(tip - begin, normal) < 0;
+    return ridge ? glm::round(proxy.at + clear_beside * outward) : proxy.at;
+}
+
+void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const glm::dvec3& from,
+          const glm::dvec3& to) noexcept
+{
+    proxy.on = Proxy::On::face;
+    proxy.face = crossing.face;
+    proxy.side = crossing.side;
+    proxy.at = landing_off_walls(surface, crossing, from, to, crossing_point(surface, crossing, from, to));
+}
+
+} // namespace haptel::runtime

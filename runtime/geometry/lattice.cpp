@@ -1,0 +1,64 @@
+#include "runtime/geometry/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::runtime {
+
+Lattice Lattice::around(const glm::dvec3& minimum_m, const glm::dvec3& maximum_m) noexcept
+{
+    Lattice lattice;
+    lattice.centre_m = 0.5 * minimum_m + 0.5 * maximum_m;
+    const glm::dvec3 half = maximum_m - lattice.centre_m;
+    const double largest = std::max({half.x, half.y, half.z});
+    int exponent = 0; // largest = f * 2^exponent with f in [1/2, 1)
+    if (largest > 0) std::frexp(largest, &exponent);
+    lattice.unit_m = std::ldexp(1.0, exponent - 40);
+    return lattice;
+}
+
+glm::dvec3 Lattice::snap(const glm::dvec3& point_m) const noexcept
+{
+    return snap_units((point_m - centre_m) / unit_m);
+}
+
+glm::dvec3 Lattice::snap_units(const glm::dvec3& units) noexcept
+{
+    constexpr double round = 0x1.8p52; // adding it leaves no digit after the point; ties go to even
+    return (glm::clamp(units, -workspace, workspace) + round) - round;
+}
+
+glm::dvec3 Lattice::units(const glm::dvec3& point_m) const noexcept
+{
+    return (point_m - centre_m) / unit_m;
+}
+
+bool Lattice::clip_to_workspace(glm::dvec3& from, glm::dvec3& to) noexcept
+{
+    from = glm::clamp(from, -0x1p100, 0x1p100); // of places farther away the way would not be finite
+    to = glm::clamp(to, -0x1p100, 0x1p100);
+    const glm::dvec3 start = from, along = to - from;
+    double enter = 0, leave = 1;
+    for (int k = 0; k < 3; ++k) {
+        const double low = -workspace - start[k], high = workspace - start[k];
+        if (along[k] == 0) {
+            if (low > 0 || high < 0) return false;
+            continue;
+        }
+        enter = std::max(enter, std::min(low / along[k], high / along[k]));
+        leave = std::min(leave, std::max(low / along[k], high / along[k]));
+    }
+    if (!(enter <= leave)) return false;
+    const auto at = [&](double share) { return snap_units(share == 1 ? to : start + share * along); };
+    const glm::dvec3 end = at(leave);
+    from = at(enter);
+    to = end;
+    return true;
+}
+
+glm::dvec3 Lattice::snap_vertex(const glm::dvec3& point_m) const noexcept
+{
+    return glm::round((point_m - centre_m) / (unit_m * vertex_spacing)) * vertex_spacing;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,27 @@
+// Where an object is.
+#pragma once
+
+#include "runtime/geometry/finite.h"
+
+#include <glm/glm.hpp>
+
+namespace haptel::runtime {
+
+// Rotation and translation, nothing else: object space keeps its metres.
+struct Placement {
+    glm::dmat3 rotation{1}; // orthonormal
+    glm::dvec3 position_m{0};
+
+    glm::dvec3 to_world(const glm::dvec3& p) const { return rotation * p + position_m; }
+    glm::dvec3 direction_to_world(const glm::dvec3& v) const { return rotation * v; }
+    glm::dvec3 to_object(const glm::dvec3& p) const { return (p - position_m) * rotation; }
+    glm::dvec3 direction_to_object(const glm::dvec3& v) const { return v * rotation; }
+};
+
+inline bool finite(const Placement& placement)
+{
+    return finite(placement.rotation[0]) && finite(placement.rotation[1]) && finite(placement.rotation[2]) &&
+           finite(placement.position_m);
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,398 @@
+#include "runtime/render/renderer.h"
+
+#include "runtime/force/force_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace haptel::runtime {
+
+namespace {
+
+constexpr double anywhere_m = std::numeric_limits<double>::infinity();
+
+// An object is left alone if it is farther away than this: the hand needs several ticks to come near it, and what
+// rounding does to coordinates is nothing beside it.
+double far_enough_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m, double way_m)
+{
+    const glm::dvec3 farthest = glm::max(glm::abs(tip_m), glm::abs(tail_m));
+    return std::max({1e-6, 8 * way_m, 1e-6 * std::max({farthest.x, farthest.y, farthest.z})});
+}
+
+double farther_m(const glm::dvec3& tip_way_m, const glm::dvec3& tail_way_m)
+{
+    return std::sqrt(std::max(glm::dot(tip_way_m, tip_way_m), glm::dot(tail_way_m, tail_way_m)));
+}
+
+// Forces of effects have no spring. Where they are left over by a scene that is gone they fade like those of this one.
+constexpr double effect_stiffness_n_per_m = 1000;
+
+} // namespace
+
+Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
+    : scene_(std::move(scene))
+    , hand_(hand)
+    , probe_(hand.probe.value_or(scene_->probe))
+    , period_s_(1 / scene_->servo.rate_hz)
+    , force_limit_n_(hand.force_max_n > 0 ? std::min(hand.force_max_n, scene_->servo.force_limit_n)
+                                          : scene_->servo.force_limit_n)
+    , bodies_(make_bodies(*scene_, probe_))
+    , effects_(*scene_, hand_)
+    , reach_(surroundings(*scene_, bodies_, probe_.radius_m))
+    , waiting_(scene_->servo.wait_for_small_force_n > 0)
+    , velocity_(period_s_)
+    , tail_velocity_(period_s_)
+{
+    for (const Body& body : bodies_) {
+        turn_max_rad_per_s_ = std::max(turn_max_rad_per_s_, body.turn_rad_per_s);
+        if (body.bounded && !history_) history_.emplace(period_s_);
+    }
+    objects_.reserve(scene_->objects.size());
+    for (const SceneObject& object : scene_->objects) {
+        TextureReader reader(*object.texture);
+        const uint64_t serial = reader.to().serial;
+        objects_.push_back({&object, std::move(reader), serial});
+    }
+}
+
+std::vector<Body> Renderer::make_bodies(const Scene& scene, const ProbeSettings& probe)
+{
+    std::vector<Body> all;
+    for (const BodyObjects& objects : bodies_of(scene)) all.emplace_back(scene, objects, probe);
+    return all;
+}
+
+std::vector<Surroundings> Renderer::surroundings(const Scene& scene, const std::vector<Body>& bodies,
+                                                 double probe_radius_m)
+{
+    std::vector<Surroundings> all;
+    for (const Body& body : bodies) all.push_back(surroundings_of(scene, body.objects, probe_radius_m));
+    return all;
+}
+
+uint64_t Renderer::reloads() const noexcept
+{
+    uint64_t sum = reloads_before_;
+    for (const Touched& touched : objects_) sum += touched.object->texture->newest_serial() - touched.serial_at_start;
+    return sum;
+}
+
+TickResult Renderer::tick(const DevicePose& pose) noexcept
+{
+    const Workspace& workspace = hand_.workspace;
+    if (!workspace.moves()) return feel(pose);
+    TickResult result = feel(workspace.to_scene(pose));
+    result.force_n = workspace.direction_to_hand(result.force_n);
+    result.unlimited_force_n = workspace.direction_to_hand(result.unlimited_force_n);
+    result.torque_n_m = workspace.torque_to_hand(result.torque_n_m);
+    result.unlimited_torque_n_m = workspace.torque_to_hand(result.unlimited_torque_n_m);
+    result.grip_m = workspace.to_hand(result.grip_m);
+    return result;
+}
+
+// The same in the scene's space, with stiffness and damping stated for the hand.
+TickResult Renderer::feel(const DevicePose& pose) noexcept
+{
+    TickResult result;
+    const uint64_t periods = std::max(uint64_t{1}, pose.periods);
+    if (std::exchange(started_, true)) period_ += periods;
+    result.time_s = time_s();
+    texture_period_ += periods;
+    if (!objects_.empty()) {
+        advance_texture(objects_.front());
+        result.binding = objects_.front().texture.to().serial;
+    }
+    for (const uint32_t body : reach_.awake())
+        if (!bodies_[body].asleep) advance_textures(bodies_[body]);
+    if (!finite(pose.tip_m) || !finite(pose.tail_m)) {
+        velocity_.lose_hand();
+        tail_velocity_.lose_hand();
+        effects_.lose_hand();
+        if (history_) history_->lose_hand();
+        sent_ = left_ = {};
+        for (Body& body : bodies_) body.velocity.lose_hand(), body.tail_velocity.lose_hand();
+        interrupted_ = true;
+        result.faults = fault_pose_not_finite;
+        return result;
+    }
+    velocity_.update(pose.tip_m, periods);
+    const bool has_tail = probe_.has_tail();
+    if (has_tail) tail_velocity_.update(pose.tail_m, periods);
+    if (history_) history_->add(period_, pose.tip_m, pose.tail_m);
+    const glm::dvec3 grip_m = result.grip_m = has_tail ? probe_.grip_of(pose.tip_m, pose.tail_m) : pose.tip_m;
+    result.interrupted = std::exchange(interrupted_, false) || pose.interrupted;
+    if (result.interrupted) {
+        rise_period_ = period_;
+        waiting_ = scene_->servo.wait_for_small_force_n > 0;
+        swapped_ = false;
+        left_ = {};
+        effects_.lose_hand();
+    }
+    if (effects_.act()) effects_.begin(pose.tip_m, result.time_s, periods);
+
+    held_j_ = 0;
+    const double way = way_m(pose), near_m = far_enough_m(pose.tip_m, pose.tail_m, way);
+    reach_.go(turned_rad() <= turn_max_rad ? way : anywhere_m, pose.tip_m, pose.tail_m, near_m);
+    Skipped skipped;
+    skipped_.objects += objects_.size();
+    for (std::size_t i = 0; i < reach_.awake().size(); ++i) {
+        const uint32_t number = reach_.awake()[i];
+        Body& body = bodies_[number];
+        if (!take_pose(body, pose, periods)) continue;
+        skipped_.objects -= body.objects.numbers().size();
+        const ContactCounters& counters = body.contact.counters();
+        const uint64_t spared = counters.skipped, queries = counters.sweeps, triangles = counters.triangles_tested,
+                       steps = counters.walk_steps;
+        const std::span<const Contact> contacts =
+            body.contact.update(body.pose_of(pose), {body.tip_friction.mean, body.tail_friction.mean});
+        if (body.bounded) track_velocity(number, pose, periods, !contacts.empty());
+        skipped.query = skipped.query && counters.skipped > spared;
+        work_.queries += counters.sweeps - queries;
+        work_.triangles += counters.triangles_tested - triangles;
+        work_.steps += counters.walk_steps - steps;
+        const PartContacts alone{0, contacts};
+        const std::span<const PartContacts> parts =
+            body.objects.joined ? by_part_.of(*scene_, *body.objects.joined, contacts) : std::span(&alone, 1);
+        if (effects_.act()) update_effects(body, contacts, parts);
+        body.tip_friction = body.tail_friction = {};
+        if (contacts.empty()) {
+            skipped.texture = skipped.texture && (scene_->servo.skips.texture || !feels_in_air(body, pose));
+            const double gap = gap_to_sleep_m(number, pose, near_m);
+            body.asleep = gap > 0;
+            if (body.asleep && !(body.motion && !body.bounded)) {
+                reach_.sleep(number, gap);
+                --i;
+            }
+            continue;
+        }
+        for (const PartContacts& part : parts) touch(body, contacts, part, pose, result, skipped);
+    }
+    const double left_work_j = last_pose_ ? work_j(swapped_ ? sent_ : left_, *last_pose_, pose) : 0.0;
+    last_pose_ = pose;
+    last_pose_period_ = period_;
+    skipped_.free_space += skipped.query;
+    skipped_.texture += skipped.texture;
+    skipped_.octaves += skipped.octaves;
+    skipped_.mapping += skipped.mapping;
+    if (effects_.act()) {
+        const glm::dvec3 effects_n = effects_.force_n(); // once: its medium lives a tick
+        push(result, pose, 0, effects_n);
+        held_j_ += glm::dot(effects_n, effects_n) * hand_.workspace.scale / (2 * effect_stiffness_n_per_m);
+    }
+    send(result, std::max(glm::distance(pose.tip_m, grip_m), glm::distance(pose.tail_m, grip_m)), left_work_j);
+    return result;
+}
+
+// Of a force that does not change, on a hand that goes from one pose to another.
+double Renderer::work_j(const OnHand& on_hand, const DevicePose& from, const DevicePose& to) const noexcept
+{
+    if (!probe_.has_tail()) return glm::dot(on_hand.n, to.tip_m - from.tip_m);
+    const glm::dvec3 before = from.tail_m - from.tip_m, now = to.tail_m - to.tip_m;
+    const double before_m = glm::length(before), now_m = glm::length(now);
+    const glm::dvec3 way = probe_.grip_of(to.tip_m, to.tail_m) - probe_.grip_of(from.tip_m, from.tail_m);
+    double work = glm::dot(on_hand.n, way) + on_hand.grip_n * (now_m - before_m);
+    if (before_m > 0 && now_m > 0) work += glm::dot(on_hand.n_m, glm::cross(before, now)) / (before_m * now_m);
+    return work;
+}
+
+// What of the force and the torque goes to the hand. `lever_m`: of the end that is farther from the grip. Contacts that
+// push against each other may add up to a torque without a force: it is limited by what the largest force has there.
+// `left_work_j`: of what is left over from another scene, in this tick and had it not faded.
+void Renderer::send(TickResult& result, double lever_m, double left_work_j) noexcept
+{
+    if (!finite(result.unlimited_force_n) || !finite(result.unlimited_torque_n_m) ||
+        !std::isfinite(result.grip_force_n)) {
+        result.unlimited_force_n = result.unlimited_torque_n_m = glm::dvec3(0);
+        result.grip_force_n = held_j_ = 0;
+        result.faults |= fault_force_not_finite;
+        interrupted_ = true;
+    }
+    const double small_n = scene_->servo.wait_for_small_force_n;
+    const auto small = [&](const OnHand& of) {
+        return glm::length(of.n) <= small_n && glm::length(of.n_m) <= small_n * lever_m &&
+               std::abs(of.grip_n) <= small_n;
+    };
+    const OnHand computed{result.unlimited_force_n, result.unlimited_torque_n_m, result.grip_force_n};
+    if (std::exchange(swapped_, false)) {
+        rise_period_ = left_period_ = period_;
+        left_ = interrupted_ ? OnHand() : sent_;
+        left_work_j_ = left_work_max_j_ = 0;
+        waiting_ = waiting_ || (small_n > 0 && !small({computed.n - computed_.n, computed.n_m - computed_.n_m,
+                                                       computed.grip_n - computed_.grip_n}));
+    }
+    computed_ = computed;
+    if (waiting_) {
+        waiting_ = !small(computed) || interrupted_;
+        rise_period_ = period_;
+        result.waiting = waiting_;
+    }
+    const double rise_s = scene_->servo.force_rise_s;
+    const auto risen_since = [&](uint64_t period) {
+        const double rising_s = static_cast<double>(period_ - period) * period_s_;
+        return rising_s < rise_s ? rising_s / rise_s : 1.0;
+    };
+    const double risen = waiting_ ? 0.0 : risen_since(rise_period_);
+    glm::dvec3 force_n = risen * result.unlimited_force_n, torque_n_m = risen * result.unlimited_torque_n_m;
+    double grip_n = risen * result.grip_force_n, held_j = risen * held_j_;
+    if (left_ != OnHand()) {
+        // A spring that has given w of the 2 E that its force would give on the way on which it slackens, pushes by
+        // 1 - w / 2E of that force and holds the square of it. It is not stretched again.
+        left_work_j_ += left_work_j;
+        left_work_max_j_ = std::max(left_work_max_j_, left_work_j_);
+        const double unfaded = 1 - risen_since(left_period_);
+        const double stretched = left_work_max_j_ > 0 ? std::max(0.0, 1 - left_work_max_j_ / (2 * left_.held_j)) : 1.0;
+        const double left = unfaded * stretched;
+        held_j += left * stretched * left_.held_j;
+        force_n += left * left_.n;
+        torque_n_m += left * left_.n_m;
+        grip_n += left * left_.grip_n;
+        if (left == 0) left_ = {};
+    }
+    result.force_n = limited(force_n, force_limit_n_);
+    result.grip_force_n = std::clamp(grip_n, -force_limit_n_, force_limit_n_);
+    if (torque_n_m != glm::dvec3(0)) {
+        const double length_n = glm::length(force_n);
+        result.torque_n_m = length_n > force_limit_n_ ? force_limit_n_ / length_n * torque_n_m : torque_n_m;
+        const double sent = glm::length(result.torque_n_m), most = force_limit_n_ * lever_m;
+        if (sent > most) result.force_n *= most / sent, result.torque_n_m *= most / sent;
+    }
+    const auto share = [](double of, double all) { return of < all ? of / all : 1.0; };
+    const double of_force = result.force_n == force_n ? 1.0 : share(glm::length(result.force_n), glm::length(force_n));
+    const double limit = std::min(of_force, share(std::abs(result.grip_force_n), std::abs(grip_n)));
+    sent_ = {result.force_n, result.torque_n_m, result.grip_force_n, limit * limit * held_j};
+}
+
+ContactWork Renderer::work() const noexcept
+{
+    ContactWork all = work_;
+    all.queries += effects_.queries();
+    all.triangles += effects_.triangles();
+    return all;
+}
+
+void Renderer::between_ticks() noexcept
+{
+    // Now and then, in turn: so that nobody keeps a texture that is to be freed.
+    if (!objects_.empty() && texture_period_ % 8 == 0) advance_texture(objects_[texture_period_ / 8 % objects_.size()]);
+    for (const uint32_t body : reach_.awake())
+        if (!bodies_[body].asleep) work_.read_ahead += bodies_[body].contact.read_ahead();
+}
+
+void Renderer::advance_texture(Touched& touched) noexcept
+{
+    const uint64_t periods = texture_period_ - std::exchange(touched.texture_period, texture_period_);
+    if (periods > 0) touched.texture.advance(static_cast<double>(periods) * period_s_);
+}
+
+void Renderer::advance_textures(const Body& body) noexcept
+{
+    if (!body.objects.joined) return advance_texture(objects_[body.objects.first]);
+    for (const uint32_t object : body.objects.joined->objects) advance_texture(objects_[object]);
+}
+
+// How far who turns within bounds has done so since the last pose.
+double Renderer::turned_rad() const noexcept
+{
+    return turn_max_rad_per_s_ > 0 ? turn_max_rad_per_s_ * (time_s() - time_s(last_pose_period_)) : 0;
+}
+
+// Of the hand since the last pose, with how much longer it looks to who turns: a stylus far away sweeps along.
+double Renderer::way_m(const DevicePose& pose) const noexcept
+{
+    if (!last_pose_) return 0;
+    const double way = farther_m(pose.tip_m - last_pose_->tip_m, pose.tail_m - last_pose_->tail_m);
+    return turn_max_rad_per_s_ > 0 && probe_.has_tail()
+               ? way + std::min(turned_rad(), turn_max_rad) * glm::distance(pose.tip_m, pose.tail_m)
+               : way;
+}
+
+// Where the probe was in the tick before, in the body's space as it was then.
+ProbePose Renderer::pose_before(Body& body) const noexcept
+{
+    if (body.asleep && body.bounded) body.move(time_s(last_pose_period_));
+    return body.pose_of(*last_pose_);
+}
+
+// To where a body and the hand are now. False: it sleeps on. One of which nobody knows where it can go is not among
+// those that Reach leaves alone, and cannot be touched while in its own space the hand is out of the ball around it,
+// and its way into this tick is.
+bool Renderer::take_pose(Body& body, const DevicePose& pose, uint64_t periods) noexcept
+{
+    if (!body.motion && !body.asleep) return true;
+    const ProbePose before = body.asleep ? pose_before(body) : ProbePose();
+    if (body.motion) body.move(time_s());
+    if (body.motion && !body.bounded) {
+        const ProbePose now = body.pose_of(pose);
+        body.velocity.update(now.tip_m, periods);
+        if (probe_.has_tail()) body.tail_velocity.update(now.tail_m, periods);
+        if (body.asleep) {
+            const double way = farther_m(now.tip_m - before.tip_m, now.tail_m - before.tail_m);
+            if (gap_m(body.around, now.tip_m, now.tail_m) > far_enough_m(now.tip_m, now.tail_m, way)) return false;
+        }
+    }
+    if (body.asleep) wake(body, before);
+    return true;
+}
+
+// Takes the contact to where the hand was in the tick before: nothing lay on its way.
+void Renderer::wake(Body& body, const ProbePose& before) noexcept
+{
+    body.asleep = false;
+    advance_textures(body);
+    body.contact.follow(before);
+}
+
+// How far the hand must go before a body that it does not touch is looked at again; 0: look at it every tick.
+double Renderer::gap_to_sleep_m(uint32_t number, const DevicePose& pose, double near_m) const noexcept
+{
+    if (!scene_->servo.skips.objects) return 0;
+    const Body& body = bodies_[number];
+    const ProbePose probe = body.pose_of(pose);
+    double awake_within_m = 0;
+    for (const uint32_t object : body.objects.numbers())
+        awake_within_m = std::max(awake_within_m, effects_.awake_within_m(object));
+    double gap = body.contact.gap_m(probe) - awake_within_m;
+    if (body.bounded) gap = std::min(gap, gap_m(reach_.around(number), pose.tip_m, pose.tail_m));
+    const glm::dvec3 farthest = glm::abs(probe.tip_m); // in its space, where coordinates may be larger
+    return gap > std::max({near_m, 1e-6 * farthest.x, 1e-6 * farthest.y, 1e-6 * farthest.z}) ? gap : 0;
+}
+
+// Of a body that moves within bounds. Whether it slept does not matter: it is told from the poses of late when it is
+// touched, and forgotten where it may fall asleep.
+void Renderer::track_velocity(uint32_t number, const DevicePose& pose, uint64_t periods, bool touching) noexcept
+{
+    Body& body = bodies_[number];
+    const auto update = [&](const glm::dvec3& tip_m, const glm::dvec3& tail_m, uint64_t since) {
+        body.velocity.update(body.placement.to_object(tip_m), since);
+        if (probe_.has_tail()) body.tail_velocity.update(body.placement.to_object(tail_m), since);
+    };
+    if (body.velocity.has_hand()) {
+        if (touching || !(gap_m(reach_.around(number), pose.tip_m, pose.tail_m) > 0))
+            update(pose.tip_m, pose.tail_m, periods);
+        else
+            body.velocity.lose_hand(), body.tail_velocity.lose_hand();
+    } else if (touching) {
+        history_->each([&](const HandHistory::Entry& entry) {
+            body.move(time_s(entry.period));
+            update(entry.tip_m, entry.tail_m, entry.periods);
+        });
+    }
+}
+
+void Renderer::update_effects(const Body& body, std::span<const Contact> contacts,
+                              std::span<const PartContacts> parts) noexcept
+{
+    const std::span<const uint32_t> numbers = body.objects.numbers();
+    for (uint32_t part = 0; part < numbers.size(); ++part) {
+        if (!effects_.of(numbers[part])) continue;
+        const auto touched =
+            std::find_if(parts.begin(), parts.end(), [&](const PartContacts& of) { return of.part == part; });
+        const std::span<const Contact> none;
+        effects_.update(numbers[part], body.placement_of(scene_->objects[numbers[part]]),
+                        touched == parts.end() ? none : touched->contacts, body.objects.joined ? contacts : none);
+    }
+}
+
+} // namespace haptel::runtime

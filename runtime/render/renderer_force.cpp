@@ -1,0 +1,186 @@
+// From the contacts of a tick to the forces of what is touched.
+#include "runtime/render/renderer.h"
+
+#include "runtime/force/force_model.h"
+#include "runtime/texture/shading.h"
+
+#include <algorithm>
+
+namespace haptel::runtime {
+
+namespace {
+
+// From the finger at the tip to that at the tail.
+double along_fingers(const DevicePose& pose, const glm::dvec3& force_n)
+{
+    const glm::dvec3 along = pose.tail_m - pose.tip_m;
+    return along == glm::dvec3(0) ? 0.0 : glm::dot(force_n, glm::normalize(along));
+}
+
+// Of the end of the probe that a contact is at, from the hand to the proxy by all that holds it there, in the body's
+// space. Zero where nothing else does.
+glm::dvec3 shared_way_m(const Contact& contact, std::span<const Contact> contacts)
+{
+    glm::dvec3 way_m(0);
+    if (contact.by_shaft || contacts.size() == 1) return way_m;
+    int holding = 0;
+    for (const Contact& other : contacts) {
+        if (other.along != contact.along || other.by_shaft) continue;
+        way_m += other.depth_m * other.normal;
+        ++holding;
+    }
+    return holding > 1 ? way_m : glm::dvec3(0);
+}
+
+// What one of several contacts holds, of how deep the hand is below what is touched there: two walls at right angles
+// hold all of it each, several facets nearly in one plane hold it together. Along the way from the hand to the proxy
+// the shares of damping add up to 1, but in grooves narrower than a right angle: more than all of it is held by none.
+double share_of(const Contact& contact, const glm::dvec3& way_m)
+{
+    const double below_m = glm::dot(way_m, contact.normal);
+    return contact.depth_m > 0 && contact.depth_m < below_m ? contact.depth_m / below_m : 1.0;
+}
+
+} // namespace
+
+// On the probe at the share `along` of the way from its tip to its tail.
+void Renderer::push(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept
+{
+    result.unlimited_force_n += force_n;
+    if (probe_.has_tail())
+        result.unlimited_torque_n_m +=
+            torque_about(result.grip_m, pose.tip_m + along * (pose.tail_m - pose.tip_m), force_n);
+    if (probe_.kind == ProbeKind::gripper) result.grip_force_n += (along - 0.5) * along_fingers(pose, force_n);
+}
+
+// One object, of all `contacts` of its body those with it.
+void Renderer::touch(Body& body, std::span<const Contact> contacts, const PartContacts& part, const DevicePose& pose,
+                     TickResult& result, Skipped& skipped) noexcept
+{
+    const Touched& touched = objects_[body.objects.number(part.part)];
+    const Placement& placement = body.placement_of(*touched.object);
+    ++result.contacts;
+    for (const Contact& contact : part.contacts) { // what presses most first, of a stylus its tip
+        const glm::dvec3 way_m = shared_way_m(contact, contacts);
+        const double share = share_of(contact, body.objects.joined ? placement.direction_to_object(way_m) : way_m);
+        ObjectForce force;
+        if (share < 1) {
+            Contact whole = contact; // as if it held all of it
+            whole.depth_m /= share;
+            whole.lag_m /= share;
+            force = force_of(body, touched, placement, whole);
+            force.force_n *= share;
+            force.held_j *= share;
+        } else {
+            force = force_of(body, touched, placement, contact);
+        }
+        push(result, pose, contact.along, force.force_n);
+        result.faults |= force.faults;
+        held_j_ += force.held_j;
+        skipped.texture = skipped.texture && !force.textured;
+        skipped.octaves = skipped.octaves || force.band_limited;
+        skipped.mapping = skipped.mapping || force.unmapped;
+        if (!contact.by_shaft) {
+            const Material& material = touched.object->material;
+            EndFriction& end = contact.along == 0 ? body.tip_friction : body.tail_friction;
+            end.add({material.static_friction * force.friction_share, material.dynamic_friction * force.friction_share},
+                    material.stiffness_n_per_m * contact.depth_m);
+        }
+        if (&contact != part.contacts.data()) continue;
+        if (result.contacts > 1 && contact.depth_m <= result.depth_m) continue;
+        result.depth_m = contact.depth_m;
+        result.height_m = force.height_m;
+        result.binding = touched.texture.to().serial;
+    }
+}
+
+// What a tick without contact is spared: the texture where the hand is, and whether there is one.
+bool Renderer::feels_in_air(const Body& body, const DevicePose& pose) const noexcept
+{
+    bool textured = false;
+    for (const uint32_t object : body.objects.numbers()) {
+        const Touched& touched = objects_[object];
+        const Placement& placement = body.placement_of(*touched.object);
+        Contact here;
+        here.proxy_m = here.hand_m = placement.to_object(pose.tip_m);
+        textured = force_of(body, touched, placement, here).textured || textured;
+    }
+    return textured;
+}
+
+// Along the normal, where the stylus touches; never more than the spring pulls back.
+double Renderer::damping_n(const Body& body, const Material& material, const Placement& placement,
+                           const Contact& contact, const glm::dvec3& normal, double depth_m,
+                           double stiffness_n_per_m) const noexcept
+{
+    const auto in_object = [&](const HandVelocity& own, const HandVelocity& world) {
+        return body.motion ? own.m_per_s() : placement.direction_to_object(world.m_per_s());
+    };
+    glm::dvec3 velocity = in_object(body.velocity, velocity_);
+    if (contact.along > 0) velocity += contact.along * (in_object(body.tail_velocity, tail_velocity_) - velocity);
+    const double scale = hand_.workspace.scale;
+    const double damping = material.damping_n_s_per_m / scale * -glm::dot(velocity, normal) *
+                           std::min(1.0, depth_m / (scale * full_damping_depth_m));
+    return std::max(damping, -stiffness_n_per_m * depth_m);
+}
+
+Renderer::ObjectForce Renderer::force_of(const Body& body, const Touched& touched, const Placement& placement,
+                                         const Contact& contact) const noexcept
+{
+    const SceneObject& object = *touched.object;
+    const Surface& surface = *object.surface;
+    const double scale = hand_.workspace.scale;
+    const Skips& skips = scene_->servo.skips;
+    ObjectForce result;
+    if (contact.depth_m == 0 && skips.texture)
+        return result; // the highest texture reaches up to the base and no further
+    if (contact.by_shaft) {
+        const double stiffness = object.material.stiffness_n_per_m / scale;
+        const glm::dvec3 force = (stiffness * contact.depth_m + damping_n(body, object.material, placement, contact,
+                                                                          contact.normal, contact.depth_m, stiffness)) *
+                                 contact.normal;
+        result.force_n = placement.direction_to_world(force);
+        result.held_j = stiffness * contact.depth_m * contact.depth_m / 2;
+        return result;
+    }
+
+    const uint32_t reads = texture_reads(touched.texture);
+    const bool curved = surface.normal_turn_max_per_m > 0, drawn = !surface.uv.empty();
+    const bool turns = scene_->servo.force.model == ForceModel::displaced && touched.texture.textured() && curved;
+    const Shaded read{!skips.mapping || turns || (reads & HAPTEL_READS_NORMAL),
+                      !skips.mapping || (reads & HAPTEL_READS_UV)};
+    result.unmapped = (curved && !read.normal_dp) || (drawn && !read.uv);
+    SurfacePoint at{contact.proxy_m, shade(surface, contact.face, contact.side, contact.barycentric, read), time_s()};
+    if (contact.normal != contact.facet_normal &&
+        (contact.on_crease || on_crease(surface, contact.face, contact.side, contact.barycentric))) {
+        at.shading.normal = contact.normal;
+        at.shading.normal_dp = glm::dmat3(0);
+    }
+
+    const TextureSample texture = sample_texture(touched.texture, at);
+    result.textured = touched.texture.textured();
+    result.band_limited = touched.texture.from().binding.band_limited || touched.texture.to().binding.band_limited;
+    const TouchedSurface felt{contact.depth_m,
+                              contact.normal,
+                              at.shading.normal,
+                              at.shading.normal_dp,
+                              object.material.stiffness_n_per_m / scale,
+                              probe_.radius_m};
+    const ModelForce elastic = model_force(scene_->servo.force, felt, texture);
+    const double stiffness = felt.stiffness_n_per_m * texture.stiffness_scale;
+
+    result.height_m = texture.height_m;
+    result.faults = texture.faults;
+    result.friction_share =
+        contact.depth_m > 0 ? texture.friction_scale * std::min(1.0, elastic.depth_m / contact.depth_m) : 0.0;
+    if (elastic.depth_m == 0) return result; // below the base surface, but not yet below the texture
+
+    const double damping =
+        damping_n(body, object.material, placement, contact, at.shading.normal, elastic.depth_m, stiffness);
+    const glm::dvec3 force = elastic.force_n + stiffness * contact.lag_m + damping * at.shading.normal;
+    result.force_n = placement.direction_to_world(force);
+    result.held_j = stiffness * (elastic.depth_m * elastic.depth_m + glm::dot(contact.lag_m, contact.lag_m)) / 2;
+    return result;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,65 @@
+#include "runtime/render/renderer_slot.h"
+
+#include <utility>
+
+namespace haptel::runtime {
+
+RendererSlot::RendererSlot(std::shared_ptr<const Scene> scene, const HandSettings& hand)
+    : hand_(hand), taken_(scene), newest_(std::move(scene))
+{
+}
+
+RendererSlot::~RendererSlot()
+{
+    delete next_.load();
+    free_given_back();
+}
+
+void RendererSlot::publish(std::shared_ptr<const Scene> scene)
+{
+    const std::lock_guard lock(publishers_);
+    // Withdrawn first: then the scene that the servo has is known for as long as the next one is made.
+    const std::unique_ptr<Carrier> withdrawn(next_.exchange(nullptr, std::memory_order_acq_rel));
+    if (!withdrawn) taken_ = newest_;
+    free_given_back();
+    auto next = std::make_unique<Carrier>();
+    next->renderer = std::make_unique<Renderer>(scene, hand_, *taken_);
+    newest_ = std::move(scene);
+    next_.store(next.release(), std::memory_order_release);
+}
+
+void RendererSlot::collect()
+{
+    const std::lock_guard lock(publishers_);
+    if (!next_.load(std::memory_order_acquire)) taken_ = newest_;
+    free_given_back();
+}
+
+void RendererSlot::free_given_back() noexcept
+{
+    std::unique_ptr<Carrier> top(given_back_.exchange(nullptr, std::memory_order_acquire));
+    while (top) top.reset(std::exchange(top->below, nullptr));
+}
+
+// The servo alone puts something here, and others take all of it: what was on top is so still, or nothing is there,
+// which stays so until the servo is back. So this tries twice at most.
+void RendererSlot::give_back(Carrier* carrier) noexcept
+{
+    carrier->below = given_back_.load(std::memory_order_relaxed);
+    while (!given_back_.compare_exchange_strong(carrier->below, carrier, std::memory_order_release,
+                                                std::memory_order_relaxed)) {
+    }
+}
+
+bool RendererSlot::take(std::unique_ptr<Renderer>& current) noexcept
+{
+    if (!next_.load(std::memory_order_relaxed)) return false;
+    Carrier* const next = next_.exchange(nullptr, std::memory_order_acq_rel);
+    if (!next) return false; // withdrawn meanwhile
+    next->renderer->take_over(*current);
+    std::swap(next->renderer, current);
+    give_back(next);
+    return true;
+}
+
+} // namespace haptel::runtime

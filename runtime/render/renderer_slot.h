@@ -1,0 +1,50 @@
+// Hands a scene to a servo that runs, as texture_slot.h does with textures: atomic pointers, no lock in the tick,
+// nothing freed by the servo.
+//
+// What is handed over is a whole renderer, made off the servo thread; the servo lets it take over from the one it has
+// and puts that one back, to be freed by whoever publishes or collects next. Several may lie there: while the servo
+// takes one over another may be published, which it takes in its next tick whether anybody collects or not. One servo
+// per slot.
+#pragma once
+
+#include "runtime/render/renderer.h"
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+
+namespace haptel::runtime {
+
+class RendererSlot {
+public:
+    // The scene that the servo starts with.
+    RendererSlot(std::shared_ptr<const Scene> scene, const HandSettings& hand);
+    ~RendererSlot(); // the servo has ended
+    RendererSlot(const RendererSlot&) = delete;
+    RendererSlot& operator=(const RendererSlot&) = delete;
+
+    // Any thread but the servo. Of several that were not taken yet only the newest will be.
+    void publish(std::shared_ptr<const Scene> scene);
+    // Frees what the servo has given back; publish does so too. Any thread but the servo.
+    void collect();
+
+    // The servo, once per tick: true if another scene has taken over.
+    bool take(std::unique_ptr<Renderer>& current) noexcept;
+
+private:
+    // Made by who publishes; goes to the servo with the next renderer in it and comes back with the one before.
+    struct Carrier {
+        std::unique_ptr<Renderer> renderer;
+        Carrier* below = nullptr; // given back before this one, and not freed yet
+    };
+    void give_back(Carrier* carrier) noexcept;
+    void free_given_back() noexcept;
+
+    HandSettings hand_;
+    std::mutex publishers_;
+    std::shared_ptr<const Scene> taken_, newest_; // as far as the publishers know; guarded by publishers_
+    std::atomic<Carrier*> next_{nullptr}, given_back_{nullptr};
+};
+
+} // namespace haptel::runtime

@@ -1,0 +1,178 @@
+// One scene in the place of another while a hand is in it.
+#include "runtime/render/renderer.h"
+
+#include <algorithm>
+#include <limits>
+#include <unordered_map>
+#include <utility>
+
+namespace haptel::runtime {
+
+namespace {
+
+constexpr uint32_t none = std::numeric_limits<uint32_t>::max();
+
+// A body that lies elsewhere by at most this, where the hand is, was moved under the hand and goes on touching it; one
+// that lies farther away is another one.
+constexpr double nudge_m = 1e-3;
+
+// From the place where the probe was held, off what held it there, the least first: surfaces that are built anew round
+// otherwise, and may have grown or moved a little. Not farther: something else may be there.
+constexpr double off_m[] = {0, 1e-5, 1e-4, 1e-3};
+constexpr double settled_m = off_m[1], farthest_off_m = off_m[3];
+
+// How far apart two bodies hold the probe, in the scene's space.
+double apart_m(const Body& a, const ProbePose& held_by_a, const Body& b, const ProbePose& held_by_b)
+{
+    const auto way_m = [&](const glm::dvec3& p, const glm::dvec3& q) {
+        return glm::distance(a.placement.to_world(p), b.placement.to_world(q));
+    };
+    return std::max(way_m(held_by_a.tip_m, held_by_b.tip_m), way_m(held_by_a.tail_m, held_by_b.tail_m));
+}
+
+double distance_m(const Placement& a, const Placement& b)
+{
+    double sum = glm::distance(a.position_m, b.position_m);
+    for (int i = 0; i < 3; ++i) sum += glm::distance(a.rotation[i], b.rotation[i]); // lever arms of a metre
+    return sum;
+}
+
+bool share_an_object(const BodyObjects& a, const BodyObjects& b)
+{
+    const auto has = [&](uint32_t number) {
+        return std::find(b.numbers().begin(), b.numbers().end(), number) != b.numbers().end();
+    };
+    return std::any_of(a.numbers().begin(), a.numbers().end(), has);
+}
+
+} // namespace
+
+Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand, const Scene& before)
+    : Renderer(std::move(scene), hand)
+{
+    const ProbeSettings probe = hand.probe.value_or(before.probe);
+    was_.assign(bodies_.size(), none);
+    if (probe.kind != probe_.kind || probe.radius_m != probe_.radius_m || probe.length_m != probe_.length_m) return;
+
+    // The same surface makes the same body, nearer ones first.
+    const std::vector<BodyObjects> old = bodies_of(before);
+    std::unordered_map<const Surface*, std::vector<uint32_t>> by_surface;
+    for (uint32_t i = 0; i < old.size(); ++i) by_surface[old[i].surface(before).get()].push_back(i);
+    for (uint32_t i = 0; i < bodies_.size(); ++i) {
+        const BodyObjects& now = bodies_[i].objects;
+        const auto candidates = by_surface.find(now.surface(*scene_).get());
+        if (candidates == by_surface.end()) continue;
+        auto nearest = candidates->second.end();
+        double least_m = std::numeric_limits<double>::infinity();
+        for (auto candidate = candidates->second.begin(); candidate != candidates->second.end(); ++candidate) {
+            const double away_m = distance_m(old[*candidate].placement(before), now.placement(*scene_));
+            if (away_m < least_m) least_m = away_m, nearest = candidate;
+        }
+        if (nearest == candidates->second.end()) continue;
+        was_[i] = *nearest;
+        candidates->second.erase(nearest);
+    }
+}
+
+void Renderer::take_over(Renderer& before) noexcept
+{
+    started_ = before.started_;
+    period_ = before.period_;
+    texture_period_ = before.texture_period_;
+    interrupted_ = before.interrupted_;
+    waiting_ = waiting_ && before.waiting_;
+    skipped_ = before.skipped_;
+    work_ = before.work();
+    reloads_before_ = before.reloads();
+    last_pose_ = before.last_pose_;
+    last_pose_period_ = before.last_pose_period_;
+    if (history_ && before.history_) history_ = before.history_;
+    velocity_ = before.velocity_;
+    tail_velocity_ = before.tail_velocity_;
+    sent_ = before.sent_;
+    computed_ = before.computed_;
+    swapped_ = true;
+    for (Touched& touched : objects_) touched.texture_period = texture_period_;
+    if (!last_pose_) return;
+
+    HeldBodies held;
+    for (Body& body : before.bodies_)
+        if (held.count < held.body.size() && !body.asleep && body.contact.held(body.pose_of(*last_pose_), 0))
+            held.body[held.count++] = &body;
+    const auto goes_on = [&](const Body& body, const Body& old) {
+        const auto moved_m = [&](const glm::dvec3& p) {
+            return glm::distance(body.placement.to_object(p), old.placement.to_object(p));
+        };
+        const double nudge = nudge_m * hand_.workspace.scale;
+        return moved_m(last_pose_->tip_m) <= nudge && moved_m(last_pose_->tail_m) <= nudge;
+    };
+    was_.resize(bodies_.size(), none);                 // which allocates only for who was not made for this
+    for (std::size_t i = 0; i < bodies_.size(); ++i) { // the others first: they look at what the old bodies hold
+        Body& body = bodies_[i];
+        if (body.motion) body.move(time_s());
+        if (was_[i] != none)
+            if (Body& old = before.bodies_[was_[i]]; old.asleep) before.wake(old, before.pose_before(old));
+        if (was_[i] != none && !goes_on(body, before.bodies_[was_[i]])) was_[i] = none;
+        if (was_[i] == none) put_down(body, before, held);
+    }
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+        if (was_[i] == none) continue;
+        Body &body = bodies_[i], &old = before.bodies_[was_[i]];
+        std::swap(body.contact, old.contact);
+        std::swap(body.velocity, old.velocity);
+        std::swap(body.tail_velocity, old.tail_velocity);
+        body.tip_friction = old.tip_friction;
+        body.tail_friction = old.tail_friction;
+    }
+}
+
+// Each of the old bodies held the probe somewhere, on the free side of itself: from there the hand comes to what this
+// one is now. Objects that the new scene numbers alike count as the same ones: the place where one of them held the
+// probe may be inside another. Where none can hold it as it did the hand is put down where it is. A ball that what has
+// grown reaches into touches it as a smaller one: it goes out of that, or it would push too little until it had left.
+void Renderer::put_down(Body& body, const Renderer& before, const HeldBodies& held) noexcept
+{
+    const ProbePose hand = body.pose_of(*last_pose_);
+    const double grown_m = std::max(0.0, probe_.radius_m - before.probe_.radius_m); // of a ball in place of another
+    body.contact.update(hand, {});
+    const double gap_m = body.contact.gap_m(hand);
+    const auto come = [&](const Body& old) {
+        return body.contact.update(hand, {old.tip_friction.mean, old.tail_friction.mean}).size();
+    };
+    const auto come_from = [&](const ProbePose& start, const Body& old) {
+        body.contact.reset();
+        body.contact.update(start, {});
+        return come(old);
+    };
+    double least_m = std::numeric_limits<double>::infinity(); // from where it was held
+    ProbePose best;
+    const Body* best_old = nullptr;
+    for (uint32_t i = 0; i < held.count; ++i) {
+        const Body& old = *held.body[i];
+        if (objects_.size() == before.objects_.size() && !share_an_object(body.objects, old.objects)) continue;
+        const ProbePose old_hand = old.pose_of(*last_pose_);
+        for (const double off : off_m) {
+            const auto at = old.contact.held(old_hand, grown_m + off * hand_.workspace.scale);
+            const ProbePose start =
+                body.pose_of({old.placement.to_world(at->tip_m), old.placement.to_world(at->tail_m)});
+            const double way_m =
+                std::max(glm::distance(start.tip_m, hand.tip_m), glm::distance(start.tail_m, hand.tail_m));
+            if (gap_m > way_m) break;
+            if (come_from(start, old) == 0) continue;
+            const double from_there_m = apart_m(old, *old.contact.held(old_hand, 0), body, *body.contact.held(hand, 0));
+            if (from_there_m < least_m) least_m = from_there_m, best = start, best_old = &old;
+            if (from_there_m <= settled_m * hand_.workspace.scale) break;
+        }
+    }
+    if (best_old) {
+        come_from(best, *best_old);
+        if (body.contact.move_out(farthest_off_m * hand_.workspace.scale)) come(*best_old);
+        body.tip_friction = best_old->tip_friction;
+        body.tail_friction = best_old->tail_friction;
+    } else {
+        body.contact.reset();
+        body.contact.update(hand, {});
+    }
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,223 @@
+// Closes cracks: borders that lie on each other but share no vertices, so that a point could slip between them. Of two
+// kinds: corners of two borders that are nearly one (files round coordinates), and a corner of one border on the edge
+// of another (a T-junction). The first are welded, the second become corners of both faces.
+#include "runtime/geometry/predicates.h"
+#include "runtime/surface/build/build.h"
+#include "runtime/surface/corner.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace haptel::runtime {
+
+namespace {
+
+// 1e-6 of the object's size: what six decimal digits, or single precision, cannot tell apart.
+constexpr double crack = 2097152;
+
+struct BorderEdge {
+    uint32_t face, edge;
+};
+
+std::vector<BorderEdge> border_edges(const std::vector<Face>& faces)
+{
+    struct Named {
+        uint32_t low, high, face, edge;
+        bool is_same_edge(const Named& other) const { return low == other.low && high == other.high; }
+    };
+    std::vector<Named> edges;
+    edges.reserve(3 * faces.size());
+    for (uint32_t f = 0; f < faces.size(); ++f)
+        for (uint32_t i = 0; i < 3; ++i) {
+            const auto [low, high] = std::minmax(faces[f].vertex[i], faces[f].vertex[next(i)]);
+            edges.push_back({low, high, f, i});
+        }
+    std::sort(edges.begin(), edges.end(), [](const Named& a, const Named& b) {
+        return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.face < b.face;
+    });
+    std::vector<BorderEdge> borders;
+    for (size_t k = 0; k < edges.size(); ++k)
+        if ((k == 0 || !edges[k].is_same_edge(edges[k - 1])) &&
+            (k + 1 == edges.size() || !edges[k].is_same_edge(edges[k + 1])))
+            borders.push_back({edges[k].face, edges[k].edge});
+    return borders;
+}
+
+// Vertices in a tree of halves, to ask which lie in a box.
+class VerticesInBox {
+public:
+    VerticesInBox(const std::vector<glm::dvec3>& positions, std::vector<uint32_t> vertices)
+        : positions_(positions), order_(std::move(vertices))
+    {
+        build(0, order_.size(), 0);
+    }
+
+    template <class Visit>
+    void visit(const glm::dvec3& minimum, const glm::dvec3& maximum, Visit&& visit_one) const
+    {
+        visit(0, order_.size(), 0, minimum, maximum, visit_one);
+    }
+
+private:
+    void build(size_t begin, size_t end, int axis)
+    {
+        if (end - begin < 2) return;
+        const size_t middle = begin + (end - begin) / 2;
+        std::nth_element(order_.begin() + long(begin), order_.begin() + long(middle), order_.begin() + long(end),
+                         [&](uint32_t a, uint32_t b) {
+                             const double x = positions_[a][axis], y = positions_[b][axis];
+                             return x != y ? x < y : a < b;
+                         });
+        build(begin, middle, (axis + 1) % 3);
+        build(middle + 1, end, (axis + 1) % 3);
+    }
+
+    template <class Visit>
+    void visit(size_t begin, size_t end, int axis, const glm::dvec3& minimum, const glm::dvec3& maximum,
+               Visit& visit_one) const
+    {
+        if (begin >= end) return;
+        const size_t middle = begin + (end - begin) / 2;
+        const glm::dvec3& p = positions_[order_[middle]];
+        if (minimum[axis] <= p[axis]) visit(begin, middle, (axis + 1) % 3, minimum, maximum, visit_one);
+        if (glm::all(glm::lessThanEqual(minimum, p)) && glm::all(glm::lessThanEqual(p, maximum)))
+            visit_one(order_[middle]);
+        if (maximum[axis] >= p[axis]) visit(middle + 1, end, (axis + 1) % 3, minimum, maximum, visit_one);
+    }
+
+    const std::vector<glm::dvec3>& positions_;
+    std::vector<uint32_t> order_;
+};
+
+class CrackFiller {
+public:
+    explicit CrackFiller(Surface& surface) : surface_(surface) { find(); }
+
+    bool open() const { return !borders_.empty(); }
+
+    // Each corner of a border becomes the first one that is near it, unless an edge of the border joins them.
+    size_t weld()
+    {
+        std::vector<std::pair<uint32_t, uint32_t>> joined;
+        for (const BorderEdge& border : borders_) joined.emplace_back(std::minmax(begin(border), end(border)));
+        std::sort(joined.begin(), joined.end());
+
+        std::vector<uint32_t> becomes(surface_.vertices.size());
+        std::iota(becomes.begin(), becomes.end(), 0u);
+        size_t welded = 0;
+        const VerticesInBox near(surface_.vertices, corners_);
+        for (uint32_t corner : corners_) {
+            uint32_t first = corner;
+            near.visit(at(corner) - crack, at(corner) + crack, [&](uint32_t other) {
+                if (other < first && becomes[other] == other && glm::distance(at(corner), at(other)) <= crack &&
+                    !std::binary_search(joined.begin(), joined.end(), std::pair(other, corner)))
+                    first = other;
+            });
+            becomes[corner] = first;
+            welded += first != corner;
+        }
+        if (welded == 0) return 0;
+        for (Face& face : surface_.faces)
+            for (uint32_t& corner : face.vertex) corner = becomes[corner];
+        drop_flat_faces(surface_); // that lost their area when a corner moved
+        find();
+        return welded;
+    }
+
+    // Cuts each face along whose border edge corners of other borders lie, at the first of them.
+    size_t cut()
+    {
+        size_t cuts = 0;
+        const VerticesInBox corners(surface_.vertices, corners_);
+        std::vector<bool> touched(surface_.faces.size());
+        for (const BorderEdge& border : borders_) {
+            if (touched[border.face]) continue; // its other edges: next time
+            uint32_t corner = 0;
+            double share = 1;
+            if (!first_corner_on(border, corners, corner, share)) continue;
+            touched[border.face] = true;
+            cut(border, corner, share);
+            ++cuts;
+        }
+        if (cuts > 0) {
+            drop_flat_faces(surface_);
+            find();
+        }
+        return cuts;
+    }
+
+private:
+    const glm::dvec3& at(uint32_t vertex) const { return surface_.vertices[vertex]; }
+    uint32_t begin(const BorderEdge& border) const { return surface_.faces[border.face].vertex[border.edge]; }
+    uint32_t end(const BorderEdge& border) const { return surface_.faces[border.face].vertex[next(border.edge)]; }
+
+    void find()
+    {
+        borders_ = border_edges(surface_.faces);
+        corners_.clear();
+        for (const BorderEdge& border : borders_) {
+            corners_.push_back(begin(border));
+            corners_.push_back(end(border));
+        }
+        std::sort(corners_.begin(), corners_.end());
+        corners_.erase(std::unique(corners_.begin(), corners_.end()), corners_.end());
+    }
+
+    bool first_corner_on(const BorderEdge& border, const VerticesInBox& corners, uint32_t& corner, double& share) const
+    {
+        const glm::dvec3 &a = at(begin(border)), &b = at(end(border)), along = b - a;
+        const uint32_t tip = surface_.faces[border.face].vertex[previous(border.edge)];
+        const double length = glm::length(along);
+        share = 1;
+        corners.visit(glm::min(a, b) - crack, glm::max(a, b) + crack, [&](uint32_t candidate) {
+            const glm::dvec3 beside = at(candidate) - a;
+            const double way = glm::dot(beside, along) / length;
+            if (candidate == tip || way <= crack || way >= length - crack || way / length >= share ||
+                glm::length(beside - way / length * along) > crack)
+                return;
+            corner = candidate;
+            share = way / length;
+        });
+        return share < 1;
+    }
+
+    void cut(const BorderEdge& border, uint32_t corner, double share)
+    {
+        const uint32_t first = border.edge, second = next(border.edge);
+        Face rest = surface_.faces[border.face];
+        rest.vertex[first] = corner;
+        surface_.faces[border.face].vertex[second] = corner;
+        surface_.faces.push_back(rest);
+        if (auto& groups = surface_.smoothing_groups; !groups.empty()) groups.push_back(uint32_t{groups[border.face]});
+        if (auto& origins = surface_.origins; !origins.empty()) origins.push_back(Origin{origins[border.face]});
+        if (surface_.uv.empty()) return;
+        std::array<glm::dvec2, 3> rest_uv = surface_.uv[border.face];
+        const glm::dvec2 uv = glm::mix(rest_uv[first], rest_uv[second], share);
+        rest_uv[first] = uv;
+        surface_.uv[border.face][second] = uv;
+        surface_.uv.push_back(rest_uv);
+    }
+
+    Surface& surface_;
+    std::vector<BorderEdge> borders_;
+    std::vector<uint32_t> corners_; // of the borders, ascending
+};
+
+} // namespace
+
+void close_cracks(Surface& surface, MeshReport& report)
+{
+    CrackFiller filler(surface);
+    if (!filler.open()) return;
+    report.cracks_closed = filler.weld();
+    // A round cuts each face once. More corners on one face than rounds: the rest stays open.
+    for (int round = 0; round < 64; ++round) {
+        const size_t cuts = filler.cut();
+        report.cracks_closed += cuts;
+        if (cuts == 0) break;
+    }
+    report.triangles_kept = surface.faces.size();
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,130 @@
+#include "runtime/surface/build/build.h"
+#include "runtime/surface/corner.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace haptel::runtime {
+
+namespace {
+
+constexpr uint32_t unset = ~0u;
+
+// A new fan from one of its corners, which are told its number.
+void add_fan(Surface& surface, const Sector& start)
+{
+    const uint32_t index = uint32_t(surface.fans.size());
+    glm::dvec3 sum{0};
+    for_each_sector(surface, start, [&](const Sector& sector) {
+        Face& face = surface.faces[sector.face];
+        sum += weighted_normal(surface, sector);
+        face.fan[sector.corner][sector.side] = index;
+    });
+    const double length = glm::length(sum);
+    surface.fans.push_back({length > 1e-9 ? sum / length : glm::dvec3(0), start.face, start.corner, start.side, index});
+}
+
+// The fans at one vertex. Two that share a face are the two sides of one sheet; sheets meet in the vertex only.
+class Meeting {
+public:
+    Meeting(Surface& surface, std::vector<uint32_t> fans)
+        : surface_(surface), fans_(std::move(fans)), sheet_(fans_.size())
+    {
+        for (size_t i = 0; i < fans_.size(); ++i) sheet_[i] = i;
+        for (size_t i = 0; i < fans_.size(); ++i)
+            for_each_sector(surface_, start(i), [&](const Sector& sector) {
+                const uint32_t back = surface_.faces[sector.face].fan[sector.corner][1 - sector.side];
+                const size_t j = size_t(std::find(fans_.begin(), fans_.end(), back) - fans_.begin());
+                const size_t kept = std::min(sheet_[i], sheet_[j]), merged = std::max(sheet_[i], sheet_[j]);
+                std::replace(sheet_.begin(), sheet_.end(), merged, kept);
+            });
+    }
+
+    // Joins the fans of different sheets that see each other, unless a third sheet stands between.
+    void join()
+    {
+        for (size_t i = 0; i < fans_.size(); ++i)
+            for (size_t j = 0; j < i; ++j)
+                if (sheet_[i] != sheet_[j] && bound_the_same_space(i, j) && !joined(i, j))
+                    std::swap(surface_.fans[fans_[i]].next, surface_.fans[fans_[j]].next);
+    }
+
+private:
+    Sector start(size_t i) const
+    {
+        const Fan& fan = surface_.fans[fans_[i]];
+        return {fan.face, fan.corner, fan.side};
+    }
+
+    // Some direction from the vertex along the sheet of the fan.
+    glm::dvec3 direction(size_t i) const
+    {
+        const Sector sector = start(i);
+        const auto& corners = surface_.faces[sector.face].vertex;
+        const glm::dvec3& at = surface_.vertices[corners[sector.corner]];
+        return glm::normalize(surface_.vertices[corners[next(sector.corner)]] - at) +
+               glm::normalize(surface_.vertices[corners[previous(sector.corner)]] - at);
+    }
+
+    // Whether the direction, which is not on the fan's sheet, leads to the side that the fan sees: of an open fan both
+    // sides are one space, around its borders.
+    bool sees(size_t i, const glm::dvec3& direction) const
+    {
+        NearestInFan nearest;
+        const bool closed = nearest.consider(surface_, start(i), direction);
+        if (!closed) return true;
+        if (nearest.way == 0) return glm::dot(surface_.fans[fans_[i]].normal, direction) > 0;
+        const Sector& sector = nearest.sector;
+        glm::dvec3 outward = surface_.facet_normal(sector.face, sector.side);
+        if (nearest.edge != NearestInFan::into_sector) {
+            const SideEdge link = surface_.faces[sector.face].link[nearest.edge][sector.side];
+            outward += surface_.facet_normal(link.face(), link.side());
+        }
+        return glm::dot(outward, direction) > 0;
+    }
+
+    bool bound_the_same_space(size_t i, size_t j) const
+    {
+        if (!sees(i, direction(j)) || !sees(j, direction(i))) return false;
+        for (size_t k = 0; k < fans_.size(); ++k)
+            if (sheet_[k] != sheet_[i] && sheet_[k] != sheet_[j] && sees(k, direction(i)) != sees(k, direction(j)))
+                return false;
+        return true;
+    }
+
+    bool joined(size_t i, size_t j) const
+    {
+        for (uint32_t fan = surface_.fans[fans_[i]].next; fan != fans_[i]; fan = surface_.fans[fan].next)
+            if (fan == fans_[j]) return true;
+        return false;
+    }
+
+    Surface& surface_;
+    std::vector<uint32_t> fans_;
+    std::vector<size_t> sheet_; // a number for each fan, equal for the fans of one sheet
+};
+
+} // namespace
+
+void make_fans(Surface& surface)
+{
+    for (Face& face : surface.faces) face.fan = {{{unset, unset}, {unset, unset}, {unset, unset}}};
+    std::vector<std::pair<uint32_t, uint32_t>> at_vertex; // vertex, fan
+    for (uint32_t f = 0; f < surface.faces.size(); ++f)
+        for (uint32_t corner = 0; corner < 3; ++corner)
+            for (uint32_t side = 0; side < 2; ++side) {
+                if (surface.faces[f].fan[corner][side] != unset) continue;
+                at_vertex.emplace_back(surface.faces[f].vertex[corner], uint32_t(surface.fans.size()));
+                add_fan(surface, {f, corner, side});
+            }
+
+    std::sort(at_vertex.begin(), at_vertex.end());
+    for (size_t begin = 0, end; begin < at_vertex.size(); begin = end) {
+        std::vector<uint32_t> fans;
+        for (end = begin; end < at_vertex.size() && at_vertex[end].first == at_vertex[begin].first; ++end)
+            fans.push_back(at_vertex[end].second);
+        if (fans.size() > 2) Meeting(surface, std::move(fans)).join();
+    }
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,97 @@
+#include "runtime/geometry/predicates.h"
+#include "runtime/surface/build/build.h"
+#include "runtime/surface/corner.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::runtime {
+
+namespace {
+
+// One face at an edge. The edge's direction is from its smaller vertex to its larger one.
+struct Wing {
+    uint32_t low, high;  // vertices of the edge
+    uint32_t face, edge; // the face's own name for it
+    uint32_t tip;        // the face's third vertex
+
+    // The side that is seen when turning counter-clockwise around the edge's direction, away from the face.
+    uint32_t upper_side(const Surface& surface) const { return surface.faces[face].vertex[edge] == low ? 0 : 1; }
+};
+
+// Counter-clockwise order around the edge, starting at the face with tip `reference`.
+struct RadialOrder {
+    const std::vector<glm::dvec3>& v;
+    const Wing& reference;
+
+    // 0: level with the reference; 1: less than half a turn ahead; 2: opposite; 3: more than half a turn.
+    int quarter(const Wing& wing) const
+    {
+        const glm::dvec3 &a = v[reference.low], &b = v[reference.high], &r = v[reference.tip];
+        if (const int side = orientation(a, b, r, v[wing.tip])) return side > 0 ? 1 : 3;
+        return same_direction(wing) ? 0 : 2;
+    }
+
+    // Two coplanar wings lie on one side of the edge if their exact normals agree in sign.
+    bool same_direction(const Wing& wing) const
+    {
+        const ExactNormal n = exact_normal(v[reference.low], v[reference.high], v[reference.tip]);
+        const ExactNormal m = exact_normal(v[wing.low], v[wing.high], v[wing.tip]);
+        const Int128 of_n = n.x != 0 ? n.x : n.y != 0 ? n.y : n.z;
+        const Int128 of_m = n.x != 0 ? m.x : n.y != 0 ? m.y : m.z;
+        return (of_n > 0) == (of_m > 0);
+    }
+
+    bool operator()(const Wing& i, const Wing& j) const
+    {
+        const int qi = quarter(i), qj = quarter(j);
+        if (qi != qj) return qi < qj;
+        if (const int turn = orientation(v[i.low], v[i.high], v[i.tip], v[j.tip])) return turn > 0;
+        // They lie on each other: in the order in which a path meets them, see earlier().
+        return exact_normal(v[i.low], v[i.high], v[i.tip]).points_forward() ? i.face > j.face : i.face < j.face;
+    }
+};
+
+void join(Surface& surface, const Wing& from, const Wing& to)
+{
+    const SideEdge above(from.face, from.edge, from.upper_side(surface));
+    const SideEdge below(to.face, to.edge, 1 - to.upper_side(surface));
+    surface.faces[from.face].link[from.edge][above.side()] = below;
+    surface.faces[to.face].link[to.edge][below.side()] = above;
+}
+
+} // namespace
+
+void link_faces(Surface& surface, MeshReport& report)
+{
+    std::vector<Wing> wings;
+    wings.reserve(3 * surface.faces.size());
+    for (uint32_t f = 0; f < surface.faces.size(); ++f) {
+        Face& face = surface.faces[f];
+        const auto& v = surface.vertices;
+        face.normal = exact_normal(v[face.vertex[0]], v[face.vertex[1]], v[face.vertex[2]]).unit();
+        for (uint32_t i = 0; i < 3; ++i) {
+            const uint32_t a = face.vertex[i], b = face.vertex[next(i)];
+            wings.push_back({std::min(a, b), std::max(a, b), f, i, face.vertex[previous(i)]});
+        }
+    }
+    std::sort(wings.begin(), wings.end(), [](const Wing& a, const Wing& b) {
+        return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.face < b.face;
+    });
+
+    for (size_t begin = 0; begin < wings.size();) {
+        size_t end = begin + 1;
+        while (end < wings.size() && wings[end].low == wings[begin].low && wings[end].high == wings[begin].high) ++end;
+        const size_t count = end - begin;
+        report.border_edges += count == 1;
+        report.nonmanifold_edges += count > 2;
+        if (count > 2) {
+            const Wing reference = wings[begin];
+            std::sort(wings.begin() + begin, wings.begin() + end, RadialOrder{surface.vertices, reference});
+        }
+        for (size_t k = begin; k < end; ++k) join(surface, wings[k], wings[k + 1 < end ? k + 1 : begin]);
+        begin = end;
+    }
+}
+
+} // namespace haptel::runtime

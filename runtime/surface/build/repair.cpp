@@ -1,0 +1,173 @@
+#include "runtime/geometry/predicates.h"
+#include "runtime/surface/build/build.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace haptel::runtime {
+
+namespace {
+
+// Beyond this a bounding box or its square may overflow; nobody means it.
+constexpr double coordinate_max_m = 1e100;
+
+bool usable(const glm::dvec3& p)
+{
+    return std::abs(p.x) < coordinate_max_m && std::abs(p.y) < coordinate_max_m && std::abs(p.z) < coordinate_max_m;
+}
+
+using Triangle = std::array<uint32_t, 3>;
+
+// Triangles whose corners exist and are finite, by their index in the mesh.
+std::vector<size_t> sound_triangles(const Mesh& mesh, MeshReport& report)
+{
+    std::vector<size_t> sound;
+    sound.reserve(mesh.triangles.size());
+    for (size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const Triangle& corners = mesh.triangles[t];
+        const auto exists = [&](uint32_t i) { return i < mesh.positions_m.size(); };
+        const auto finite = [&](uint32_t i) { return usable(mesh.positions_m[i]); };
+        if (!std::all_of(corners.begin(), corners.end(), exists))
+            ++report.indices_out_of_range;
+        else if (!std::all_of(corners.begin(), corners.end(), finite))
+            ++report.not_finite;
+        else
+            sound.push_back(t);
+    }
+    return sound;
+}
+
+// Rounds the used positions to the lattice and welds equal ones: vertices in order of first use by position order,
+// so that the result depends on the mesh alone. Returns the vertex of each position.
+std::vector<uint32_t> weld(const Mesh& mesh, const std::vector<bool>& used, Surface& surface, MeshReport& report)
+{
+    std::vector<glm::dvec3> snapped(mesh.positions_m.size());
+    std::vector<uint32_t> order;
+    for (uint32_t i = 0; i < snapped.size(); ++i) {
+        if (!used[i]) continue;
+        snapped[i] = surface.lattice.snap_vertex(mesh.positions_m[i]) + 0.0; // no -0: equal means equal
+        order.push_back(i);
+    }
+    const auto key = [&](uint32_t i) { return std::array{snapped[i].x, snapped[i].y, snapped[i].z}; };
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t a, uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+
+    std::vector<uint32_t> first(snapped.size()); // the first position with these coordinates
+    for (size_t k = 0; k < order.size(); ++k) {
+        const bool same = k > 0 && snapped[order[k]] == snapped[order[k - 1]];
+        first[order[k]] = same ? first[order[k - 1]] : order[k];
+        report.vertices_welded += same;
+    }
+    std::vector<uint32_t> vertex(snapped.size());
+    for (uint32_t i = 0; i < snapped.size(); ++i) {
+        if (!used[i]) continue;
+        if (first[i] == i) {
+            vertex[i] = uint32_t(surface.vertices.size());
+            surface.vertices.push_back(snapped[i]);
+        } else {
+            vertex[i] = vertex[first[i]];
+        }
+    }
+    return vertex;
+}
+
+// Keeps the faces told, with what belongs to them. Returns how many it dropped.
+size_t keep_faces(Surface& surface, const std::vector<bool>& keep)
+{
+    const auto keep_of = [&](auto& records) {
+        if (records.empty()) return;
+        size_t kept = 0;
+        for (size_t f = 0; f < keep.size(); ++f)
+            if (keep[f]) records[kept++] = records[f];
+        records.resize(kept);
+    };
+    keep_of(surface.uv);
+    keep_of(surface.smoothing_groups);
+    keep_of(surface.origins);
+    keep_of(surface.faces);
+    return keep.size() - surface.faces.size();
+}
+
+} // namespace
+
+size_t drop_flat_faces(Surface& surface)
+{
+    std::vector<bool> keep(surface.faces.size());
+    const auto& v = surface.vertices;
+    for (size_t f = 0; f < keep.size(); ++f) {
+        const Triangle& corners = surface.faces[f].vertex;
+        keep[f] = !exact_normal(v[corners[0]], v[corners[1]], v[corners[2]]).is_zero();
+    }
+    return keep_faces(surface, keep);
+}
+
+size_t drop_repeated_faces(Surface& surface)
+{
+    std::vector<Triangle> sorted;
+    sorted.reserve(surface.faces.size());
+    for (const Face& face : surface.faces) {
+        sorted.push_back(face.vertex);
+        std::sort(sorted.back().begin(), sorted.back().end());
+    }
+    std::vector<uint32_t> order(sorted.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t a, uint32_t b) { return sorted[a] != sorted[b] ? sorted[a] < sorted[b] : a < b; });
+    std::vector<bool> keep(sorted.size(), true);
+    for (size_t k = 1; k < order.size(); ++k) keep[order[k]] = sorted[order[k]] != sorted[order[k - 1]];
+    return keep_faces(surface, keep);
+}
+
+bool repair(const Mesh& mesh, Surface& surface, MeshReport& report)
+{
+    report.triangles_given = mesh.triangles.size();
+    const std::vector<size_t> sound = sound_triangles(mesh, report);
+    if (sound.empty()) return false;
+
+    std::vector<bool> used(mesh.positions_m.size());
+    glm::dvec3 minimum = mesh.positions_m[mesh.triangles[sound[0]][0]], maximum = minimum;
+    for (size_t t : sound)
+        for (uint32_t i : mesh.triangles[t]) {
+            used[i] = true;
+            minimum = glm::min(minimum, mesh.positions_m[i]);
+            maximum = glm::max(maximum, mesh.positions_m[i]);
+        }
+    surface.lattice = Lattice::around(minimum, maximum);
+    const std::vector<uint32_t> vertex = weld(mesh, used, surface, report);
+
+    const bool has_uv = mesh.uv.size() == mesh.positions_m.size();
+    const bool has_groups = mesh.smoothing_groups.size() == mesh.triangles.size();
+    const bool has_origins = mesh.origins.size() == mesh.triangles.size();
+    surface.faces.reserve(sound.size());
+    for (size_t t : sound) {
+        const Triangle& given = mesh.triangles[t];
+        surface.faces.emplace_back().vertex = {vertex[given[0]], vertex[given[1]], vertex[given[2]]};
+        if (has_groups) surface.smoothing_groups.push_back(mesh.smoothing_groups[t]);
+        if (has_origins) surface.origins.push_back(mesh.origins[t]);
+        if (!has_uv) continue;
+        std::array<glm::dvec2, 3> uv;
+        for (size_t i = 0; i < 3; ++i) {
+            uv[i] = mesh.uv[given[i]];
+            if (!std::isfinite(uv[i].x) || !std::isfinite(uv[i].y)) uv[i] = {0, 0};
+        }
+        surface.uv.push_back(uv);
+    }
+    report.degenerate = drop_flat_faces(surface);
+    report.duplicate = drop_repeated_faces(surface);
+    report.triangles_kept = surface.faces.size();
+    if (surface.faces.empty()) return false;
+
+    // The box of what is left; vertices of dropped triangles stay, unused and harmless, but do not widen it.
+    surface.box_minimum = surface.box_maximum = surface.vertices[surface.faces[0].vertex[0]];
+    for (const Face& face : surface.faces)
+        for (uint32_t i : face.vertex) {
+            surface.box_minimum = glm::min(surface.box_minimum, surface.vertices[i]);
+            surface.box_maximum = glm::max(surface.box_maximum, surface.vertices[i]);
+        }
+    surface.box_minimum_m = surface.lattice.metres(surface.box_minimum);
+    surface.box_maximum_m = surface.lattice.metres(surface.box_maximum);
+    return true;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,172 @@
+#include "runtime/surface/collision.h"
+
+#include "runtime/surface/box_tree.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::runtime {
+
+StartsOn StartsOn::on_edge(uint32_t vertex0, uint32_t vertex1)
+{
+    StartsOn start;
+    start.vertex0_ = vertex0;
+    start.vertex1_ = vertex1;
+    return start;
+}
+
+StartsOn StartsOn::on_vertex(uint32_t vertex)
+{
+    return on_edge(vertex, vertex);
+}
+
+bool StartsOn::skips(uint32_t face, const Face& data) const
+{
+    const auto has = [&](uint32_t vertex) {
+        return data.vertex[0] == vertex || data.vertex[1] == vertex || data.vertex[2] == vertex;
+    };
+    if (vertex0_ != none && has(vertex0_) && has(vertex1_)) return true;
+    return std::find(faces_, faces_ + face_count_, face) != faces_ + face_count_;
+}
+
+namespace {
+
+// Whether the segment may meet the box; says yes in doubt. Lattice boxes and ends are exact, products are not: hence
+// the widening by one unit.
+bool may_meet(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& minimum, const glm::dvec3& maximum)
+{
+    double enter = 0, leave = 1;
+    for (int k = 0; k < 3; ++k) {
+        const double low = minimum[k] - 1 - from[k], high = maximum[k] + 1 - from[k], along = to[k] - from[k];
+        if (along == 0) {
+            if (low > 0 || high < 0) return false;
+            continue;
+        }
+        const double a = low / along, b = high / along;
+        enter = std::max(enter, std::min(a, b) - 1e-14);
+        leave = std::min(leave, std::max(a, b) + 1e-14);
+    }
+    return enter <= leave;
+}
+
+class FirstCrossing final : public SegmentVisitor {
+public:
+    FirstCrossing(const Surface& surface, const glm::dvec3& from, const glm::dvec3& to, const StartsOn& start,
+                  Crossing& first, CollisionCount& count)
+        : surface_(surface), from_(from), to_(to), start_(start), first_(first), count_(count)
+    {
+    }
+
+    bool found = false;
+
+    double visit(uint32_t face) noexcept override
+    {
+        const Face& data = surface_.faces[face];
+        ++count_.triangles_tested;
+        Crossing candidate;
+        candidate.face = face;
+        const auto& v = surface_.vertices;
+        if (!start_.skips(face, data) &&
+            crosses(from_, to_, v[data.vertex[0]], v[data.vertex[1]], v[data.vertex[2]], candidate) &&
+            (!found || earlier(candidate, first_))) {
+            found = true;
+            first_ = candidate;
+        }
+        return found ? first_.fraction() : 1.0;
+    }
+
+private:
+    const Surface& surface_;
+    const glm::dvec3 &from_, &to_;
+    const StartsOn& start_;
+    Crossing& first_;
+    CollisionCount& count_;
+};
+
+// A ball that is somewhat smaller than it could be is found much sooner: of many triangles nearly equally far away few
+// are looked at.
+//
+// A triangle is at least as far away as its plane and, in the plane, as each of its edges' lines beyond which the
+// centre lies. Unlike the nearest point of a sliver this does not depend on which of its features is the nearest.
+class LeastDistance final : public BallVisitor {
+public:
+    LeastDistance(const Surface& surface, const glm::dvec3& centre, double radius)
+        : least(radius), surface_(surface), centre_(centre)
+    {
+    }
+
+    static constexpr double share = 0.6;
+    double least;
+
+    double visit(uint32_t face) noexcept override
+    {
+        const Face& data = surface_.faces[face];
+        const glm::dvec3& n = data.normal;
+        const double above = glm::dot(n, centre_ - surface_.vertices[data.vertex[0]]);
+        double beyond = 0;
+        for (uint32_t i = 0; i < 3; ++i) {
+            const glm::dvec3& a = surface_.vertices[data.vertex[i]];
+            const glm::dvec3 outward = glm::cross(surface_.vertices[data.vertex[(i + 1) % 3]] - a, n);
+            beyond = std::max(beyond, glm::dot(outward, centre_ - a) / glm::length(outward));
+        }
+        const double distance = std::sqrt(above * above + beyond * beyond) - 1; // one unit: rounding
+        least = std::min(least, std::max(0.0, share * distance));
+        return least;
+    }
+
+private:
+    const Surface& surface_;
+    const glm::dvec3& centre_;
+};
+
+} // namespace
+
+double clearance(const Surface& surface, const glm::dvec3& centre, double radius) noexcept
+{
+    LeastDistance distance(surface, centre, radius);
+    surface.tree->ball(centre, radius, distance);
+    return distance.least;
+}
+
+bool first_crossing(const Surface& surface, const glm::dvec3& from, const glm::dvec3& to, const StartsOn& start,
+                    Crossing& crossing, CollisionCount& count) noexcept
+{
+    ++count.sweeps;
+    if (!may_meet(from, to, surface.box_minimum, surface.box_maximum)) {
+        ++count.object_boxes_missed;
+        return false;
+    }
+    FirstCrossing first(surface, from, to, start, crossing, count);
+    surface.tree->segment(from, to, first);
+    return first.found;
+}
+
+glm::dvec3 barycentric_of(const Surface& surface, uint32_t face, const glm::dvec3& point) noexcept
+{
+    const auto& corners = surface.faces[face].vertex;
+    const glm::dvec3 &a = surface.vertices[corners[0]], &b = surface.vertices[corners[1]],
+                     &c = surface.vertices[corners[2]];
+    const glm::dvec3& n = surface.faces[face].normal;
+    const double area_a = glm::dot(glm::cross(c - b, point - b), n), area_b = glm::dot(glm::cross(a - c, point - c), n),
+                 area_c = glm::dot(glm::cross(b - a, point - a), n);
+    const glm::dvec3 weights = glm::max(glm::dvec3(area_a, area_b, area_c), 0.0);
+    const double sum = weights.x + weights.y + weights.z;
+    return sum > 0 ? weights / sum : glm::dvec3(1, 0, 0);
+}
+
+glm::dvec3 crossing_point(const Surface& surface, const Crossing& crossing, const glm::dvec3& from,
+                          const glm::dvec3& to) noexcept
+{
+    const Face& face = surface.faces[crossing.face];
+    glm::dvec3 point = from + crossing.fraction() * (to - from);
+    point -= glm::dot(point - surface.vertices[face.vertex[0]], face.normal) * face.normal;
+    for (uint32_t i = 0; i < 3; ++i) {
+        const glm::dvec3& a = surface.vertices[face.vertex[i]];
+        const glm::dvec3 edge = surface.vertices[face.vertex[(i + 1) % 3]] - a;
+        if (glm::dot(glm::cross(face.normal, edge), point - a) >= 0) continue;
+        point = a + glm::clamp(glm::dot(point - a, edge) / glm::dot(edge, edge), 0.0, 1.0) * edge;
+    }
+    return point;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,152 @@
+// The object database: one object's triangles as contact needs them, immutable once built and shared between threads.
+//
+// Building repairs what can be repaired (and says so) and adds connectivity. Connectivity is two-sided: each face has a
+// front and a back, and link(face, edge, side) is the (face, edge, side) reached by turning around the edge through the
+// free space on that side. Faces are sorted radially around each edge, so any soup (open, non-manifold, badly wound)
+// becomes closed two-sided sheets: at a border the front is linked to the back of the same face. A proxy that walks by
+// links can therefore never change the side of a sheet except around a border.
+#pragma once
+
+#include "runtime/geometry/lattice.h"
+#include "runtime/surface/mesh.h"
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace haptel::runtime {
+
+class BoxTree;
+class SweptTree;
+
+// What was found in a mesh and mended. All counts, no unit.
+struct MeshReport {
+    size_t triangles_given = 0, triangles_kept = 0;
+    size_t vertices_welded = 0;      // positions that equal another one (after rounding to the lattice)
+    size_t indices_out_of_range = 0; // triangles dropped for an index beyond the positions
+    size_t not_finite = 0;           // triangles dropped for a NaN or infinite coordinate
+    size_t degenerate = 0;           // triangles dropped for having no area
+    size_t duplicate = 0;            // triangles dropped for having the corners of another
+    size_t cracks_closed = 0;        // corners of borders that now belong to the border beside them, too
+    size_t border_edges = 0;         // edges of one face only: the mesh is open there
+    size_t nonmanifold_edges = 0;    // edges of more than two faces
+    size_t pierced = 0;              // faces cut or touched by faces that are not their neighbours
+
+    bool repaired() const { return indices_out_of_range + not_finite + degenerate + duplicate > 0; }
+    std::string warning() const; // one line for the user; empty when nothing was dropped and nothing is pierced
+    std::string note() const;    // what is no fault but good to know: that the mesh is open; or empty
+};
+
+// One side of one edge of one face, in 32 bits. Edge i runs from corner i to corner i + 1.
+struct SideEdge {
+    uint32_t code = 0;
+
+    SideEdge() = default;
+    SideEdge(uint32_t face, uint32_t edge, uint32_t side) : code(face << 3 | edge << 1 | side) {}
+    uint32_t face() const { return code >> 3; }
+    uint32_t edge() const { return code >> 1 & 3; }
+    uint32_t side() const { return code & 1; } // 0: front, where the normal points; 1: back
+    bool operator==(const SideEdge&) const = default;
+};
+
+struct Face {
+    std::array<uint32_t, 3> vertex;
+    std::array<std::array<SideEdge, 2>, 3> link; // [edge][side]
+    std::array<std::array<uint32_t, 2>, 3> fan;  // [corner][side]: index into Surface::fans
+    glm::dvec3 normal;                           // unit, front
+    uint32_t pierced_begin = 0, pierced_end = 0; // range in Surface::pierced_by
+};
+
+// The faces around a vertex that are linked with each other on one side.
+struct Fan {
+    glm::dvec3 normal;           // weighted by angle, unit, toward that side; zero where they cancel
+    uint32_t face, corner, side; // one of its corners
+    // Fans of separate sheets that meet in this vertex only and bound the same free space, in a circle; itself if
+    // alone.
+    uint32_t next;
+};
+
+// Mean of the facet normals around a vertex, weighted by their angles, as far as no crease parts them.
+struct ShadingNormal {
+    glm::dvec3 normal; // unit; zero where they cancel
+    bool whole;        // of a whole fan: no border and no crease ends in the vertex, or one that does not part it
+};
+
+struct SegmentHit {
+    uint32_t face = 0;
+    uint32_t side = 0;   // that faces the start of the segment
+    double fraction = 0; // of the segment, 0 at its start
+    glm::dvec3 point_m{0};
+    glm::dvec3 barycentric{1, 0, 0};
+    glm::dvec3 facet_normal{0, 0, 1}; // unit, toward the start of the segment
+};
+
+// Vertices and faces are in lattice units; what has _m is in metres, object space.
+struct Surface {
+    Lattice lattice;
+    std::vector<glm::dvec3> vertices;
+    std::vector<Face> faces;
+    std::vector<Fan> fans;
+    std::vector<std::array<glm::dvec2, 3>> uv; // per face and corner; empty without texture coordinates
+    std::vector<uint32_t> smoothing_groups;    // per face, as in Mesh; or empty
+    std::vector<Origin> origins;               // per face; empty if it is of one piece
+    std::vector<uint32_t> pierced_by;
+    // Force shading: the normals at corners, and which of them a face has [corner][side].
+    std::vector<ShadingNormal> shading_normals;
+    std::vector<std::array<std::array<uint32_t, 2>, 3>> shading_normal_of;
+    double normal_turn_max_per_m = 0; // no shading normal turns faster along its face (spectral norm); 0: flat facets
+    std::unique_ptr<const BoxTree> tree;
+    glm::dvec3 box_minimum{0}, box_maximum{0};     // of the vertices, lattice units
+    glm::dvec3 box_minimum_m{0}, box_maximum_m{0}; // the same, metres
+
+    // Interpolated normals shorter than this have no direction: the facet's is felt.
+    static constexpr double least_normal = 1e-6;
+
+    Surface();
+    ~Surface();
+    Surface(const Surface&) = delete;
+    Surface& operator=(const Surface&) = delete;
+
+    glm::dvec3 vertex_m(uint32_t face, uint32_t corner) const
+    {
+        return lattice.metres(vertices[faces[face].vertex[corner]]);
+    }
+    glm::dvec3 facet_normal(uint32_t face, uint32_t side = 0) const
+    {
+        return side ? -faces[face].normal : faces[face].normal;
+    }
+    bool is_border(uint32_t face, uint32_t edge) const { return faces[face].link[edge][0].face() == face; }
+
+    // From the object's box to that of the segment; 0 where they meet.
+    double gap_to_box_m(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept;
+
+    // First crossing of the segment, by exact predicates: never lost, whatever edge or vertex it passes through.
+    // Allocates nothing. Not finite ends: nothing.
+    std::optional<SegmentHit> first_hit(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept;
+
+    // Of the faces, for shafts. Whoever asks for it first makes it, which allocates and takes a while: never in a tick.
+    const SweptTree& swept_tree() const;
+
+private:
+    mutable std::once_flag swept_tree_made_;
+    mutable std::shared_ptr<const SweptTree> swept_tree_; // null before
+};
+
+struct SurfaceResult {
+    std::shared_ptr<const Surface> surface; // null: see error
+    MeshReport report;
+    std::string error; // why there is nothing to touch: "the mesh has no triangle left: ..."
+};
+
+// Faces that meet at more than this angle do so in a crease, which force shading keeps: 0 leaves every facet flat, 180
+// rounds everything but what the mesh's smoothing groups part.
+inline constexpr double default_crease_deg = 40;
+
+// Never throws on bad geometry; memory is all that it can run out of.
+SurfaceResult build_surface(const Mesh& mesh, double crease_deg = default_crease_deg);
+
+} // namespace haptel::runtime

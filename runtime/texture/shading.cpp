@@ -1,0 +1,116 @@
+#include "runtime/texture/shading.h"
+
+#include "runtime/surface/corner.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::runtime {
+
+namespace {
+
+struct CornerNormals {
+    glm::dvec3 n[3];
+    CornerNormals(const Surface& surface, uint32_t face, uint32_t side)
+    {
+        const auto& of_corner = surface.shading_normal_of[face];
+        for (size_t i = 0; i < 3; ++i) n[i] = surface.shading_normals[of_corner[i][side]].normal;
+    }
+    glm::dvec3 at(const glm::dvec3& w) const { return w.x * n[0] + w.y * n[1] + w.z * n[2]; }
+};
+
+} // namespace
+
+glm::dvec3 shading_normal(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept
+{
+    const glm::dvec3 sum = CornerNormals(surface, face, side).at(barycentric);
+    const double length = glm::length(sum);
+    return length > Surface::least_normal ? sum / length : surface.facet_normal(face, side);
+}
+
+bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept
+{
+    constexpr double on_feature = 1e-9; // of a corner's weight, which is 0 there but for rounding
+    const auto& of_corner = surface.shading_normal_of[face];
+    for (uint32_t i = 0; i < 3; ++i)
+        if (barycentric[int(i)] > 1 - on_feature) return !surface.shading_normals[of_corner[i][side]].whole;
+    for (uint32_t i = 0; i < 3; ++i) {
+        if (barycentric[int(previous(i))] > on_feature) continue;
+        const SideEdge link = surface.faces[face].link[i][side];
+        if (link.face() == face) return true; // a border
+        const auto& there = surface.shading_normal_of[link.face()];
+        const bool same_way = surface.faces[link.face()].vertex[link.edge()] == surface.faces[face].vertex[i];
+        const uint32_t first = same_way ? link.edge() : next(link.edge());
+        const uint32_t second = same_way ? next(link.edge()) : link.edge();
+        return of_corner[i][side] != there[first][link.side()] ||
+               of_corner[next(i)][side] != there[second][link.side()];
+    }
+    return false;
+}
+
+Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric, Shaded what) noexcept
+{
+    Shading shading;
+    const CornerNormals corners(surface, face, side);
+    const glm::dvec3 sum = corners.at(barycentric);
+    const double length = glm::length(sum);
+    shading.normal = length > Surface::least_normal ? sum / length : surface.facet_normal(face, side);
+    const bool turns = what.normal_dp && length > Surface::least_normal, drawn = what.uv && !surface.uv.empty();
+    if (!turns && !drawn) return shading;
+
+    // The weight of a corner grows by 1 over the altitude from its opposite edge; that of the first, as the others
+    // lose.
+    const auto& v = surface.faces[face].vertex;
+    const glm::dvec3 &a = surface.vertices[v[0]], &b = surface.vertices[v[1]], &c = surface.vertices[v[2]];
+    const glm::dvec3 normal = surface.facet_normal(face);
+    const glm::dvec3 from_ca = glm::cross(normal, a - c), from_ab = glm::cross(normal, b - a);
+    const double per_m = 1 / (glm::dot(from_ab, c - a) * surface.lattice.unit_m);
+    const glm::dvec3 second_dp = per_m * from_ca, third_dp = per_m * from_ab;
+
+    if (turns) {
+        // The part of a change across the normal, over the sum's length.
+        const auto turn = [&](const glm::dvec3& change) {
+            return (change - glm::dot(change, shading.normal) * shading.normal) / length;
+        };
+        shading.normal_dp = glm::outerProduct(turn(corners.n[1] - corners.n[0]), second_dp) +
+                            glm::outerProduct(turn(corners.n[2] - corners.n[0]), third_dp);
+    }
+    if (!drawn) return shading;
+    const auto& uv = surface.uv[face];
+    shading.uv_dp = glm::outerProduct(uv[1] - uv[0], second_dp) + glm::outerProduct(uv[2] - uv[0], third_dp);
+    for (int i = 0; i < 3; ++i) shading.uv += uv[size_t(i)] * barycentric[i];
+    return shading;
+}
+
+UvFigures uv_figures(const Surface& surface)
+{
+    constexpr double slack = 1e-12; // a mean of corners may round past them
+    UvFigures figures;
+    for (int i = 0; i < 2; ++i) {
+        figures.minimum[i] = figures.maximum[i] = figures.slope_max_per_m[i] = 0;
+        for (int j = 0; j < 3; ++j) figures.dp_minimum[i][j] = figures.dp_maximum[i][j] = 0;
+    }
+    const auto take_in = [](double value, bool first, double& minimum, double& maximum) {
+        minimum = first ? value : std::min(minimum, value);
+        maximum = first ? value : std::max(maximum, value);
+    };
+    for (uint32_t face = 0; face < surface.uv.size(); ++face) {
+        const bool first = face == 0;
+        const glm::dmat3x2 uv_dp = shade(surface, face, 0, {1, 0, 0}).uv_dp; // the same all over the face
+        for (int i = 0; i < 2; ++i) {
+            for (size_t corner = 0; corner < 3; ++corner)
+                take_in(surface.uv[face][corner][i], first && corner == 0, figures.minimum[i], figures.maximum[i]);
+            for (int j = 0; j < 3; ++j) take_in(uv_dp[j][i], first, figures.dp_minimum[i][j], figures.dp_maximum[i][j]);
+            const double slope = glm::length(glm::dvec3(uv_dp[0][i], uv_dp[1][i], uv_dp[2][i]));
+            figures.slope_max_per_m[i] = std::max(figures.slope_max_per_m[i], slope * (1 + slack));
+        }
+    }
+    for (int i = 0; i < 2; ++i) {
+        const double margin = slack * std::max(std::abs(figures.minimum[i]), std::abs(figures.maximum[i]));
+        figures.minimum[i] -= margin;
+        figures.maximum[i] += margin;
+    }
+    return figures;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,106 @@
+#include "runtime/texture/surface_texture.h"
+
+#include "runtime/geometry/finite.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::runtime {
+
+namespace {
+
+// Heights may exceed their bound by rounding only.
+constexpr double bound_slack_m = 1e-12;
+
+// The inputs that the entry reads; the others stay zero.
+haptel_point inputs(const SurfacePoint& at, uint32_t reads)
+{
+    haptel_point point = {};
+    for (int i = 0; i < 3; ++i) point.p[i] = at.p_m[i];
+    if (reads & HAPTEL_READS_NORMAL) {
+        for (int i = 0; i < 3; ++i) {
+            point.n[i] = at.shading.normal[i];
+            for (int j = 0; j < 3; ++j) point.n_dp[i][j] = at.shading.normal_dp[j][i];
+        }
+    }
+    if (reads & HAPTEL_READS_UV) {
+        for (int i = 0; i < 2; ++i) {
+            point.uv[i] = at.shading.uv[i];
+            for (int j = 0; j < 3; ++j) point.uv_dp[i][j] = at.shading.uv_dp[j][i];
+        }
+    }
+    if (reads & HAPTEL_READS_TIME) point.time_s = at.time_s;
+    return point;
+}
+
+// Bindings are made by code that is not ours: the guarantees of abi.h are checked again at the last door before the
+// motors.
+void distrust(haptel_sample& sample)
+{
+    glm::dvec3 gradient(sample.gradient[0], sample.gradient[1], sample.gradient[2]);
+    const bool height_ok = std::isfinite(sample.height_m);
+    if (!height_ok) {
+        sample.height_m = 0;
+        sample.faults |= HAPTEL_FAULT_HEIGHT_NOT_FINITE;
+    }
+    if (!finite(gradient)) sample.faults |= HAPTEL_FAULT_GRADIENT_NOT_FINITE;
+    if (!height_ok || !finite(gradient))
+        for (double& g : sample.gradient) g = 0;
+    for (double* scale : {&sample.stiffness_scale, &sample.friction_scale})
+        if (!std::isfinite(*scale) || *scale < 0) {
+            *scale = 1;
+            sample.faults |= HAPTEL_FAULT_OUTPUT_NOT_FINITE;
+        }
+}
+
+} // namespace
+
+TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& at) noexcept
+{
+    TextureSample result;
+    if (!binding.texture) return result;
+
+    haptel_sample sample = {0, {0, 0, 0}, 1, 1, 0};
+    const haptel_point point = inputs(at, binding.texture->reads);
+    binding.texture->height_gradient(&point, binding.block, &sample);
+    distrust(sample);
+
+    result.height_m = sample.height_m;
+    result.envelope_m = std::min(0.0, sample.height_m - binding.facts.height_max_m);
+    result.raised_m = std::max(0.0, sample.height_m - std::min(0.0, binding.facts.height_min_m));
+    result.surface_gradient =
+        tangential(glm::dvec3(sample.gradient[0], sample.gradient[1], sample.gradient[2]), at.shading.normal);
+    result.stiffness_scale = sample.stiffness_scale;
+    result.friction_scale = sample.friction_scale;
+    result.faults = sample.faults;
+    if (sample.height_m - binding.facts.height_max_m > bound_slack_m) {
+        result.surface_gradient = glm::dvec3(0);
+        result.faults |= fault_height_above_bound;
+    }
+    return result;
+}
+
+TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at) noexcept
+{
+    TextureSample to = sample_texture(reader.to().binding, at);
+    if (!reader.fading()) return to;
+    const TextureSample from = sample_texture(reader.from().binding, at);
+    const double w = reader.weight();
+    const auto mix = [w](const auto& a, const auto& b) { return a + w * (b - a); };
+    to.height_m = mix(from.height_m, to.height_m);
+    to.envelope_m = mix(from.envelope_m, to.envelope_m);
+    to.raised_m = mix(from.raised_m, to.raised_m);
+    to.surface_gradient = mix(from.surface_gradient, to.surface_gradient);
+    to.stiffness_scale = mix(from.stiffness_scale, to.stiffness_scale);
+    to.friction_scale = mix(from.friction_scale, to.friction_scale);
+    to.faults |= from.faults;
+    return to;
+}
+
+uint32_t texture_reads(const TextureReader& reader) noexcept
+{
+    const auto reads = [](const PublishedBinding& p) { return p.binding.texture ? p.binding.texture->reads : 0u; };
+    return reads(reader.to()) | (reader.fading() ? reads(reader.from()) : 0u);
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,54 @@
+// Texture stage: from a point on the surface to the height and the surface gradient that are felt there.
+//
+// Heights reach the contact shifted to the envelope h - h_max <= 0, with h_max the proven upper bound of the binding:
+// touching the base mesh is then necessary for touching the texture, and force starts at 0.
+#pragma once
+
+#include "lang/abi/abi.h"
+#include "lang/abi/texture_binding.h"
+#include "runtime/texture/shading.h"
+#include "runtime/texture/texture_slot.h"
+
+#include <glm/glm.hpp>
+
+#include <cstdint>
+
+namespace haptel::runtime {
+
+// Bits beside those of haptel_sample::faults.
+enum : uint32_t {
+    fault_height_above_bound = 1u << 8 // the height exceeds the binding's facts; cut off there, gradient 0
+};
+
+// Where a texture is evaluated, object space. What the texture does not read need not be filled, but for the normal.
+struct SurfacePoint {
+    glm::dvec3 p_m{0};
+    Shading shading;
+    double time_s = 0;
+};
+
+struct TextureSample {
+    double height_m = 0;            // as the texture says
+    double envelope_m = 0;          // height - h_max, <= 0
+    double raised_m = 0;            // height - min(h_min, 0), >= 0: as published where that is never below 0
+    glm::dvec3 surface_gradient{0}; // tangential part of dh/dp, metres per metre
+    double stiffness_scale = 1, friction_scale = 1;
+    uint32_t faults = 0; // HAPTEL_FAULT_* and the bits above
+};
+
+// One binding at one point. Never returns NaN or infinity, whatever the texture does.
+TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& point) noexcept;
+
+// What the reader feels at that point: its binding, or the linear mixture of two during a fade.
+TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& point) noexcept;
+
+// Bits of haptel_texture::reads of what is felt now: Jacobians that nobody reads need not be computed.
+uint32_t texture_reads(const TextureReader& reader) noexcept;
+
+// Part of g along the surface: g - (g . n) n for a unit normal n.
+inline glm::dvec3 tangential(const glm::dvec3& g, const glm::dvec3& n)
+{
+    return g - glm::dot(g, n) * n;
+}
+
+} // namespace haptel::runtime
