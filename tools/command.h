@@ -1,7 +1,8 @@
 // What a subcommand of the haptel binary is: the options it declares and the function that runs it.
 //
-// A file tools/NAME.cpp holds one subcommand as `Command NAME_command(CLI::App& app)` and is listed in commands.def;
-// main.cpp knows no more of it. Data goes to standard output, everything said to a person to standard error.
+// A file tools/commands/NAME.cpp holds one subcommand as `Command NAME_command(CLI::App& app)` and is listed in
+// commands.def; main.cpp knows no more of it. Data goes to standard output, everything said to a person to standard
+// error.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,7 +1,7 @@
 // The haptel command: finds the subcommand, turns its outcome into the exit code, and nothing else.
 #include "lang/text/diagnostic.h"
 #include "tools/command.h"
-#include "tools/terminal.h"
+#include "tools/output/terminal.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -1,5 +1,5 @@
 #include "tests/support/catch.h"
-#include "tools/plot_axes.h"
+#include "tools/plot/plot_axes.h"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 // measured against computes the same textures.
 #include "tests/support/catch.h"
 #include "tests/tools/run_command.h"
-#include "tools/json.h"
+#include "tools/output/json.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,7 @@
 // Code on disk through the command: whatever becomes of the folder, the answers are the same.
 #include "tests/support/catch.h"
 #include "tests/tools/run_command.h"
-#include "tools/json.h"
+#include "tools/output/json.h"
 
 #include <thread>
 

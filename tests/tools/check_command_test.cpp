@@ -2,7 +2,7 @@
 #include "tests/support/catch.h"
 #include "tests/tools/near.h"
 #include "tests/tools/run_command.h"
-#include "tools/json.h"
+#include "tools/output/json.h"
 
 #include <algorithm>
 

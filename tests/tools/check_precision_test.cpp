@@ -1,7 +1,7 @@
 // haptel check --max-error: the choice follows from the figures beside it, and these from the 113-bit oracle.
 #include "tests/support/catch.h"
 #include "tests/tools/run_command.h"
-#include "tools/json.h"
+#include "tools/output/json.h"
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 #include "runtime/servo/recording.h"
 #include "tests/support/catch.h"
 #include "tests/tools/run_command.h"
-#include "tools/json.h"
+#include "tools/output/json.h"
 
 #include <glm/glm.hpp>
 

@@ -1,6 +1,6 @@
 #include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
-#include "tools/explore_report.h"
+#include "tools/report/explore_report.h"
 
 #include <limits>
 

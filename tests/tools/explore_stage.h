@@ -3,7 +3,7 @@
 
 #include "tests/support/catch.h"
 #include "tests/tools/run_command.h"
-#include "tools/json.h"
+#include "tools/output/json.h"
 
 #include <sstream>
 #include <string>

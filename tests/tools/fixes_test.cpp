@@ -1,8 +1,8 @@
 // --fix: which fixes are taken, that nothing gets worse, and how the file is replaced.
 #include "tests/support/catch.h"
 #include "tests/tools/run_command.h"
-#include "tools/fixes.h"
-#include "tools/replace_file.h"
+#include "tools/commands/fixes.h"
+#include "tools/output/replace_file.h"
 
 #include <sys/stat.h>
 

@@ -3,7 +3,7 @@
 #include "stdlib/stdlib.h"
 #include "tests/support/catch.h"
 #include "tests/tools/run_command.h"
-#include "tools/json.h"
+#include "tools/output/json.h"
 
 #include <set>
 #include <sstream>

@@ -1,5 +1,5 @@
 #include "tests/support/catch.h"
-#include "tools/json.h"
+#include "tools/output/json.h"
 
 #include <limits>
 

@@ -1,7 +1,7 @@
 // Figures in reports that are right but for rounding.
 #pragma once
 
-#include "tools/json.h"
+#include "tools/output/json.h"
 
 #include <cmath>
 

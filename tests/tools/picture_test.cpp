@@ -1,7 +1,7 @@
 #include "tests/support/catch.h"
 #include "tests/tools/png.h"
-#include "tools/plot_run.h"
-#include "tools/plot_texture.h"
+#include "tools/plot/plot_run.h"
+#include "tools/plot/plot_texture.h"
 
 #include <cmath>
 #include <filesystem>

@@ -1,5 +1,5 @@
 #include "tests/support/catch.h"
-#include "tools/quantity.h"
+#include "tools/arguments/quantity.h"
 
 #include <string>
 #include <vector>

@@ -1,5 +1,5 @@
 #include "tests/support/catch.h"
-#include "tools/plot_spectrum.h"
+#include "tools/plot/plot_spectrum.h"
 
 #include <algorithm>
 #include <cmath>

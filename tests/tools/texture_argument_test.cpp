@@ -1,5 +1,5 @@
 #include "tests/support/catch.h"
-#include "tools/texture_argument.h"
+#include "tools/arguments/texture_argument.h"
 
 using namespace haptel::tools;
 

@@ -1,0 +1,49 @@
+#include "tools/arguments/texture_argument.h"
+
+#include <fmt/format.h>
+
+namespace haptel::tools {
+
+Parsed<TextureArgument> parse_texture_argument(std::string_view text)
+{
+    const auto colon = text.rfind(':');
+    if (colon == text.npos || colon == 0 || colon + 1 == text.size())
+        return {{}, fmt::format("expected FILE:NAME, such as rock.haptel:rock, found '{}'", text)};
+    return {{std::string(text.substr(0, colon)), std::string(text.substr(colon + 1))}, {}};
+}
+
+CLI::Option* add_texture(CLI::App& app, TextureArgument& texture)
+{
+    return app
+        .add_option_function<std::string>(
+            "texture",
+            [&texture](const std::string& text) {
+                Parsed<TextureArgument> argument = parse_texture_argument(text);
+                if (!argument) throw CLI::ValidationError(argument.error);
+                texture = std::move(argument.value);
+            },
+            "A texture of a file")
+        ->required()
+        ->type_name("FILE:NAME");
+}
+
+CLI::Option* add_parameters(CLI::App& app, ParameterTexts& parameters)
+{
+    return app
+        .add_option_function<std::vector<std::string>>(
+            "--set",
+            [&parameters](const std::vector<std::string>& texts) {
+                for (const std::string& text : texts) {
+                    const auto equals = text.find('=');
+                    if (equals == text.npos || equals == 0 || equals + 1 == text.size())
+                        throw CLI::ValidationError(
+                            fmt::format("--set: expected name=value, such as depth=60um, found '{}'", text));
+                    parameters.emplace_back(text.substr(0, equals), text.substr(equals + 1));
+                }
+            },
+            "Value of a parameter; may be repeated")
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false);
+}
+
+} // namespace haptel::tools

@@ -1,0 +1,275 @@
+// haptel bench: figures with the machine they were taken on.
+#include "bench/machine.h"
+#include "tools/arguments/precisions.h"
+#include "tools/arguments/quantity.h"
+#include "tools/command.h"
+#include "tools/output/terminal.h"
+#include "tools/report/bench_accuracy.h"
+#include "tools/report/bench_batch.h"
+#include "tools/report/bench_compile.h"
+#include "tools/report/bench_math.h"
+#include "tools/report/bench_scale.h"
+#include "tools/report/bench_skip.h"
+#include "tools/report/bench_tick.h"
+#include "tools/report/bench_verdict.h"
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fstream>
+#include <memory>
+#include <thread>
+
+namespace haptel::tools {
+namespace {
+
+struct BenchOptions {
+    std::string what = "compile", out;
+    bool quick = false, json = false;
+    // compile, in a process that another one has started: this texture alone, edited so
+    std::string first;
+    uint32_t edit = 0;
+    // of batch alone
+    std::vector<const CLI::Option*> of_batch;
+    std::vector<std::string> paths;
+    ParameterTexts parameters;
+    std::string precision = "mixed";
+    size_t points = 1'000'000;
+    double box_m = 0.05;
+};
+
+// What one kind of figures gives: rows for scripts, a table for people, and files beside them.
+struct Figures {
+    Json rows = Json::array();
+    std::vector<std::pair<std::string, Json>> more; // by name
+    std::string table, csv;
+    std::vector<std::pair<std::string, std::shared_ptr<plot::Picture>>> pictures; // by file name
+    std::string error;                                                            // why there are none
+};
+
+Figures compile_figures(const BenchOptions& options)
+{
+    const std::vector<bench::CompileRow> rows = compile_rows(options.quick);
+    Figures figures;
+    for (const bench::CompileRow& row : rows) figures.rows.push_back(to_json(row));
+    figures.more.emplace_back("growth", bench::growth(rows, &bench::CompileRow::front_end));
+    figures.more.emplace_back("growth_to_code", bench::growth(rows, &bench::CompileRow::warm));
+    figures.table = to_table(rows);
+    figures.csv = to_csv(rows);
+    return figures;
+}
+
+Figures accuracy_figures(const BenchOptions& options, const std::string& machine)
+{
+    Progress progress;
+    const std::vector<bench::AccuracyRow> rows =
+        bench::bench_accuracy(options.quick, [&](double share) { progress.show(share); });
+    Figures figures;
+    for (const bench::AccuracyRow& row : rows) figures.rows.push_back(to_json(row));
+    figures.more.emplace_back("alternatives", alternatives_json(rows));
+    figures.more.emplace_back("differences", differences_json(rows));
+    figures.table = to_table(rows);
+    figures.csv = to_csv(rows);
+    for (const auto& [name, shown] :
+         {std::pair{"accuracy.png", Shown::gradient}, {"accuracy_height.png", Shown::height}})
+        figures.pictures.emplace_back(name, std::make_shared<plot::Picture>(draw_accuracy(rows, shown, machine)));
+    return figures;
+}
+
+Figures batch_figures(const BenchOptions& options)
+{
+    Figures figures;
+    const BatchTextures found =
+        batch_textures(options.paths, options.parameters, options.box_m, precision_of(options.precision));
+    figures.error = found.error;
+    if (figures.error.empty() && found.textures.empty())
+        figures.error = fmt::format("there is no texture in {}: name files or folders of them, haptel bench batch PATH",
+                                    fmt::join(options.paths, ", "));
+    if (!figures.error.empty()) return figures;
+    bench::BatchOptions batch{options.points, 9, {1}, options.box_m};
+    if (const unsigned all = std::thread::hardware_concurrency(); all > 1) batch.threads.push_back(all);
+    if (options.quick) batch.points = std::min<size_t>(batch.points, 50'000), batch.rounds = 3;
+    Progress progress;
+    const std::vector<bench::BatchRow> rows =
+        bench::bench_batch(found.textures, batch, [&](double share) { progress.show(share); });
+    for (const bench::BatchRow& row : rows) figures.rows.push_back(to_json(row, options.precision));
+    Json means = Json::array();
+    for (const bench::BatchSummary& summary : bench::summary(rows)) means.push_back(to_json(summary));
+    figures.more.emplace_back("points", batch.points);
+    figures.more.emplace_back("means", means);
+    figures.table = fmt::format("{} points, {}, {} lanes\n", batch.points, options.precision, rows[0].lanes);
+    figures.table += to_table(rows);
+    figures.csv = to_csv(rows, options.precision);
+    return figures;
+}
+
+Figures math_figures(const BenchOptions& options)
+{
+    Progress progress;
+    const std::vector<bench::MathRow> rows =
+        bench::bench_math(options.quick, [&](double share) { progress.show(share); });
+    Figures figures;
+    for (const bench::MathRow& row : rows) figures.rows.push_back(to_json(row));
+    figures.table = to_table(rows);
+    figures.csv = to_csv(rows);
+    return figures;
+}
+
+Figures tick_figures(const BenchOptions& options)
+{
+    Progress progress;
+    const std::vector<bench::TickRow> rows =
+        bench::bench_tick(options.quick, [&](double share) { progress.show(share); });
+    Figures figures;
+    for (const bench::TickRow& row : rows) figures.rows.push_back(to_json(row));
+    figures.more.emplace_back("growth", growth_json(rows));
+    figures.table = to_table(rows) + growth_table(rows);
+    figures.csv = to_csv(rows);
+    return figures;
+}
+
+Figures skip_figures(const BenchOptions& options)
+{
+    Progress progress;
+    const std::vector<bench::SkipRow> rows =
+        bench::bench_skip(options.quick, [&](double share) { progress.show(share); });
+    Figures figures;
+    for (const bench::SkipRow& row : rows) figures.rows.push_back(to_json(row));
+    figures.table = to_table(rows);
+    figures.csv = to_csv(rows);
+    return figures;
+}
+
+Figures scale_figures(const BenchOptions& options)
+{
+    Progress progress;
+    const bench::Scale scale = bench::bench_scale(options.quick, [&](double share) { progress.show(share); });
+    Figures figures;
+    for (const bench::ScaleRow& row : scale.rows) figures.rows.push_back(to_json(row));
+    Json builds = Json::array();
+    for (const bench::BuildRow& row : scale.builds) builds.push_back(to_json(row));
+    figures.more.emplace_back("builds", builds);
+    figures.table = to_table(scale);
+    figures.csv = to_csv(scale);
+    return figures;
+}
+
+// Every line of a table tells where it was taken.
+std::string stamped(const std::string& csv, const bench::Machine& machine)
+{
+    std::string text;
+    for (size_t start = 0, end; (end = csv.find('\n', start)) != std::string::npos; start = end + 1)
+        text += csv.substr(start, end - start) +
+                (start == 0 ? ",commit,isa,cpu\n"
+                            : fmt::format(",{},{},\"{}\"\n", machine.commit, machine.isa, machine.cpu));
+    return text;
+}
+
+// Empty, or why not.
+std::string write_files(const std::string& folder, const std::string& what, const Json& json, const Figures& figures,
+                        const bench::Machine& machine)
+{
+    std::error_code ignored; // a folder that cannot be made cannot be written to either
+    std::filesystem::create_directories(folder, ignored);
+    const std::filesystem::path path(folder);
+    std::vector<std::pair<std::string, std::string>> texts{{what + ".json", to_text(json) + "\n"}};
+    if (!figures.csv.empty()) texts.emplace_back(what + ".csv", stamped(figures.csv, machine));
+    for (const auto& [name, text] : texts) {
+        std::ofstream written(path / name);
+        written << text;
+        written.close();
+        if (!written) return fmt::format("cannot write '{}'", (path / name).string());
+    }
+    for (const auto& [name, picture] : figures.pictures)
+        if (std::string error = picture->write_png((path / name).string()); !error.empty()) return error;
+    return {};
+}
+
+ExitCode run(const BenchOptions& given)
+{
+    if (!given.first.empty()) {
+        const std::optional<double> time_ms = bench::first_compile(given.first, given.edit);
+        if (time_ms) fmt::print("{}\n", *time_ms);
+        return time_ms ? ExitCode::fine : ExitCode::misuse;
+    }
+    BenchOptions options = given;
+    for (const CLI::Option* option : options.of_batch) {
+        if (options.what == "batch" || option->count() == 0) continue;
+        say_error(fmt::format("{} for haptel bench batch: the others bring their own textures and points",
+                              option->get_positional() ? "texture files are" : option->get_name() + " is"));
+        return ExitCode::misuse;
+    }
+    if (options.paths.empty()) options.paths = {"stdlib", "examples"};
+    const bench::Machine machine = bench::this_machine();
+    const std::string name = fmt::format("{}, {} threads, {}", machine.cpu, machine.cores, machine.isa);
+    const Figures figures = options.what == "compile" ? compile_figures(options)
+                            : options.what == "batch" ? batch_figures(options)
+                            : options.what == "math"  ? math_figures(options)
+                            : options.what == "tick"  ? tick_figures(options)
+                            : options.what == "skip"  ? skip_figures(options)
+                            : options.what == "scale" ? scale_figures(options)
+                                                      : accuracy_figures(options, name + ", commit " + machine.commit);
+    if (!figures.error.empty()) {
+        say_error(figures.error);
+        return ExitCode::findings;
+    }
+    Json json{{"machine", name},
+              {"isa", machine.isa},
+              {"commit", machine.commit},
+              {"flags", machine.compiler + " " + machine.flags},
+              {"rows", figures.rows}};
+    for (const auto& [key, value] : figures.more) json[key] = value;
+    if (options.json)
+        print_json(json);
+    else
+        fmt::print("{}, commit {}, {} {}\n{}", name, machine.commit, machine.compiler, machine.flags, figures.table);
+    if (options.out.empty()) return ExitCode::fine;
+    const std::string error = write_files(options.out, options.what, json, figures, machine);
+    if (error.empty()) return ExitCode::fine;
+    say_error(error);
+    return ExitCode::findings;
+}
+
+} // namespace
+
+Command bench_command(CLI::App& app)
+{
+    const auto options = std::make_shared<BenchOptions>();
+    CLI::App* command = app.add_subcommand(
+        "bench", "Figures: compile times, accuracy, batches, math, servo ticks, how they scale and what they skip");
+    command
+        ->add_option(
+            "what", options->what,
+            "compile: from text to code; accuracy: error of the gradient against time, ours and plain C++; "
+            "batch: many points of every texture; math: elementary functions; tick: of the servo, by probe, mesh "
+            "and number of objects; scale: how that grows, and what a surface costs; skip: what a tick leaves out")
+        ->check(CLI::IsMember({"compile", "accuracy", "batch", "math", "tick", "scale", "skip"}))
+        ->capture_default_str();
+    options->of_batch = {
+        command->add_option("paths", options->paths, "batch: texture files, FILE:NAME, or folders [stdlib examples]")
+            ->type_name("PATH"),
+        command->add_option("--points", options->points, "batch: so many at once")
+            ->check(CLI::Range(1, 100'000'000))
+            ->capture_default_str(),
+        command->add_option("--precision", options->precision, "batch: f64, mixed or f32")
+            ->check(CLI::IsMember({"f64", "mixed", "f32"}))
+            ->capture_default_str(),
+        add_length(*command, "--box", options->box_m, "batch: side of the cube of points round the origin [50mm]"),
+        add_parameters(*command, options->parameters)};
+    command->add_option("--first", options->first, "")->group(""); // not for people
+    command->add_option("--edit", options->edit, "")->group("");
+    command->add_flag("--quick", options->quick, "Fewer rounds and points");
+    command->add_option("--out", options->out, "Folder for WHAT.json, WHAT.csv and pictures")->type_name("DIR");
+    command->add_flag("--json", options->json, "One JSON object on standard output");
+    set_examples(*command, "  haptel bench compile\n"
+                           "  haptel bench accuracy --out figures\n"
+                           "  haptel bench batch stdlib examples --set picture=examples/scenes/waves.png\n"
+                           "  haptel bench math --out figures\n"
+                           "  haptel bench tick --quick\n"
+                           "  haptel bench scale --out figures\n"
+                           "  haptel bench skip --quick --json\n"
+                           "  haptel bench compile --quick --json --out figures");
+    return {command, [options] { return run(*options); }};
+}
+
+} // namespace haptel::tools

@@ -1,0 +1,272 @@
+// haptel check: what is wrong with a texture file, and what is known of its textures before anybody touches them.
+#include "jit/picture/image_file.h"
+#include "jit/texture/source_file.h"
+#include "lang/parameter_value.h"
+#include "stdlib/stdlib.h"
+#include "tools/arguments/quantity.h"
+#include "tools/arguments/texture_argument.h"
+#include "tools/command.h"
+#include "tools/commands/explain.h"
+#include "tools/commands/fixes.h"
+#include "tools/output/replace_file.h"
+#include "tools/output/terminal.h"
+#include "tools/report/check_report.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <memory>
+#include <optional>
+
+namespace haptel::tools {
+
+namespace {
+
+struct CheckOptions {
+    std::vector<std::string> files;
+    ParameterTexts parameters;
+    double box_m = 0.2, footprint_m = 0;
+    std::optional<double> normal_turn_per_m; // nothing: of a ball that fills the box
+    std::optional<double> error_max;         // given: a precision is picked
+    bool strict = false, fix = false, cost = false, json = false;
+    const CLI::Option* explain = nullptr; // given: nothing is checked, a code is explained
+    std::string code;                     // empty: all are listed
+};
+
+lang::CompileResult compile_text(const std::string& path, std::string text)
+{
+    lang::CompileOptions options;
+    for (const stdlib::LibraryFile& file : stdlib::library())
+        options.library.push_back({std::string(file.name), std::string(file.text)});
+    options.load_import = jit::load_beside;
+    return lang::compile({path, std::move(text)}, options);
+}
+
+lang::CompileResult compile_file(const std::string& path)
+{
+    jit::SourceText source = jit::read_source(path);
+    if (source.error.empty()) return compile_text(path, std::move(source.text));
+    lang::CompileResult result;
+    result.sources.add({path, {}});
+    result.diagnostics.error({}, "unreadable-file", source.error).hint = source.hint;
+    return result;
+}
+
+class CheckRun {
+public:
+    explicit CheckRun(const CheckOptions& chosen) : options(chosen), is_set(chosen.parameters.size(), false)
+    {
+        report.box_m = chosen.box_m;
+        report.normal_turn_per_m = chosen.normal_turn_per_m.value_or(2 / chosen.box_m);
+        report.with_cost = chosen.cost;
+    }
+
+    void check(const std::string& path);
+    // --set for a parameter that no texture has: most likely a slip of the pen.
+    void report_unknown_parameters();
+    CheckReport report;
+
+private:
+    void fix(const std::string& path);
+    // Defaults, but for what --set says.
+    std::vector<std::shared_ptr<const ir::SplineImage>> images_of(const std::string& path, const ir::Texture& texture);
+    std::vector<double> values_of(const std::string& path, const ir::Texture& texture);
+    // Measures, and says which precision is the fastest within error_max, or that none is.
+    void pick_precision(CheckedTexture& checked);
+    // A finding that belongs to no line.
+    void say(lang::ErrorCode code, std::string message, std::string hint, const std::string& file);
+
+    const CheckOptions& options;
+    std::vector<bool> is_set; // by options.parameters
+    std::vector<std::string> parameter_names;
+};
+
+void CheckRun::say(lang::ErrorCode code, std::string message, std::string hint, const std::string& file)
+{
+    fmt::print(stderr, "{}: error: {} [{}]\n", file, message, code.string());
+    if (!hint.empty()) fmt::print(stderr, "     = hint: {}\n", hint);
+    report.add({lang::Severity::error, code.string(), std::move(message), std::move(hint), file, {}, {}});
+}
+
+void CheckRun::fix(const std::string& path)
+{
+    const jit::SourceText source = jit::read_source(path);
+    if (!source.error.empty()) return; // said where it is compiled
+    const Mended mended = mend(source.text, [&](const std::string& text) { return compile_text(path, text); });
+    if (mended.applied > 0) {
+        const std::string fault = replace_file(path, mended.text);
+        if (!fault.empty())
+            return say("unwritable-file", "cannot write the mended text: " + fault, "is it write-protected?", path);
+        fmt::print(stderr, "{}: {} fixed\n", path, mended.applied);
+    }
+    if (mended.left_out > 0)
+        fmt::print(stderr, "{}: {} left for you to mend: what is proposed would lead to more findings\n", path,
+                   mended.left_out);
+}
+
+std::vector<double> CheckRun::values_of(const std::string& path, const ir::Texture& texture)
+{
+    std::vector<double> values;
+    for (const ir::Parameter& parameter : texture.parameters) {
+        double& value = values.emplace_back(parameter.value);
+        parameter_names.push_back(parameter.name);
+        for (size_t i = 0; i < options.parameters.size(); ++i) {
+            const auto& [name, text] = options.parameters[i];
+            if (name != parameter.name) continue;
+            is_set[i] = true;
+            const lang::ParameterValue parsed = lang::parse_value(text, parameter);
+            if (parsed.error.empty())
+                value = parsed.value;
+            else
+                say("bad-value", "--set " + name + " for " + texture.name + ": " + parsed.error, parsed.hint, path);
+        }
+    }
+    return values;
+}
+
+// Null where none is set: then bounds are those of any image.
+std::vector<std::shared_ptr<const ir::SplineImage>> CheckRun::images_of(const std::string& path,
+                                                                        const ir::Texture& texture)
+{
+    std::vector<std::shared_ptr<const ir::SplineImage>> images;
+    for (const ir::Parameter& parameter : texture.parameters) {
+        images.emplace_back();
+        if (parameter.type != ir::Type::image) continue;
+        for (const auto& [name, text] : options.parameters) {
+            if (name != parameter.name) continue;
+            jit::ImageFile read = jit::read_image(text);
+            if (!read.image)
+                say("bad-value", "--set " + name + " for " + texture.name + ": " + read.error, read.hint, path);
+            images.back() = std::move(read.image);
+        }
+    }
+    return images;
+}
+
+void CheckRun::pick_precision(CheckedTexture& checked)
+{
+    TextureRequest request;
+    std::fill(request.box_minimum_m, request.box_minimum_m + 3, -options.box_m / 2);
+    std::fill(request.box_maximum_m, request.box_maximum_m + 3, options.box_m / 2);
+    request.footprint_m = options.footprint_m;
+    for (const auto& value : options.parameters)
+        for (const ir::Parameter& parameter : checked.texture->parameters)
+            if (value.first == parameter.name) request.parameters.push_back(value);
+    checked.precision = {*options.error_max, jit::measure_precisions(checked.file, checked.texture->name, request)};
+    if (!checked.precision->choice.error.empty()) {
+        say("no-code", checked.texture->name + " cannot be measured: " + checked.precision->choice.error, "",
+            checked.file);
+        checked.precision.reset();
+    } else if (!checked.precision->is_met()) {
+        say("not-close-enough",
+            fmt::format("no precision of {} keeps the gradient within {:g} of its largest: {}", checked.texture->name,
+                        *options.error_max, checked.precision->closest()),
+            "allow that much, or bring coordinates nearer to the origin, --box: far away f64 has fewer digits for the "
+            "place within a wavelength",
+            checked.file);
+    }
+}
+
+void CheckRun::check(const std::string& path)
+{
+    if (options.fix) fix(path);
+    lang::CompileResult result = compile_file(path);
+    lang::Diagnostics& diagnostics = result.diagnostics;
+    if (result.program) {
+        for (const ir::Texture& texture : result.program->module.textures) {
+            const std::vector<double> values = values_of(path, texture);
+            const auto images = images_of(path, texture);
+            std::vector<const ir::SplineImage*> views;
+            std::vector<std::string> any_picture;
+            for (size_t i = 0; i < images.size(); ++i) {
+                views.push_back(images[i].get());
+                const ir::Parameter& parameter = texture.parameters[i];
+                if (parameter.type == ir::Type::image && !images[i]) any_picture.push_back(parameter.name);
+            }
+            report.textures.push_back(
+                {path, result.program, &texture,
+                 lang::analyse(*result.program, texture, values, views,
+                               {options.box_m, options.footprint_m, report.normal_turn_per_m}, diagnostics),
+                 std::move(any_picture)});
+            if (options.error_max && !diagnostics.has_errors()) pick_precision(report.textures.back());
+        }
+        diagnostics.sort_by_place();
+    }
+    if (options.strict) diagnostics.make_warnings_errors(); // last: what is known of the textures stays known
+    fmt::print(stderr, "{}", lang::render(diagnostics.all(), result.sources, stderr_has_color()));
+    report.add(result);
+}
+
+void CheckRun::report_unknown_parameters()
+{
+    if (report.textures.empty()) return; // nothing compiled, so nothing is known of parameters
+    const std::vector<std::string_view> names(parameter_names.begin(), parameter_names.end());
+    for (size_t i = 0; i < is_set.size(); ++i) {
+        if (is_set[i]) continue;
+        const std::string& name = options.parameters[i].first;
+        const std::string_view nearest = lang::nearest_name(name, names);
+        say("unknown-parameter", "no texture has a parameter '" + name + "'",
+            nearest.empty() ? "" : "did you mean '" + std::string(nearest) + "'?", options.files.front());
+    }
+}
+
+ExitCode run(const CheckOptions& options)
+{
+    if (options.explain->count() > 0) return explain(options.code, options.json);
+    if (options.files.empty()) {
+        say_error("check needs a texture file: haptel check FILE...");
+        return ExitCode::misuse;
+    }
+    for (const std::string& path : options.files)
+        if (path.ends_with(".toml")) {
+            say_error("check reads texture files, and " + lang::printable(path) +
+                      " is a scene: haptel explore feels it, and says what is wrong with it");
+            return ExitCode::misuse;
+        }
+    CheckRun checks(options);
+    for (const std::string& path : options.files) checks.check(path);
+    checks.report_unknown_parameters();
+    const CheckReport& report = checks.report;
+    if (options.json)
+        print_json(report.to_json());
+    else
+        fmt::print("{}", report.to_text());
+    return report.count(lang::Severity::error) > 0 ? ExitCode::findings : ExitCode::fine;
+}
+
+} // namespace
+
+Command check_command(CLI::App& app)
+{
+    const auto options = std::make_shared<CheckOptions>();
+    CLI::App* command =
+        app.add_subcommand("check", "What is wrong with texture files, and how high their textures get");
+    command->add_option("files", options->files, "Texture files")->type_name("FILE");
+    add_length(*command, "--box", options->box_m, "Side of the cube round the origin that bounds are for [0.2m]");
+    add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
+               NumberRange::not_negative);
+    add_number(*command, "--normal-turn", options->normal_turn_per_m,
+               "How fast the object's normals turn at most, radians per metre [2 / box: a ball that fills it]",
+               NumberRange::not_negative)
+        ->type_name("PER_M");
+    add_parameters(*command, options->parameters);
+    add_number(*command, "--max-error", options->error_max,
+               "Pick the fastest precision whose gradient is off by at most this share of its largest, by measurement",
+               NumberRange::positive)
+        ->type_name("SHARE");
+    command->add_flag("--strict", options->strict, "Warnings are errors");
+    command->add_flag("--fix", options->fix, "Write what the compiler proposes into the files");
+    options->explain = command->add_option("--explain", options->code, "What a code means; without CODE all are listed")
+                           ->expected(0, 1)
+                           ->type_name("[CODE]");
+    command->add_flag("--cost", options->cost, "What each line costs at worst, the dearest first");
+    command->add_flag("--json", options->json, "One JSON object on standard output");
+    set_examples(*command, "  haptel check rock.haptel\n"
+                           "  haptel check --strict examples/textures/*.haptel\n"
+                           "  haptel check rock.haptel --box 50mm --set depth=0.1mm --json\n"
+                           "  haptel check --max-error 1e-5 rock.haptel\n"
+                           "  haptel check --fix rock.haptel\n"
+                           "  haptel check --explain dimension");
+    return {command, [options] { return run(*options); }};
+}
+
+} // namespace haptel::tools

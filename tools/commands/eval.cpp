@@ -1,0 +1,243 @@
+// haptel eval: height and gradient of a texture at points, by any engine.
+#include "jit/check/oracle.h"
+#include "lang/abi/evaluate.h"
+#include "tools/arguments/precisions.h"
+#include "tools/arguments/texture_argument.h"
+#include "tools/command.h"
+#include "tools/output/json.h"
+#include "tools/output/terminal.h"
+#include "tools/report/eval_table.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace haptel::tools {
+
+namespace {
+
+struct EvalOptions {
+    TextureArgument texture;
+    ParameterTexts parameters;
+    std::optional<glm::dvec3> at_m;
+    std::string points;
+    glm::dvec3 normal{0, 0, 1};
+    glm::dvec2 uv{0};
+    double footprint_m = 0, box_m = 0.2;
+    std::string engine = "jit", precision = "f64";
+    bool json = false;
+};
+
+// What one engine says of one point: numbers as they are to be printed.
+struct Evaluated {
+    std::string height_m, gradient[3], stiffness_scale, friction_scale;
+    uint32_t faults = 0;
+};
+
+using Evaluate = std::function<std::vector<Evaluated>(std::span<const haptel_point>)>;
+
+struct Engine {
+    Evaluate evaluate;   // empty: what is wrong has been said
+    uint32_t writes = 0; // HAPTEL_WRITES_* of the texture
+};
+
+std::string shortest(double value)
+{
+    return fmt::format("{}", value);
+}
+
+Evaluated shown(const haptel_sample& sample)
+{
+    return {shortest(sample.height_m),
+            {shortest(sample.gradient[0]), shortest(sample.gradient[1]), shortest(sample.gradient[2])},
+            shortest(sample.stiffness_scale),
+            shortest(sample.friction_scale),
+            sample.faults};
+}
+
+Evaluated shown(const jit::OracleSample& sample)
+{
+    const auto& g = sample.gradient_digits;
+    return {sample.height_digits, {g[0], g[1], g[2]}, sample.stiffness_digits, sample.friction_digits, sample.faults};
+}
+
+Evaluate make_engine(const std::string& name, const std::shared_ptr<const jit::CompiledProgram>& program,
+                     const TextureBinding& binding)
+{
+    const auto one_by_one = [](auto sample) {
+        return [sample](std::span<const haptel_point> points) {
+            std::vector<Evaluated> found;
+            for (const haptel_point& point : points) found.push_back(shown(sample(point)));
+            return found;
+        };
+    };
+    if (name == "interpreter")
+        return one_by_one([=](const haptel_point& point) { return jit::interpret_sample(*program, binding, point); });
+    if (name == "oracle")
+        return one_by_one([oracle = std::make_shared<jit::Oracle>(program, binding)](const haptel_point& point) {
+            return oracle->sample(point);
+        });
+    return [=](std::span<const haptel_point> points) {
+        std::vector<haptel_sample> samples(points.size());
+        evaluate(binding, points, samples);
+        std::vector<Evaluated> found;
+        for (const haptel_sample& sample : samples) found.push_back(shown(sample));
+        return found;
+    };
+}
+
+haptel_point point_at(const EvalOptions& options, const glm::dvec3& p_m)
+{
+    haptel_point point{};
+    for (int axis = 0; axis < 3; ++axis) {
+        point.p[axis] = p_m[axis];
+        point.n[axis] = options.normal[axis];
+    }
+    for (int axis = 0; axis < 2; ++axis) point.uv[axis] = options.uv[axis];
+    return point;
+}
+
+// The texture, compiled and bound to a cube round the origin. Says what is wrong.
+Engine open_engine(const EvalOptions& options)
+{
+    jit::TextureOptions compile;
+    compile.entries = options.points.empty() ? jit::Entries::height_gradient : jit::Entries::both_and_batches;
+    compile.precision = precision_of(options.precision); // reading and writing text takes longer than f64
+    compile.iterations_in_lanes = false;                 // a point's numbers are the same alone and among others
+    const jit::CompiledTextures compiled = jit::compile_texture_file(options.texture.file, compile);
+    fmt::print(stderr, "{}", compiled.rendered(stderr_has_color()));
+    if (!compiled.program) return {};
+    TextureRequest request;
+    request.parameters = options.parameters;
+    request.footprint_m = options.footprint_m;
+    for (int axis = 0; axis < 3; ++axis) {
+        request.box_minimum_m[axis] = -options.box_m / 2;
+        request.box_maximum_m[axis] = options.box_m / 2;
+    }
+    TextureResult bound = jit::make_binding(compiled.program, options.texture.name, request, jit::Unbounded::allowed);
+    fmt::print(stderr, "{}", bound.diagnostics);
+    if (!bound.binding) return {};
+    return {make_engine(options.engine, compiled.program, *bound.binding), bound.binding->texture->writes};
+}
+
+// Written by hand because the oracle's numbers have more digits than a JSON library's.
+void print_point(const EvalOptions& options, uint32_t writes, const Evaluated& point)
+{
+    std::string outputs; // only what the texture writes
+    const auto add_output = [&](uint32_t bit, const char* name, const std::string& value) {
+        if (writes & bit)
+            outputs += fmt::format(fmt::runtime(options.json ? "  \"{}\": {},\n" : "{} {}\n"), name, value);
+    };
+    add_output(HAPTEL_WRITES_STIFFNESS_SCALE, "stiffness_scale", point.stiffness_scale);
+    add_output(HAPTEL_WRITES_FRICTION_SCALE, "friction_scale", point.friction_scale);
+    if (!options.json) {
+        fmt::print("height_m {}\ngradient {} {} {}\n{}faults {}\n", point.height_m, point.gradient[0],
+                   point.gradient[1], point.gradient[2], outputs, point.faults);
+        return;
+    }
+    fmt::print("{{\n  \"file\": {},\n  \"name\": {},\n  \"engine\": \"{}\",\n  \"height_m\": {},\n"
+               "  \"gradient\": [{}, {}, {}],\n{}  \"faults\": {}\n}}\n",
+               to_text(options.texture.file), to_text(options.texture.name), options.engine, point.height_m,
+               point.gradient[0], point.gradient[1], point.gradient[2], outputs, point.faults);
+}
+
+ExitCode run(const EvalOptions& options)
+{
+    if (options.precision != "f64" && options.engine != "jit") {
+        say_error(fmt::format("precision {} is of machine code: the {} has its own (leave out --engine or --precision)",
+                              options.precision, options.engine));
+        return ExitCode::misuse;
+    }
+    PointTable table;
+    if (!options.points.empty()) {
+        table = read_points(options.points);
+        if (!table.error.empty()) {
+            say_error(table.error);
+            return ExitCode::findings;
+        }
+    }
+    const Engine engine = open_engine(options);
+    if (!engine.evaluate) return ExitCode::findings;
+    if (options.at_m) {
+        const haptel_point point = point_at(options, *options.at_m);
+        print_point(options, engine.writes, engine.evaluate({&point, 1})[0]);
+        return ExitCode::fine;
+    }
+    fmt::print("{},height_m,gx,gy,gz\n", table.header);
+    constexpr std::size_t rows_at_once = 4096;
+    std::vector<haptel_point> points;
+    for (std::size_t first = 0; first < table.rows.size(); first += points.size()) {
+        points.clear();
+        for (std::size_t i = first; i < std::min(first + rows_at_once, table.rows.size()); ++i)
+            points.push_back(point_at(options, table.rows[i].p_m));
+        const std::vector<Evaluated> found = engine.evaluate(points);
+        for (std::size_t i = 0; i < found.size(); ++i)
+            fmt::print("{},{},{},{},{}\n", table.rows[first + i].text, found[i].height_m, found[i].gradient[0],
+                       found[i].gradient[1], found[i].gradient[2]);
+    }
+    return ExitCode::fine;
+}
+
+template <typename T>
+CLI::Option* add_parsed(CLI::App& app, const std::string& name, const std::string& type,
+                        Parsed<T> (*parse)(std::string_view), std::function<void(const T&)> set,
+                        const std::string& description)
+{
+    return app
+        .add_option_function<std::string>(
+            name,
+            [parse, set = std::move(set)](const std::string& text) {
+                const Parsed<T> parsed = parse(text);
+                if (!parsed) throw CLI::ValidationError(parsed.error);
+                set(parsed.value);
+            },
+            description)
+        ->type_name(type);
+}
+
+} // namespace
+
+Command eval_command(CLI::App& app)
+{
+    const auto options = std::make_shared<EvalOptions>();
+    CLI::App* command = app.add_subcommand("eval", "Height and gradient of a texture at one point or many");
+    add_texture(*command, options->texture);
+    auto* where = command->add_option_group("Points");
+    auto* at = add_parsed<glm::dvec3>(
+        *where, "--at", "X,Y,Z", parse_point, [options](const glm::dvec3& p_m) { options->at_m = p_m; }, "One point");
+    where
+        ->add_option("--points", options->points, "CSV with the columns x,y,z in metres; results go to standard output")
+        ->type_name("FILE.csv");
+    where->require_option(1);
+    add_parameters(*command, options->parameters);
+    add_parsed<glm::dvec3>(
+        *command, "--normal", "X,Y,Z", parse_vector, [options](const glm::dvec3& n) { options->normal = n; },
+        "The input n [0,0,1]");
+    add_parsed<glm::dvec2>(
+        *command, "--uv", "U,V", parse_vector2, [options](const glm::dvec2& uv) { options->uv = uv; },
+        "The input uv [0,0]");
+    add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
+               NumberRange::not_negative);
+    add_length(*command, "--box", options->box_m, "Side of the cube that center and extent describe [0.2m]");
+    command
+        ->add_option("--engine", options->engine,
+                     "jit: machine code; interpreter: the same bits, slowly; oracle: 113 bits, 36 digits")
+        ->check(CLI::IsMember({"jit", "interpreter", "oracle"}))
+        ->capture_default_str();
+    command
+        ->add_option("--precision", options->precision,
+                     "Of the code: f64; mixed: f64 where a place within a cell rests on it, else f32; f32")
+        ->check(CLI::IsMember({"f64", "mixed", "f32"}))
+        ->capture_default_str();
+    command->add_flag("--json", options->json, "One JSON object on standard output")->needs(at);
+    set_examples(*command, "  haptel eval rock.haptel:rock --at 1mm,2mm,0\n"
+                           "  haptel eval rock.haptel:rock --at 0,0,0 --set octaves=3 --engine oracle --json\n"
+                           "  haptel eval rock.haptel:rock --points scan.csv > scan_with_heights.csv");
+    return {command, [options] { return run(*options); }};
+}
+
+} // namespace haptel::tools

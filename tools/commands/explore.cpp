@@ -1,0 +1,189 @@
+// haptel explore: the main job. A scene, a device, textures that follow their files, and the servo between them.
+#include "device/device_factory.h"
+#include "runtime/files/scene_file.h"
+#include "runtime/servo/allocation_count.h"
+#include "tools/arguments/quantity.h"
+#include "tools/command.h"
+#include "tools/commands/explore_hands.h"
+#include "tools/commands/explore_scene.h"
+#include "tools/commands/explore_textures.h"
+#include "tools/output/terminal.h"
+#include "tools/report/explore_status.h"
+
+#include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <cstddef>
+#include <filesystem>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <thread>
+#include <vector>
+
+namespace haptel::tools {
+
+namespace {
+
+struct ExploreOptions {
+    std::string scene, out;
+    std::vector<std::string> devices; // in place of the scene's, from the first on
+    std::string clock = "wall";
+    double seconds = std::numeric_limits<double>::infinity();
+    bool json = false;
+};
+
+volatile std::sig_atomic_t interrupted = 0;
+
+// The first Ctrl-C, or the terminal's end, asks for a clean end; the second one gets what it always gets.
+extern "C" void on_interrupt(int signal)
+{
+    interrupted = 1;
+    std::signal(signal, SIG_DFL);
+}
+
+// A scene ready to run, and what the pictures want to know of it.
+struct Exploration {
+    runtime::LoadedScene loaded;
+    std::vector<plot::SurfaceBelow> surfaces; // as each hand sees them
+};
+
+std::optional<Exploration> load(const ExploreOptions& options, ExploreTextures& textures,
+                                runtime::SurfaceCache& surfaces)
+{
+    Exploration exploration;
+    const auto devices = [&](runtime::DeviceRequest request) {
+        const std::size_t hand = exploration.surfaces.size();
+        exploration.surfaces.push_back(request.surface_below);
+        const bool replaced = hand < options.devices.size();
+        if (replaced) request.name = options.devices[hand];
+        runtime::DeviceResult opened = device::open_device(request);
+        if (replaced && !opened.device)
+            opened.error = fmt::format("`--device {}` in its place: {}", request.name, opened.error);
+        return opened;
+    };
+    exploration.loaded = runtime::load_scene(options.scene, textures.resolver(), devices, &surfaces);
+    const runtime::LoadedScene& loaded = exploration.loaded;
+    fmt::print(stderr, "{}", loaded.diagnostics);
+    if (!loaded.scene || loaded.hands.empty()) return std::nullopt;
+    if (options.devices.size() > loaded.hands.size()) {
+        say_error(
+            fmt::format("--device is given {} times, but the scene has {}: it takes the place of the scene's, in "
+                        "their order",
+                        options.devices.size(),
+                        loaded.hands.size() == 1 ? "one device" : fmt::format("{} devices", loaded.hands.size())));
+        return std::nullopt;
+    }
+    return exploration;
+}
+
+runtime::ServoOptions servo_options(const ExploreOptions& options)
+{
+    runtime::ServoOptions servo;
+    const bool wall = options.clock == "wall";
+    servo.clock = wall ? runtime::ServoClock::wall : runtime::ServoClock::virtual_time;
+    servo.seconds = options.seconds;
+    servo.wait_for_reader = !wall;
+    servo.allocation_count = runtime::allocations_of_this_thread;
+    return servo;
+}
+
+ExitCode explore(const ExploreOptions& options)
+{
+    interrupted = 0;
+    std::signal(SIGINT, on_interrupt);
+    std::signal(SIGTERM, on_interrupt);
+    if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN); // nohup: the terminal may go
+
+    ExploreTextures textures;
+    runtime::SurfaceCache surfaces;
+    std::optional<Exploration> exploration = load(options, textures, surfaces);
+    if (!exploration) return ExitCode::findings;
+    runtime::LoadedScene& loaded = exploration->loaded;
+    textures.watch(*loaded.scene);
+    ExploreHands hands(std::move(loaded.scene), std::move(loaded.hands), std::move(exploration->surfaces),
+                       servo_options(options), options.out);
+    if (!hands.error().empty()) {
+        say_error(hands.error());
+        return ExitCode::findings;
+    }
+
+    ExploreStatus status(stderr_is_terminal());
+    std::optional<ExploreScene> scene(std::in_place, options.scene, std::move(loaded.meshes), std::move(loaded.probes),
+                                      surfaces, textures, hands);
+    hands.start();
+    while (hands.running()) {
+        if (interrupted) hands.request_stop();
+        if (const std::string messages = scene->take_messages() + textures.take_messages(); !messages.empty())
+            status.say(messages);
+        if (!hands.drain(status)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    const std::string last_messages = scene->take_messages();
+    scene.reset();
+    status.say(last_messages);
+    ExploreOutcome outcome;
+    outcome.scene = std::filesystem::path(options.scene).filename().string();
+    outcome.clock = options.clock;
+    outcome.hands = hands.wait(status);
+    status.say(textures.take_messages());
+    outcome.textures_compiled = textures.compiled();
+
+    hands.finish(outcome);
+    if (!hands.error().empty()) say_error(hands.error());
+    if (options.json)
+        print_json(to_json(outcome));
+    else
+        fmt::print("{}", to_lines(outcome));
+    const bool faulted = std::any_of(outcome.hands.begin(), outcome.hands.end(), [](const HandOutcome& hand) {
+        return hand.servo.state == runtime::ServoState::faulted;
+    });
+    return faulted || !hands.error().empty() ? ExitCode::findings : ExitCode::fine;
+}
+
+void add_seconds(CLI::App& command, double& seconds)
+{
+    command
+        .add_option_function<std::string>(
+            "--seconds",
+            [&seconds](const std::string& text) {
+                const Parsed<double> number = parse_number(text);
+                if (!number) throw CLI::ValidationError(number.error);
+                if (!(number.value > 0)) throw CLI::ValidationError(fmt::format("'{}' seconds is no time", text));
+                seconds = number.value;
+            },
+            "Ends after this time; without it, Ctrl-C does")
+        ->type_name("N");
+}
+
+} // namespace
+
+Command explore_command(CLI::App& app)
+{
+    const auto options = std::make_shared<ExploreOptions>();
+    CLI::App* command =
+        app.add_subcommand("explore", "Feel a scene: servo, device and textures that follow their files");
+    command->add_option("scene", options->scene, "Scene file (TOML)")->required()->type_name("SCENE.toml");
+    add_seconds(*command, options->seconds);
+    command
+        ->add_option(
+            "--device", options->devices,
+            fmt::format("Instead of the scene's, once for each of them: {}", fmt::join(device::device_names(), ", ")))
+        ->type_name("TEXT")
+        ->allow_extra_args(false);
+    command->add_option("--clock", options->clock, "virtual: as fast as possible, the same forces on every run")
+        ->check(CLI::IsMember({"wall", "virtual"}))
+        ->capture_default_str();
+    command
+        ->add_option("--out", options->out,
+                     "Folder for trace.csv (trace_2.csv ... of further devices), report.json and pictures")
+        ->type_name("DIR");
+    command->add_flag("--json", options->json, "Report as JSON on standard output");
+    set_examples(*command, "  haptel explore examples/scenes/rock.toml\n"
+                           "  haptel explore scene.toml --seconds 10 --out run --json\n"
+                           "  haptel explore scene.toml --device replay:run/trace.csv --clock virtual");
+    return {command, [options] { return explore(*options); }};
+}
+
+} // namespace haptel::tools

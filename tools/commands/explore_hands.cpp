@@ -1,0 +1,95 @@
+#include "tools/commands/explore_hands.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace haptel::tools {
+
+ExploreHands::ExploreHands(std::shared_ptr<const runtime::Scene> scene, std::vector<runtime::LoadedHand> hands,
+                           std::vector<plot::SurfaceBelow> surfaces, const runtime::ServoOptions& options,
+                           const std::string& folder)
+    : scene_(std::move(scene)), folder_(folder), newest_(hands.size())
+{
+    std::vector<runtime::ServoThread*> servos;
+    for (std::size_t i = 0; i < hands.size(); ++i) {
+        runtime::ServoOptions own = options;
+        own.hand = hands[i].settings;
+        Hand& hand = hands_.emplace_back();
+        hand.device = hands[i].device->info().name;
+        hand.surface = std::move(surfaces[i]);
+        hand.servo = std::make_unique<runtime::ServoThread>(scene_, std::move(hands[i].device), own);
+        servos.push_back(hand.servo.get());
+        if (!folder.empty()) hand.files.emplace(folder, i);
+    }
+    if (options.clock == runtime::ServoClock::virtual_time) turns_.emplace(std::move(servos));
+}
+
+void ExploreHands::start()
+{
+    if (turns_) return turns_->start();
+    for (Hand& hand : hands_) hand.servo->start();
+}
+
+bool ExploreHands::running() const
+{
+    return std::any_of(hands_.begin(), hands_.end(), [](const Hand& hand) { return hand.servo->running(); });
+}
+
+void ExploreHands::request_stop()
+{
+    for (Hand& hand : hands_) hand.servo->request_stop();
+}
+
+std::string ExploreHands::publish(const std::shared_ptr<const runtime::Scene>& scene)
+{
+    std::string refused;
+    for (Hand& hand : hands_) refused = hand.servo->publish(scene); // of one rate: all say the same
+    return refused;
+}
+
+void ExploreHands::collect()
+{
+    for (Hand& hand : hands_) hand.servo->collect();
+}
+
+bool ExploreHands::drain(ExploreStatus& status)
+{
+    bool any = false;
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+        runtime::Telemetry& telemetry = hands_[i].servo->telemetry();
+        // At most one ring: a servo that is faster than its reader must not keep it from hearing Ctrl-C.
+        for (std::size_t left = telemetry.capacity(); left > 0 && telemetry.pop(newest_[i]); --left) {
+            any = true;
+            if (hands_[i].files) hands_[i].files->add(newest_[i]);
+        }
+    }
+    if (any) status.show(newest_);
+    return any;
+}
+
+std::vector<HandOutcome> ExploreHands::wait(ExploreStatus& status)
+{
+    if (turns_) turns_->wait();
+    std::vector<HandOutcome> outcomes;
+    for (Hand& hand : hands_) outcomes.push_back({hand.device, hand.servo->wait()});
+    drain(status);
+    return outcomes;
+}
+
+void ExploreHands::finish(const ExploreOutcome& outcome)
+{
+    for (std::size_t i = 0; i < hands_.size(); ++i)
+        if (hands_[i].files)
+            hands_[i].files->finish(outcome.scene, outcome.hands[i].servo, scene_->servo.force_limit_n,
+                                    hands_[i].surface);
+    if (!folder_.empty()) report_error_ = write_report(folder_, outcome);
+}
+
+std::string ExploreHands::error() const
+{
+    for (const Hand& hand : hands_)
+        if (hand.files && !hand.files->error().empty()) return hand.files->error();
+    return report_error_;
+}
+
+} // namespace haptel::tools

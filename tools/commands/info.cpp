@@ -1,0 +1,158 @@
+// haptel info: what there is to call, and what a file's textures are.
+#include "jit/texture/source_file.h"
+#include "lang/compile.h"
+#include "lang/syntax/parser.h"
+#include "stdlib/stdlib.h"
+#include "tools/command.h"
+#include "tools/commands/reference.h"
+#include "tools/output/terminal.h"
+#include "tools/report/check_report.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <memory>
+
+namespace haptel::tools {
+
+namespace {
+
+struct InfoOptions {
+    std::string what; // empty: everything there is to call
+    bool json = false, markdown = false;
+};
+
+bool is_file(const std::string& what)
+{
+    return what.find(".haptel") != std::string::npos || what.find('/') != std::string::npos;
+}
+
+ExitCode show_entry(const InfoOptions& options)
+{
+    const std::vector<Entry> entries = reference();
+    std::vector<std::string_view> names;
+    Json found = Json::array();
+    std::string text;
+    for (const Entry& entry : entries) {
+        names.push_back(entry.name);
+        if (entry.name != options.what) continue;
+        found.push_back(to_json(entry));
+        text += (text.empty() ? "" : "\n") + to_text(entry);
+    }
+    if (found.empty()) {
+        const std::string_view meant = lang::nearest_name(options.what, names);
+        say_error(fmt::format("there is no function '{}': {}", lang::printable(options.what),
+                              meant.empty() ? "haptel info lists them all; a file ends in .haptel"
+                                            : fmt::format("did you mean '{}'?", meant)));
+        return ExitCode::misuse;
+    }
+    if (options.json)
+        print_json({{"functions", std::move(found)}});
+    else
+        fmt::print("{}", text);
+    return ExitCode::fine;
+}
+
+ExitCode show_all(const InfoOptions& options)
+{
+    const std::vector<Entry> entries = reference();
+    if (options.json) {
+        Json all = Json::array();
+        for (const Entry& entry : entries) all.push_back(to_json(entry));
+        print_json({{"functions", std::move(all)}});
+    } else {
+        fmt::print("{}", options.markdown ? to_markdown(entries) : to_list(entries));
+    }
+    return ExitCode::fine;
+}
+
+// Values and ranges as the author wrote them.
+std::string to_text(const lang::SourceSet& sources, const lang::ast::TextureParameter& parameter)
+{
+    const auto text = [&](const lang::ast::ExpressionPtr& part) { return std::string(sources.text(part->span)); };
+    std::string line = fmt::format("  {} {}", parameter.type.base.text, parameter.name.text);
+    if (parameter.value) line += " = " + text(parameter.value);
+    if (parameter.minimum && parameter.maximum)
+        line += fmt::format(" in {} .. {}", text(parameter.minimum), text(parameter.maximum));
+    if (!parameter.doc.empty()) line += "  // " + parameter.doc;
+    return line + "\n";
+}
+
+std::string to_text(const lang::SourceSet& sources, const lang::ast::Texture& tree, const ir::Texture& texture)
+{
+    std::string text = fmt::format("texture {}\n", texture.name);
+    if (!texture.doc.empty()) text += "  " + texture.doc + "\n";
+    for (const lang::ast::TextureParameter& parameter : tree.parameters)
+        if (!parameter.is_output) text += to_text(sources, parameter);
+    const std::vector<std::string> inputs = inputs_of(texture), outputs = outputs_of(texture);
+    text += fmt::format("  reads {}\n", inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")));
+    if (!outputs.empty()) text += fmt::format("  writes {}\n", fmt::join(outputs, ", "));
+    return text;
+}
+
+ExitCode show_file(const InfoOptions& options)
+{
+    const size_t colon = options.what.rfind(".haptel:");
+    const std::string path = colon == std::string::npos ? options.what : options.what.substr(0, colon + 7);
+    const std::string wanted = colon == std::string::npos ? "" : options.what.substr(colon + 8);
+    jit::SourceText source = jit::read_source(path);
+    if (!source.error.empty()) {
+        say_error(fmt::format("{}: {}", path, source.error));
+        return ExitCode::findings;
+    }
+    lang::CompileOptions compile_options;
+    for (const stdlib::LibraryFile& file : stdlib::library())
+        compile_options.library.push_back({std::string(file.name), std::string(file.text)});
+    compile_options.load_import = jit::load_beside;
+    const lang::CompileResult result = lang::compile({path, std::move(source.text)}, compile_options);
+    if (!result.program) {
+        fmt::print(stderr, "{}", lang::render(result.diagnostics.all(), result.sources, stderr_has_color()));
+        return ExitCode::findings;
+    }
+    lang::Diagnostics heard; // what the parser says was said above
+    const lang::ast::File tree = lang::parse(result.sources, 0, heard);
+    std::vector<std::string_view> names;
+    Json all = Json::array();
+    std::string text;
+    for (const ir::Texture& texture : result.program->module.textures) {
+        names.push_back(texture.name);
+        if (!wanted.empty() && texture.name != wanted) continue;
+        all.push_back(texture_json(path, texture));
+        for (const lang::ast::Texture& written : tree.textures)
+            if (written.name.text == texture.name)
+                text += (text.empty() ? "" : "\n") + to_text(result.sources, written, texture);
+    }
+    if (all.empty() && !wanted.empty()) {
+        const std::string_view meant = lang::nearest_name(wanted, names);
+        say_error(fmt::format("{} has no texture '{}'{}", path, lang::printable(wanted),
+                              meant.empty() ? "" : fmt::format(": did you mean '{}'?", meant)));
+        return ExitCode::findings;
+    }
+    if (options.json)
+        print_json({{"textures", std::move(all)}});
+    else
+        fmt::print("{}", text);
+    return ExitCode::fine;
+}
+
+} // namespace
+
+Command info_command(CLI::App& app)
+{
+    const auto options = std::make_shared<InfoOptions>();
+    CLI::App* command = app.add_subcommand("info", "What a function does, what a file's textures are, what there is");
+    command->add_option("what", options->what, "A function, or a texture file; without it all functions are listed")
+        ->type_name("NAME|FILE[:TEXTURE]");
+    command->add_flag("--json", options->json, "One JSON object on standard output");
+    command->add_flag("--markdown", options->markdown, "The reference of all functions as a page");
+    set_examples(*command, "  haptel info\n"
+                           "  haptel info fbm\n"
+                           "  haptel info examples/textures/rock.haptel\n"
+                           "  haptel info rock.haptel:rock --json");
+    return {command, [options] {
+                if (options->what.empty() || options->markdown) return show_all(*options);
+                return is_file(options->what) ? show_file(*options) : show_entry(*options);
+            }};
+}
+
+} // namespace haptel::tools

@@ -1,0 +1,137 @@
+#include "tools/report/test_report.h"
+
+#include "lang/text/source.h"
+
+#include <algorithm>
+#include <fmt/format.h>
+
+namespace haptel::tools {
+
+namespace {
+
+Json finite_or_null(const std::optional<double>& value)
+{
+    return value ? tools::finite_or_null(*value) : Json(nullptr);
+}
+
+std::string title(const TestedTexture& texture)
+{
+    return lang::printable(texture.name.empty() ? texture.file : texture.file + ":" + texture.name);
+}
+
+// Everything that is wrong with it, one line each.
+std::vector<std::string> reasons(const TestedTexture& texture)
+{
+    std::vector<std::string> lines;
+    if (!texture.fault.empty()) lines.push_back(texture.fault);
+    if (!texture.check) return lines;
+    lines.insert(lines.end(), texture.check->failures.begin(), texture.check->failures.end());
+    const double* p = texture.check->worst_point_m;
+    if (!texture.check->passed()) lines.push_back(fmt::format("gradient worst at --at {},{},{}", p[0], p[1], p[2]));
+    return lines;
+}
+
+std::string figure(const std::optional<double>& value)
+{
+    return value ? fmt::format("{:.1e}", *value) : "-";
+}
+
+std::string escaped(const std::string& text)
+{
+    std::string xml;
+    for (char c : text) {
+        switch (c) {
+        case '&': xml += "&amp;"; break;
+        case '<': xml += "&lt;"; break;
+        case '>': xml += "&gt;"; break;
+        case '"': xml += "&quot;"; break;
+        default: xml += static_cast<unsigned char>(c) < 0x20 && c != '\n' ? ' ' : c;
+        }
+    }
+    return xml;
+}
+
+} // namespace
+
+size_t TestReport::passed() const
+{
+    return static_cast<size_t>(
+        std::count_if(textures.begin(), textures.end(), [](const TestedTexture& texture) { return texture.passed(); }));
+}
+
+Json TestReport::to_json() const
+{
+    Json list = Json::array();
+    for (const TestedTexture& texture : textures) {
+        Json one;
+        one["file"] = texture.file;
+        one["name"] = texture.name.empty() ? Json(nullptr) : Json(texture.name);
+        const jit::GradientCheck none;
+        const jit::GradientCheck& check = texture.check ? *texture.check : none;
+        const auto of_check = [&](Json value) { return texture.check ? value : Json(nullptr); };
+        one["points"] = of_check(check.points);
+        one["height_error_oracle"] = finite_or_null(check.height_error_oracle);
+        one["gradient_error_oracle"] = finite_or_null(check.gradient_error_oracle);
+        one["conditioning"] = finite_or_null(check.conditioning);
+        one["gradient_error_difference"] = finite_or_null(check.gradient_error_difference);
+        one["points_at_kinks"] = of_check(check.points_at_kinks);
+        one["loop_integral"] = of_check(tools::finite_or_null(check.loop_integral_m));
+        one["not_finite"] = of_check(check.not_finite);
+        one["bounds_exceeded"] = of_check(check.bounds_exceeded);
+        constexpr const char* classes[] = {"", "jump", "C0", "C1"}; // HAPTEL_CONTINUITY_*
+        const bool is_measured = check.continuity_measured != HAPTEL_CONTINUITY_UNKNOWN;
+        one["continuity_measured"] = is_measured ? Json(classes[check.continuity_measured]) : Json(nullptr);
+        one["passed"] = texture.passed();
+        one["failures"] = reasons(texture);
+        list.push_back(std::move(one));
+    }
+    Json json;
+    json["textures"] = std::move(list);
+    json["passed"] = passed();
+    json["failed"] = failed();
+    return json;
+}
+
+std::string TestReport::to_table() const
+{
+    size_t width = 7;
+    for (const TestedTexture& texture : textures) width = std::max(width, title(texture).size());
+    std::string text = fmt::format("{:<{}}  {:>7} {:>8} {:>8} {:>8} {:>8} {:>5}  result\n", "texture", width, "points",
+                                   "height", "gradient", "differ.", "condit.", "kinks");
+    for (const TestedTexture& texture : textures) {
+        if (texture.check) {
+            const jit::GradientCheck& check = *texture.check;
+            text += fmt::format("{:<{}}  {:>7} {:>8} {:>8} {:>8} {:>8} {:>5}  {}\n", title(texture), width,
+                                check.points, figure(check.height_error_oracle), figure(check.gradient_error_oracle),
+                                figure(check.gradient_error_difference), figure(check.conditioning),
+                                check.points_at_kinks, texture.passed() ? "passed" : "FAILED");
+        } else {
+            text += fmt::format("{:<{}}  {:>7} {:>8} {:>8} {:>8} {:>8} {:>5}  FAILED\n", title(texture), width, "-",
+                                "-", "-", "-", "-", "-");
+        }
+        for (const std::string& reason : reasons(texture)) text += "    " + lang::printable(reason) + "\n";
+    }
+    return text + fmt::format("{} passed, {} failed\n", passed(), failed());
+}
+
+std::string TestReport::to_junit() const
+{
+    std::string xml = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+                                  "<testsuite name=\"haptel\" tests=\"{}\" failures=\"{}\">\n",
+                                  textures.size(), failed());
+    for (const TestedTexture& texture : textures) {
+        xml += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"",
+                           escaped(lang::printable(texture.file)), escaped(lang::printable(texture.name)),
+                           texture.seconds);
+        if (texture.passed()) {
+            xml += "/>\n";
+            continue;
+        }
+        std::string why;
+        for (const std::string& reason : reasons(texture)) why += lang::printable(reason) + "\n";
+        xml += ">\n    <failure>" + escaped(why) + "</failure>\n  </testcase>\n";
+    }
+    return xml + "</testsuite>\n";
+}
+
+} // namespace haptel::tools
