@@ -2,7 +2,7 @@
 // they are made.
 //
 // They are total: at infinities, zeros and NaN what C99 says, but for atan2, which is 0 at the origin. How exact they
-// are is elementary_error(); tests/lang/elementary_test.cpp holds them to it.
+// are is elementary_error(); tests/lang/math/elementary_test.cpp holds them to it.
 #pragma once
 
 #include "lang/ir/ir.h"

@@ -4,7 +4,7 @@
 #include "jit/check/entry_inputs.h"
 #include "tests/conformance/folder.h"
 #include "tests/conformance/request.h"
-#include "tests/jit/batch.h"
+#include "tests/jit/codegen/batch.h"
 #include "tests/support/ball.h"
 
 using namespace haptel;

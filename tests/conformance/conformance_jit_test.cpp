@@ -3,7 +3,7 @@
 #include "tests/conformance/case.h"
 #include "tests/conformance/folder.h"
 #include "tests/conformance/request.h"
-#include "tests/jit/engines.h"
+#include "tests/jit/codegen/engines.h"
 
 #include <cstring>
 

@@ -3,7 +3,7 @@
 #include "lang/ir/bounds/spline_image.h"
 #include "lang/math/spline.h"
 #include "tests/fuzz/target.h"
-#include "tests/jit/pictures.h"
+#include "tests/jit/picture/pictures.h"
 
 #include <cmath>
 

@@ -9,7 +9,7 @@
 #include "stdlib/stdlib.h"
 #include "tests/conformance/folder.h"
 #include "tests/fuzz/target.h"
-#include "tests/lang/ir_random.h"
+#include "tests/lang/ir/ir_random.h"
 
 #include <cmath>
 

@@ -3,7 +3,7 @@
 
 #include "runtime/render/renderer.h"
 #include "runtime/texture/shading.h"
-#include "tests/jit/samples.h"
+#include "tests/jit/codegen/samples.h"
 #include "tests/support/touch_scenes.h"
 
 #include <string>

@@ -1,0 +1,302 @@
+// Every kind of picture, to the last bit of its numbers; and pictures that are none.
+#include "jit/picture/image_file.h"
+#include "jit/picture/picture.h"
+#include "tests/jit/picture/pictures.h"
+#include "tests/support/catch.h"
+#include "tests/support/folder.h"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wunused-parameter"
+#include <stb/stb_image_write.h>
+#pragma GCC diagnostic pop
+
+using namespace haptel;
+using namespace haptel::test;
+
+namespace {
+
+constexpr int width = 37, height = 21;
+
+double smooth(int column, int row)
+{
+    return 0.5 + 0.3 * std::sin(0.4 * column) + 0.15 * std::cos(0.5 * row + 0.1 * column);
+}
+
+jit::Picture decoded(const std::string& bytes)
+{
+    return jit::read_picture(bytes);
+}
+
+// The largest difference to `value` over all texels.
+double furthest_from(const jit::Picture& picture, const Texels& value)
+{
+    INFO(picture.error);
+    REQUIRE(picture.error.empty());
+    REQUIRE((picture.width == width && picture.height == height));
+    REQUIRE(picture.gray.size() == size_t{width} * height);
+    double furthest = 0;
+    for (int row = 0; row < height; ++row)
+        for (int column = 0; column < width; ++column)
+            furthest = std::max(
+                furthest, std::fabs(picture.gray[static_cast<size_t>(row * width + column)] - value(column, row)));
+    return furthest;
+}
+
+// Of whole numbers of so many bits.
+Texels rounded(int bits, const Texels& value)
+{
+    const double unit = static_cast<double>((uint64_t{1} << bits) - 1);
+    return [=](int column, int row) { return std::round(value(column, row) * unit) / unit; };
+}
+
+void append(void* to, void* data, int size)
+{
+    static_cast<std::string*>(to)->append(static_cast<const char*>(data), static_cast<size_t>(size));
+}
+
+std::string jpeg(int quality)
+{
+    std::vector<uint8_t> texels;
+    for (int row = height - 1; row >= 0; --row)
+        for (int column = 0; column < width; ++column)
+            texels.push_back(static_cast<uint8_t>(std::lround(255 * smooth(column, row))));
+    std::string bytes;
+    stbi_write_jpg_to_func(append, &bytes, width, height, 1, texels.data(), quality);
+    return bytes;
+}
+
+struct Sample {
+    const char* name;
+    std::string bytes;
+};
+
+// One of each.
+std::vector<Sample> samples()
+{
+    TiffKind tiled{32, Numbers::real}, colour{8, Numbers::unsigned_whole};
+    tiled.tile = 16;
+    colour.colour = true;
+    return {{"png of 8 bits", png(width, height, 8, smooth)},
+            {"png of 16 bits", png(width, height, 16, smooth)},
+            {"jpeg", jpeg(90)},
+            {"tiff of 16 bits", tiff(width, height, {16, Numbers::unsigned_whole}, smooth)},
+            {"tiff, tiled, real", tiff(width, height, tiled, smooth)},
+            {"tiff of colours", tiff(width, height, colour, smooth)},
+            {"exr", exr(width, height, false, {{"Y"}}, smooth)},
+            {"exr of halves", exr(width, height, true, {{"B", 0.25}, {"G", 0.5}, {"R", 1}}, smooth)}};
+}
+
+} // namespace
+
+TEST_CASE("picture: PNG of 8 and 16 bits and JPEG")
+{
+    for (const int bits : {8, 16})
+        CHECK(furthest_from(decoded(png(width, height, bits, smooth)), rounded(bits, smooth)) < 1e-15);
+    CHECK(furthest_from(decoded(jpeg(100)), smooth) < 0.02);
+}
+
+TEST_CASE("picture: TIFF of 8, 16 and 32 bits, whole and real, in strips and tiles, of both byte orders")
+{
+    for (const bool little : {true, false})
+        for (const int tile : {0, 16, 64})
+            for (const Numbers numbers : {Numbers::unsigned_whole, Numbers::signed_whole, Numbers::real})
+                for (const int bits : {8, 16, 32, 64}) {
+                    const bool is_real = numbers == Numbers::real;
+                    if (is_real ? bits < 16 : bits > 32) continue;
+                    CAPTURE(little, tile, bits, int(numbers));
+                    TiffKind kind{bits, numbers};
+                    kind.little = little;
+                    kind.tile = tile;
+                    const bool is_signed = numbers == Numbers::signed_whole;
+                    const Texels value = [=](int column, int row) { // also below 0, and beyond 1 where that may be
+                        const double real = 7 * smooth(column, row) - 3;
+                        return is_real     ? bits > 16 ? real : std::round(256 * real) / 256 // a half has 10 bits
+                               : is_signed ? 2 * smooth(column, row) - 1
+                                           : smooth(column, row);
+                    };
+                    const Texels expected =
+                        is_real
+                            ? bits == 64
+                                  ? value
+                                  : [=](int column,
+                                        int row) { return static_cast<double>(static_cast<float>(value(column, row))); }
+                            : rounded(bits - is_signed, value);
+                    CHECK(furthest_from(decoded(tiff(width, height, kind, value)), expected) < 1e-15);
+                }
+}
+
+TEST_CASE("picture: colours count by their brightness, white may be zero, planes may lie apart")
+{
+    const double tinted = 0.299 * tiff_tint[0] + 0.587 * tiff_tint[1] + 0.114 * tiff_tint[2];
+    const Texels colour = [=](int column, int row) { return tinted * smooth(column, row); };
+    for (const bool apart : {false, true})
+        for (const int tile : {0, 32}) {
+            TiffKind kind{16, Numbers::unsigned_whole};
+            kind.colour = true;
+            kind.planes_apart = apart;
+            kind.tile = tile;
+            CHECK(furthest_from(decoded(tiff(width, height, kind, smooth)), colour) < 2.0 / 65535);
+        }
+    TiffKind negative{8, Numbers::unsigned_whole};
+    negative.white_is_zero = true;
+    CHECK(furthest_from(decoded(tiff(width, height, negative, smooth)), rounded(8, smooth)) < 1e-15);
+    CHECK(furthest_from(decoded(exr(width, height, false, {{"B", 0.25}, {"G", 0.5}, {"R", 1}}, smooth)), colour) <
+          1e-6);
+}
+
+TEST_CASE("picture: EXR of 16 and 32 bits, values as they are")
+{
+    const Texels value = [](int column, int row) { return 40 * smooth(column, row) - 20; };
+    const Texels as_float = [&](int column, int row) {
+        return static_cast<double>(static_cast<float>(value(column, row)));
+    };
+    CHECK(furthest_from(decoded(exr(width, height, false, {{"Y"}}, value)), as_float) == 0);
+    CHECK(furthest_from(decoded(exr(width, height, false, {{"height"}}, value)), as_float) == 0);
+    CHECK(furthest_from(decoded(exr(width, height, true, {{"A"}, {"Y"}}, value)), value) < 20 * 0x1p-10);
+    CHECK(decoded(exr(width, height, false, {{"U"}, {"V"}}, value)).error.find("no channel") != std::string::npos);
+}
+
+TEST_CASE("picture: numbers that are none are told, with their place")
+{
+    const Folder folder;
+    folder.write("hole.exr", exr(5, 4, false, {{"Y"}}, [](int column, int row) {
+                     return column == 3 && row == 1 ? std::numeric_limits<double>::quiet_NaN() : 1.0;
+                 }));
+    const jit::ImageFile read = jit::read_image(folder.file("hole.exr"));
+    CHECK_FALSE(read.image);
+    CHECK(read.error.find("'") == 0);
+    CHECK(read.error.find("texel (3, 1) is not a number") != std::string::npos);
+}
+
+TEST_CASE("picture: a file that is cut off anywhere is an error in words, or what is left of it")
+{
+    for (const Sample& sample : samples()) {
+        CAPTURE(sample.name);
+        REQUIRE(decoded(sample.bytes).error.empty());
+        size_t refused = 0, cuts = 0;
+        for (size_t size = 0; size < sample.bytes.size(); size += size < 400 ? 1 : 53) {
+            const jit::Picture picture = decoded(sample.bytes.substr(0, size));
+            CHECK(picture.error.empty() == !picture.gray.empty());
+            refused += !picture.error.empty();
+            ++cuts;
+        }
+        CHECK(2 * refused > cuts); // a JPEG's rows that are missing are gray
+    }
+}
+
+TEST_CASE("picture: a PNG that ends in its texels is told in words for people")
+{
+    const std::string whole = png(width, height, 16, smooth);
+    CHECK(decoded(whole.substr(0, whole.size() / 2)).error == "is damaged: Corrupt PNG");
+}
+
+TEST_CASE("picture: a PNM or TGA that ends before its last texel is refused, a whole one is read")
+{
+    const auto tga = [](int bits, int kind) {
+        FileBytes file;
+        for (const int byte : {2, 0, kind, 0, 0, 0, 0, 0}) file.put(static_cast<uint8_t>(byte)); // a name of 2 bytes
+        for (const int word : {0, 0, 5, 3}) file.put(static_cast<uint16_t>(word));
+        for (const int byte : {bits, 0, 104, 105}) file.put(static_cast<uint8_t>(byte));
+        return file.bytes;
+    };
+    const std::pair<std::string, size_t> heads[] = {{"P5 5 3 255\n", 1}, {"P5\n# heights\n5 3\n65535\n", 2},
+                                                    {"P6 5 3 255\n", 3}, {"P6 5 3 1000\n", 6},
+                                                    {tga(8, 3), 1},      {tga(24, 2), 3},
+                                                    {tga(32, 2), 4}};
+    for (const auto& [head, texel_bytes] : heads) {
+        CAPTURE(head, texel_bytes);
+        const size_t all = 15 * texel_bytes;
+        const jit::Picture whole = decoded(head + std::string(all, '\xff'));
+        CHECK(whole.error.empty());
+        CHECK(whole.gray.size() == 15);
+        for (const size_t there : {size_t{0}, size_t{1}, all / 2, all - 1})
+            CHECK(decoded(head + std::string(there, '\xff')).error == "is damaged: it ends before its last texel");
+    }
+}
+
+// The format's own words (netpbm.sourceforge.net/doc/pgm.html): two bytes with the most significant first where the
+// greatest value is above 255, and grays as shares of it.
+TEST_CASE("picture: what a PNM says is a share of its greatest value, in one byte or two, gray or in colour")
+{
+    const std::string in_one = "P5 2 1 200\n\x64\xc8", in_two = std::string("P5 2 1 1000\n\x01\xf4\x03\xe8", 16);
+    for (const std::string& bytes : {in_one, in_two}) {
+        const jit::Picture picture = decoded(bytes);
+        REQUIRE(picture.error.empty());
+        CHECK(picture.gray == std::vector<double>{0.5, 1});
+    }
+    const std::string colours("P6 1 2 65535\n\xff\xff\x00\x00\x00\x00\x00\x00\xff\xff\x80\x00", 25);
+    const jit::Picture coloured = decoded(colours); // red above; green and half of blue below
+    REQUIRE(coloured.error.empty());
+    CHECK(std::fabs(coloured.gray[1] - 0.299) < 1e-12);
+    CHECK(std::fabs(coloured.gray[0] - (0.587 + 0.114 * 32768 / 65535)) < 1e-12);
+    CHECK(decoded("P5 1 1 200\n\xff").gray == std::vector<double>{1}); // beyond the greatest
+    for (const char* most : {"0", "65536"})
+        CHECK(decoded(std::string("P5 1 1 ") + most + "\nab").error ==
+              "is damaged: its greatest value is not one from 1 to 65535");
+}
+
+TEST_CASE("picture: damaged files end in a picture or in words, and never in more memory than a picture may have")
+{
+    std::mt19937_64 random(1);
+    for (const Sample& sample : samples()) {
+        CAPTURE(sample.name);
+        size_t refused = 0;
+        for (int i = 0; i < 1500; ++i) {
+            std::string bytes = sample.bytes;
+            // Where the directory or the header stands more often than among the texels.
+            const size_t where = sample.name[0] == 't' && i % 2
+                                     ? bytes.size() - 1 - random() % std::min<size_t>(400, bytes.size())
+                                 : i % 3 ? random() % std::min<size_t>(400, bytes.size())
+                                         : random() % bytes.size();
+            for (size_t k = 0, count = 1 + random() % 4; k < count; ++k)
+                bytes[std::min(bytes.size() - 1, where + random() % 4)] = static_cast<char>(random());
+            const jit::Picture picture = decoded(bytes);
+            CHECK(picture.error.empty() == !picture.gray.empty());
+            CHECK(picture.gray.size() == static_cast<size_t>(picture.width * picture.height));
+            refused += !picture.error.empty();
+        }
+        CHECK(refused > 10);
+    }
+}
+
+TEST_CASE("picture: tables and numbers that some readers take without a look are refused")
+{
+    std::string bytes = jpeg(90);
+    CHECK(decoded(bytes).error.empty());
+    const size_t table = bytes.find("\xff\xc4");
+    REQUIRE(table != bytes.npos);
+    bytes[table + 5 + 15] = '\xff'; // of 16 bits: 255 codes, beside those of other lengths
+    CHECK(decoded(bytes).error == "is damaged: a Huffman table has too many codes");
+
+    CHECK(decoded("P5\n# 12345678901 of them\n2 1\n255\nab").error.empty());
+    CHECK(decoded("P5 4294967298 1 255\nab").error == "is damaged: a number in its header is too large");
+}
+
+TEST_CASE("picture: what claims to be huge is refused before memory is taken")
+{
+    for (const Sample& sample : {Sample{"tiff", tiff(2, 2, {8, Numbers::unsigned_whole}, smooth)},
+                                 Sample{"exr", exr(2, 2, false, {{"Y"}}, smooth)}}) {
+        CAPTURE(sample.name);
+        std::string bytes = sample.bytes;
+        if (sample.name[0] == 't') { // its directory's first two entries: width and height
+            uint32_t at;
+            std::memcpy(&at, bytes.data() + 4, 4);
+            for (const uint32_t entry : {0u, 1u}) bytes.replace(at + 2 + 12 * entry + 8, 4, "\xff\xff\xff\x7f");
+        } else {
+            for (size_t from = 0; (from = bytes.find("box2i", from)) != std::string::npos; ++from)
+                bytes.replace(from + 6 + 4 + 8, 8, "\xff\xff\xff\x7f\xff\xff\xff\x7f");
+        }
+        const jit::Picture picture = decoded(bytes);
+        CHECK_FALSE(picture.error.empty());
+        CHECK(picture.gray.empty());
+    }
+}

@@ -1,0 +1,372 @@
+// Text to textures: what the C interface says, bindings, the resolver, and code that goes when its program goes.
+#include "jit/check/oracle.h"
+#include "jit/texture/resolver.h"
+#include "tests/jit/codegen/samples.h"
+#include "tests/support/folder.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <thread>
+
+using namespace haptel;
+using test::compiled;
+using test::contains;
+using test::request_over;
+using test::sample_at;
+
+namespace {
+
+const char* const grooves = R"(/// Grooves.
+texture grooves(
+    /// Distance of two grooves.
+    float pitch = 0.8mm in 0.2mm .. 5mm,
+    float depth = 60um in 0um .. 200um,
+    int count = 3 in 1 .. 8,
+    uint seed = 7 in 0 .. 100,
+    bool flip = false)
+{
+    float h = 0.0;
+    for (int i = 0; i < count; ++i) h += sin(6.283185307179586 * p.x / pitch);
+    return depth * (flip ? -h : h) / 8.0 + (seed == 7u ? 0mm : 1mm);
+}
+)";
+
+} // namespace
+
+TEST_CASE("a texture's parameters, inputs and entries stand in the C interface")
+{
+    const auto program = compiled(grooves);
+    REQUIRE(program->textures().size() == 1);
+    const haptel_texture& texture = program->textures()[0];
+    CHECK(texture.abi == HAPTEL_ABI_VERSION);
+    CHECK(texture.size == sizeof(haptel_texture));
+    CHECK(std::string(texture.name) == "grooves");
+    CHECK(texture.reads == HAPTEL_READS_POINT);
+    CHECK(texture.writes == 0);
+    CHECK((texture.height && texture.height_gradient));
+    REQUIRE(texture.parameter_count == 5);
+    const haptel_parameter& pitch = texture.parameters[0];
+    CHECK(std::string(pitch.name) == "pitch");
+    CHECK(std::string(pitch.unit) == "m");
+    CHECK(std::string(pitch.doc) == "Distance of two grooves.");
+    CHECK(pitch.type == HAPTEL_FLOAT);
+    CHECK((pitch.value == 0.0008 && pitch.minimum == 0.0002 && pitch.maximum == 0.005));
+    const uint32_t types[] = {HAPTEL_FLOAT, HAPTEL_FLOAT, HAPTEL_INT, HAPTEL_UINT, HAPTEL_BOOL};
+    for (size_t i = 0; i < 5; ++i) {
+        CHECK(texture.parameters[i].type == types[i]);
+        CHECK(texture.parameters[i].offset >= sizeof(haptel_block_head));
+        CHECK(texture.parameters[i].offset < texture.block_size);
+    }
+    CHECK(program->find("grooves") == &texture);
+    CHECK(program->find("groves") == nullptr);
+}
+
+TEST_CASE("height and gradient are the closed form's, and parameters come from the block")
+{
+    const auto program = compiled(grooves);
+    auto request = request_over(0.05);
+    const auto value = [&](const TextureBinding& binding, double x) { return sample_at(binding, {x, 0.01, -0.02}); };
+    constexpr double tau = 2 * std::numbers::pi;
+    const auto check = [&](double pitch, double depth, int count, double sign, double shift) {
+        const TextureResult bound = jit::make_binding(program, "grooves", request);
+        INFO(bound.diagnostics);
+        REQUIRE(bound.binding);
+        for (double x : {0.0, 1e-4, 0.0123, -0.02}) {
+            const haptel_sample sample = value(*bound.binding, x);
+            const double scale = depth * count / 8;
+            CHECK(std::fabs(sample.height_m - (sign * scale * std::sin(tau * x / pitch) + shift)) <= 1e-12 * scale);
+            const double slope = sign * scale * tau / pitch * std::cos(tau * x / pitch);
+            CHECK(std::fabs(sample.gradient[0] - slope) <= 1e-12 * scale * tau / pitch);
+            CHECK((sample.gradient[1] == 0 && sample.gradient[2] == 0 && sample.faults == 0));
+            CHECK((sample.stiffness_scale == 1 && sample.friction_scale == 1));
+        }
+    };
+    check(0.0008, 60e-6, 3, 1, 0);
+    request.parameters = {{"pitch", "2mm"}, {"depth", "100 um"}, {"count", "8"}, {"flip", "true"}, {"seed", "8"}};
+    check(0.002, 100e-6, 8, -1, 0.001);
+    request.parameters = {{"pitch", "0.001"}, {"depth", "1e-5"}, {"count", " 1 "}, {"flip", "false"}, {"seed", "7u"}};
+    check(0.001, 1e-5, 1, 1, 0);
+}
+
+TEST_CASE("material outputs: code, interpreter and closed form agree; the height is that of the texture without them")
+{
+    const std::string body = "friction_scale = 1.0 + 0.5 * sin(p.x / 1mm); if (p.y > 0.0) stiffness_scale = 1.0 / p.z; "
+                             "return 1mm * friction_scale; }\n";
+    const auto program = compiled("texture with(out float stiffness_scale, out float friction_scale) { " + body +
+                                  "texture without() { float friction_scale = 1.0, stiffness_scale = 1.0; " + body);
+    CHECK(program->find("with")->writes == (HAPTEL_WRITES_STIFFNESS_SCALE | HAPTEL_WRITES_FRICTION_SCALE));
+    CHECK(program->find("without")->writes == 0);
+    const TextureResult with = jit::make_binding(program, "with", request_over(0.05)),
+                        without = jit::make_binding(program, "without", request_over(0.05));
+    REQUIRE(with.binding);
+    REQUIRE(without.binding);
+    for (const std::array<double, 3>& p :
+         std::vector<std::array<double, 3>>{{0.0012, 0.1, 0.5}, {-0.003, -0.1, 0.5}, {0.002, 0.1, 0}}) {
+        const haptel_sample sample = sample_at(*with.binding, p), plain = sample_at(*without.binding, p);
+        const bool divides_by_zero = p[1] > 0 && p[2] == 0;
+        CHECK(sample.stiffness_scale == (p[1] > 0 && !divides_by_zero ? 1 / p[2] : 1));
+        CHECK(std::fabs(sample.friction_scale - (1 + 0.5 * std::sin(p[0] / 0.001))) <= 1e-15);
+        CHECK(sample.faults == (divides_by_zero ? uint32_t{HAPTEL_FAULT_OUTPUT_NOT_FINITE} : 0u));
+        CHECK((test::same(sample.height_m, plain.height_m) && test::same(sample.gradient[0], plain.gradient[0])));
+        CHECK((plain.stiffness_scale == 1 && plain.friction_scale == 1));
+        haptel_sample height_alone{};
+        haptel_point point{};
+        std::copy(p.begin(), p.end(), point.p);
+        with.binding->texture->height(&point, with.binding->block, &height_alone);
+        CHECK(test::same(height_alone.height_m, sample.height_m));
+        CHECK(height_alone.faults == 0); // of the height only
+        const haptel_sample slow = jit::interpret_sample(*program, *with.binding, point);
+        CHECK((test::same(slow.stiffness_scale, sample.stiffness_scale) &&
+               test::same(slow.friction_scale, sample.friction_scale)));
+        CHECK(slow.faults == sample.faults);
+        const jit::OracleSample truth = jit::Oracle(program, *with.binding).sample(point);
+        CHECK(std::fabs(std::stod(truth.friction_digits) - sample.friction_scale) <= 1e-15);
+        CHECK(std::stod(truth.stiffness_digits) == sample.stiffness_scale);
+    }
+}
+
+TEST_CASE("values that do not fit are refused with the mending")
+{
+    const auto program = compiled(grooves);
+    const std::vector<std::array<const char*, 3>> table = {
+        {"count", "9", "outside its range: expected a whole number in 1 .. 8"},
+        {"count", "0", "outside its range"},
+        {"count", "2.5", "expected a whole number"},
+        {"count", "99999999999", "outside its range"},
+        {"seed", "-1", "outside its range"},
+        {"pitch", "3deg", "expected a length such as 0.5mm"},
+        {"pitch", "3furlong", "unknown unit"},
+        {"pitch", "wide", "expected a number"},
+        {"pitch", "", "expected a number"},
+        {"pitch", "1e999", "too large"},
+        {"pitch", "\xff\xfe", "expected a number"},
+        {"flip", "1", "expected true or false, found '1'"},
+        {"pich", "1mm", "did you mean 'pitch'?"},
+        {"q", "1mm", "pitch, depth, count, seed, flip"},
+    };
+    for (const auto& [name, value, message] : table) {
+        auto request = request_over(0.05);
+        request.parameters = {{name, value}};
+        const TextureResult bound = jit::make_binding(program, "grooves", request);
+        INFO(name << " = " << value << "\n" << bound.diagnostics);
+        CHECK_FALSE(bound.binding);
+        CHECK(contains(bound.diagnostics, message));
+    }
+    CHECK(contains(jit::make_binding(program, "groovs", request_over(0.05)).diagnostics, "did you mean 'grooves'?"));
+    auto request = request_over(0.05);
+    request.parameters = {{"pitch", "60m"}}; // a real number may leave its range, but not in silence
+    const TextureResult wide = jit::make_binding(program, "grooves", request);
+    CHECK(wide.binding);
+    CHECK(contains(wide.diagnostics, "warning: parameter 'pitch' of texture 'grooves': 60m is outside of its range "));
+    request.parameters = {{"pitch", "1mm"}};
+    CHECK(jit::make_binding(program, "grooves", request).diagnostics.empty());
+    request = request_over(0.05);
+    request.box_maximum_m[1] = NAN;
+    CHECK(contains(jit::make_binding(program, "", request).diagnostics, "not a box"));
+}
+
+TEST_CASE("facts over the parameters' ranges are looked for where they are asked for")
+{
+    const std::string text = "texture waves(float depth = 20um in 0um .. 50um) { return depth * sinturn(p.x / 2mm); }";
+    for (bool asked : {false, true}) {
+        jit::TextureOptions options;
+        options.facts_over_ranges = asked;
+        const jit::CompiledTextures made = jit::compile_texture(text, options);
+        REQUIRE(made.program);
+        const haptel_facts& facts = made.program->textures()[0].facts;
+        CHECK(std::isinf(facts.height_max_m) == !asked);
+        if (asked) CHECK(std::fabs(facts.height_max_m - 50e-6) <= 1e-12);
+        CHECK((facts.continuity == uint32_t{HAPTEL_CONTINUITY_C1}) == asked);
+        CHECK(facts.operations_max > 0);
+    }
+}
+
+TEST_CASE("facts hold over the object; an unbounded height is refused, unless nobody will feel it")
+{
+    const auto program = compiled("texture tilt() { return 0.1 * p.x; }"
+                                  "texture pole() { return 1um / (p.x / 1m); }");
+    const TextureResult tilt = jit::make_binding(program, "tilt", request_over(0.05));
+    REQUIRE(tilt.binding);
+    CHECK(std::fabs(tilt.binding->facts.height_max_m - 0.0025) <= 1e-9);
+    CHECK(std::fabs(tilt.binding->facts.height_min_m + 0.0025) <= 1e-9);
+    CHECK(tilt.binding->facts.height_max_m >= 0.0025);
+    CHECK(std::fabs(tilt.binding->facts.slope_max - 0.1) <= 1e-12);
+    CHECK(tilt.binding->facts.curvature_max_per_m == 0);
+    CHECK(tilt.binding->facts.continuity == uint32_t{HAPTEL_CONTINUITY_C1});
+    CHECK(tilt.binding->facts.operations_max > 0);
+    CHECK(std::isinf(program->find("tilt")->facts.height_max_m)); // nobody asked
+    CHECK(program->find("tilt")->facts.operations_max == tilt.binding->facts.operations_max);
+
+    const TextureResult pole = jit::make_binding(program, "pole", request_over(0.05));
+    CHECK_FALSE(pole.binding);
+    CHECK(contains(pole.diagnostics, "not bounded"));
+    CHECK(contains(pole.diagnostics, "clamp(height"));
+    CHECK(jit::make_binding(program, "pole", request_over(0.05), jit::Unbounded::allowed).binding);
+}
+
+TEST_CASE("no entry returns what is not finite: it is 0 and a fault")
+{
+    const auto program = compiled("texture root() { return 1mm * clamp(sqrt(p.x / 1m), 0.0, 1.0); }"
+                                  "texture pole() { return clamp(1um / (p.x / 1m), -1mm, 1mm); }");
+    const auto bound = jit::make_binding(program, "root", request_over(0.05), jit::Unbounded::allowed);
+    REQUIRE(bound.binding);
+    const haptel_sample outside = sample_at(*bound.binding, {-0.01, 0, 0});
+    CHECK((outside.height_m == 0 && outside.gradient[0] == 0));
+    CHECK((outside.faults & HAPTEL_FAULT_HEIGHT_NOT_FINITE));
+    CHECK(sample_at(*bound.binding, {0.01, 0, 0}).faults == 0);
+}
+
+TEST_CASE("the height beside a gradient is the height alone, bit for bit, and the interpreter's")
+{
+    const auto program = compiled(R"(
+        texture rock(float size = 4mm in 1mm .. 20mm, int octaves = 5 in 1 .. 8) {
+            return 60um * fbm(p / size, octaves) + 10um * abs(sin(uv.x * 7.0)) * n.z;
+        }
+        texture weave(float size = 4mm in 1mm .. 20mm) { return 60um * fourier(p.xy / size, 7); }
+        texture cells() { vec3 q = floor(p / 1mm); return 20um * fract(length(q) + noise(p / 3mm)); })");
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> place(-0.025, 0.025);
+    for (const haptel_texture& texture : program->textures()) {
+        const auto bound = jit::make_binding(program, texture.name, request_over(0.05), jit::Unbounded::allowed);
+        REQUIRE(bound.binding);
+        int different = 0;
+        for (int i = 0; i < 500; ++i) {
+            haptel_point point{};
+            double* numbers = point.p;
+            for (size_t j = 0; j < sizeof point / sizeof(double); ++j) numbers[j] = place(random);
+            point.n[2] = 0.9;
+            haptel_sample alone{}, beside{};
+            texture.height(&point, bound.binding->block, &alone);
+            texture.height_gradient(&point, bound.binding->block, &beside);
+            const haptel_sample plain = jit::interpret_sample(*program, *bound.binding, point);
+            different += !test::same(alone.height_m, beside.height_m) || !test::same(plain.height_m, beside.height_m);
+            for (size_t axis = 0; axis < 3; ++axis)
+                different += !test::same(plain.gradient[axis], beside.gradient[axis]);
+        }
+        INFO(texture.name);
+        CHECK(different == 0);
+    }
+}
+
+TEST_CASE("what is wrong with a text is data, and rendered")
+{
+    const jit::CompiledTextures broken = jit::compile_texture("texture t() { return dept; }", {.name = "t.haptel"});
+    CHECK_FALSE(broken.program);
+    REQUIRE(broken.diagnostics.has_errors());
+    CHECK(contains(broken.rendered(), "t.haptel:1:22"));
+    const jit::CompiledTextures missing = jit::compile_texture_file("/nowhere/rock.haptel");
+    CHECK_FALSE(missing.program);
+    CHECK(contains(missing.rendered(), "/nowhere/rock.haptel:1:1: error: cannot read this file: it does not exist"));
+}
+
+TEST_CASE("dropping a program frees its code; bindings keep it")
+{
+    const size_t before = jit::programs_alive();
+    std::optional<TextureBinding> binding;
+    {
+        const auto program = compiled(grooves);
+        CHECK(jit::programs_alive() == before + 1);
+        binding = jit::make_binding(program, "grooves", request_over(0.05)).binding;
+    }
+    CHECK(jit::programs_alive() == before + 1);
+    CHECK(sample_at(*binding, {1e-4, 0, 0}).height_m > 0);
+    binding.reset();
+    CHECK(jit::programs_alive() == before);
+}
+
+TEST_CASE("many programs, from several threads, each its own")
+{
+    const size_t before = jit::programs_alive();
+    std::atomic<int> wrong{0};
+    const auto work = [&](int first) {
+        for (int i = first; i < first + 20; ++i) {
+            const std::string text = "texture t() { return " + std::to_string(i) + ".0um; }";
+            const auto compiled_one = jit::compile_texture(text, {.standard_library = false});
+            haptel_sample sample{};
+            const auto bound = jit::make_binding(compiled_one.program, "t", request_over(0.05));
+            if (bound.binding) sample = sample_at(*bound.binding, {0, 0, 0});
+            wrong += std::fabs(sample.height_m - i * 1e-6) > 1e-18;
+        }
+    };
+    std::thread threads[] = {std::thread(work, 0), std::thread(work, 100), std::thread(work, 200)};
+    for (std::thread& thread : threads) thread.join();
+    CHECK(wrong == 0);
+    CHECK(jit::programs_alive() == before);
+}
+
+TEST_CASE("a texture too slow for the servo of its request is refused with the figure, from its first binding on")
+{
+    const test::Folder folder;
+    folder.write("slow.haptel", "texture slow() { float h = 0.0; for (int i = 0; i < 2000; ++i)"
+                                " h += sin(p.x / 1mm + float(i)); return clamp(1um * h, -1mm, 1mm); }");
+    const TextureResolver resolve = jit::make_resolver(std::make_shared<jit::ProgramCache>());
+    TextureRequest request = request_over(0.05);
+    request.reference = folder.file("slow.haptel:slow");
+    CHECK(resolve(request).binding); // no servo waits
+    request.servo_period_s = 1;
+    CHECK(resolve(request).binding);
+    request.servo_period_s = 1e-6; // 2000 sines and cosines in 0.2 us
+    const TextureResult refused = resolve(request);
+    CHECK_FALSE(refused.binding);
+    INFO(refused.diagnostics);
+    CHECK(contains(refused.diagnostics, "slow.haptel: error: texture 'slow' takes "));
+    CHECK(contains(refused.diagnostics, "per call (median), more than the 0.2 us that a servo period of 1 us"));
+}
+
+TEST_CASE("the resolver finds textures by reference, and explains what it does not find")
+{
+    const test::Folder folder;
+    folder.write("rock.haptel", "texture rock(float depth = 60um) { return depth; }");
+    folder.write("two.haptel",
+                 "import \"parts.haptel\"; texture a() { return halve(2mm); } texture b() { return 1mm; }");
+    folder.write("parts.haptel", "float halve(float x) { return x / 2.0; }");
+    folder.write("broken.haptel", "texture t() { return ; }");
+    const TextureResolver resolve = jit::make_resolver(std::make_shared<jit::ProgramCache>());
+    const auto ask = [&](const std::string& reference) {
+        TextureRequest request = request_over(0.05);
+        request.reference = folder.file(reference);
+        return resolve(request);
+    };
+    const auto height = [&](const std::string& reference) {
+        const TextureResult result = ask(reference);
+        INFO(result.diagnostics);
+        REQUIRE(result.binding);
+        return sample_at(*result.binding, {0, 0, 0}).height_m;
+    };
+    const size_t before = jit::programs_alive();
+    const TextureResult rock = ask("rock.haptel:rock"), rock_again = ask("rock.haptel");
+    REQUIRE((rock.binding && rock_again.binding));
+    CHECK(rock.binding->texture == rock_again.binding->texture); // compiled once
+    CHECK(jit::programs_alive() == before + 1);
+    CHECK(sample_at(*rock.binding, {0, 0, 0}).height_m == 60e-6);
+    CHECK(height("two.haptel:a") == 1e-3);
+
+    const std::vector<std::pair<const char*, const char*>> table = {
+        {"two.haptel", "it has a, b: write FILE:NAME"},
+        {"two.haptel:c", "this file has no texture 'c'\n  hint: it has the textures a, b\n"},
+        {"parts.haptel:c", "this file has no texture 'c'\n  hint: it has none\n"},
+        {"rok.haptel:rock", "did you mean 'rock.haptel'?"},
+        {"broken.haptel:t", "broken.haptel:1:"},
+        {"", "it is a folder"},
+    };
+    for (const auto& [reference, message] : table) {
+        const TextureResult result = ask(reference);
+        INFO(reference << "\n" << result.diagnostics);
+        CHECK_FALSE(result.binding);
+        CHECK(contains(result.diagnostics, message));
+    }
+
+    TextureRequest wrong = request_over(0.05);
+    wrong.reference = folder.file("rock.haptel:rock");
+    wrong.parameters = {{"dept", "1mm"}, {"depth", "1kg"}};
+    const std::string file = folder.file("rock.haptel");
+    CHECK(resolve(wrong).diagnostics ==
+          file + ": error: texture 'rock' has no parameter 'dept'\n  hint: did you mean 'depth'?\n" + file +
+              ": error: parameter 'depth' of texture 'rock': unknown unit 'kg'\n  hint: units are m, cm, mm, um, nm, "
+              "deg, "
+              "rad, s, ms, Hz and kHz\n");
+
+    folder.write("parts.haptel", "float halve(float x) { return x / 4.0; }"); // an import changes the program too
+    CHECK(height("two.haptel:a") == 0.5e-3);
+}

@@ -1,0 +1,121 @@
+// What holds a ball: nearest points of half-spaces and triangles, and the faces near it.
+#include "runtime/contact/near_faces.h"
+#include "runtime/geometry/half_spaces.h"
+#include "runtime/geometry/nearest_point.h"
+#include "tests/runtime/surface/distance.h"
+#include "tests/runtime/surface/meshes.h"
+#include "tests/support/catch.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+using namespace haptel::runtime;
+using namespace haptel::test;
+using glm::dvec3;
+
+TEST_CASE("the nearest point of an intersection of half-spaces meets the conditions that define it")
+{
+    std::mt19937_64 random(3);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    int by_count[4] = {};
+    for (int trial = 0; trial < 20000; ++trial) {
+        // Around the origin, some nearly parallel, some twice.
+        std::vector<HalfSpace> spaces;
+        const dvec3 common = random_direction(random);
+        const double spread = std::pow(10.0, -8 * uniform(random));
+        const int count = 1 + static_cast<int>(uniform(random) * 20);
+        for (int i = 0; i < count; ++i)
+            spaces.push_back({glm::normalize(common + spread * random_direction(random)), -uniform(random) * spread});
+        if (uniform(random) < 0.3) spaces.push_back(spaces.front());
+        const dvec3 target = 3.0 * uniform(random) * random_direction(random);
+        const NearestInHalfSpaces found = nearest_in(spaces, target, dvec3(0), 1e-14);
+        dvec3 pushed(0);
+        for (std::size_t i = 0; i < found.count; ++i) {
+            CHECK(found.push[i] >= 0);
+            pushed += found.push[i] * spaces[found.active[i]].normal;
+        }
+        for (const HalfSpace& space : spaces) CHECK(glm::dot(space.normal, found.at) - space.offset > -1e-12);
+        // Karush, Kuhn, Tucker: the way back to the target is a push by the spaces touched alone.
+        CHECK(glm::length(found.at - target - pushed) < 1e-6);
+        for (std::size_t i = 0; i < found.count; ++i)
+            CHECK(glm::dot(spaces[found.active[i]].normal, found.at) - spaces[found.active[i]].offset < 1e-6);
+        ++by_count[found.count];
+    }
+    for (const int times : by_count) CHECK(times > 20);
+}
+
+TEST_CASE("the nearest point of a triangle is in it, and no nearer one is")
+{
+    std::mt19937_64 random(4);
+    std::normal_distribution<double> normal;
+    for (int trial = 0; trial < 20000; ++trial) {
+        dvec3 corner[4];
+        for (dvec3& c : corner) c = {normal(random), normal(random), normal(random)};
+        if (trial % 3 == 0) corner[2] = 0.5 * (corner[0] + corner[1]) + 1e-9 * corner[2]; // a sliver
+        const NearestPoint found = nearest_point(corner[0], corner[1], corner[2], corner[3]);
+        for (int i = 0; i < 3; ++i) CHECK(found.barycentric[i] >= 0);
+        CHECK(std::abs(found.barycentric.x + found.barycentric.y + found.barycentric.z - 1) < 1e-14);
+        CHECK(std::abs(glm::distance(found.at, corner[3]) - distance_to(corner[0], corner[1], corner[2], corner[3])) <
+              (trial % 3 == 0 ? 1e-8 : 1e-12));
+    }
+}
+
+TEST_CASE("near faces are all found, and each lies behind its plane wherever that was laid from")
+{
+    std::mt19937_64 random(6);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const Mesh& mesh : {make_bumpy_sphere(3), make_star(2), make_stairs(), make_box({1, 1, 2e-6})}) {
+        const auto surface = surface_of(mesh);
+        const auto corner = [&](uint32_t face, int i) { return surface->vertices[surface->faces[face].vertex[i]]; };
+        const auto distance = [&](uint32_t face, const dvec3& p) {
+            return distance_to(corner(face, 0), corner(face, 1), corner(face, 2), p);
+        };
+        // Lattice units. A plane is turned by what rounding moves the point touched by (1e-2), over the distance.
+        constexpr double slack = 4;
+        NearFaces near(*surface);
+        for (int trial = 0; trial < 200; ++trial) {
+            // Somewhere over a face, and from there a few steps within the margin.
+            const auto over = static_cast<uint32_t>(random() % surface->faces.size());
+            const double radius = Lattice::extent * std::pow(10.0, -3 * uniform(random));
+            const double margin = 0.3 * uniform(random) * radius;
+            dvec3 centre = corner(over, 0) + 1.1 * radius * random_direction(random);
+            const dvec3 start = centre;
+            REQUIRE(near.find(centre, radius + margin));
+            for (int step = 0; step < 4; ++step) {
+                const double room = margin - glm::distance(start, centre), reach = uniform(random) * room;
+                near.pick(centre, radius, reach);
+                std::vector<uint32_t> picked;
+                for (uint32_t i = 0; i < near.picked().size(); ++i) {
+                    picked.push_back(near.face(i));
+                    const HalfSpace& space = near.picked()[i];
+                    const double turned = 1e-2 * 2 * Lattice::extent / distance(near.face(i), centre);
+                    for (int c = 0; c < 3; ++c)
+                        REQUIRE(glm::dot(space.normal, corner(near.face(i), c)) <=
+                                space.offset - radius + slack + turned);
+                    // Laid from here: it is as far as the triangle.
+                    REQUIRE(std::abs(glm::dot(space.normal, centre) - space.offset + radius -
+                                     distance(near.face(i), centre)) < slack);
+                    CHECK(!near.renew(i, centre));
+                }
+                double least = INFINITY;
+                for (uint32_t face = 0; face < surface->faces.size(); ++face) {
+                    const double away = distance(face, centre);
+                    least = std::min(least, away);
+                    const bool is_picked = std::find(picked.begin(), picked.end(), face) != picked.end();
+                    if (away < radius + reach) REQUIRE(is_picked);
+                    if (away > radius + reach + slack) REQUIRE(!is_picked);
+                }
+                REQUIRE(std::abs(near.distance(centre, radius) - std::min(least, radius)) < slack);
+                centre += uniform(random) * room * random_direction(random);
+                for (uint32_t i = 0; i < std::min<std::size_t>(3, near.picked().size()); ++i) {
+                    REQUIRE(near.renew(i, centre));
+                    const HalfSpace& space = near.picked()[i];
+                    REQUIRE(std::abs(glm::dot(space.normal, centre) - space.offset + radius -
+                                     distance(near.face(i), centre)) < slack);
+                }
+            }
+        }
+    }
+}

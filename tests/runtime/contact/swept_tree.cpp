@@ -1,0 +1,84 @@
+// The tree that a shaft asks for triangles: it loses none, and a surface has one, however many styluses touch it.
+#include "runtime/contact/swept_tree.h"
+#include "runtime/contact/stylus_contact.h"
+#include "runtime/servo/allocation_count.h"
+
+#include "tests/runtime/surface/meshes.h"
+#include "tests/support/catch.h"
+
+#include <algorithm>
+#include <random>
+#include <thread>
+#include <vector>
+
+using namespace haptel::runtime;
+using namespace haptel::test;
+using glm::dvec3;
+
+TEST_CASE("all triangles that a moving shaft can meet are visited, each once")
+{
+    std::mt19937_64 random(21);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const Mesh& mesh : {make_star(3), make_box(), make_torus(), make_plane(9)}) {
+        const auto s = surface_of(mesh);
+        int met = 0, spared = 0;
+        for (int i = 0; i < 1000; ++i) {
+            const double length = 2 * std::pow(10.0, -3 * uniform(random)) * Lattice::extent;
+            const auto anywhere = [&](double size) {
+                return size * dvec3(uniform(random) - 0.5, uniform(random) - 0.5, uniform(random) - 0.5);
+            };
+            const dvec3 tip = anywhere(2 * Lattice::extent), tail = i % 9 ? tip + anywhere(2 * length) : tip,
+                        tip_after = tip + anywhere(length), tail_after = tail + anywhere(length);
+            std::vector<uint32_t> visited;
+            const SweptRegion region(tip, tail, tip_after, tail_after, 0);
+            CHECK(s->swept_tree().for_each(region, [&](uint32_t face) {
+                visited.push_back(face);
+                return true;
+            }));
+            CHECK(s->swept_tree().is_empty(region) == visited.empty());
+            std::sort(visited.begin(), visited.end());
+            CHECK(std::adjacent_find(visited.begin(), visited.end()) == visited.end());
+            spared += visited.size() < s->faces.size();
+
+            // A triangle is met if the shaft crosses it at some time on its way.
+            for (int step = 0; step <= 10; ++step) {
+                const dvec3 from = glm::round(glm::mix(tip, tip_after, step / 10.0)),
+                            to = glm::round(glm::mix(tail, tail_after, step / 10.0));
+                for (uint32_t f = 0; f < s->faces.size(); ++f) {
+                    const auto& corners = s->faces[f].vertex;
+                    Crossing crossing;
+                    crossing.face = f;
+                    if (!crosses(from, to, s->vertices[corners[0]], s->vertices[corners[1]], s->vertices[corners[2]],
+                                 crossing))
+                        continue;
+                    ++met;
+                    CHECK(std::binary_search(visited.begin(), visited.end(), f));
+                }
+            }
+        }
+        CAPTURE(met, spared);
+        CHECK(met > 100);
+        CHECK(spared > 600);
+    }
+}
+
+TEST_CASE("a surface has one tree for all styluses, made with the first of them")
+{
+    const auto s = surface_of(make_icosphere(4));
+    const auto allocated = [&] {
+        const uint64_t before = allocations_of_this_thread();
+        const StylusContact stylus(s);
+        return allocations_of_this_thread() - before;
+    };
+    CHECK(allocated() > 0); // nobody had asked for it before
+    CHECK(allocated() == 0);
+
+    // Of several that ask at once one makes it.
+    const auto fresh = surface_of(make_icosphere(4));
+    std::vector<const SweptTree*> seen(8);
+    std::vector<std::thread> threads;
+    for (const SweptTree*& tree : seen) threads.emplace_back([&] { tree = &fresh->swept_tree(); });
+    for (std::thread& thread : threads) thread.join();
+    for (const SweptTree* tree : seen) CHECK(tree == seen[0]);
+    CHECK(seen[0] != &s->swept_tree());
+}

@@ -1,0 +1,76 @@
+// What a tick looks at does not grow with the mesh or the scene: counted, not timed.
+#include "runtime/render/renderer.h"
+#include "tests/runtime/surface/meshes.h"
+#include "tests/support/catch.h"
+#include "tests/support/touch_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+using namespace haptel;
+using namespace haptel::runtime;
+using namespace haptel::tests;
+
+namespace {
+
+struct Seen {
+    uint64_t queries = 0;          // in all ticks
+    double steps = 0, seen = 0;    // 99th percentiles over the ticks
+    std::vector<glm::dvec3> force; // of all ticks
+};
+
+// A stroke over a bumpy ball of radius 1 at a thousandth of it per tick, 0.02 deep, among others on a grid.
+Seen stroke(uint32_t subdivisions, int objects, bool between_ticks = true)
+{
+    Scene scene = bare_scene(test::make_bumpy_sphere(subdivisions));
+    scene.objects[0].material.static_friction = scene.objects[0].material.dynamic_friction = 0.2;
+    const SceneObject first = scene.objects[0];
+    for (int i = 1; i < objects; ++i) {
+        scene.objects.push_back(first);
+        scene.objects.back().placement.position_m = {3.0 * (i % 10), 3.0 * (i / 10 % 10), 3.0 * (i / 100)};
+    }
+    Renderer renderer(shared(std::move(scene)));
+    Seen all;
+    std::vector<double> steps, seen;
+    for (int i = -1; i < 6000; ++i) {
+        const double angle = 1e-3 * i, height = 0.7 * std::sin(0.37 * angle), across = std::sqrt(1 - height * height);
+        const glm::dvec3 d(across * std::cos(angle), across * std::sin(angle), height);
+        const glm::dvec3 hand = d * (test::bumpy_radius(d) - (i < 0 ? -0.02 : 0.02));
+        const ContactWork before = renderer.work();
+        all.force.push_back(renderer.tick(at(hand.x, hand.y, hand.z)).force_n);
+        if (between_ticks) renderer.between_ticks();
+        const ContactWork& after = renderer.work();
+        if (i < 1) continue;
+        all.queries += after.queries - before.queries;
+        steps.push_back(static_cast<double>(after.steps - before.steps + after.triangles - before.triangles));
+        seen.push_back(steps.back() + static_cast<double>(after.read_ahead - before.read_ahead));
+    }
+    const auto p99 = [](std::vector<double> of) {
+        std::sort(of.begin(), of.end());
+        return of[of.size() * 99 / 100];
+    };
+    all.steps = p99(steps);
+    all.seen = p99(seen);
+    return all;
+}
+
+} // namespace
+
+TEST_CASE("the triangles that a tick looks at hardly grow with the mesh, and not with the number of objects")
+{
+    const Seen coarse = stroke(3, 1), fine = stroke(7, 1), many = stroke(3, 1000);
+    CHECK(coarse.queries == 0); // in contact the tree is never asked
+    CHECK(fine.queries == 0);
+    CHECK(many.queries == 0);
+    CHECK(coarse.seen >= 11); // its own, and ten of which some are read for the next tick
+    CHECK(fine.seen < 1.2 * coarse.seen);
+    CHECK(fine.steps <= 3);
+    CHECK(many.seen == coarse.seen);
+    CHECK(many.force == coarse.force);
+}
+
+TEST_CASE("what is done between ticks changes no force")
+{
+    CHECK(stroke(4, 3, true).force == stroke(4, 3, false).force);
+}

@@ -1,0 +1,162 @@
+// haptel info and haptel new: what they say agrees with the sources that it is about.
+#include "lang/compile.h"
+#include "stdlib/stdlib.h"
+#include "tests/support/catch.h"
+#include "tests/tools/commands/run_command.h"
+#include "tools/output/json.h"
+
+#include <set>
+#include <sstream>
+
+using namespace haptel;
+using namespace haptel::test;
+using tools::Json;
+
+namespace {
+
+size_t findings_of(const std::string& text)
+{
+    lang::CompileOptions options;
+    for (const stdlib::LibraryFile& file : stdlib::library())
+        options.library.push_back({std::string(file.name), std::string(file.text)});
+    return lang::compile({"t.haptel", text}, options).diagnostics.all().size();
+}
+
+// Names of functions that a line right behind a doc comment declares, by the look of the text alone.
+std::set<std::string> documented_names()
+{
+    std::set<std::string> names;
+    for (const stdlib::LibraryFile& file : stdlib::library()) {
+        std::istringstream lines{std::string(file.text)};
+        bool documented = false;
+        for (std::string line; std::getline(lines, line);) {
+            const size_t paren = line.find('('), space = line.find(' ');
+            const bool head =
+                !line.empty() && line[0] >= 'a' && line[0] <= 'z' && space < paren && line.rfind("const", 0) != 0;
+            if (documented && head) names.insert(line.substr(space + 1, paren - space - 1));
+            const bool is_doc = line.rfind("///", 0) == 0;
+            documented = (is_doc && line.rfind("/// @facts", 0) != 0) || (is_doc && documented);
+        }
+    }
+    return names;
+}
+
+} // namespace
+
+TEST_CASE("info: lists every documented function of the library and every built-in, each with a line")
+{
+    const Ran ran = run_command("info");
+    REQUIRE(ran.code == 0);
+    const std::set<std::string> names = documented_names();
+    CHECK(names.count("perlin") == 1);
+    for (const std::string& name : names) {
+        CAPTURE(name);
+        CHECK(contains(ran.out, "\n  " + name + " "));
+    }
+    for (const char* name : {"sin", "smoothstep", "transpose", "detach"})
+        CHECK(contains(ran.out, "\n  " + std::string(name) + " "));
+    const Json all = Json::parse(run_command("info --json").out);
+    size_t of_library = 0;
+    for (const Json& entry : all["functions"]) of_library += entry["group"] != "built in";
+    CHECK(of_library == names.size());
+}
+
+TEST_CASE("info: a function with its overloads, doc, facts and an example that compiles")
+{
+    const Json json = Json::parse(run_command("info perlin --json").out)["functions"][0];
+    CHECK(json["group"] == "perlin");
+    REQUIRE(json["overloads"].size() == 4);
+    CHECK(json["overloads"][0]["signature"] == "float perlin(vec3 q, int seed)");
+    CHECK(contains(json["overloads"][0]["doc"], "0 at every whole point"));
+    CHECK(json["overloads"][0]["facts"]["class"] == "C2");
+    CHECK(json["overloads"][0]["facts"]["slope"].get<double>() > 2.0);
+    const Ran text = run_command("info perlin");
+    CHECK(contains(text.out, "float perlin(vec3 q, int seed)\n    Smooth random heights"));
+    CHECK(contains(text.out, "    facts: value "));
+    const Ran built_in = run_command("info clamp");
+    CHECK(contains(built_in.out, "int clamp(int, int, int)\n"));
+    CHECK(contains(built_in.out, "Built into the language."));
+
+    size_t examples = 0;
+    const Json all = Json::parse(run_command("info --json").out);
+    for (const Json& entry : all["functions"]) {
+        if (entry["example"].is_null()) continue;
+        ++examples;
+        CAPTURE(entry["name"]);
+        CHECK(contains(entry["example"], entry["name"]));
+        CHECK(findings_of(entry["example"]) == 0);
+    }
+    CHECK(examples > 15);
+}
+
+TEST_CASE("info: an unknown name is misuse, with the one that was meant")
+{
+    const Ran ran = run_command("info perlim");
+    CHECK(ran.code == 2);
+    CHECK(ran.out.empty());
+    CHECK(contains(ran.err, "did you mean 'perlin'?"));
+    CHECK(run_command("info $'\\xff'").code == 2);
+}
+
+TEST_CASE("info: the textures of a file, values as written and as numbers")
+{
+    const Folder folder;
+    const std::string file = folder.write(
+        "a.haptel",
+        "/// Soft.\ntexture soft(\n    /// How high.\n    float depth = 60um in 0um .. 200um,\n"
+        "    out float friction_scale)\n{\n    friction_scale = 2.0;\n    return depth * sinturn(time / 1s) * n.z;\n}\n"
+        "texture flat()\n{\n    return 1mm;\n}\n");
+    const Ran text = run_command("info '" + file + "'");
+    CHECK(text.code == 0);
+    CHECK(text.out == "texture soft\n  Soft.\n  float depth = 60um in 0um .. 200um  // How high.\n  reads n, time\n  "
+                      "writes friction_scale\n"
+                      "\ntexture flat\n  reads nothing\n");
+    const Json json = Json::parse(run_command("info '" + file + ":soft' --json").out);
+    REQUIRE(json["textures"].size() == 1);
+    CHECK(json["textures"][0]["parameters"][0]["default"] == 60e-6);
+    CHECK(json["textures"][0]["parameters"][0]["unit"] == "m");
+    CHECK(json["textures"][0]["inputs"] == Json::array({"n", "time"}));
+    const Ran wrong = run_command("info '" + file + ":flet'");
+    CHECK(wrong.code == 1);
+    CHECK(contains(wrong.err, "did you mean 'flat'?"));
+    const Ran none = run_command("info '" + folder.file("none.haptel") + "'");
+    CHECK(none.code == 1);
+    CHECK(contains(run_command("info '" + folder.write("b.haptel", "texture t() { return 1mm }") + "'").err,
+                   "b.haptel:1:"));
+}
+
+TEST_CASE("info: docs/stdlib.md is what --markdown prints (./dev docs makes it anew), and its pictures are there")
+{
+    const std::filesystem::path docs = std::filesystem::path(HAPTEL_SOURCE_DIR) / "docs";
+    const std::string page = run_command("info --markdown").out;
+    CHECK(page == read_file(docs / "stdlib.md"));
+    size_t pictures = 0;
+    for (size_t at = 0; (at = page.find("](pictures/", at)) != std::string::npos; ++at, ++pictures) {
+        const std::string path = page.substr(at + 2, page.find(')', at) - at - 2);
+        CAPTURE(path);
+        CHECK(std::filesystem::exists(docs / path));
+    }
+    CHECK(pictures > 15);
+}
+
+TEST_CASE("new: a texture in which nothing is found, in the one style, never over a file that exists")
+{
+    const Folder folder;
+    const Ran ran = run_command("new oak --out '" + folder.file("a/b") + "'");
+    CHECK(ran.code == 0);
+    const std::string file = folder.file("a/b/oak.haptel");
+    CHECK(ran.out == file + "\n");
+    CHECK(findings_of(read_file(file)) == 0);
+    CHECK(run_command("check --strict '" + file + "'").code == 0);
+    CHECK(run_command("fmt --check '" + file + "'").code == 0);
+    CHECK(contains(run_command("info '" + file + "'").out, "texture oak\n"));
+
+    folder.write("a/b/oak.haptel", "mine");
+    const Ran again = run_command("new oak --out '" + folder.file("a/b") + "'");
+    CHECK(again.code == 1);
+    CHECK(contains(again.err, "exists already"));
+    CHECK(read_file(file) == "mine");
+    CHECK(run_command("new 2oak --out '" + folder.file("a") + "'").code == 2);
+    CHECK(run_command("new for --out '" + folder.file("a") + "'").code == 2);
+    CHECK(run_command("new ../oak --out '" + folder.file("a") + "'").code == 2);
+}
