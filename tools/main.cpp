@@ -1,6 +1,6 @@
 // The haptel command: finds the subcommand, turns its outcome into the exit code, and nothing else.
 #include "lang/text/diagnostic.h"
-#include "tools/command.h"
+#include "tools/commands/command.h"
 #include "tools/output/terminal.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ std::vector<Command> add_commands([[maybe_unused]] CLI::App& app)
 {
     return {
 #define HAPTEL_COMMAND(name) name##_command(app),
-#include "tools/commands.def"
+#include "tools/commands/commands.def"
 #undef HAPTEL_COMMAND
     };
 }

@@ -1,46 +1,62 @@
 #!/usr/bin/env bash
 # walls.sh ROOT: fails, and says where, if an #include crosses a wall of docs/architecture.md.
+# walls.sh --rooms: each room with the one above it, a pair a line.
 #
-# Two tables are the whole drawing. A folder's line holds for its subfolders unless those have a line of their own;
-# folders without a line (tools, examples, bench, most tests) may use every layer.
+# Two tables are the whole drawing. Folders without a line (examples, bench, most tests) may use every house.
 set -euo pipefail
-cd "$1"
 
-# What a folder may include of the project: the first prefix that fits decides, ! refuses.
-contract='lang/abi/abi.h lang/abi/evaluate.h lang/abi/texture_binding.h'
-declare -A may_include=(
-    [lang]='lang/'
-    [stdlib]='stdlib/'
-    [jit]='jit/ lang/ stdlib/'
-    [runtime]="!runtime/files/ runtime/ $contract"
-    [runtime/files]="runtime/ $contract"
-    [device]="device/ !runtime/files/ runtime/ $contract"
-    [tests/lang]='tests/support/ tests/lang/ tests/conformance/case.h lang/ stdlib/'
-    [tests/runtime]="tests/support/ tests/runtime/ runtime/ $contract"
+# HOUSE: ITS ROOMS FROM THE GROUND UP | WHAT OF OTHER HOUSES ALL OF THEM MAY USE. A room may include its own files and
+# those of rooms before it; '.' is the house's own folder. '!' refuses what a later word would allow.
+houses=(
+    'lang: abi text math ir ir/run ir/derive ir/bounds syntax format program lower check check/dimension . |'
+    'stdlib: . |'
+    'jit: codegen engine picture texture live check | lang stdlib'
+    'runtime: geometry hand surface surface/build contact texture scene force files render servo | lang/abi'
+    'device: . | !runtime/files runtime lang/abi'
+    'tools: output arguments plot report commands . | lang stdlib jit runtime device bench'
+    'tests/lang: . | tests/support tests/conformance/case.h lang stdlib'
+    'tests/runtime: . | tests/support runtime lang/abi'
 )
 
 # Which folders alone may include a library.
 declare -A home=(
-    [llvm/]='jit' [llvm-c/]='jit' [libusb]='device' [embree]='runtime' [toml++/]='runtime/files'
-    [assimp/]='runtime/files' [boost/]='lang tests' [stb/]='jit tests' [tiff]='jit tests' [OpenEXR/]='jit' [Imath/]='jit' [CLI/]='tools' [cairo]='tools' [nlohmann/]='tools tests bench'
+    [llvm/]='jit' [llvm-c/]='jit' [libusb]='device' [embree]='runtime/surface' [toml++/]='runtime/files'
+    [assimp/]='runtime/files' [boost/]='lang/math tests' [stb/]='jit/picture tests' [tiff]='jit/picture tests'
+    [OpenEXR/]='jit/picture' [Imath/]='jit/picture' [CLI/]='tools' [cairo]='tools/plot'
+    [nlohmann/]='tools tests bench'
 )
 
-# The longest folder with a line in may_include that holds the file, or nothing.
-layer_of() {
+declare -A floor outside # by room: its place in its house; by house: what else it may use
+for line in "${houses[@]}"; do
+    house=${line%%:*} rooms=${line#*:} below='' height=0
+    outside[$house]=${rooms#*|}
+    for room in ${rooms%%|*}; do
+        [[ $room == . ]] && room=$house || room=$house/$room
+        floor[$room]=$((height += 1))
+        [[ ${1:-} != --rooms || -z $below ]] || printf '%s %s\n' "$below" "$room"
+        below=$room
+    done
+done
+[[ ${1:-} != --rooms ]] || exit 0
+cd "$1"
+
+# Sets `house` and `room`: the longest known folders that hold the path; empty where it has none. A file of a house
+# outside of its rooms is in none.
+place() {
     local folder=$1
+    house='' room=''
     while [[ $folder == */* ]]; do
         folder=${folder%/*}
-        if [[ -n ${may_include[$folder]:-} ]]; then
-            printf %s "$folder"
-            return
-        fi
+        [[ -n $room || -z ${floor[$folder]:-} ]] || room=$folder
+        [[ -z ${outside[$folder]+set} ]] || { house=$folder; return; }
     done
+    room=''
 }
 
-project_allows() { # project_allows LAYER HEADER
-    local prefix
-    for prefix in ${may_include[$1]}; do
-        [[ $2 != "${prefix#!}"* ]] || { [[ $prefix != !* ]]; return; }
+house_allows() { # house_allows HOUSE HEADER
+    local word
+    for word in ${outside[$1]}; do
+        [[ $2 != "${word#!}"* ]] || { [[ $word != !* ]]; return; }
     done
     return 1
 }
@@ -67,13 +83,19 @@ while IFS=: read -r file line directive; do
     seen=$((seen + 1))
     header=${directive#*[<\"]}
     header=${header%%[>\"]*}
-    layer=$(layer_of "$file")
+    place "$file"
+    from_house=$house from_room=$room
+    place "$header"
     if [[ $directive != *\"* ]]; then
         library_allows "$file" "$header" || crossed "<$header> has its home elsewhere"
     elif [[ $header != */* ]]; then
         crossed "\"$header\" is not named from the root of the repository"
-    elif [[ -n $layer ]] && ! project_allows "$layer" "$header"; then
-        crossed "$layer may not include \"$header\""
+    elif [[ -n $from_house && -z $from_room ]]; then
+        crossed "$file is in no room of $from_house"
+    elif [[ -n $from_house && $house != "$from_house" ]]; then
+        house_allows "$from_house" "$header" || crossed "$from_house may not include \"$header\""
+    elif [[ -n $from_house ]] && ((${floor[$room]:-99} > ${floor[$from_room]})); then
+        crossed "$from_room may not look up to \"$header\""
     fi
 done < <(for folder in lang stdlib jit runtime device tools examples bench tests; do
     [[ ! -d $folder ]] || grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*[<"]' "$folder" \

@@ -2,7 +2,7 @@
 #include "bench/machine.h"
 #include "tools/arguments/precisions.h"
 #include "tools/arguments/quantity.h"
-#include "tools/command.h"
+#include "tools/commands/command.h"
 #include "tools/output/terminal.h"
 #include "tools/report/bench_accuracy.h"
 #include "tools/report/bench_batch.h"

@@ -4,7 +4,7 @@
 #include "lang/text/diagnostic.h"
 #include "stdlib/stdlib.h"
 #include "tools/arguments/quantity.h"
-#include "tools/command.h"
+#include "tools/commands/command.h"
 #include "tools/output/json.h"
 #include "tools/output/terminal.h"
 

@@ -5,7 +5,7 @@
 #include "stdlib/stdlib.h"
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"
-#include "tools/command.h"
+#include "tools/commands/command.h"
 #include "tools/commands/explain.h"
 #include "tools/commands/fixes.h"
 #include "tools/output/replace_file.h"

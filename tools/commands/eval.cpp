@@ -3,7 +3,7 @@
 #include "lang/abi/evaluate.h"
 #include "tools/arguments/precisions.h"
 #include "tools/arguments/texture_argument.h"
-#include "tools/command.h"
+#include "tools/commands/command.h"
 #include "tools/output/json.h"
 #include "tools/output/terminal.h"
 #include "tools/report/eval_table.h"

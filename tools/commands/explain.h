@@ -1,7 +1,7 @@
 // haptel check --explain: what a finding means, with an example.
 #pragma once
 
-#include "tools/command.h"
+#include "tools/commands/command.h"
 
 #include <string>
 

@@ -3,7 +3,7 @@
 #include "runtime/files/scene_file.h"
 #include "runtime/servo/allocation_count.h"
 #include "tools/arguments/quantity.h"
-#include "tools/command.h"
+#include "tools/commands/command.h"
 #include "tools/commands/explore_hands.h"
 #include "tools/commands/explore_scene.h"
 #include "tools/commands/explore_textures.h"

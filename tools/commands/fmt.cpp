@@ -1,7 +1,7 @@
 // haptel fmt: source text in the one style.
 #include "jit/texture/source_file.h"
 #include "lang/format/format.h"
-#include "tools/command.h"
+#include "tools/commands/command.h"
 #include "tools/output/replace_file.h"
 #include "tools/output/terminal.h"
 

@@ -3,7 +3,7 @@
 #include "lang/compile.h"
 #include "lang/syntax/parser.h"
 #include "stdlib/stdlib.h"
-#include "tools/command.h"
+#include "tools/commands/command.h"
 #include "tools/commands/reference.h"
 #include "tools/output/terminal.h"
 #include "tools/report/check_report.h"

@@ -1,6 +1,6 @@
 // haptel new: a first texture to change.
 #include "lang/text/lexer.h"
-#include "tools/command.h"
+#include "tools/commands/command.h"
 #include "tools/output/terminal.h"
 
 #include <cerrno>

@@ -3,7 +3,7 @@
 #include "jit/texture/texture.h"
 #include "lang/abi/evaluate.h"
 #include "tools/arguments/texture_argument.h"
-#include "tools/command.h"
+#include "tools/commands/command.h"
 #include "tools/output/terminal.h"
 #include "tools/plot/plot_texture.h"
 

@@ -3,7 +3,7 @@
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"
 #include "tools/arguments/texture_files.h"
-#include "tools/command.h"
+#include "tools/commands/command.h"
 #include "tools/output/terminal.h"
 #include "tools/report/test_report.h"
 

@@ -30,7 +30,7 @@ inline void set_examples(CLI::App& app, const std::string& lines)
 }
 
 #define HAPTEL_COMMAND(name) Command name##_command(CLI::App& app);
-#include "tools/commands.def"
+#include "tools/commands/commands.def"
 #undef HAPTEL_COMMAND
 
 } // namespace haptel::tools
