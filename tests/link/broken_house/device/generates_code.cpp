@@ -1,2 +1,2 @@
 #include "jit/compile_texture.h"
-#include "runtime/haptic_device.h"
+#include "runtime/hand/haptic_device.h"

@@ -1,2 +1,2 @@
-#include "lang/abi.h"
+#include "lang/abi/abi.h"
 #include "lang/compile.h"

@@ -1,3 +1,3 @@
 #include "codegen.h"
-#include "runtime/servo_thread.h"
+#include "runtime/servo/servo_thread.h"
 #include <llvm/IR/IRBuilder.h>
