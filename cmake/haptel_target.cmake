@@ -23,8 +23,14 @@ if(HAPTEL_SANITIZE)
     target_link_options(haptel_flags INTERFACE -fsanitize=${HAPTEL_SANITIZE})
 endif()
 
+# What most files include, read once for each target: it is half of a file's time in the compiler. Each file still
+# includes what it uses (-DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON builds without).
+set(haptel_precompiled <algorithm> <array> <cmath> <cstdint> <functional> <limits> <map> <memory> <optional> <span>
+    <string> <string_view> <unordered_map> <utility> <variant> <vector>)
+
 # haptel_library(name SOURCES... ) makes the static library of one folder.
 function(haptel_library name)
     add_library(${name} STATIC ${ARGN})
     target_link_libraries(${name} PUBLIC haptel_flags)
+    target_precompile_headers(${name} PRIVATE ${haptel_precompiled})
 endfunction()
