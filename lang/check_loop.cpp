@@ -235,9 +235,11 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
     const int64_t nearest = up ? to.minimum - from.maximum : from.minimum - to.maximum;
     const int64_t trips = farthest < 0 ? 0 : inclusive ? farthest / stride + 1 : (farthest + stride - 1) / stride;
     const ir::IntRange full = ir::full_range(counter.type == uint_type ? ir::Type::u32 : ir::Type::i32);
-    if (trips > static_cast<int64_t>(ir::operations_limit) || farthest > INT32_MAX - stride) {
-        const bool bound_unknown = up ? to.maximum == full.maximum : to.minimum == full.minimum;
-        const bool start_unknown = up ? from.minimum == full.minimum : from.maximum == full.maximum;
+    const int64_t way_max = INT32_MAX - stride; // beyond, the last step could wrap
+    if (trips > static_cast<int64_t>(ir::operations_limit) || farthest > way_max) {
+        const bool bound_unknown = !to.is_constant() && (up ? to.maximum == full.maximum : to.minimum == full.minimum);
+        const bool start_unknown =
+            !from.is_constant() && (up ? from.minimum == full.minimum : from.maximum == full.maximum);
         if (bound_unknown || start_unknown) {
             const Expression& culprit = bound_unknown ? *made.bound : *made.start;
             const char* limit = up == bound_unknown ? "min" : "max";
@@ -247,6 +249,10 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
                            to_string(counter.type))
                 .hint = std::string("write ") + limit + "(" + excerpt(culprit) + ", " +
                         (up == bound_unknown ? "16" : "0") + "), or give the parameter a range: in 1 .. 16";
+        } else if (trips <= static_cast<int64_t>(ir::operations_limit)) {
+            refuse(loop.condition->span, "the bound of this loop may be " + std::to_string(farthest) +
+                                             " from its start, expected at most " + std::to_string(way_max))
+                .hint = "the last step could pass the greatest " + to_string(counter.type) + ": lower the bound";
         } else {
             diagnostics
                 .error(loop.condition->span, "too-costly",
