@@ -40,33 +40,13 @@ void collect_assigned(const Statement& s, std::vector<const NameExpression*>& na
 // The first variable in `e` whose name stands in `names`.
 const NameExpression* first_read(const Expression& e, const std::vector<const NameExpression*>& names)
 {
-    const auto any_of = [&](const std::vector<ExpressionPtr>& list) -> const NameExpression* {
-        for (const ExpressionPtr& inner : list)
-            if (auto found = first_read(*inner, names)) return found;
-        return nullptr;
-    };
     if (auto name = std::get_if<NameExpression>(&e.node)) {
         const bool listed =
             std::any_of(names.begin(), names.end(), [&](auto* other) { return other->name == name->name; });
         return listed ? name : nullptr;
     }
-    if (auto unary = std::get_if<Unary>(&e.node)) return first_read(*unary->operand, names);
-    if (auto member = std::get_if<Member>(&e.node)) return first_read(*member->object, names);
-    if (auto call = std::get_if<CallExpression>(&e.node)) return any_of(call->arguments);
-    if (auto grad = std::get_if<GradCall>(&e.node)) return any_of(grad->arguments);
-    if (auto index = std::get_if<Index>(&e.node)) {
-        auto found = first_read(*index->object, names);
-        return found ? found : first_read(*index->index, names);
-    }
-    if (auto choice = std::get_if<Conditional>(&e.node)) {
-        for (const ExpressionPtr* inner : {&choice->condition, &choice->when_true, &choice->when_false})
-            if (auto found = first_read(**inner, names)) return found;
-    }
-    if (auto chain = std::get_if<Chain>(&e.node)) {
-        if (auto found = first_read(*chain->first, names)) return found;
-        for (const Chain::Link& link : chain->rest)
-            if (auto found = first_read(*link.operand, names)) return found;
-    }
+    for (const Expression* operand : operands_of(e))
+        if (auto read = first_read(*operand, names)) return read;
     return nullptr;
 }
 
@@ -115,7 +95,8 @@ void BodyChecker::check(Statement& s, For& node)
             is_const = declaration->is_const;
         }
     }
-    if (node.body) forget_ranges_assigned_in(*node.body);
+    for (const StatementPtr* repeated : {&node.step, &node.body})
+        if (*repeated) forget_ranges_assigned_in(**repeated);
     if (node.condition) condition(node.condition, "as the condition of a loop");
     if (counter && !counter->type.is_error() && counter->type != int_type && counter->type != uint_type) {
         diagnostics.error(counter->span, "unbounded-loop", "a loop counts in int, found " + to_string(counter->type))
@@ -230,7 +211,12 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
         return;
     }
 
-    // what the body must leave alone
+    // the bound is computed once: what it is made from must stay as it is
+    if (auto own = first_read(*made.bound, {stepped})) {
+        refuse(made.bound->span, "the bound of this loop depends on its own counter " + quoted(own->name)).hint =
+            "a bound is computed once, before the loop: leave " + quoted(own->name) + " out of it";
+        return;
+    }
     std::vector<const NameExpression*> assigned;
     if (loop.body) collect_assigned(*loop.body, assigned);
     if (auto changed = first_read(*made.bound, assigned)) {
@@ -249,9 +235,11 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
     const int64_t nearest = up ? to.minimum - from.maximum : from.minimum - to.maximum;
     const int64_t trips = farthest < 0 ? 0 : inclusive ? farthest / stride + 1 : (farthest + stride - 1) / stride;
     const ir::IntRange full = ir::full_range(counter.type == uint_type ? ir::Type::u32 : ir::Type::i32);
-    if (trips > static_cast<int64_t>(ir::operations_limit) || farthest > INT32_MAX - stride) {
-        const bool bound_unknown = up ? to.maximum == full.maximum : to.minimum == full.minimum;
-        const bool start_unknown = up ? from.minimum == full.minimum : from.maximum == full.maximum;
+    const int64_t way_max = INT32_MAX - stride; // beyond, the last step could wrap
+    if (trips > static_cast<int64_t>(ir::operations_limit) || farthest > way_max) {
+        const bool bound_unknown = !to.is_constant() && (up ? to.maximum == full.maximum : to.minimum == full.minimum);
+        const bool start_unknown =
+            !from.is_constant() && (up ? from.minimum == full.minimum : from.maximum == full.maximum);
         if (bound_unknown || start_unknown) {
             const Expression& culprit = bound_unknown ? *made.bound : *made.start;
             const char* limit = up == bound_unknown ? "min" : "max";
@@ -261,6 +249,10 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
                            to_string(counter.type))
                 .hint = std::string("write ") + limit + "(" + excerpt(culprit) + ", " +
                         (up == bound_unknown ? "16" : "0") + "), or give the parameter a range: in 1 .. 16";
+        } else if (trips <= static_cast<int64_t>(ir::operations_limit)) {
+            refuse(loop.condition->span, "the bound of this loop may be " + std::to_string(farthest) +
+                                             " from its start, expected at most " + std::to_string(way_max))
+                .hint = "the last step could pass the greatest " + to_string(counter.type) + ": lower the bound";
         } else {
             diagnostics
                 .error(loop.condition->span, "too-costly",

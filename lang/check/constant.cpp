@@ -20,13 +20,6 @@ std::optional<double> literal_real(const Expression& e)
     return positive ? std::optional(-*positive) : std::nullopt;
 }
 
-const Expression* first_of(const std::vector<ExpressionPtr>& list)
-{
-    for (const ExpressionPtr& e : list)
-        if (auto found = first_not_constant(*e)) return found;
-    return nullptr;
-}
-
 } // namespace
 
 const Expression* first_not_constant(const Expression& e)
@@ -36,30 +29,15 @@ const Expression* first_not_constant(const Expression& e)
             name->symbol && (name->symbol->kind == SymbolKind::constant || name->symbol->kind == SymbolKind::table);
         return known && !e.type.is_error() ? nullptr : &e; // what a mistake has left without a type has no value
     }
-    if (auto unary = std::get_if<Unary>(&e.node)) return first_not_constant(*unary->operand);
-    if (auto member = std::get_if<Member>(&e.node)) return first_not_constant(*member->object);
-    if (auto index = std::get_if<Index>(&e.node)) {
-        auto found = first_not_constant(*index->object);
-        return found ? found : first_not_constant(*index->index);
-    }
-    if (auto choice = std::get_if<Conditional>(&e.node)) {
-        for (const ExpressionPtr* part : {&choice->condition, &choice->when_true, &choice->when_false})
-            if (auto found = first_not_constant(**part)) return found;
-        return nullptr;
-    }
-    if (auto chain = std::get_if<Chain>(&e.node)) {
-        if (auto found = first_not_constant(*chain->first)) return found;
-        for (const Chain::Link& link : chain->rest)
-            if (auto found = first_not_constant(*link.operand)) return found;
-        return nullptr;
-    }
-    if (auto call = std::get_if<CallExpression>(&e.node)) {
-        const bool known =
-            call->target.is_constructor || std::holds_alternative<const BuiltinOverload*>(call->target.function);
-        return known ? first_of(call->arguments) : &e;
-    }
-    if (std::holds_alternative<NumberLiteral>(e.node) || std::holds_alternative<BoolLiteral>(e.node)) return nullptr;
-    return &e;
+    if (auto call = std::get_if<CallExpression>(&e.node))
+        if (!call->target.is_constructor && !std::holds_alternative<const BuiltinOverload*>(call->target.function))
+            return &e;
+    if (std::holds_alternative<ErrorExpression>(e.node) || std::holds_alternative<GradCall>(e.node) ||
+        std::holds_alternative<BraceList>(e.node))
+        return &e;
+    for (const Expression* operand : operands_of(e))
+        if (auto found = first_not_constant(*operand)) return found;
+    return nullptr;
 }
 
 std::vector<ConstantPart> evaluate_constant(const Expression& e, Type type)

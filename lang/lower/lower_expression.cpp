@@ -146,7 +146,11 @@ Values BodyLowering::lower(const Expression& e, const NameExpression& node)
     builder.span = e.span;
     const Symbol& symbol = *node.symbol;
     switch (symbol.kind) {
-    case SymbolKind::local: return variables[symbol.slot];
+    case SymbolKind::local:
+        if (!variables[symbol.slot].empty()) return variables[symbol.slot];
+        owner.diagnostics.error(e.span, "internal-error",
+                                "the compiler reads '" + symbol.name + "' before it has given it a value");
+        break;
     case SymbolKind::constant:
     case SymbolKind::table: return constant(symbol);
     case SymbolKind::input: return input(symbol.input);

@@ -140,6 +140,9 @@ struct Expression {
     Type type; // set by the checker; Type::error() where something was reported
 };
 
+// The expressions that `e` is made from, one level down, in source order.
+std::vector<const Expression*> operands_of(const Expression& e);
+
 // Operators outside of parentheses: what is written behind it would go to its last operand.
 inline bool is_open(const Expression& e)
 {

@@ -1,4 +1,7 @@
 // What branches, loops and calls mean.
+#include "lang/check/check.h"
+#include "lang/lower/lower.h"
+#include "lang/syntax/parser.h"
 #include "tests/lang/lower/evaluation.h"
 #include "tests/support/catch.h"
 
@@ -138,4 +141,26 @@ TEST_CASE("lower: overloads and functions as arguments")
                   {"compose(shift, square, 2.0)", 12 + 400},
                   {"late(2.0)", 21}},
                  functions, at);
+}
+
+TEST_CASE("lower: a variable without a value is told as a mistake of the compiler's own, and read as 0")
+{
+    using namespace haptel::lang;
+    SourceSet sources;
+    Diagnostics diagnostics;
+    sources.add({"loop.haptel", "texture t() { float h = 0.0; for (int i = 0; i < 4; ++i) h += 1m; return h; }"});
+    std::vector<CheckFile> files;
+    files.push_back({parse(sources, 0, diagnostics), {}});
+    const CheckedProgram program = check(sources, std::move(files), nullptr, diagnostics);
+    REQUIRE_FALSE(diagnostics.has_errors());
+    // What the checker refuses: a bound that is the counter.
+    const auto& body = std::get<ast::Scope>(program.textures[0].tree->body->node);
+    ast::Expression bound{{}, ast::NameExpression{"i"}, int_type};
+    LoopPlan& plan = std::get<ast::For>(body.statements[1]->node).plan;
+    std::get<ast::NameExpression>(bound.node).symbol = plan.counter;
+    plan.bound = &bound;
+    lower(program, {}, diagnostics);
+    REQUIRE(diagnostics.all().size() == 1);
+    CHECK(diagnostics.all()[0].code == "internal-error");
+    CHECK(diagnostics.all()[0].message == "the compiler reads 'i' before it has given it a value");
 }

@@ -66,6 +66,31 @@ TEST_CASE("what is shown is always text")
                                           "b\n     | ^\n");
 }
 
+// All characters that Unicode 15 (UAX 9, section 2) lets embed, override or isolate a direction, and that a text could
+// say other than it is compiled with (CVE-2021-42574).
+TEST_CASE("no character that turns the direction of text is shown, wherever it stands")
+{
+    const char* const turns[] = {"\u202A", "\u202B", "\u202C", "\u202D", "\u202E",
+                                 "\u2066", "\u2067", "\u2068", "\u2069"};
+    for (const std::string turn : turns) {
+        CAPTURE(turn);
+        Diagnostic diagnostic;
+        diagnostic.code = "code";
+        diagnostic.span = {0, 0, 1};
+        diagnostic.message = "message " + turn + "here";
+        diagnostic.hint = "hint " + turn + "here";
+        diagnostic.related.push_back({{0, 0, 1}, "note " + turn + "here"});
+        SourceSet sources;
+        sources.add({"t" + turn + ".haptel", "ab" + turn + "cd"});
+        const std::string shown = render(diagnostic, sources);
+        CHECK(shown.find(turn) == std::string::npos);
+        CHECK(shown.find("ab\uFFFDcd\n") != std::string::npos);
+        CHECK(shown.find("message \uFFFDhere") != std::string::npos);
+    }
+    for (const std::string kept : {"\u2029\u202F", "\u2065\u206A"}) // beside them
+        CHECK(rendered("a" + kept, 0, 1).find(kept) != std::string::npos);
+}
+
 TEST_CASE("a long line is cut around the finding")
 {
     const std::string out =

@@ -82,6 +82,12 @@ TEST_CASE("extreme numbers")
     CHECK(read_number("1e400").error == "this number is too large");
     CHECK(read_number("1e400").code.string() == "number");
     CHECK(read_number("1e99999999999999999999m").error == "this number is too large");
+    // Exponents that are 0 or 1 to whoever counts in 32 or 64 bits.
+    for (const char* wrapped : {"4294967296", "4294967297", "18446744073709551616", "18446744073709551617"}) {
+        CAPTURE(wrapped);
+        CHECK(read_number(std::string("1e") + wrapped).error == "this number is too large");
+        CHECK(same_as(std::string("1e-") + wrapped, "0"));
+    }
     const std::string long_one = "0." + std::string(1000, '0') + "1e1001"; // exactly 1
     CHECK(read_number(long_one).value == 1.0);
     CHECK(read_number(long_one + "deg").value == read_number("1deg").value);

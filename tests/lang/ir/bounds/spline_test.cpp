@@ -206,6 +206,43 @@ TEST_CASE("spline: nothing found by sampling is outside of the bounds")
         CHECK(image->bounds({-infinity, infinity}, {0, 1}, spline_order(0, 0, edge)).may_be_nan);
 }
 
+// A place left of the picture is brought back into it by adding the picture's length, which rounds: at 2^15 texels by
+// some 1e-12 of a texel, and beside a texel into the next cell, where the third derivative is another.
+TEST_CASE("spline: bounds of a place hold its value as code finds it, and the exact one")
+{
+    const int32_t length = SplineImage::side_max;
+    std::vector<double> texels(static_cast<size_t>(length));
+    for (size_t i = 0; i < texels.size(); ++i) texels[i] = static_cast<double>(i % 2);
+    const auto flat = image_of(texels, length, 1), upright = image_of(texels, 1, length);
+    std::mt19937 random(4);
+    int rounded_up = 0, rounded_down = 0;
+    for (int round = 0; round < 2000; ++round) {
+        const double at = -std::uniform_real_distribution<double>(0, 3)(random);
+        const uint32_t edge = round % 2 ? HAPTEL_EDGE_TILED : HAPTEL_EDGE_MIRRORED;
+        const bool along = round % 4 < 2;
+        const SplineImage& image = along ? *flat : *upright;
+        const double x = along ? at : 0.5, y = along ? 0.5 : at;
+        const double code = spline(&image.view(), x, y, spline_order(0, 0, edge));
+        const Quad exact = closed_form(image.view(), x, y, 0, 0, edge);
+        const Interval bounds = image.bounds({x, x}, {y, y}, spline_order(0, 0, edge));
+        CAPTURE(at, edge, along, code, bounds.minimum, bounds.maximum);
+        CHECK(bounds.contains(code));
+        CHECK((Quad(bounds.minimum) <= exact && exact <= Quad(bounds.maximum)));
+        CHECK(bounds.maximum - bounds.minimum < 1e-9);
+        rounded_up += Quad(code) > exact + 2e-12, rounded_down += Quad(code) < exact - 2e-12;
+    }
+    CHECK((rounded_up > 100 && rounded_down > 100)); // or nothing was tried
+
+    const auto small = image_of(random_texels(7 * 7, 5), 7, 7);
+    for (const uint32_t edge : {HAPTEL_EDGE_TILED, HAPTEL_EDGE_MIRRORED})
+        for (const double just_before : {-1e-20, std::nextafter(-1.0, -2.0), std::nextafter(-2.0, -3.0)})
+            for (const bool along : {true, false}) {
+                const double x = along ? just_before : 0.5, y = along ? 0.5 : just_before;
+                const uint32_t orders = spline_order(along ? 3 : 0, along ? 0 : 3, edge);
+                CHECK(small->bounds({x, x}, {y, y}, orders).contains(spline(&small->view(), x, y, orders)));
+            }
+}
+
 TEST_CASE("images: text form, verifier and bounds of a texture that samples one")
 {
     const std::string text = R"ir(

@@ -1,0 +1,33 @@
+#include "lang/syntax/ast.h"
+
+namespace haptel::lang::ast {
+
+std::vector<const Expression*> operands_of(const Expression& e)
+{
+    std::vector<const Expression*> operands;
+    const auto add = [&](const ExpressionPtr& operand) { operands.push_back(operand.get()); };
+    const auto add_all = [&](const std::vector<ExpressionPtr>& list) {
+        for (const ExpressionPtr& operand : list) add(operand);
+    };
+    if (auto unary = std::get_if<Unary>(&e.node)) add(unary->operand);
+    if (auto member = std::get_if<Member>(&e.node)) add(member->object);
+    if (auto call = std::get_if<CallExpression>(&e.node)) add_all(call->arguments);
+    if (auto grad = std::get_if<GradCall>(&e.node)) add_all(grad->arguments);
+    if (auto list = std::get_if<BraceList>(&e.node)) add_all(list->elements);
+    if (auto index = std::get_if<Index>(&e.node)) {
+        add(index->object);
+        add(index->index);
+    }
+    if (auto choice = std::get_if<Conditional>(&e.node)) {
+        add(choice->condition);
+        add(choice->when_true);
+        add(choice->when_false);
+    }
+    if (auto chain = std::get_if<Chain>(&e.node)) {
+        add(chain->first);
+        for (const Chain::Link& link : chain->rest) add(link.operand);
+    }
+    return operands;
+}
+
+} // namespace haptel::lang::ast
