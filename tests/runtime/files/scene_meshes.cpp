@@ -1,4 +1,5 @@
 // Meshes of scenes: what is read, mended, told.
+#include "runtime/texture/shading.h"
 #include "tests/runtime/files/scene_folder.h"
 
 #include <fstream>

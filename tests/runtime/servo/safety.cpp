@@ -1,4 +1,5 @@
 // What keeps a hand safe: limits, the rise of forces, and what is not finite.
+#include "runtime/force/force_model.h"
 #include "runtime/render/renderer.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
