@@ -1,11 +1,11 @@
 #include "bench/math_bench.h"
 
+#include "bench/elementary_truth.h"
 #include "bench/library_functions.h"
 #include "jit/engine/engine.h"
+#include "lang/ir/builder.h"
 #include "lang/ir/elementary.h"
 #include "lang/ir/op_info.h"
-#include "lang/ir/run/elementary_truth.h"
-#include "lang/ir/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,23 +19,31 @@ using ir::Op;
 
 // Values of a point that a texture may read, and as many calls in one: what is not the function's own counts little.
 constexpr size_t calls = 8;
-constexpr const char* inputs[calls] = {"p_x", "p_y", "p_z", "n_x", "n_y", "n_z", "uv_x", "uv_y"};
+using ir::Input;
+constexpr Input inputs[calls] = {Input::p_x, Input::p_y, Input::p_z,  Input::n_x,
+                                 Input::n_y, Input::n_z, Input::uv_x, Input::uv_y};
 constexpr size_t points_at_once = 512; // they stay in the nearest cache
 
-std::string text_of(Op op)
+// A texture that adds up `calls` values of the function.
+void add_texture(ir::Module& module, Op op)
 {
-    const std::string name(ir::op_info(op).name);
-    const bool has_two = ir::op_info(op).arity == 2;
-    std::string body;
-    for (size_t i = 0; i < calls; ++i) body += "  %x" + std::to_string(i) + " = input " + inputs[i] + "\n";
-    for (size_t i = 0; i < calls; ++i)
-        body += "  %y" + std::to_string(i) + " = " + name + " %x" + std::to_string(i) +
-                (has_two ? ", %x" + std::to_string((i + 1) % calls) : "") + "\n";
-    body += "  %s1 = add %y0, %y1\n";
-    for (size_t i = 2; i < calls; ++i)
-        body += "  %s" + std::to_string(i) + " = add %s" + std::to_string(i - 1) + ", %y" + std::to_string(i) + "\n";
-    return "function \"" + name + "\" () {\n" + body + "  %f = u32 0\n  return %s" + std::to_string(calls - 1) +
-           ", %f\n}\ntexture \"" + name + "\" { block 56 reads 255 writes 0 height \"" + name + "\" }\n";
+    const ir::OpInfo& info = ir::op_info(op);
+    ir::Builder builder(module, std::string(info.name));
+    std::vector<ir::Value> arguments;
+    for (const ir::Input input : inputs) arguments.push_back(builder.input(input));
+    ir::Value sum{};
+    for (size_t i = 0; i < calls; ++i) {
+        const ir::Value operands[] = {arguments[i], arguments[(i + 1) % calls]};
+        const ir::Value value = builder.operation(op, std::span(operands, info.arity));
+        sum = i == 0 ? value : builder.operation(Op::add, {sum, value});
+    }
+    ir::Texture texture;
+    texture.name = info.name;
+    texture.block_size = sizeof(haptel_block_head);
+    texture.reads = HAPTEL_READS_POINT | HAPTEL_READS_NORMAL | HAPTEL_READS_UV;
+    const ir::Value faults = builder.u32(0), results[] = {sum, faults};
+    texture.height = builder.finish(results);
+    module.textures.push_back(std::move(texture));
 }
 
 // Ordinary arguments of a function.
@@ -165,18 +173,17 @@ void measure_errors(MathRow& row, Op op, int count)
 
 std::vector<MathRow> bench_math(bool quick, const std::function<void(double)>& progress)
 {
-    std::string text;
-    for (const Op op : ir::elementary_ops()) text += text_of(op);
-    const ir::ParsedModule parsed = ir::parse(text);
+    ir::Module module;
+    for (const Op op : ir::elementary_ops()) add_texture(module, op);
     std::shared_ptr<const jit::Code> code[2];
     for (size_t format = 0; format < 2; ++format) {
         std::vector<jit::EntryPoint> entries;
-        for (const ir::Texture& texture : parsed.module->textures)
+        for (const ir::Texture& texture : module.textures)
             for (const jit::LaneForm lanes : {jit::LaneForm::one, jit::LaneForm::points})
                 entries.push_back({texture.name + (lanes == jit::LaneForm::points ? "*" : ""), &texture,
                                    jit::EntryPoint::Kind::height, lanes,
                                    format == 0 ? jit::Precision::f64 : jit::Precision::f32});
-        code[format] = jit::compile_code(*parsed.module, entries, {jit::Effort::full}).code;
+        code[format] = jit::compile_code(module, entries, {jit::Effort::full}).code;
     }
     std::vector<MathRow> rows;
     std::vector<Measured> measured;

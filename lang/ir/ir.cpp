@@ -60,14 +60,6 @@ char letter(Type type)
     return '?';
 }
 
-template <typename Enum, typename Names>
-std::optional<Enum> find_name(const Names& names, std::string_view name)
-{
-    auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end()) return std::nullopt;
-    return static_cast<Enum>(found - names.begin());
-}
-
 } // namespace
 
 const OpInfo& op_info(Op op)
@@ -95,16 +87,6 @@ std::string_view to_string(Type type)
 std::string_view to_string(Input input)
 {
     return input_names[static_cast<size_t>(input)];
-}
-
-std::optional<Type> type_named(std::string_view name)
-{
-    return find_name<Type>(type_names, name);
-}
-
-std::optional<Input> input_named(std::string_view name)
-{
-    return find_name<Input>(input_names, name);
 }
 
 std::optional<Type> result_type(Op op, std::span<const Type> operands)

@@ -27,10 +27,8 @@ const OpInfo& op_info(Op op);
 std::span<const OpInfo> all_ops();
 std::optional<Op> op_named(std::string_view name);
 
-std::string_view to_string(Type type);   // "real", "i32", "u32", "bool", "image"
-std::string_view to_string(Input input); // "p_x"
-std::optional<Type> type_named(std::string_view name);
-std::optional<Input> input_named(std::string_view name);
+std::string_view to_string(Type type);             // "real", "i32", "u32", "bool", "image"
+std::string_view to_string(Input input);           // "p_x"
 std::string_view to_string(Smoothness smoothness); // "unknown", "jump", "C0", "C1", "C2", "smooth"
 std::optional<Smoothness> smoothness_named(std::string_view name);
 

@@ -1,5 +1,5 @@
+#include "lang/ir/print.h"
 #include "lang/ir/op_info.h"
-#include "lang/ir/text.h"
 
 #include <bit>
 #include <charconv>

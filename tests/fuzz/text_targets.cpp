@@ -1,8 +1,8 @@
 // Text of any bytes: source, and the text form of the IR.
 #include "lang/analyse.h"
 #include "lang/format/format.h"
+#include "lang/ir/print.h"
 #include "lang/ir/run/interpret.h"
-#include "lang/ir/text.h"
 #include "lang/ir/verify.h"
 #include "lang/syntax/parser.h"
 #include "lang/text/lexer.h"
@@ -10,6 +10,7 @@
 #include "tests/conformance/folder.h"
 #include "tests/fuzz/target.h"
 #include "tests/lang/ir/ir_random.h"
+#include "tests/support/ir_parse.h"
 
 #include <cmath>
 

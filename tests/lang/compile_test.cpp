@@ -1,7 +1,7 @@
 // The front door: files, imports, bad input of every kind.
 #include "lang/abi/abi.h"
 #include "lang/compile.h"
-#include "lang/ir/text.h"
+
 #include "tests/support/catch.h"
 
 #include <algorithm>

@@ -14,13 +14,13 @@ houses=(
     'runtime: geometry hand surface surface/build contact texture scene force files render servo | lang/abi'
     'device: . | !runtime/files runtime lang/abi'
     'tools: output arguments plot report commands . | lang stdlib jit runtime device bench'
-    'tests/lang: . | tests/support tests/conformance/case.h lang stdlib'
+    'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h lang stdlib'
     'tests/runtime: . | tests/support runtime lang/abi'
 )
 
 # Which folders alone may include a library.
 declare -A home=(
-    [llvm/]='jit' [llvm-c/]='jit' [libusb]='device' [embree]='runtime/surface' [toml++/]='runtime/files'
+    [llvm/]='jit tests/jit' [llvm-c/]='jit' [libusb]='device' [embree]='runtime/surface' [toml++/]='runtime/files'
     [assimp/]='runtime/files' [boost/]='lang/math tests' [stb/]='jit/picture tests' [tiff]='jit/picture tests'
     [OpenEXR/]='jit/picture' [Imath/]='jit/picture' [CLI/]='tools' [cairo]='tools/plot'
     [nlohmann/]='tools tests bench'

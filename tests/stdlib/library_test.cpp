@@ -2,7 +2,7 @@
 #include "jit/check/check_gradient.h"
 #include "jit/texture/texture.h"
 #include "lang/check/library.h"
-#include "lang/ir/text.h"
+#include "lang/ir/print.h"
 #include "lang/syntax/parser.h"
 #include "stdlib/stdlib.h"
 #include "tests/support/catch.h"

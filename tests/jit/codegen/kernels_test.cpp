@@ -1,9 +1,9 @@
 // Library functions compiled apart change no bit, and are told apart by all that decides their code.
 #include "jit/codegen/content_hash.h"
-#include "lang/ir/text.h"
 #include "stdlib/stdlib.h"
 #include "tests/jit/codegen/samples.h"
 #include "tests/support/catch.h"
+#include "tests/support/ir_parse.h"
 
 #include <cstring>
 #include <random>

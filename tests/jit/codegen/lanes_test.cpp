@@ -1,8 +1,8 @@
 // Many points at once: each sample of a batch is that of the entry for one point, bit for bit.
 #include "jit/codegen/uniformity.h"
-#include "lang/ir/text.h"
 #include "tests/jit/codegen/batch.h"
 #include "tests/jit/codegen/samples.h"
+#include "tests/support/ir_parse.h"
 
 #include <filesystem>
 #include <random>

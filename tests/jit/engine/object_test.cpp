@@ -1,6 +1,6 @@
 // Code for another processor: the object file is read by what its format says, not by LLVM.
-#include "jit/engine/object.h"
 #include "tests/jit/codegen/samples.h"
+#include "tests/jit/engine/object.h"
 
 #include <algorithm>
 #include <cstring>

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "lang/ir/run/interpret.h"
-#include "lang/ir/text.h"
 #include "lang/ir/verify.h"
 #include "lang/math/quad.h"
 #include "tests/support/catch.h"
+#include "tests/support/ir_parse.h"
 
 #include <bit>
 #include <optional>

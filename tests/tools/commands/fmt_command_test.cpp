@@ -1,7 +1,7 @@
 // haptel fmt: that the style never changes what a text means, and what happens to files.
 #include "lang/compile.h"
 #include "lang/format/format.h"
-#include "lang/ir/text.h"
+#include "lang/ir/print.h"
 #include "stdlib/stdlib.h"
 #include "tests/fuzz/random_source.h"
 #include "tests/support/catch.h"

@@ -1,4 +1,4 @@
-#include "lang/ir/text_tokens.h"
+#include "tests/support/ir_tokens.h"
 
 namespace haptel::ir {
 

@@ -19,11 +19,11 @@
 //               string ] "}"
 //
 // Reading checks names, types and the number of operands; everything else is verify's.
+#include "tests/support/ir_parse.h"
 #include "lang/ir/op_info.h"
-#include "lang/ir/text.h"
-#include "lang/ir/text_tokens.h"
 #include "lang/ir/verify.h"
 #include "lang/text/diagnostic.h"
+#include "tests/support/ir_tokens.h"
 
 #include <bit>
 #include <charconv>
@@ -35,6 +35,15 @@ namespace {
 struct Failure {
     std::string message;
 };
+
+// The enumerator, of `count`, that is printed as `name`.
+template <typename Enum>
+std::optional<Enum> enumerator_named(std::string_view name, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; ++i)
+        if (to_string(static_cast<Enum>(i)) == name) return static_cast<Enum>(i);
+    return std::nullopt;
+}
 
 class Parser {
 public:
@@ -123,7 +132,7 @@ private:
     }
     Type type()
     {
-        std::optional<Type> named = type_named(token().text);
+        const auto named = enumerator_named<Type>(token().text, static_cast<uint32_t>(Type::image) + 1);
         if (token().kind != Token::Kind::word || !named)
             fail("expected a type (real, i32, u32, bool), found " + found());
         ++next;
@@ -273,7 +282,7 @@ private:
             return {Type::boolean};
         }
         if (accept("input")) {
-            std::optional<Input> input = input_named(token().text);
+            const auto input = enumerator_named<Input>(token().text, input_count);
             if (!input) fail("unknown input " + found());
             ++next;
             made.kind = ReadInput{*input};

@@ -1,4 +1,4 @@
-#include "jit/engine/object.h"
+#include "tests/jit/engine/object.h"
 
 #include "jit/codegen/isa.h"
 #include "jit/codegen/llvm.h"

@@ -1,17 +1,15 @@
-// Text form of the IR, printable and parseable: print(parse(text)) == text for printed text. Passes are tested text to
-// text. The grammar stands at the top of parse.cpp.
+// Reads the text form of the IR back, so that passes are tested text to text: print(parse(text)) == text for printed
+// text. The grammar stands at the top of ir_parse.cpp.
 #pragma once
 
 #include "lang/ir/ir.h"
+#include "lang/ir/print.h"
 
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace haptel::ir {
-
-std::string print(const Module& module);
-std::string print(const Module& module, const Function& function);
 
 struct ParsedModule {
     std::optional<Module> module;

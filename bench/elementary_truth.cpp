@@ -1,4 +1,4 @@
-#include "lang/ir/run/elementary_truth.h"
+#include "bench/elementary_truth.h"
 
 #include "lang/ir/semantics.h"
 

@@ -1,0 +1,13 @@
+// Text form of the IR, for people and tests: equal text means an equal module.
+#pragma once
+
+#include "lang/ir/ir.h"
+
+#include <string>
+
+namespace haptel::ir {
+
+std::string print(const Module& module);
+std::string print(const Module& module, const Function& function);
+
+} // namespace haptel::ir
