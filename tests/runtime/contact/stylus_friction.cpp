@@ -3,6 +3,7 @@
 // and what friction does to energy: it only takes.
 #include "runtime/contact/contact_qp.h"
 #include "runtime/contact/stylus_contact.h"
+#include "runtime/contact/stylus_friction.h"
 #include "runtime/surface/build/joined_surfaces.h"
 #include "runtime/surface/shapes.h"
 
@@ -269,4 +270,38 @@ TEST_CASE("how an end gives is how it moves by a small pull")
         REQUIRE(glm::distance(moved, by_pull) < 1e-3 * glm::length(pull));
     }
     CHECK(compared > 1000);
+}
+
+// Coulomb's law, with the depth cut to what lies between an object and the border of its workspace: beyond that no
+// place could be aimed at.
+TEST_CASE("an end that is jammed bears as much as its workspace is deep, and slips from there on")
+{
+    constexpr double deepest = Lattice::workspace - Lattice::extent;
+    const dvec3 normal(0, 0, 1);
+    const auto end_that_sticks = [&] {
+        EndGrip end;
+        end.friction = {0.5, 0.25};
+        end.touches = true;
+        end.normal = normal;
+        end.take_hold(true);
+        return end;
+    };
+    for (const double height : {1.0, 0.4 * deepest, 0.999 * deepest}) {
+        EndGrip end = end_that_sticks();
+        const dvec3 drawn = 0.4 * height * dvec3(0.6, 0.8, 0);
+        CHECK(end.follow(drawn - height * normal, dvec3(0), glm::dmat3(1)) == 0);
+        CHECK((end.sticks && glm::distance(end.lag, -drawn) <= 1e-12 * height));
+    }
+    for (const double height : {1.001 * deepest, 40 * deepest, 1e30}) {
+        EndGrip end = end_that_sticks(); // and hardly drawn: it is the depth that it cannot bear
+        const dvec3 aim = dvec3(1, 0, 0) - height * normal;
+        CHECK(end.follow(aim, dvec3(0), glm::dmat3(1)) == HUGE_VAL);
+        CHECK((!end.sticks && end.slides));
+        for (int turn = 0; turn < 20; ++turn) { // against the way that it slips, by all that it may from the first on
+            end.take_hold(true);
+            CHECK_FALSE(end.sticks);
+            end.follow(aim, dvec3(deepest, 0, 0), glm::dmat3(1));
+            CHECK(glm::distance(end.lag, dvec3(-0.25 * deepest, 0, 0)) < 1e-9 * deepest);
+        }
+    }
 }

@@ -171,6 +171,48 @@ TEST_CASE("damping takes energy, begins without a step, and never pulls")
     CHECK(energy_j < -1e-5);
 }
 
+// A spring of k N/m that is drawn by d m gives k d back, whatever it is damped by. The hand is drawn out at 0.5 m/s, so
+// that damping asks for more; it presses on what the texture leaves of the depth, with the texture's own stiffness.
+TEST_CASE("damping holds nothing back that the spring does not push, textured, soft, by a shaft and in any workspace")
+{
+    for (const double scale : {0.25, 1.0, 4.0})
+        for (const bool by_shaft : {false, true}) {
+            const double below_m = 0.4e-3 * scale, soft = 0.2;
+            Scene scene =
+                by_shaft ? bare_scene(shape("box", 0.06 * scale))
+                         : bare_scene(plane_mesh(0.1 * scale), sample_lambda(
+                                                                   [&](const haptel_point&, haptel_sample& sample) {
+                                                                       sample.height_m = -below_m;
+                                                                       sample.stiffness_scale = soft;
+                                                                   },
+                                                                   -below_m, 0));
+            scene.objects[0].material.damping_n_s_per_m = 50;
+            if (by_shaft) scene.probe = {ProbeKind::stylus, 0.1 * scale, 0};
+            HandSettings hand;
+            hand.workspace.scale = scale;
+            Renderer renderer(shared(std::move(scene)), hand);
+            // Off a plane's middle, or off the edge along y of a box of 60 mm, which the middle of the shaft leans on.
+            const glm::dvec3 normal = by_shaft ? glm::normalize(glm::dvec3(1, 0, 1)) : glm::dvec3(0, 0, 1),
+                             place = by_shaft ? glm::dvec3(0.03, 0, 0.03) : glm::dvec3(0.01, 0.02, 0),
+                             along = by_shaft ? 0.05 * glm::normalize(glm::dvec3(1, 0, -1)) : glm::dvec3(0);
+            double least_n = 0, most_n = 0, damped = 0;
+            for (int i = 0; i < 300; ++i) {
+                const double up_m = i < 200 ? std::max(-1.5e-3, 1e-3 - i * 2e-5) : -1.5e-3 + (i - 199) * 5e-4;
+                const glm::dvec3 middle = place + up_m * normal;
+                const TickResult result = renderer.tick({middle - along, middle + along});
+                const double felt_n = glm::dot(result.force_n, normal);
+                const double spring_n = by_shaft ? 2 * 1000 * -up_m : soft * 1000 * (-up_m - 0.4e-3);
+                least_n = std::min(least_n, felt_n);
+                most_n = std::max(most_n, felt_n);
+                damped += i >= 200 && result.contacts > 0 && spring_n > 0 && felt_n < 0.5 * spring_n;
+            }
+            CAPTURE(scale, by_shaft, least_n, most_n);
+            CHECK(least_n > -1e-9);
+            CHECK(most_n > 0.2);
+            CHECK(damped > 0); // or nothing was held back
+        }
+}
+
 TEST_CASE("after missed deadlines damping knows the speed that was, not a multiple of it")
 {
     constexpr double speed_m_per_s = 0.02, damping = 5, stiffness = 1000;

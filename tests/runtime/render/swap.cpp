@@ -84,6 +84,26 @@ TEST_CASE("friction holds where it held, and a moving object moves on")
     }
 }
 
+// Its tail alone is on the plane and sticks there, drawn by 0.3 of the depth of 1 mm; its tip is in the air.
+TEST_CASE("friction goes on holding the tail of a stylus, on the surface that was there and on one built anew")
+{
+    for (const bool anew : {false, true}) {
+        Scene first = plane_scene();
+        first.probe = {ProbeKind::stylus, 0.08, 0};
+        first.objects[0].material = {1000, 0, 0.5, 0.1};
+        Scene second = same_as(first);
+        if (anew) second.objects[0].surface = build_surface(plane_mesh(0.1, 3)).surface;
+        const auto hand = [](double x, double z) { return DevicePose{{x, 0.01, z + 0.08}, {x, 0.01, z}}; };
+        Stage stage(shared(std::move(first)));
+        for (int i = 0; i < 50; ++i) stage.tick(hand(0.01, 1e-3 - 4e-5 * i));
+        for (int i = 0; i < 200; ++i) stage.tick(hand(0.01 + std::min(i, 100) * 3e-6, -1e-3));
+        CAPTURE(anew);
+        CHECK(std::abs(stage.tick(hand(0.0103, -1e-3)).force_n.x + 0.3) < 1e-6);
+        stage.slot.publish(shared(std::move(second)));
+        for (int i = 0; i < 200; ++i) CHECK(std::abs(stage.tick(hand(0.0103, -1e-3)).force_n.x + 0.3) < 1e-6);
+    }
+}
+
 TEST_CASE("an object that slept while the hand went round it is met from where the hand is")
 {
     const auto scene = shared(plane_scene());

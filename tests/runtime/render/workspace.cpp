@@ -1,5 +1,6 @@
 // A hand that reaches into a larger, turned or shifted scene: what it feels, and what that does with energy.
 #include "runtime/render/renderer.h"
+#include "tests/runtime/render/swap_stage.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
 #include "tests/support/touch_scenes.h"
@@ -125,6 +126,30 @@ TEST_CASE("a world twice as large, seen through a scale of two, is the same to t
             CHECK(largest_n > 1);
             CHECK((in_contact > 500 && in_contact < 3900));
             CHECK(worst_n < 1e-5); // the turn is rounded, and friction and creases decide
+        }
+}
+
+// Half a millimetre of the hand is a nudge: the plate takes along what friction holds on it, which draws the hand by as
+// much. Two millimetres are another plate, on which the hand is put down.
+TEST_CASE("whether an object was moved under the hand is said in millimetres of the hand")
+{
+    for (const double scale : {0.25, 1.0, 4.0})
+        for (const double moved_m : {0.5e-3, 2e-3}) {
+            Scene scene = plane_scene();
+            scene.objects[0].surface = build_surface(plane_mesh(0.1 * scale)).surface;
+            scene.objects[0].material = {1000, 0, 0.8, 0.8};
+            Scene after = same_as(scene);
+            after.objects[0].placement.position_m.x = moved_m * scale;
+            HandSettings hand;
+            hand.workspace.scale = scale;
+            Stage stage(shared(std::move(scene)), hand);
+            stage.press(1e-3, 1);
+            stage.press(-3e-3, 200);
+            stage.slot.publish(shared(std::move(after)));
+            const glm::dvec3 force = stage.press(-3e-3, 200).force_n;
+            CAPTURE(scale, moved_m);
+            CHECK(std::abs(force.z - 3) < 1e-6);
+            CHECK(std::abs(force.x - (moved_m < 1e-3 ? 1000 * moved_m : 0)) < 1e-6);
         }
 }
 

@@ -122,3 +122,28 @@ TEST_CASE("where vertex normals cancel the facet's normal is felt")
                 CHECK(std::isfinite(glm::length(shading.normal_dp[0]) + glm::length(shading.normal_dp[1])));
             }
 }
+
+// A mean of three equal numbers is that number; computed from rounded weights it is a little less or more.
+TEST_CASE("the range of coordinates of a mesh holds what is computed from them, and hardly more")
+{
+    std::mt19937_64 random(6);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    for (const glm::dvec2 everywhere : {glm::dvec2(0.1, -0.1), glm::dvec2(1.0 / 3, 7.7e5), glm::dvec2(-3e-9, 0)}) {
+        Mesh mesh = make_plane(2);
+        for (auto& uv : mesh.uv) uv = everywhere;
+        const auto s = surface_of(mesh);
+        const haptel::UvFigures range = uv_figures(*s);
+        int below = 0, above = 0;
+        for (int i = 0; i < 5000; ++i) {
+            dvec3 w(uniform(random), uniform(random), uniform(random));
+            w /= w.x + w.y + w.z;
+            const glm::dvec2 uv = shade(*s, uint32_t(random() % s->faces.size()), 0, w).uv;
+            for (int k = 0; k < 2; ++k) {
+                CHECK((uv[k] >= range.minimum[k] && uv[k] <= range.maximum[k]));
+                below += uv[k]<everywhere[k], above += uv[k]> everywhere[k];
+            }
+        }
+        CHECK((below > 100 && above > 100)); // or nothing was rounded
+        for (int k = 0; k < 2; ++k) CHECK(range.maximum[k] - range.minimum[k] <= 1e-11 * std::abs(everywhere[k]));
+    }
+}
