@@ -32,10 +32,6 @@
 namespace haptel::ir {
 namespace {
 
-struct Failure {
-    std::string message;
-};
-
 // The enumerator, of `count`, that is printed as `name`.
 template <typename Enum>
 std::optional<Enum> enumerator_named(std::string_view name, uint32_t count)
@@ -45,9 +41,9 @@ std::optional<Enum> enumerator_named(std::string_view name, uint32_t count)
     return std::nullopt;
 }
 
-class Parser {
+class Parser : TokenReader {
 public:
-    explicit Parser(std::string_view text) : tokens(tokenize(text)) {}
+    explicit Parser(std::string_view text) : TokenReader(text) {}
 
     ParsedModule run()
     {
@@ -69,62 +65,11 @@ public:
     }
 
 private:
-    std::vector<Token> tokens;
-    size_t next = 0;
     Module module;
     Function function;
     std::map<std::string, Value, std::less<>> values;
     std::map<std::string, uint32_t, std::less<>> functions;
 
-    const Token& token() const { return tokens[next]; }
-    std::string found() const { return token().kind == Token::Kind::end ? "the end" : "'" + token().text + "'"; }
-    [[noreturn]] void fail(std::string message) const { throw Failure{std::move(message)}; }
-
-    bool is(std::string_view text) const
-    {
-        return (token().kind == Token::Kind::word || token().kind == Token::Kind::mark) && token().text == text;
-    }
-    bool accept(std::string_view text)
-    {
-        if (!is(text)) return false;
-        ++next;
-        return true;
-    }
-    void expect(std::string_view text)
-    {
-        if (!accept(text)) fail("expected '" + std::string(text) + "', found " + found());
-    }
-    std::string take(Token::Kind kind, std::string_view what)
-    {
-        if (token().kind != kind) fail("expected " + std::string(what) + ", found " + found());
-        return tokens[next++].text;
-    }
-    std::string string() { return take(Token::Kind::string, "a name in quotes"); }
-
-    template <typename Number>
-    Number number(std::string_view what)
-    {
-        if (token().kind != Token::Kind::word) fail("expected " + std::string(what) + ", found " + found());
-        const std::string& text = token().text;
-        Number value{};
-        auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error != std::errc() || end != text.data() + text.size())
-            fail("expected " + std::string(what) + ", found " + found());
-        ++next;
-        return value;
-    }
-    uint32_t count() { return number<uint32_t>("a count"); }
-    double real()
-    {
-        if (token().kind == Token::Kind::word && token().text.starts_with("nan:")) {
-            uint64_t bits = 0;
-            const std::string& text = token().text;
-            std::from_chars(text.data() + 4, text.data() + text.size(), bits, 16);
-            ++next;
-            return std::bit_cast<double>(bits);
-        }
-        return number<double>("a number");
-    }
     uint32_t word(Type type)
     {
         return type == Type::i32 ? static_cast<uint32_t>(number<int32_t>("a 32-bit number"))
