@@ -72,6 +72,7 @@ void PointContact::follow(const glm::dvec3& hand_m) noexcept
 {
     if (!take(hand_m)) return;
     ++counters_.skipped;
+    placed_ = true;
     proxy_.at = hand_;
     describe();
 }

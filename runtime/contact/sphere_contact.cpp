@@ -78,7 +78,9 @@ void SphereContact::follow(const glm::dvec3& centre_m) noexcept
 {
     ++counters_.ticks;
     ++counters_.skipped;
-    if (finite(centre_m)) centre_ = hand_ = surface_->lattice.snap(centre_m);
+    if (!finite(centre_m)) return;
+    centre_ = hand_ = surface_->lattice.snap(centre_m);
+    placed_ = true; // as large as it is, where there is nothing
 }
 
 double SphereContact::gap_m(const glm::dvec3& centre_m) const noexcept

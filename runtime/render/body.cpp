@@ -90,6 +90,11 @@ void Body::move(double time_s) noexcept
     if (now && finite(*now)) placement = *now;
 }
 
+bool lies_beyond(const Body& body, const ProbePose& probe, double away_m) noexcept
+{
+    return gap_m(body.around, probe.tip_m, probe.tail_m) > std::max(away_m, far_enough_m(probe.tip_m, probe.tail_m, 0));
+}
+
 void EndFriction::add(const Friction& friction, double push_n) noexcept
 {
     if (!(push_n > 0)) return;

@@ -86,6 +86,9 @@ struct Body {
     void move(double time_s) noexcept;
 };
 
+// Nothing of it is felt within that distance of a probe in its space, where coordinates may be large.
+bool lies_beyond(const Body& body, const ProbePose& probe, double away_m) noexcept;
+
 // A contact with a joined surface as the object that it belongs to has it: in that one's space, on its own surface. The
 // proxy may lie beside its triangle by what joining has moved vertices.
 Contact on_part(const Contact& contact, const Surface& joined, const SceneObject& part) noexcept;

@@ -1,25 +1,79 @@
 #include "runtime/render/reach.h"
 
 #include <algorithm>
-#include <functional>
+#include <cmath>
 #include <utility>
 
 namespace haptel::runtime {
 
 namespace {
 
-// The way is rounded up, the gap down, and of what turns a part of the gap is left over: nobody sleeps too long.
-constexpr double up = 1 + 0x1p-51, early = 1 - 1e-6, early_if_turning = 0.9;
+// A way counts in these, rounded up, and a gap rounded down: a picometre, finer than any hand, is 1e7 m on half of the
+// circle. What is larger than a quarter of that counts as such, and wakes everybody.
+constexpr double units_per_m = 0x1p40, units_most = 0x1p61;
+
+// Coordinates are rounded, and of what turns a part of the gap is left over: nobody sleeps too long.
+constexpr double early = 1 - 1e-6, early_if_turning = 0.9;
 static_assert(early_if_turning + turn_max_rad < 1);
-// The way is counted anew before it has lost the digits of a step.
-constexpr double way_max_m = 100;
+
+// The ball around two is rounded up.
+constexpr double rounding = 1e-12;
+
+// A metre before the circle is round, which so happens in every run and not after 1e7 m first.
+constexpr uint64_t way_at_start = uint64_t{0} - (uint64_t{1} << 40);
+
+Surroundings around_both(const Surroundings& a, const Surroundings& b)
+{
+    const bool turns = a.turns || b.turns;
+    const glm::dvec3 way = b.centre_m - a.centre_m;
+    const double apart = glm::length(way);
+    if (apart + b.radius_m <= a.radius_m) return {a.centre_m, a.radius_m, turns};
+    if (apart + a.radius_m <= b.radius_m) return {b.centre_m, b.radius_m, turns};
+    const double radius = (apart + a.radius_m + b.radius_m) / 2;
+    const glm::dvec3 centre = a.centre_m + (radius - a.radius_m) / apart * way;
+    const glm::dvec3 farthest = glm::max(glm::abs(a.centre_m), glm::abs(b.centre_m));
+    return {centre, radius + rounding * (radius + farthest.x + farthest.y + farthest.z), turns};
+}
 
 } // namespace
 
-Reach::Reach(std::vector<Surroundings> objects) : objects_(std::move(objects))
+Reach::Reach(std::vector<Surroundings> objects, bool leaves_alone)
+    : object_count_(objects.size()), balls_(std::move(objects)), way_(way_at_start)
 {
-    sleepers_.reserve(objects_.size());
-    for (uint32_t object = 0; object < objects_.size(); ++object) awake_.push_back(object);
+    // Who turns is apart, since it has to be awake apart (wake_who_turns).
+    std::vector<uint32_t> at_rest, turning;
+    awake_.reserve(object_count_);
+    for (uint32_t object = 0; object < object_count_; ++object)
+        if (!leaves_alone || !std::isfinite(balls_[object].radius_m))
+            awake_.push_back(object);
+        else
+            (balls_[object].turns ? turning : at_rest).push_back(object);
+    sleepers_.reserve(object_count_);
+    for (std::vector<uint32_t>* some : {&at_rest, &turning})
+        if (!some->empty()) sleepers_.push_back({way_, group(*some)});
+}
+
+// Halves along the axis on which the objects are farthest apart.
+uint32_t Reach::group(std::span<uint32_t> objects)
+{
+    if (objects.size() == 1) return objects[0];
+    glm::dvec3 least(balls_[objects[0]].centre_m), most = least;
+    for (const uint32_t object : objects) {
+        least = glm::min(least, balls_[object].centre_m);
+        most = glm::max(most, balls_[object].centre_m);
+    }
+    const glm::dvec3 sides = most - least;
+    const int axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
+    const std::size_t half = objects.size() / 2;
+    std::nth_element(objects.begin(), objects.begin() + static_cast<std::ptrdiff_t>(half), objects.end(),
+                     [&](uint32_t a, uint32_t b) {
+                         const double place_a = balls_[a].centre_m[axis], place_b = balls_[b].centre_m[axis];
+                         return place_a != place_b ? place_a < place_b : a < b;
+                     });
+    const uint32_t first = group(objects.first(half)), second = group(objects.subspan(half));
+    groups_.push_back({first, second});
+    balls_.push_back(around_both(balls_[first], balls_[second]));
+    return static_cast<uint32_t>(balls_.size() - 1);
 }
 
 double gap_m(const Surroundings& around, const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
@@ -30,41 +84,87 @@ double gap_m(const Surroundings& around, const glm::dvec3& tip_m, const glm::dve
     return glm::length(to_centre - share * shaft) - around.radius_m;
 }
 
+double far_enough_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m, double way_m) noexcept
+{
+    const glm::dvec3 farthest = glm::max(glm::abs(tip_m), glm::abs(tail_m));
+    return std::max({1e-6, 8 * way_m, 1e-6 * std::max({farthest.x, farthest.y, farthest.z})});
+}
+
+// On the circle, of which all sleepers are on the half that lies ahead.
+bool Reach::later(const Sleeper& a, const Sleeper& b) noexcept
+{
+    return static_cast<int64_t>(a.at - b.at) > 0;
+}
+
 void Reach::go(double way_m, const glm::dvec3& tip_m, const glm::dvec3& tail_m, double near_m) noexcept
 {
-    way_m_ = (way_m_ + way_m) * up;
-    if (!(way_m_ < way_max_m)) wake_all();
-    while (!sleepers_.empty() && sleepers_.front().first <= way_m_) {
-        const uint32_t object = sleepers_.front().second;
-        std::pop_heap(sleepers_.begin(), sleepers_.end(), std::greater<>());
+    const double units = std::ceil(way_m * units_per_m);
+    if (units < units_most) {
+        way_ += static_cast<uint64_t>(units);
+    } else { // or is no number
+        for (Sleeper& sleeper : sleepers_) sleeper.at = way_;
+    }
+    while (!sleepers_.empty() && static_cast<int64_t>(sleepers_.front().at - way_) <= 0) {
+        const uint32_t node = sleepers_.front().node;
+        std::pop_heap(sleepers_.begin(), sleepers_.end(), later);
         sleepers_.pop_back();
-        const double gap = runtime::gap_m(objects_[object], tip_m, tail_m);
+        ++compared_;
+        const double gap = runtime::gap_m(balls_[node], tip_m, tail_m);
         if (gap > near_m) {
-            fall_asleep(object, gap);
+            sleep_for(node, gap);
+        } else if (is_group(node)) {
+            for (const uint32_t half : {group_of(node).first, group_of(node).second}) fall_asleep(half, 0);
+        } else {
+            wake(node);
+        }
+    }
+}
+
+void Reach::wake_who_turns() noexcept
+{
+    bool any = false;
+    for (std::size_t i = 0; i < sleepers_.size();) {
+        const uint32_t node = sleepers_[i].node;
+        if (!balls_[node].turns) {
+            ++i;
             continue;
         }
-        awake_.insert(std::lower_bound(awake_.begin(), awake_.end(), object), object); // room for all was made
+        any = true;
+        if (is_group(node)) {
+            sleepers_[i].node = group_of(node).first;
+            sleepers_.push_back({way_, group_of(node).second});
+        } else {
+            awake_.push_back(node);
+            sleepers_[i] = sleepers_.back();
+            sleepers_.pop_back();
+        }
     }
+    if (!any) return;
+    std::sort(awake_.begin(), awake_.end());
+    std::make_heap(sleepers_.begin(), sleepers_.end(), later);
 }
 
 void Reach::sleep(uint32_t object, double gap_m) noexcept
 {
     awake_.erase(std::lower_bound(awake_.begin(), awake_.end(), object));
-    fall_asleep(object, gap_m);
+    sleep_for(object, gap_m);
 }
 
-void Reach::fall_asleep(uint32_t object, double gap_m) noexcept
+void Reach::sleep_for(uint32_t node, double gap_m) noexcept
 {
-    sleepers_.emplace_back(way_m_ + (objects_[object].turns ? early_if_turning : early) * gap_m, object);
-    std::push_heap(sleepers_.begin(), sleepers_.end(), std::greater<>());
+    const double units = (balls_[node].turns ? early_if_turning : early) * gap_m * units_per_m;
+    fall_asleep(node, units < units_most ? static_cast<uint64_t>(units) : static_cast<uint64_t>(units_most));
 }
 
-void Reach::wake_all() noexcept
+void Reach::fall_asleep(uint32_t node, uint64_t units) noexcept
 {
-    for (const Sleeper& sleeper : sleepers_) awake_.push_back(sleeper.second);
-    std::sort(awake_.begin(), awake_.end());
-    sleepers_.clear();
-    way_m_ = 0;
+    sleepers_.push_back({way_ + units, node}); // room for all was made
+    std::push_heap(sleepers_.begin(), sleepers_.end(), later);
+}
+
+void Reach::wake(uint32_t object) noexcept
+{
+    awake_.insert(std::lower_bound(awake_.begin(), awake_.end(), object), object); // room for all was made
 }
 
 } // namespace haptel::runtime

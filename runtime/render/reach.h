@@ -5,6 +5,11 @@
 // that gap. One heap, ordered by the way at which to wake. Who is then still far away, by the ball around it, sleeps
 // on: the hand goes up and down more than away. Objects that are joined are one here (body.h).
 //
+// Who was never near sleeps in groups: the leaves of a tree of balls, each around two below it. A group wakes as an
+// object does, and only if the hand is near its ball do the two groups in it sleep by themselves. So nobody looks at
+// all objects at once, not even when a scene begins. The way is counted in whole units round the circle of 64 bits,
+// so that it loses no digits however far the hand goes.
+//
 // One that moves within known bounds (motion.h) is at rest here. The ball holds all the places that it can take. As it
 // sees the hand, that makes longer steps than it does: by what it sways, and by what it turns at its own edge, for
 // which the ball is larger; by what it turns per metre of gap, for which it does not sleep through the last tenth of
@@ -16,7 +21,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
+#include <span>
 #include <vector>
 
 namespace haptel::runtime {
@@ -31,36 +36,59 @@ struct Surroundings {
 // From the hand to there; not above 0 where that is not known.
 double gap_m(const Surroundings& around, const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
 
+// An object farther away than this is left alone by a hand that went so far in this tick: it needs several ticks to
+// come near, and what rounding does to coordinates is nothing beside it.
+double far_enough_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m, double way_m) noexcept;
+
 // Of who turns, in one tick; who may have turned farther has to be awake.
 inline constexpr double turn_max_rad = 0.05;
 
 class Reach {
 public:
-    // All awake.
-    explicit Reach(std::vector<Surroundings> objects);
+    // Who may be anywhere is awake; all others sleep until the first call of go(). Not `leaves_alone`: all are awake,
+    // and nobody is to be put to sleep.
+    explicit Reach(std::vector<Surroundings> objects, bool leaves_alone = true);
 
     // The hand, from tip to tail, has gone so far since the last call. Wakes whoever it may have come nearer to than
     // `near_m`, and may wake others.
     void go(double way_m, const glm::dvec3& tip_m, const glm::dvec3& tail_m, double near_m) noexcept;
+    // Who turns may have turned farther than turn_max_rad since the last call of go().
+    void wake_who_turns() noexcept;
 
     // The object, which is awake, is at least this far from the hand: more than a micrometre.
     void sleep(uint32_t object, double gap_m) noexcept;
 
-    const Surroundings& around(uint32_t object) const noexcept { return objects_[object]; }
+    const Surroundings& around(uint32_t object) const noexcept { return balls_[object]; }
     // In rising order, so that what is summed over them does not depend on who slept when.
     const std::vector<uint32_t>& awake() const noexcept { return awake_; }
-    std::size_t asleep() const noexcept { return sleepers_.size(); }
+    std::size_t asleep() const noexcept { return object_count_ - awake_.size(); }
+    // Balls that were compared with the hand since the start, those of groups included.
+    uint64_t compared() const noexcept { return compared_; }
 
 private:
-    void fall_asleep(uint32_t object, double gap_m) noexcept;
-    void wake_all() noexcept;
+    struct Sleeper {
+        uint64_t at;   // the way at which it wakes
+        uint32_t node; // an object, or a group behind them
+    };
+    struct Group {
+        uint32_t first, second; // nodes
+    };
 
-    using Sleeper = std::pair<double, uint32_t>; // the way at which it wakes; the object
+    uint32_t group(std::span<uint32_t> objects);
+    bool is_group(uint32_t node) const noexcept { return node >= object_count_; }
+    const Group& group_of(uint32_t node) const noexcept { return groups_[node - object_count_]; }
+    static bool later(const Sleeper& a, const Sleeper& b) noexcept;
+    void sleep_for(uint32_t node, double gap_m) noexcept;
+    void fall_asleep(uint32_t node, uint64_t units) noexcept;
+    void wake(uint32_t object) noexcept;
 
-    std::vector<Surroundings> objects_;
-    std::vector<Sleeper> sleepers_; // heap: the first to wake in front
+    std::size_t object_count_;
+    std::vector<Surroundings> balls_; // of the objects, then of the groups
+    std::vector<Group> groups_;
+    std::vector<Sleeper> sleepers_; // heap: the first to wake in front; together they hold each object once
     std::vector<uint32_t> awake_;
-    double way_m_ = 0;
+    uint64_t way_;
+    uint64_t compared_ = 0;
 };
 
 } // namespace haptel::runtime

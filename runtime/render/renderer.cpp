@@ -4,22 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace haptel::runtime {
 
 namespace {
-
-constexpr double anywhere_m = std::numeric_limits<double>::infinity();
-
-// An object is left alone if it is farther away than this: the hand needs several ticks to come near it, and what
-// rounding does to coordinates is nothing beside it.
-double far_enough_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m, double way_m)
-{
-    const glm::dvec3 farthest = glm::max(glm::abs(tip_m), glm::abs(tail_m));
-    return std::max({1e-6, 8 * way_m, 1e-6 * std::max({farthest.x, farthest.y, farthest.z})});
-}
 
 double farther_m(const glm::dvec3& tip_way_m, const glm::dvec3& tail_way_m)
 {
@@ -40,21 +29,18 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
                                           : scene_->servo.force_limit_n)
     , bodies_(make_bodies(*scene_, probe_))
     , effects_(*scene_, hand_)
-    , reach_(surroundings(*scene_, bodies_, probe_.radius_m))
+    , reach_(surroundings(*scene_, bodies_, probe_.radius_m), scene_->servo.skips.objects)
     , waiting_(scene_->servo.wait_for_small_force_n > 0)
     , velocity_(period_s_)
     , tail_velocity_(period_s_)
 {
-    for (const Body& body : bodies_) {
+    for (Body& body : bodies_) {
+        body.asleep = scene_->servo.skips.objects;
         turn_max_rad_per_s_ = std::max(turn_max_rad_per_s_, body.turn_rad_per_s);
         if (body.bounded && !history_) history_.emplace(period_s_);
     }
     objects_.reserve(scene_->objects.size());
-    for (const SceneObject& object : scene_->objects) {
-        TextureReader reader(*object.texture);
-        const uint64_t serial = reader.to().serial;
-        objects_.push_back({&object, std::move(reader), serial});
-    }
+    for (const SceneObject& object : scene_->objects) objects_.push_back({&object, TextureReader(*object.texture)});
 }
 
 std::vector<Body> Renderer::make_bodies(const Scene& scene, const ProbeSettings& probe)
@@ -70,13 +56,6 @@ std::vector<Surroundings> Renderer::surroundings(const Scene& scene, const std::
     std::vector<Surroundings> all;
     for (const Body& body : bodies) all.push_back(surroundings_of(scene, body.objects, probe_radius_m));
     return all;
-}
-
-uint64_t Renderer::reloads() const noexcept
-{
-    uint64_t sum = reloads_before_;
-    for (const Touched& touched : objects_) sum += touched.object->texture->newest_serial() - touched.serial_at_start;
-    return sum;
 }
 
 TickResult Renderer::tick(const DevicePose& pose) noexcept
@@ -112,7 +91,10 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         effects_.lose_hand();
         if (history_) history_->lose_hand();
         sent_ = left_ = {};
-        for (Body& body : bodies_) body.velocity.lose_hand(), body.tail_velocity.lose_hand();
+        for (const uint32_t body : reach_.awake()) { // who sleeps knows of no hand
+            bodies_[body].velocity.lose_hand();
+            bodies_[body].tail_velocity.lose_hand();
+        }
         interrupted_ = true;
         result.faults = fault_pose_not_finite;
         return result;
@@ -134,7 +116,8 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
 
     held_j_ = 0;
     const double way = way_m(pose), near_m = far_enough_m(pose.tip_m, pose.tail_m, way);
-    reach_.go(turned_rad() <= turn_max_rad ? way : anywhere_m, pose.tip_m, pose.tail_m, near_m);
+    if (turned_rad() > turn_max_rad) reach_.wake_who_turns();
+    reach_.go(way, pose.tip_m, pose.tail_m, near_m);
     Skipped skipped;
     skipped_.objects += objects_.size();
     for (std::size_t i = 0; i < reach_.awake().size(); ++i) {
@@ -142,6 +125,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         Body& body = bodies_[number];
         if (!take_pose(body, pose, periods)) continue;
         skipped_.objects -= body.objects.numbers().size();
+        work_.objects += body.objects.numbers().size();
         const ContactCounters& counters = body.contact.counters();
         const uint64_t spared = counters.skipped, queries = counters.sweeps, triangles = counters.triangles_tested,
                        steps = counters.walk_steps;
@@ -321,27 +305,28 @@ ProbePose Renderer::pose_before(Body& body) const noexcept
 bool Renderer::take_pose(Body& body, const DevicePose& pose, uint64_t periods) noexcept
 {
     if (!body.motion && !body.asleep) return true;
-    const ProbePose before = body.asleep ? pose_before(body) : ProbePose();
+    const bool put_down = body.asleep && !last_pose_; // by the contact, where the hand is
+    const ProbePose before = body.asleep && last_pose_ ? pose_before(body) : ProbePose();
     if (body.motion) body.move(time_s());
     if (body.motion && !body.bounded) {
         const ProbePose now = body.pose_of(pose);
         body.velocity.update(now.tip_m, periods);
         if (probe_.has_tail()) body.tail_velocity.update(now.tail_m, periods);
         if (body.asleep) {
-            const double way = farther_m(now.tip_m - before.tip_m, now.tail_m - before.tail_m);
-            if (gap_m(body.around, now.tip_m, now.tail_m) > far_enough_m(now.tip_m, now.tail_m, way)) return false;
+            const double way = put_down ? 0.0 : farther_m(now.tip_m - before.tip_m, now.tail_m - before.tail_m);
+            if (lies_beyond(body, now, far_enough_m(now.tip_m, now.tail_m, way))) return false;
         }
     }
-    if (body.asleep) wake(body, before);
+    if (!body.asleep) return true;
+    wake(body);
+    if (!put_down) body.contact.follow(before); // to where the hand was in the tick before: nothing lay on its way
     return true;
 }
 
-// Takes the contact to where the hand was in the tick before: nothing lay on its way.
-void Renderer::wake(Body& body, const ProbePose& before) noexcept
+void Renderer::wake(Body& body) noexcept
 {
     body.asleep = false;
     advance_textures(body);
-    body.contact.follow(before);
 }
 
 // How far the hand must go before a body that it does not touch is looked at again; 0: look at it every tick.

@@ -56,9 +56,10 @@ struct TickResult {
 };
 
 // Of all objects since the renderer was made, effects included: walks through trees of boxes, triangles that these
-// delivered, steps of proxies over surfaces, and triangles that were read ahead.
+// delivered, steps of proxies over surfaces, and triangles that were read ahead. `objects`: looked at, summed over the
+// ticks and the scenes that were taken over.
 struct ContactWork {
-    uint64_t queries = 0, triangles = 0, steps = 0, read_ahead = 0;
+    uint64_t queries = 0, triangles = 0, steps = 0, read_ahead = 0, objects = 0;
 };
 
 class Renderer {
@@ -72,7 +73,7 @@ public:
     // objects held the probe. The force that was on the hand fades out and the new one rises over force_rise_s, so
     // without a step; to a hand that gives way to it, it is the spring that it was, and gives no more than that held.
     // If the scene waits for small forces and the new one differs by more from the old, it waits first. Allocates and
-    // frees nothing, and costs as much as the first tick of a scene.
+    // frees nothing, and looks at no object farther away than the hand is held off something.
     void take_over(Renderer& before) noexcept;
 
     // Once per period with the pose of the hand, in the space of its device, as are the forces (once for several where
@@ -89,20 +90,18 @@ public:
     double force_limit_n() const noexcept { return force_limit_n_; }
     const SkippedStages& skipped() const noexcept { return skipped_; }
     ContactWork work() const noexcept;
-    // Bindings published to the scene's slots since this renderer was made.
-    uint64_t reloads() const noexcept;
 
 private:
     // What the servo remembers of one object, whichever body it is of.
     struct Touched {
         const SceneObject* object;
         TextureReader texture;
-        uint64_t serial_at_start;
         uint64_t texture_period = 0; // up to which its texture has faded
     };
     struct HeldBodies { // that hold the probe, the first so many
         std::array<const Body*, 16> body{};
         uint32_t count = 0;
+        double within_m = 0; // so far off the hand, at most, do all that there are hold it
     };
     struct ObjectForce {
         glm::dvec3 force_n{0}; // world frame
@@ -132,6 +131,8 @@ private:
     void push(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept;
     void touch(Body& body, std::span<const Contact> contacts, const PartContacts& part, const DevicePose& pose,
                TickResult& result, Skipped& skipped) noexcept;
+    double grown_since_m(const Renderer& before) const noexcept; // a ball in place of another
+    double farthest_held_m(const Body& old, const Renderer& before) const noexcept;
     void put_down(Body& body, const Renderer& before, const HeldBodies& held) noexcept;
     void advance_texture(Touched& touched) noexcept;
     void advance_textures(const Body& body) noexcept;
@@ -139,7 +140,7 @@ private:
     double turned_rad() const noexcept;
     bool take_pose(Body& body, const DevicePose& pose, uint64_t periods) noexcept;
     ProbePose pose_before(Body& body) const noexcept;
-    void wake(Body& body, const ProbePose& before) noexcept;
+    void wake(Body& body) noexcept;
     double gap_to_sleep_m(uint32_t body, const DevicePose& pose, double near_m) const noexcept;
     void track_velocity(uint32_t body, const DevicePose& pose, uint64_t periods, bool touching) noexcept;
     void update_effects(const Body& body, std::span<const Contact> contacts,
@@ -166,7 +167,7 @@ private:
     double turn_max_rad_per_s_ = 0; // of those that move within bounds
     bool started_ = false;
     uint64_t period_ = 0;         // number of this tick's period, 0 at the first pose
-    uint64_t texture_period_ = 0; // the same, those before a pose included
+    uint64_t texture_period_ = 0; // counts periods from this scene's first tick on, those before a pose included
     uint64_t rise_period_ = 0;    // the force rises from this one on
     bool interrupted_ = false;    // the tick before sent no force, for a fault
     bool waiting_;                // for a small force
@@ -187,7 +188,6 @@ private:
     uint64_t left_period_ = 0;   // from this one on
     double left_work_j_ = 0;     // what it would have done on the hand since, had it not faded,
     double left_work_max_j_ = 0; // and the most of that
-    uint64_t reloads_before_ = 0;
 
     ContactsByPart by_part_;
 };

@@ -1,5 +1,6 @@
 #include "runtime/render/renderer_slot.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace haptel::runtime {
@@ -7,6 +8,7 @@ namespace haptel::runtime {
 RendererSlot::RendererSlot(std::shared_ptr<const Scene> scene, const HandSettings& hand)
     : hand_(hand), taken_(scene), newest_(std::move(scene))
 {
+    follow_newest();
 }
 
 RendererSlot::~RendererSlot()
@@ -24,8 +26,32 @@ void RendererSlot::publish(std::shared_ptr<const Scene> scene)
     free_given_back();
     auto next = std::make_unique<Carrier>();
     next->renderer = std::make_unique<Renderer>(scene, hand_, *taken_);
+    reloads_ += newly_published();
     newest_ = std::move(scene);
+    follow_newest();
     next_.store(next.release(), std::memory_order_release);
+}
+
+uint64_t RendererSlot::newly_published() const noexcept
+{
+    uint64_t sum = 0;
+    for (const auto& [slot, serial] : followed_) sum += slot->newest_serial() - serial;
+    return sum;
+}
+
+void RendererSlot::follow_newest()
+{
+    followed_.clear();
+    for (const SceneObject& object : newest_->objects) followed_.emplace_back(object.texture.get(), 0);
+    std::sort(followed_.begin(), followed_.end());
+    followed_.erase(std::unique(followed_.begin(), followed_.end()), followed_.end());
+    for (auto& [slot, serial] : followed_) serial = slot->newest_serial();
+}
+
+uint64_t RendererSlot::reloads() const
+{
+    const std::lock_guard lock(publishers_);
+    return reloads_ + newly_published();
 }
 
 void RendererSlot::collect()

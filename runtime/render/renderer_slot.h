@@ -13,6 +13,8 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <utility>
+#include <vector>
 
 namespace haptel::runtime {
 
@@ -29,6 +31,9 @@ public:
     // Frees what the servo has given back; publish does so too. Any thread but the servo.
     void collect();
 
+    // Any thread but the servo. Bindings published to the scenes' textures while they were the newest, since the start.
+    uint64_t reloads() const;
+
     // The servo, once per tick: true if another scene has taken over.
     bool take(std::unique_ptr<Renderer>& current) noexcept;
 
@@ -40,10 +45,15 @@ private:
     };
     void give_back(Carrier* carrier) noexcept;
     void free_given_back() noexcept;
+    // To the textures of the newest scene since it is followed.
+    uint64_t newly_published() const noexcept;
+    void follow_newest();
 
     HandSettings hand_;
-    std::mutex publishers_;
+    mutable std::mutex publishers_;
     std::shared_ptr<const Scene> taken_, newest_; // as far as the publishers know; guarded by publishers_
+    std::vector<std::pair<const TextureSlot*, uint64_t>> followed_; // each slot of the newest, with its serial then
+    uint64_t reloads_ = 0;                                          // before
     std::atomic<Carrier*> next_{nullptr}, given_back_{nullptr};
 };
 

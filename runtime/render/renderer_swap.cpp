@@ -78,12 +78,10 @@ void Renderer::take_over(Renderer& before) noexcept
 {
     started_ = before.started_;
     period_ = before.period_;
-    texture_period_ = before.texture_period_;
     interrupted_ = before.interrupted_;
     waiting_ = waiting_ && before.waiting_;
     skipped_ = before.skipped_;
     work_ = before.work();
-    reloads_before_ = before.reloads();
     last_pose_ = before.last_pose_;
     last_pose_period_ = before.last_pose_period_;
     if (history_ && before.history_) history_ = before.history_;
@@ -92,38 +90,75 @@ void Renderer::take_over(Renderer& before) noexcept
     sent_ = before.sent_;
     computed_ = before.computed_;
     swapped_ = true;
-    for (Touched& touched : objects_) touched.texture_period = texture_period_;
     if (!last_pose_) return;
 
     HeldBodies held;
-    for (Body& body : before.bodies_)
-        if (held.count < held.body.size() && !body.asleep && body.contact.held(body.pose_of(*last_pose_), 0))
-            held.body[held.count++] = &body;
+    for (const uint32_t number : before.reach_.awake()) {
+        Body& body = before.bodies_[number];
+        if (body.asleep) continue;
+        const double way_m = farthest_held_m(body, before);
+        if (way_m == 0) continue;
+        held.within_m = std::max(held.within_m, way_m);
+        if (held.count < held.body.size()) held.body[held.count++] = &body;
+    }
+    const double nudge = nudge_m * hand_.workspace.scale;
     const auto goes_on = [&](const Body& body, const Body& old) {
         const auto moved_m = [&](const glm::dvec3& p) {
             return glm::distance(body.placement.to_object(p), old.placement.to_object(p));
         };
-        const double nudge = nudge_m * hand_.workspace.scale;
         return moved_m(last_pose_->tip_m) <= nudge && moved_m(last_pose_->tail_m) <= nudge;
     };
-    was_.resize(bodies_.size(), none);                 // which allocates only for who was not made for this
-    for (std::size_t i = 0; i < bodies_.size(); ++i) { // the others first: they look at what the old bodies hold
+    // Who is farther away than any way on which the hand is held off something neither touches it nor is met on the
+    // way back to where it was held: such a body sleeps, as one that the hand has not come near yet.
+    const double near_m = held.within_m + nudge + far_enough_m(last_pose_->tip_m, last_pose_->tail_m, 0);
+    reach_.go(0, last_pose_->tip_m, last_pose_->tail_m, near_m);
+    was_.resize(bodies_.size(), none);        // which allocates only for who was not made for this
+    for (const uint32_t i : reach_.awake()) { // the others first: they look at what the old bodies hold
         Body& body = bodies_[i];
         if (body.motion) body.move(time_s());
-        if (was_[i] != none)
-            if (Body& old = before.bodies_[was_[i]]; old.asleep) before.wake(old, before.pose_before(old));
-        if (was_[i] != none && !goes_on(body, before.bodies_[was_[i]])) was_[i] = none;
-        if (was_[i] == none) put_down(body, before, held);
+        Body* const old = was_[i] == none ? nullptr : &before.bodies_[was_[i]];
+        const ProbePose old_pose = old && old->asleep ? before.pose_before(*old) : ProbePose();
+        if (old && !goes_on(body, *old)) was_[i] = none;
+        if (body.asleep && body.motion && !body.bounded && lies_beyond(body, body.pose_of(*last_pose_), near_m))
+            continue;
+        if (body.asleep) wake(body);
+        work_.objects += body.objects.numbers().size();
+        if (was_[i] == none) {
+            put_down(body, before, held);
+        } else if (old->asleep) {
+            before.wake(*old);
+            old->contact.follow(old_pose);
+        }
     }
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    for (const uint32_t i : reach_.awake()) {
         if (was_[i] == none) continue;
         Body &body = bodies_[i], &old = before.bodies_[was_[i]];
-        std::swap(body.contact, old.contact);
         std::swap(body.velocity, old.velocity);
         std::swap(body.tail_velocity, old.tail_velocity);
+        if (body.asleep) continue;
+        std::swap(body.contact, old.contact);
         body.tip_friction = old.tip_friction;
         body.tail_friction = old.tail_friction;
     }
+}
+
+// How far an old body holds the probe off the hand at most, tried off what it touches included; 0: it does not.
+double Renderer::farthest_held_m(const Body& old, const Renderer& before) const noexcept
+{
+    const ProbePose hand = old.pose_of(*last_pose_);
+    double farthest_m = 0;
+    for (const double off : off_m) {
+        const auto at = old.contact.held(hand, grown_since_m(before) + off * hand_.workspace.scale);
+        if (!at) return 0;
+        farthest_m =
+            std::max({farthest_m, glm::distance(at->tip_m, hand.tip_m), glm::distance(at->tail_m, hand.tail_m)});
+    }
+    return farthest_m;
+}
+
+double Renderer::grown_since_m(const Renderer& before) const noexcept
+{
+    return std::max(0.0, probe_.radius_m - before.probe_.radius_m);
 }
 
 // Each of the old bodies held the probe somewhere, on the free side of itself: from there the hand comes to what this
@@ -133,7 +168,7 @@ void Renderer::take_over(Renderer& before) noexcept
 void Renderer::put_down(Body& body, const Renderer& before, const HeldBodies& held) noexcept
 {
     const ProbePose hand = body.pose_of(*last_pose_);
-    const double grown_m = std::max(0.0, probe_.radius_m - before.probe_.radius_m); // of a ball in place of another
+    const double grown_m = grown_since_m(before);
     body.contact.update(hand, {});
     const double gap_m = body.contact.gap_m(hand);
     const auto come = [&](const Body& old) {

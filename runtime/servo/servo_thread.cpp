@@ -103,7 +103,7 @@ void ServoThread::finish()
     report_.force_rms_n = rms(force_squared_sum_);
     report_.grip_force_rms_n = rms(grip_squared_sum_);
     report_.skipped = renderer_->skipped();
-    report_.reloads = renderer_->reloads();
+    report_.reloads = scenes_.reloads();
     report_.records_dropped = telemetry_.dropped();
     running_.store(false, std::memory_order_release);
 }

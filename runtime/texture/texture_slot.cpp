@@ -45,9 +45,10 @@ std::string TextureSlot::publish(TextureBinding binding)
 
 void TextureSlot::publish_locked(TextureBinding binding)
 {
-    const uint64_t serial = kept_.empty() ? 1 : kept_.back()->serial + 1;
+    const uint64_t serial = newest_serial() + 1;
     kept_.push_back(std::make_unique<const PublishedBinding>(PublishedBinding{serial, std::move(binding)}));
     newest_.store(kept_.back().get(), std::memory_order_release);
+    newest_serial_.store(serial, std::memory_order_release);
     collect_locked();
 }
 

@@ -46,7 +46,7 @@ public:
     void collect();
 
     // Serial of the newest binding; 1 from the start.
-    uint64_t newest_serial() const noexcept { return newest_.load(std::memory_order_acquire)->serial; }
+    uint64_t newest_serial() const noexcept { return newest_serial_.load(std::memory_order_acquire); }
 
     // Bindings not freed yet, the newest included.
     std::size_t kept() const;
@@ -61,6 +61,8 @@ private:
     mutable std::mutex publishers_;
     std::deque<std::unique_ptr<const PublishedBinding>> kept_; // oldest first; guarded by publishers_
     std::atomic<const PublishedBinding*> newest_{nullptr};
+    // Beside it: only a reader may look into a binding, which another publisher may free at any time.
+    std::atomic<uint64_t> newest_serial_{0};
     std::deque<std::atomic<uint64_t>> oldest_in_use_; // per servo; `unused` where it has left; never shrinks
 };
 

@@ -290,7 +290,8 @@ TEST_CASE("who turns is looked at before the whole gap is gone, who is at rest i
 TEST_CASE("who is still far away when the hand has gone far sleeps on, and wakes before the hand is there")
 {
     Reach reach({{{1, 0, 0}, 0.1}});
-    reach.sleep(0, 0.9);
+    reach.go(0, {}, {}, 1e-3);
+    REQUIRE(reach.asleep() == 1);
     double x = 0;
     for (int i = 0; i < 1000; ++i) { // to and fro: 10 m of way
         x = i % 2 * 0.01;
@@ -302,7 +303,8 @@ TEST_CASE("who is still far away when the hand has gone far sleeps on, and wakes
     CHECK(x > 0.8);
     // A tail that reaches farther than the tip counts, and so does the shaft between.
     Reach beside({{{0, 0.5, 0}, 0.1}});
-    beside.sleep(0, 0.05);
+    beside.go(0, {-0.15, 0, 0}, {-0.15, 1, 0}, 1e-3);
+    REQUIRE(beside.asleep() == 1);
     beside.go(0.06, {-0.06, 0, 0}, {0.06, 1, 0}, 1e-3);
     CHECK(beside.asleep() == 0);
 }

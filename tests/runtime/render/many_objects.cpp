@@ -1,0 +1,231 @@
+// Ten thousand objects: how many of them a tick looks at, when a scene begins, far later, and when another one takes
+// its place; and that nobody feels which of them it does not.
+#include "runtime/render/reach.h"
+#include "runtime/render/renderer.h"
+#include "runtime/servo/allocation_count.h"
+#include "tests/runtime/contact/wild_motion.h"
+#include "tests/support/catch.h"
+#include "tests/support/touch_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <random>
+#include <utility>
+#include <vector>
+
+using namespace haptel;
+using namespace haptel::runtime;
+using namespace haptel::tests;
+using glm::dvec3;
+
+namespace {
+
+constexpr int side = 100; // objects in a row, and rows
+constexpr double apart_m = 0.005;
+
+Scene field_of_boxes(double size_m = 0.004)
+{
+    Scene scene = bare_scene(shape("box", size_m));
+    const SceneObject first = scene.objects[0];
+    scene.objects.clear();
+    for (int i = 0; i < side * side; ++i) {
+        SceneObject& object = scene.objects.emplace_back(first);
+        object.placement.position_m = {apart_m * (i % side), apart_m * (i / side), 0};
+        object.texture = std::make_shared<TextureSlot>();
+    }
+    return scene;
+}
+
+// Round the middle of the field, above it: how far it goes in a tick is what those near are counted by.
+DevicePose round_the_middle(int tick, double step_m)
+{
+    const double angle = tick * step_m / 0.05;
+    const dvec3 tip(0.25 + 0.05 * std::cos(angle), 0.25 + 0.05 * std::sin(angle), 0.01);
+    return {tip, tip + dvec3(0, 0, 0.1)};
+}
+
+uint64_t looked_at(Renderer& renderer, const DevicePose& pose)
+{
+    const uint64_t before = renderer.work().objects;
+    renderer.tick(pose);
+    return renderer.work().objects - before;
+}
+
+// Who lies nearer to the hand than a step of 2 mm times eight, on a field with a box every 5 mm: no more than that
+// many, and many times fewer than there are.
+constexpr uint64_t near_by = 100;
+
+} // namespace
+
+TEST_CASE("a hand that travels far never looks at all objects in one tick")
+{
+    for (const ProbeKind kind : {ProbeKind::point, ProbeKind::stylus}) {
+        Scene scene = field_of_boxes();
+        scene.probe.kind = kind;
+        Renderer renderer(shared(std::move(scene)));
+        constexpr double step_m = 0.002;
+        uint64_t most = 0;
+        for (int i = 0; i * step_m < 205; ++i) most = std::max(most, looked_at(renderer, round_the_middle(i, step_m)));
+        CHECK(most < near_by);
+    }
+}
+
+TEST_CASE("the first tick of a scene looks at those near the hand alone, be they at rest or moving")
+{
+    for (const ProbeKind kind : {ProbeKind::point, ProbeKind::sphere, ProbeKind::stylus, ProbeKind::gripper}) {
+        for (const bool moving : {false, true}) {
+            CAPTURE(int(kind), moving);
+            Scene scene = field_of_boxes();
+            scene.probe = {kind, 0.1, kind == ProbeKind::sphere ? 2e-3 : 0.0};
+            if (moving)
+                for (SceneObject& object : scene.objects)
+                    object.motion = std::make_shared<SteadyMotion>(
+                        object.placement, SteadyMotion::Figures{{0, 0, 1}, 1, {0, 0, 1e-3}, 1});
+            Renderer renderer(shared(std::move(scene)));
+            CHECK(looked_at(renderer, round_the_middle(0, 0)) < near_by);
+        }
+    }
+}
+
+TEST_CASE("groups are compared with the hand before those in them, whether it begins near or far away")
+{
+    std::vector<Surroundings> balls;
+    for (int i = 0; i < side * side; ++i)
+        balls.push_back({{apart_m * (i % side), apart_m * (i / side), 0}, 0.002, i % 3 == 0});
+    for (const double z : {0.01, 10.0}) {
+        Reach reach(balls);
+        reach.go(0, {0.25, 0.25, z}, {0.25, 0.25, z + 0.1}, 1e-3);
+        CHECK(reach.awake().empty());
+        CHECK(reach.compared() < 400); // of a quadtree of balls: some at each of its 14 levels
+        CHECK(reach.compared() >= 2);
+    }
+}
+
+TEST_CASE("objects that go nobody knows where are compared with the hand in the first tick, and no more than that")
+{
+    Scene scene = field_of_boxes();
+    for (SceneObject& object : scene.objects) object.motion = std::make_shared<LivePlacement>(object.placement);
+    Renderer renderer(shared(std::move(scene)));
+    CHECK(looked_at(renderer, round_the_middle(0, 0)) < near_by);
+}
+
+TEST_CASE("a scene that takes the place of another looks at those near the hand alone")
+{
+    // The same surfaces, and other ones: a hand that touches nothing, and one that is pressed into a box.
+    for (const bool same : {true, false})
+        for (const double z : {0.01, 0.001}) {
+            CAPTURE(same, z);
+            const auto first = shared(field_of_boxes());
+            Scene next = same ? *first : field_of_boxes(0.0041);
+            for (SceneObject& object : next.objects) object.texture = std::make_shared<TextureSlot>();
+            const auto second = shared(std::move(next));
+            Renderer before(first);
+            for (const double height : {0.01, 0.003, z}) before.tick(at(0.25, 0.25, height));
+            Renderer after(second, {}, *first);
+            const uint64_t until_then = before.work().objects, allocated = allocations_of_this_thread();
+            after.take_over(before);
+            CHECK(after.work().objects - until_then < near_by);
+            CHECK(allocations_of_this_thread() == allocated);
+            CHECK(looked_at(after, at(0.25, 0.25, z)) < near_by);
+            CHECK(after.tick(at(0.25, 0.25, z)).contacts == (z < 0.002 ? 1u : 0u));
+        }
+}
+
+TEST_CASE("a tick that is so late that objects turn far looks at those that turn, and at nobody else")
+{
+    Scene scene = field_of_boxes();
+    for (std::size_t i = 0; i < scene.objects.size(); i += 100)
+        scene.objects[i].motion =
+            std::make_shared<SteadyMotion>(scene.objects[i].placement, SteadyMotion::Figures{{0, 0, 1}, 5, {}, 0});
+    Renderer renderer(shared(std::move(scene)));
+    for (int i = 0; i < 3; ++i) renderer.tick(round_the_middle(0, 0));
+    DevicePose late = round_the_middle(0, 0);
+    late.periods = 100;
+    const uint64_t looked = looked_at(renderer, late);
+    CHECK(looked >= 100);
+    CHECK(looked < 100 + near_by);
+}
+
+TEST_CASE("whom a tick does not look at is not felt: from the first tick on, in any scene, wherever the hand begins")
+{
+    // Boxes and balls by chance, from far apart to into each other; hands that begin within, beside and far from them,
+    // jump, and go through several of them in one tick; and scenes that take each other's place meanwhile.
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    const auto vector = [&](double size) { return size * dvec3(uniform(random), uniform(random), uniform(random)); };
+    const std::shared_ptr<const Surface> surfaces[] = {build_surface(shape("box", 0.02)).surface,
+                                                       build_surface(shape("icosphere", 0.03)).surface};
+    uint64_t contacts = 0, spared = 0;
+    for (int round = 0; round < 40; ++round) {
+        const double room_m = std::pow(10.0, 0.7 * uniform(random) - 0.6);
+        const auto kind = static_cast<ProbeKind>(round % 4);
+        if (kind == ProbeKind::sphere) continue; // what it knows of its surroundings is felt, by less than 1e-4 N
+        const auto make = [&] {
+            Scene scene = bare_scene(shape("box", 0.02));
+            const SceneObject first = scene.objects[0];
+            scene.objects.clear();
+            for (int i = 0; i < 60; ++i) {
+                SceneObject& object = scene.objects.emplace_back(first);
+                object.surface = surfaces[i % 2];
+                object.placement = {turn_about(vector(1), 3 * uniform(random)), vector(room_m)};
+                object.texture = std::make_shared<TextureSlot>();
+                object.material = {1000, 1, 0.3, 0.2};
+                if (i % 9 == 4) object.effects.magnet = {0.5, 0.01};
+                if (i % 9 == 5)
+                    object.effects.vibration = {0.3, 40, {0, 0, 1}}, object.effects.vibration_reach_m = 0.02;
+                if (i % 9 == 7) object.motion = std::make_shared<LivePlacement>(object.placement);
+                if (i % 9 == 8)
+                    object.motion = std::make_shared<SteadyMotion>(
+                        object.placement, SteadyMotion::Figures{vector(1) + dvec3(0, 0, 2), 3, vector(0.01), 2});
+            }
+            scene.probe = {kind, 0.1, 0.0};
+            return scene;
+        };
+        const Scene first = make();
+        Scene second = first, third = make(); // some objects of the second lie elsewhere
+        for (std::size_t i = 0; i < second.objects.size(); i += 4)
+            if (!second.objects[i].motion) second.objects[i].placement.position_m += vector(i % 8 ? 5e-4 : 0.05);
+        std::vector<DevicePose> hand;
+        dvec3 place = vector(room_m), along = glm::normalize(vector(1) + dvec3(0, 0, 1.5));
+        for (int i = 0; i < 600; ++i) {
+            if (i % 150 == 149) place = vector(room_m);
+            const double step_m = i / 100 % 2 ? 3e-3 : 3e-4;
+            place += step_m * (0.3 * vector(1) - glm::normalize(place - 0.3 * vector(room_m)));
+            hand.push_back({place, place + 0.1 * along});
+        }
+        const auto felt = [&](bool leaves_alone) {
+            std::vector<std::shared_ptr<const Scene>> scenes;
+            for (Scene scene : {first, second, third}) {
+                scene.servo.skips.objects = leaves_alone;
+                scenes.push_back(shared(std::move(scene)));
+            }
+            auto renderer = std::make_unique<Renderer>(scenes[0]);
+            std::vector<TickResult> ticks;
+            for (std::size_t i = 0; i < hand.size(); ++i) {
+                if (i % 100 == 99) {
+                    const std::size_t now = i / 100;
+                    auto next = std::make_unique<Renderer>(scenes[(now + 1) % 3], HandSettings(), *scenes[now % 3]);
+                    next->take_over(*renderer);
+                    renderer = std::move(next);
+                }
+                ticks.push_back(renderer->tick(hand[i]));
+                contacts += ticks.back().contacts;
+            }
+            spared += renderer->skipped().objects;
+            return ticks;
+        };
+        const std::vector<TickResult> lazy = felt(true), eager = felt(false);
+        std::optional<std::size_t> different;
+        for (std::size_t i = 0; i < hand.size() && !different; ++i)
+            if (lazy[i].unlimited_force_n != eager[i].unlimited_force_n ||
+                lazy[i].unlimited_torque_n_m != eager[i].unlimited_torque_n_m || lazy[i].force_n != eager[i].force_n ||
+                lazy[i].grip_force_n != eager[i].grip_force_n || lazy[i].contacts != eager[i].contacts)
+                different = i;
+        CAPTURE(round, room_m, different.value_or(0));
+        CHECK(!different);
+    }
+    CHECK(contacts > 5000);
+    CHECK(spared > 300'000);
+}
