@@ -126,7 +126,7 @@ void BodyChecker::check(Statement& s, For& node)
     const Flow behind = std::exchange(flow, before);
     flow.variables.resize(slots);
     // What the body assigns on its way to its end has a value, if it runs at all.
-    const bool reaches_end = node.plan.runs && behind.reachable && !outcome(*node.body).breaks;
+    const bool reaches_end = node.plan.runs && behind.reachable && !completion_of(*node.body).breaks;
     for (size_t slot = 0; reaches_end && slot < before.variables.size(); ++slot)
         flow.variables[slot].assigned = behind.variables[slot].assigned;
     close_scope();

@@ -52,7 +52,7 @@ Values BodyLowering::whole_body(const Statement& body, Type result)
 
 // ---- flow
 
-BodyLowering::Slots BodyLowering::changed_slots(const std::vector<const Statement*>& statements, Outcome ends) const
+BodyLowering::Slots BodyLowering::changed_slots(const std::vector<const Statement*>& statements, Completion ends) const
 {
     Slots slots = changed_in(statements);
     if (ends.returns) slots.insert(slots.end(), {returned_slot(), result_slot()});
@@ -109,7 +109,7 @@ void BodyLowering::sequence(Statements statements)
     for (; !statements.empty(); statements = statements.subspan(1)) {
         const Statement& s = *statements.front();
         const Statements rest = statements.subspan(1);
-        const Outcome ends = outcome(s);
+        const Completion ends = completion_of(s);
         if (!ends.may_leave()) {
             statement(s, {});
             continue;
@@ -117,11 +117,11 @@ void BodyLowering::sequence(Statements statements)
         if (!ends.falls_through || rest.empty()) return statement(s, {});
         if (auto branch = std::get_if<If>(&s.node)) {
             size_t going_on = branch->arms.back().condition ? 1 : 0;
-            for (const If::Arm& arm : branch->arms) going_on += !arm.body || outcome(*arm.body).falls_through;
+            for (const If::Arm& arm : branch->arms) going_on += !arm.body || completion_of(*arm.body).falls_through;
             if (going_on == 1) return statement(s, rest);
         }
         statement(s, {});
-        const Slots changed = changed_slots(listed(nullptr, rest), outcome(rest));
+        const Slots changed = changed_slots(listed(nullptr, rest), completion_of(rest));
         return choose(left(), changed, [] {}, [&] { sequence(rest); });
     }
 }
@@ -139,8 +139,8 @@ void BodyLowering::statement(const Statement& s, Statements rest)
     } else if (auto scope = std::get_if<ast::Scope>(&s.node)) {
         sequence(scope->statements);
     } else if (auto branch_node = std::get_if<If>(&s.node)) {
-        const Outcome own = outcome(s), later = outcome(rest);
-        const Outcome either{true, own.returns || later.returns, own.breaks || later.breaks};
+        const Completion own = completion_of(s), later = completion_of(rest);
+        const Completion either{true, own.returns || later.returns, own.breaks || later.breaks};
         const Slots changed = changed_slots(listed(&s, rest), either);
         branch(*branch_node, 0, rest, changed);
     } else if (auto loop = std::get_if<For>(&s.node)) {
@@ -160,8 +160,8 @@ void BodyLowering::branch(const If& node, size_t index, Statements rest, const S
     const If::Arm& arm = node.arms[index];
     const auto take = [&] {
         if (arm.body) statement(*arm.body, {});
-        if (rest.empty() || (arm.body && !outcome(*arm.body).falls_through)) return;
-        if (!arm.body || !outcome(*arm.body).may_leave()) return sequence(rest);
+        if (rest.empty() || (arm.body && !completion_of(*arm.body).falls_through)) return;
+        if (!arm.body || !completion_of(*arm.body).may_leave()) return sequence(rest);
         choose(left(), changed, [] {}, [&] { sequence(rest); });
     };
     if (!arm.condition) return take();
@@ -243,7 +243,7 @@ void BodyLowering::lower(const For& node)
         trips = builder.operation(Op::select, {beyond, builder.i32(0), trips});
     }
 
-    const Outcome ends = node.body ? outcome(*node.body) : Outcome{};
+    const Completion ends = node.body ? completion_of(*node.body) : Completion{};
     const Slots changed = node.body ? changed_slots(listed(node.body.get(), {}), ends) : Slots{};
     if (region_depth >= region_max) return choose(builder.boolean(true), {}, [] {}, [] {}); // which reports it
     ++region_depth;

@@ -141,7 +141,7 @@ private:
     void choose(ir::Value condition, const Slots& changed, const std::function<void()>& then_arm,
                 const std::function<void()>& else_arm);
     // Variables that the statements change, and what of the flow they can change.
-    Slots changed_slots(const std::vector<const ast::Statement*>& statements, Outcome ends) const;
+    Slots changed_slots(const std::vector<const ast::Statement*>& statements, Completion ends) const;
     Values gather(const Slots& slots) const;
     void scatter(const Slots& slots, std::span<const ir::Value> parts);
     ir::Value left();

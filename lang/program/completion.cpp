@@ -38,31 +38,31 @@ void collect(const Statement& s, std::vector<uint32_t>& assigned, std::vector<ui
 
 } // namespace
 
-Outcome outcome(const Statement& s)
+Completion completion_of(const Statement& s)
 {
     if (std::holds_alternative<Return>(s.node)) return {false, true, false};
     if (std::holds_alternative<Break>(s.node)) return {false, false, true};
-    if (auto scope = std::get_if<Scope>(&s.node)) return outcome(scope->statements);
+    if (auto scope = std::get_if<Scope>(&s.node)) return completion_of(scope->statements);
     if (auto branch = std::get_if<If>(&s.node)) {
-        Outcome all{branch->arms.back().condition != nullptr, false, false}; // no else
+        Completion all{branch->arms.back().condition != nullptr, false, false}; // no else
         for (const If::Arm& arm : branch->arms) {
-            const Outcome one = arm.body ? outcome(*arm.body) : Outcome{true, false, false};
+            const Completion one = arm.body ? completion_of(*arm.body) : Completion{true, false, false};
             all.falls_through |= one.falls_through;
             all.returns |= one.returns;
             all.breaks |= one.breaks;
         }
         return all;
     }
-    if (auto loop = std::get_if<For>(&s.node)) return {true, loop->body && outcome(*loop->body).returns, false};
+    if (auto loop = std::get_if<For>(&s.node)) return {true, loop->body && completion_of(*loop->body).returns, false};
     return {true, false, false};
 }
 
-Outcome outcome(std::span<const StatementPtr> statements)
+Completion completion_of(std::span<const StatementPtr> statements)
 {
-    Outcome all{true, false, false};
+    Completion all{true, false, false};
     for (const StatementPtr& s : statements) {
         if (!s) continue; // an error
-        const Outcome one = outcome(*s);
+        const Completion one = completion_of(*s);
         all.falls_through = one.falls_through;
         all.returns |= one.returns;
         all.breaks |= one.breaks;

@@ -8,13 +8,13 @@
 
 namespace haptel::lang {
 
-struct Outcome {
+struct Completion {
     bool falls_through = false, returns = false, breaks = false;
     bool may_leave() const { return returns || breaks; }
 };
 
-Outcome outcome(const ast::Statement& s);
-Outcome outcome(std::span<const ast::StatementPtr> statements);
+Completion completion_of(const ast::Statement& s);
+Completion completion_of(std::span<const ast::StatementPtr> statements);
 
 // Slots of variables that are assigned in statements that follow each other, and declared outside of them; sorted.
 std::vector<uint32_t> changed_in(std::span<const ast::Statement* const> statements);

@@ -77,8 +77,8 @@ bool take_place(const Matrix& gram, std::array<uint32_t, n_max>& chosen, uint32_
 
 } // namespace
 
-std::array<double, n_max> pushes(std::span<const ShaftContact> contacts, const glm::dvec3& tip, const glm::dvec3& tail,
-                                 EndsGive gives) noexcept
+std::array<double, n_max> solve_multipliers(std::span<const ShaftContact> contacts, const glm::dvec3& tip,
+                                            const glm::dvec3& tail, EndsGive gives) noexcept
 {
     const uint32_t n = static_cast<uint32_t>(contacts.size() < n_max ? contacts.size() : n_max);
     Matrix gram{};
@@ -140,8 +140,8 @@ std::array<double, n_max> pushes(std::span<const ShaftContact> contacts, const g
 }
 
 // Of both ends together, six coordinates, what the contacts leave free is what is at right angles to all of them.
-glm::dmat3 give_of(ShaftEnd end, std::span<const ShaftContact> contacts, std::span<const double> pushes,
-                   EndsGive gives) noexcept
+glm::dmat3 compliance(ShaftEnd end, std::span<const ShaftContact> contacts, std::span<const double> multipliers,
+                      EndsGive gives) noexcept
 {
     struct Ends {
         glm::dvec3 tip, tail;
@@ -151,7 +151,7 @@ glm::dmat3 give_of(ShaftEnd end, std::span<const ShaftContact> contacts, std::sp
     uint32_t count = 0;
     glm::dmat3 give(1);
     for (size_t i = 0; i < contacts.size() && i < n_max; ++i) {
-        if (!(pushes[i] > 0)) continue;
+        if (!(multipliers[i] > 0)) continue;
         const ShaftContact& contact = contacts[i];
         Ends way{(gives.tip ? 1 - contact.share : 0.0) * contact.normal,
                  (gives.tail ? contact.share : 0.0) * contact.normal};

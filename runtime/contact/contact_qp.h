@@ -1,5 +1,5 @@
-// How hard each of a few contacts pushes a shaft whose two ends hang on equal springs: the shaft nearest to the hand's,
-// by the sum of the squared ways of its ends, of all that no contact forbids.
+// A small quadratic program: the shaft nearest to the hand's, by the sum of the squared ways of its two ends, of all
+// shafts that no contact forbids. Its multipliers are how hard each contact pushes.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -24,14 +24,14 @@ struct EndsGive {
     bool tip = true, tail = true;
 };
 
-// The pushes, each >= 0: the tip moves by the sum of push (1 - share) normal, the tail by that of push share normal.
-// Contacts that contradict each other within rounding are left out.
-std::array<double, shaft_contacts_max> pushes(std::span<const ShaftContact> contacts, const glm::dvec3& tip,
-                                              const glm::dvec3& tail, EndsGive gives = {}) noexcept;
+// The multipliers, each >= 0: the tip moves by the sum of multiplier (1 - share) normal, the tail by that of multiplier
+// share normal. Contacts that contradict each other within rounding are left out.
+std::array<double, shaft_contacts_max> solve_multipliers(std::span<const ShaftContact> contacts, const glm::dvec3& tip,
+                                                         const glm::dvec3& tail, EndsGive gives = {}) noexcept;
 
-// How an end moves by what pulls it, while the contacts that push stay the same: by this matrix times the pull.
+// How an end moves by a pull while the active contacts stay the same: by this matrix times the pull.
 enum class ShaftEnd : uint8_t { tip, tail };
-glm::dmat3 give_of(ShaftEnd end, std::span<const ShaftContact> contacts, std::span<const double> pushes,
-                   EndsGive gives = {}) noexcept;
+glm::dmat3 compliance(ShaftEnd end, std::span<const ShaftContact> contacts, std::span<const double> multipliers,
+                      EndsGive gives = {}) noexcept;
 
 } // namespace haptel::runtime

@@ -206,7 +206,7 @@ Shaft StylusContact::clear_of_sides(const Shaft& to, EndsGive gives) const noexc
             if ((gives.tip ? 1 - share : share) < least_lever) continue;
             contacts[count++] = {normal, share, glm::dot(normal, here.edge_point) + rest_gap};
         }
-        const auto push = pushes({contacts.data(), count}, to.tip, to.tail, gives);
+        const auto push = solve_multipliers({contacts.data(), count}, to.tip, to.tail, gives);
         Shaft next = to;
         for (uint32_t i = 0; i < count; ++i) {
             if (gives.tip) next.tip += (1 - contacts[i].share) * push[i] * contacts[i].normal;
@@ -266,7 +266,7 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips, Turning
         const EndsGive gives{!tip.sticks, !tail.sticks};
         aim = hand;
         Shaft held{gives.tip ? hand.tip + tip.lag : tip.at, gives.tail ? hand.tail + tail.lag : tail.at};
-        const auto push = pushes(all, held.tip, held.tail, gives);
+        const auto push = solve_multipliers(all, held.tip, held.tail, gives);
         for (uint32_t i = 0; i < count; ++i) {
             const ShaftContact& contact = contacts[i];
             const glm::dvec3 by = push[i] * contact.normal;
@@ -282,9 +282,9 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips, Turning
         bool agreed = farther(next, at) < 0.25;
         at = next;
         double news = 0;
-        if (tip.drags()) news = tip.follow(aim.tip, held.tip, give_of(ShaftEnd::tip, all, push, gives));
+        if (tip.drags()) news = tip.follow(aim.tip, held.tip, compliance(ShaftEnd::tip, all, push, gives));
         if (tail.drags())
-            news = std::max(news, tail.follow(aim.tail, held.tail, give_of(ShaftEnd::tail, all, push, gives)));
+            news = std::max(news, tail.follow(aim.tail, held.tail, compliance(ShaftEnd::tail, all, push, gives)));
         agreed &= news < (tip.drags() && tail.drags() ? both_settled : friction_settled);
         for (EndGrip* grip : {&tip, &tail}) {
             if (!agreed || !grip->drags() || !grip->moves || grip->slides) continue;

@@ -21,7 +21,7 @@ glm::dvec3 Trail::update(const glm::dvec3& hand_m, double damping_n_s_per_m, uin
     if (periods == 1) {
         behind_m_ = left * (behind_m_ + step_m);
     } else { // several: the step spread over them evenly
-        const double n = static_cast<double>(periods), all = whole_power(left, periods);
+        const double n = static_cast<double>(periods), all = integer_power(left, periods);
         behind_m_ = all * behind_m_ + left * (1 - all) / (1 - left) / n * step_m;
     }
     if (!finite(behind_m_)) behind_m_ = glm::dvec3(0); // ways may overflow where positions do not

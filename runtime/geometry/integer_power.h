@@ -5,7 +5,7 @@
 
 namespace haptel::runtime {
 
-inline double whole_power(double factor, uint64_t times)
+inline double integer_power(double factor, uint64_t times)
 {
     double product = 1;
     for (; times > 0; times >>= 1, factor *= factor)

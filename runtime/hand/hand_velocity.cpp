@@ -9,9 +9,9 @@ namespace haptel::runtime {
 
 namespace {
 
-// What a low-pass lets through in that many of its time constants: 1 - exp(-x). By doublings, x to 2 x, from where the
-// first terms of the series say it all: the same bits whatever the C library.
-double let_through(double x)
+// 1 - exp(-x), the step response of a low-pass after x of its time constants. By doublings, x to 2 x, from where the
+// first terms of the series are exact to rounding: the same bits whatever the C library.
+double one_minus_exp(double x)
 {
     x = std::min(x, 64.0); // all of it
     int doublings = 0;
@@ -24,7 +24,7 @@ double let_through(double x)
 } // namespace
 
 HandVelocity::HandVelocity(double period_s) noexcept
-    : period_s_(period_s), gain_(let_through(2 * 3.14159265358979323846 * velocity_cutoff_hz * period_s))
+    : period_s_(period_s), gain_(one_minus_exp(2 * 3.14159265358979323846 * velocity_cutoff_hz * period_s))
 {
 }
 
@@ -32,7 +32,7 @@ void HandVelocity::update(const glm::dvec3& hand_m, uint64_t periods) noexcept
 {
     // Several periods: the low-pass as if each of them had seen the mean speed.
     const double count = static_cast<double>(periods);
-    const double gain = periods == 1 ? gain_ : 1 - whole_power(1 - gain_, periods);
+    const double gain = periods == 1 ? gain_ : 1 - integer_power(1 - gain_, periods);
     if (has_last_) m_per_s_ += gain * ((hand_m - last_m_) / (count * period_s_) - m_per_s_);
     // Speeds may overflow where positions do not, and what is not finite would never leave a low-pass again.
     if (!has_last_ || !finite(m_per_s_)) m_per_s_ = glm::dvec3(0);
