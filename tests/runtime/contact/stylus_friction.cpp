@@ -1,9 +1,9 @@
 // A stylus in a crease: friction holds its tip beside an edge on which its shaft leans, by a lever of a hundredth of
 // its length. What it costs is counted; what it feels is checked against the balance of a stiff shaft, Coulomb's law,
 // and what friction does to energy: it only takes.
+#include "runtime/contact/stylus_friction.h"
 #include "runtime/contact/contact_qp.h"
 #include "runtime/contact/stylus_contact.h"
-#include "runtime/contact/stylus_friction.h"
 #include "runtime/surface/build/joined_surfaces.h"
 #include "runtime/surface/shapes.h"
 
@@ -247,7 +247,7 @@ TEST_CASE("how an end gives is how it moves by a small pull")
         const Ends hand{1e9 * any(), 1e9 * any()};
         const EndsGive gives{trial % 3 != 1, trial % 3 != 2};
         const auto held = [&](const Ends& from, auto& push) {
-            push = pushes(contacts, from.tip, from.tail, gives);
+            push = solve_multipliers(contacts, from.tip, from.tail, gives);
             Ends at = from;
             for (size_t i = 0; i < contacts.size(); ++i) {
                 if (gives.tip) at.tip += push[i] * (1 - contacts[i].share) * contacts[i].normal;
@@ -264,7 +264,7 @@ TEST_CASE("how an end gives is how it moves by a small pull")
         for (size_t i = 0; i < contacts.size(); ++i) same = same && (push[i] > 0) == (after[i] > 0);
         if (!same || *std::ranges::max_element(push) > 1e12) continue; // of contacts that hardly differ
         ++compared;
-        const dvec3 by_pull = give_of(tip ? ShaftEnd::tip : ShaftEnd::tail, contacts, push, gives) * pull;
+        const dvec3 by_pull = compliance(tip ? ShaftEnd::tip : ShaftEnd::tail, contacts, push, gives) * pull;
         const dvec3 moved = tip ? there.tip - at.tip : there.tail - at.tail;
         CAPTURE(trial, contacts.size(), gives.tip, gives.tail);
         REQUIRE(glm::distance(moved, by_pull) < 1e-3 * glm::length(pull));

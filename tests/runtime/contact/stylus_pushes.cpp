@@ -35,7 +35,7 @@ TEST_CASE("pushes on a shaft are those of the best active set, whatever the cont
         const dvec3 up = glm::normalize(any()), aside = glm::normalize(glm::cross(up, any()));
         for (ShaftContact& contact : contacts)
             if (at_a_vertex) contact = {glm::normalize(up + 3 * u(random) * aside), contacts[0].share, 128};
-        const auto found = pushes(contacts, hand.tip, hand.tail);
+        const auto found = solve_multipliers(contacts, hand.tip, hand.tail);
         // Optimal is what solves the conditions of Karush, Kuhn and Tucker: nothing pulls, nothing is violated, and
         // what pushes is tight.
         Ends held = hand;
@@ -80,7 +80,7 @@ TEST_CASE("pushes on a shaft by contacts that are nearly the same, or nearly opp
             const dvec3 at = (1 - contact.share) * allowed.tip + contact.share * allowed.tail;
             contact.offset = glm::dot(contact.normal, at) - (random() % 2 == 0 ? 0 : scale * u(random));
         }
-        const auto found = pushes(contacts, hand.tip, hand.tail, gives);
+        const auto found = solve_multipliers(contacts, hand.tip, hand.tail, gives);
         Ends way;
         for (size_t i = 0; i < contacts.size(); ++i) {
             REQUIRE(found[i] >= 0);
