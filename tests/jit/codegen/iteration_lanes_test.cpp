@@ -204,6 +204,33 @@ TEST_CASE("loops whose iterations need not wait for one another run in lanes and
     }
 }
 
+// Of three iterations, in lanes of any number, one lane at least is idle. Did it go on to iteration 3, it would read
+// 14 million cells on, where nothing is mapped.
+TEST_CASE("a lane that is idle reads nothing behind the table that the last iteration ends", "[code]")
+{
+    constexpr int last = 1 << 15;
+    std::string cells = "2.0, 3.0";
+    for (int i = 2; i < last; ++i) cells += ", 0.0";
+    const std::string text =
+        source("const float t[" + std::to_string(last + 1) + "] = float[](" + cells +
+               ", 5.0); float s = 0.0; for (int i = 0; i < 3; ++i) { int c = i * i * i; int b = c * c * c * i; "
+               "s += t[b * c * i * i] * p.x; } return s;");
+    for (const jit::Precision precision : {jit::Precision::f64, jit::Precision::f32}) {
+        jit::TextureOptions options;
+        options.precision = precision;
+        options.effort = jit::Effort::quick;
+        options.iterations_in_lanes = true;
+        const jit::CompiledTextures compiled = jit::compile_texture(text, options);
+        INFO(compiled.rendered());
+        REQUIRE(compiled.program);
+        CHECK(loops_in_lanes(compiled.program->module(), "f(") == 1);
+        const TextureResult bound =
+            jit::make_binding(compiled.program, "t", test::request_over(1), jit::Unbounded::allowed);
+        REQUIRE(bound.binding);
+        CHECK(test::sample_at(*bound.binding, {0.25, 0, 0}).height_m == 0.25 * (2 + 3 + 5));
+    }
+}
+
 TEST_CASE("iterations in lanes: every texture's height is the same with and without its gradient, and close to the "
           "order of one by one",
           "[code]")

@@ -182,9 +182,20 @@ TEST_CASE("the hash of a function covers all that decides its code, and neither 
     CHECK(all.size() == 7);
 
     ir::Module module = parsed(text("f", "2", "add", "1, 2", "3"));
-    module.functions[0].facts.resize(1);
-    module.functions[0].facts[0].value_maximum = 1; // the choice of precision reads them
-    CHECK(jit::to_text(jit::function_hashes(module).back()) != plain);
+    module.functions[0].facts.resize(1); // the choice of precision reads them
+    ir::Facts& facts = module.functions[0].facts[0];
+    const auto changed = [&](auto& of, auto to) {
+        of = to;
+        return jit::to_text(jit::function_hashes(module).back());
+    };
+    all.insert(changed(facts.value_maximum, 1.0));
+    all.insert(changed(facts.value_minimum, 1.0));
+    all.insert(changed(facts.slope, 1.0));
+    all.insert(changed(facts.curvature, 1.0));
+    all.insert(changed(facts.smoothness, ir::Smoothness::c1));
+    all.insert(changed(facts.smoothness, ir::Smoothness::c2));
+    all.insert(changed(facts.proven, !facts.proven));
+    CHECK(all.size() == 14);
     module = parsed(text("f", "2", "add", "1, 2", "3"));
     module.functions[0].body.instructions[0].span = {3, 14, 15};
     CHECK(jit::to_text(jit::function_hashes(module).back()) == plain);

@@ -108,6 +108,46 @@ TEST_CASE("reals to whole numbers: lanes saturate as one point does, in every pr
         }
 }
 
+// What is behind the greatest real number of 24 bits that fits tells saturation from rounding: as a whole number, and
+// only then as a real one, it is small and exact in every precision.
+TEST_CASE("reals to whole numbers: what is too large becomes the greatest there is, to its last bit", "[code]")
+{
+    std::vector<haptel_point> points;
+    for (double x : {-1e30, -2147483648.0, -2147483520.0, 0.0, 2147483520.0, 2147483648.0, 4294967040.0, 4294967296.0,
+                     1e30, double(INFINITY)})
+        points.push_back({{x, 0, 0}, {}, {}, 0, {}, {}});
+    for (const auto precision : {jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32}) {
+        jit::TextureOptions options;
+        options.entries = jit::Entries::both_and_batches;
+        options.precision = precision;
+        const jit::CompiledTextures made = jit::compile_texture(
+            "texture of_int() { int i = int(p.x / 1m); return 1m * float(i > 0 ? i - 2147483520 : i + 2147483520); }\n"
+            "texture of_uint() { return 1m * float(uint(p.x / 1m) & 4095u); }",
+            options);
+        INFO(made.rendered());
+        REQUIRE(made.program);
+        for (const bool is_signed : {true, false}) {
+            const haptel_texture& texture = made.program->textures()[is_signed ? 0 : 1];
+            const haptel_block_head block{};
+            Batch batch(points);
+            texture.height_gradient_batch(&batch.points, batch.count, &block, &batch.samples);
+            for (size_t i = 0; i < points.size(); ++i) {
+                const double x = points[i].p[0];
+                const auto least = is_signed ? int64_t{INT32_MIN} : 0,
+                           most = is_signed ? INT32_MAX : int64_t{UINT32_MAX};
+                const int64_t whole = x >= double(most) ? most : x <= double(least) ? least : int64_t(x);
+                const int64_t shown =
+                    is_signed ? (whole > 0 ? whole - 2147483520 : whole + 2147483520) : (whole & 4095);
+                haptel_sample one{};
+                texture.height_gradient(&points[i], &block, &one);
+                INFO(texture.name << " of " << x << " in precision " << int(precision));
+                CHECK(one.height_m == double(shown));
+                CHECK(batch.sample(i).height_m == double(shown));
+            }
+        }
+    }
+}
+
 TEST_CASE("mixed precision keeps its place within a cell, however far away; f32 does not", "[code]")
 {
     const std::string source = R"(

@@ -142,6 +142,29 @@ TEST_CASE("a folder that others can write, or that cannot be, is not used")
     }
 }
 
+// Only root can give a file away. What lies in a folder of one's own may still be another's: it was open to others
+// once, or one's own name was another's.
+TEST_CASE("code that belongs to somebody else is not run, nor what lies in a folder of somebody else")
+{
+    if (geteuid() != 0) return;
+    const test::Folder folder;
+    const fs::path path = folder.path / "cache";
+    constexpr uid_t somebody = 65534;
+    ObjectCache cache(path);
+    cache.store(key, object);
+    const fs::path file = files_in(path).at(0);
+    REQUIRE(cache.load(key) == object);
+    REQUIRE(chown(file.c_str(), somebody, 0) == 0);
+    CHECK_FALSE(cache.load(key));
+    cache.store(key, object); // in its place, as one's own
+    CHECK(cache.load(key) == object);
+    REQUIRE(chown(path.c_str(), somebody, 0) == 0);
+    CHECK_FALSE(cache.load(key));
+    CHECK(cache.status().fault == "it belongs to somebody else");
+    REQUIRE(chown(path.c_str(), 0, 0) == 0);
+    CHECK(cache.load(key) == object);
+}
+
 TEST_CASE("beyond the limit what was used least lately goes, and what a dead process left behind")
 {
     const test::Folder folder;

@@ -53,3 +53,35 @@ TEST_CASE("picture: a TIFF of half floats as programs write it, packed and predi
                        "with 24-bit samples");
     CHECK(odd.hint == "TIFF of 8, 16 or 32 bits, gray or RGB, whole numbers or real ones");
 }
+
+// TIFF 6.0, section 8: of whole numbers that are WhiteIsZero 0 is white and the greatest is black. A real number has no
+// greatest one to be counted from, and is a height as it stands.
+TEST_CASE("picture: a TIFF in which white is 0 is turned over where it has whole numbers, and only there")
+{
+    const Folder folder;
+    const std::string file = folder.file("white.tif");
+    const auto read = [&](uint16_t photometric, uint16_t format, auto... values) {
+        std::array row{values...};
+        TIFF* const tiff = TIFFOpen(file.c_str(), "w");
+        REQUIRE(tiff);
+        TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, static_cast<uint32_t>(row.size()));
+        TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, uint32_t{1});
+        TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, static_cast<uint16_t>(8 * sizeof row[0]));
+        TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, format);
+        TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, photometric);
+        CHECK(TIFFWriteScanline(tiff, row.data(), 0, 0) == 1);
+        TIFFClose(tiff);
+        std::ifstream in(file, std::ios::binary);
+        jit::Picture picture = jit::read_tiff(std::string{std::istreambuf_iterator<char>(in), {}});
+        CHECK(picture.error.empty());
+        return picture.gray;
+    };
+    using Grays = std::vector<double>;
+    const uint16_t whole = SAMPLEFORMAT_UINT, real = SAMPLEFORMAT_IEEEFP, white = PHOTOMETRIC_MINISWHITE;
+    CHECK(read(white, whole, uint8_t{0}, uint8_t{51}, uint8_t{255}) == Grays{1, 1 - 0.2, 0});
+    CHECK(read(white, whole, uint16_t{0}, uint16_t{65535}) == Grays{1, 0});
+    CHECK(read(white, real, 0.25f, -3.5f, 1e6f) == Grays{0.25, -3.5, 1e6});
+    CHECK(read(white, real, 0.1, 1.0) == Grays{0.1, 1});
+    CHECK(read(PHOTOMETRIC_MINISBLACK, real, 0.25f, -3.5f) == Grays{0.25, -3.5});
+    CHECK(read(PHOTOMETRIC_MINISBLACK, whole, uint8_t{51}, uint8_t{255}) == Grays{0.2, 1});
+}
