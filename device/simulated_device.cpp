@@ -1,5 +1,7 @@
 #include "device/simulated_device.h"
 
+#include "runtime/geometry/finite.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -14,11 +16,6 @@ constexpr double substep_max_s = 10e-6;
 const glm::dvec3 stylus_direction = glm::normalize(glm::dvec3(0, -0.25, 1));
 // With its thumb below what it holds.
 const glm::dvec3 gripper_direction(0, 0, -1);
-
-bool is_finite(const glm::dvec3& v)
-{
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
 
 glm::dvec3 quantized(const glm::dvec3& position_m, double step_m)
 {
@@ -53,7 +50,7 @@ runtime::DeviceStatus SimulatedDevice::read(runtime::DevicePose& pose) noexcept
 runtime::DeviceStatus SimulatedDevice::write(const glm::dvec3& force_n, const glm::dvec3&) noexcept
 {
     const glm::dvec3 late_n = written_n_;
-    written_n_ = is_finite(force_n) ? force_n : glm::dvec3(0);
+    written_n_ = runtime::finite(force_n) ? force_n : glm::dvec3(0);
     if (const double size_n = glm::length(written_n_); size_n > model_.force_max_n)
         written_n_ *= model_.force_max_n / size_n;
     acting_n_ = delay_periods_ == 0 ? written_n_ : late_n;

@@ -15,14 +15,6 @@ std::string_view trimmed(std::string_view text)
     return first == text.npos ? std::string_view{} : text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-std::string_view si_unit(std::string_view unit)
-{
-    if (unit.ends_with("Hz")) return "Hz";
-    if (unit == "deg" || unit == "rad") return "rad";
-    if (unit == "s" || unit == "ms") return "s";
-    return unit.empty() ? unit : "m";
-}
-
 // What values of this unit look like, for messages.
 std::string expected_number(std::string_view si)
 {

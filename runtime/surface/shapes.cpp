@@ -1,5 +1,7 @@
 #include "runtime/surface/shapes.h"
 
+#include "runtime/geometry/finite.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -189,7 +191,7 @@ void scale_to_size(Mesh& mesh, double size_m)
 {
     glm::dvec3 minimum{INFINITY}, maximum{-INFINITY};
     for (const glm::dvec3& p : mesh.positions_m) {
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;
+        if (!finite(p)) continue;
         minimum = glm::min(minimum, p);
         maximum = glm::max(maximum, p);
     }

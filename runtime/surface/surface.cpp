@@ -1,5 +1,6 @@
 #include "runtime/surface/surface.h"
 
+#include "runtime/geometry/finite.h"
 #include "runtime/surface/box_tree.h"
 #include "runtime/surface/collision.h"
 
@@ -42,9 +43,6 @@ double Surface::gap_to_box_m(const glm::dvec3& from_m, const glm::dvec3& to_m) c
 
 std::optional<SegmentHit> Surface::first_hit(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept
 {
-    const auto finite = [](const glm::dvec3& v) {
-        return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-    };
     if (!finite(from_m) || !finite(to_m)) return std::nullopt;
 
     // Only the part within the workspace has lattice points; the object lies well inside it.
