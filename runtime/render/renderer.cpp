@@ -126,16 +126,11 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         if (!take_pose(body, pose, periods)) continue;
         skipped_.objects -= body.objects.numbers().size();
         work_.objects += body.objects.numbers().size();
-        const ContactCounters& counters = body.contact.counters();
-        const uint64_t spared = counters.skipped, queries = counters.sweeps, triangles = counters.triangles_tested,
-                       steps = counters.walk_steps;
+        const uint64_t spared = body.contact.counters().skipped;
         const std::span<const Contact> contacts =
-            body.contact.update(body.pose_of(pose), {body.tip_friction.mean, body.tail_friction.mean});
+            update_contact(body, body.pose_of(pose), {body.tip_friction.mean, body.tail_friction.mean});
         if (body.bounded) track_velocity(number, pose, periods, !contacts.empty());
-        skipped.query = skipped.query && counters.skipped > spared;
-        work_.queries += counters.sweeps - queries;
-        work_.triangles += counters.triangles_tested - triangles;
-        work_.steps += counters.walk_steps - steps;
+        skipped.query = skipped.query && body.contact.counters().skipped > spared;
         const PartContacts alone{0, contacts};
         const std::span<const PartContacts> parts =
             body.objects.joined ? by_part_.of(*scene_, *body.objects.joined, contacts) : std::span(&alone, 1);
@@ -167,6 +162,19 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     }
     send(result, std::max(glm::distance(pose.tip_m, grip_m), glm::distance(pose.tail_m, grip_m)), left_work_j);
     return result;
+}
+
+// Counted.
+std::span<const Contact> Renderer::update_contact(Body& body, const ProbePose& pose,
+                                                  const EndsFriction& friction) noexcept
+{
+    const ContactCounters& counters = body.contact.counters();
+    const uint64_t queries = counters.sweeps, triangles = counters.triangles_tested, steps = counters.walk_steps;
+    const std::span<const Contact> contacts = body.contact.update(pose, friction);
+    work_.queries += counters.sweeps - queries;
+    work_.triangles += counters.triangles_tested - triangles;
+    work_.steps += counters.walk_steps - steps;
+    return contacts;
 }
 
 // Of a force that does not change, on a hand that goes from one pose to another.

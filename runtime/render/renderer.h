@@ -129,6 +129,7 @@ private:
                                                   double probe_radius_m);
     TickResult feel(const DevicePose& pose) noexcept;
     void push(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept;
+    std::span<const Contact> update_contact(Body& body, const ProbePose& pose, const EndsFriction& friction) noexcept;
     void touch(Body& body, std::span<const Contact> contacts, const PartContacts& part, const DevicePose& pose,
                TickResult& result, Skipped& skipped) noexcept;
     double grown_since_m(const Renderer& before) const noexcept; // a ball in place of another

@@ -169,14 +169,14 @@ void Renderer::put_down(Body& body, const Renderer& before, const HeldBodies& he
 {
     const ProbePose hand = body.pose_of(*last_pose_);
     const double grown_m = grown_since_m(before);
-    body.contact.update(hand, {});
+    update_contact(body, hand, {});
     const double gap_m = body.contact.gap_m(hand);
     const auto come = [&](const Body& old) {
-        return body.contact.update(hand, {old.tip_friction.mean, old.tail_friction.mean}).size();
+        return update_contact(body, hand, {old.tip_friction.mean, old.tail_friction.mean}).size();
     };
     const auto come_from = [&](const ProbePose& start, const Body& old) {
         body.contact.reset();
-        body.contact.update(start, {});
+        update_contact(body, start, {});
         return come(old);
     };
     double least_m = std::numeric_limits<double>::infinity(); // from where it was held
@@ -206,7 +206,7 @@ void Renderer::put_down(Body& body, const Renderer& before, const HeldBodies& he
         body.tail_friction = best_old->tail_friction;
     } else {
         body.contact.reset();
-        body.contact.update(hand, {});
+        update_contact(body, hand, {});
     }
 }
 

@@ -133,6 +133,26 @@ TEST_CASE("a scene that takes the place of another looks at those near the hand 
         }
 }
 
+// The hand is pressed 1 mm into a box, and the nearest others are 3 mm away from it, farther than it is held off that
+// one. Each is looked at where the hand is, and not from each place where the first one may have held it.
+TEST_CASE("what a swap does for who is near, but farther than the hand is held off, is asked once")
+{
+    const auto first = shared(field_of_boxes());
+    Scene other = field_of_boxes(0.0041);
+    other.objects.pop_back(); // objects of another number are not told apart: all may have held the hand
+    Renderer before(first);
+    for (const double height : {0.01, 0.003, 0.001}) before.tick(at(0.25, 0.25, height));
+    REQUIRE(before.tick(at(0.25, 0.25, 0.001)).contacts == 1);
+    Renderer after(shared(std::move(other)), {}, *first);
+    const ContactWork until_then = before.work();
+    after.take_over(before);
+    const uint64_t objects = after.work().objects - until_then.objects;
+    CAPTURE(objects, after.work().queries - until_then.queries);
+    CHECK(objects >= 5);
+    CHECK(after.work().queries - until_then.queries <= objects + 8);
+    CHECK(after.tick(at(0.25, 0.25, 0.001)).contacts == 1);
+}
+
 TEST_CASE("a tick that is so late that objects turn far looks at those that turn, and at nobody else")
 {
     Scene scene = field_of_boxes();
