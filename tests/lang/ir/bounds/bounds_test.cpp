@@ -10,20 +10,31 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-Interval height(const std::string& functions, const std::string& body, Interval p, Interval k = {1, 4})
-{
-    Module module = parsed(functions + "function \"body\" () {\n" + body + R"(
+// A texture of p and k, with these bits of outputs beside its height.
+struct Bounded {
+    Module module;
+    BoundsBox box;
+
+    Bounded(const std::string& functions, const std::string& body, Interval p, Interval k, const char* writes)
+        : module(parsed(functions + "function \"body\" () {\n" + body + R"(
         }
         texture "t" {
           parameter "k" i32 2 in 1 .. 4 unit "" offset 56
-          block 64 reads 0 writes 0
+          block 64 reads 0 writes )" +
+                        writes + R"(
           body "body"
-        })");
-    REQUIRE(verify(module) == "");
-    BoundsBox box;
-    for (size_t i = 0; i < 3; ++i) box.input[i] = p;
-    box.parameters = {k};
-    return height_bounds(module, module.textures[0], box);
+        })"))
+    {
+        REQUIRE(verify(module) == "");
+        for (size_t i = 0; i < 3; ++i) box.input[i] = p;
+        box.parameters = {k};
+    }
+};
+
+Interval height(const std::string& functions, const std::string& body, Interval p, Interval k = {1, 4})
+{
+    const Bounded texture(functions, body, p, k, "0");
+    return height_bounds(texture.module, texture.module.textures[0], texture.box);
 }
 
 } // namespace
@@ -42,6 +53,20 @@ TEST_CASE("bounds: exact where the operations are")
     Interval edge =
         height("", "%x = input p_x %t = real 3 %y = add %x, %t %l = log %y %h = add %l, %t return %h", {-4, -1});
     CHECK((edge.may_be_nan && edge.minimum == -infinity && edge.maximum >= 3.69));
+}
+
+// x - x^2 and 1 - x + x^2 on [0, 1] lie in [0, 1/4] and [3/4, 1]; natural evaluation says [-1, 1] and [0, 2] of both.
+TEST_CASE("bounds: outputs beside the height are cut as it is")
+{
+    const Bounded texture("", R"(%x = input p_x %one = real 1 %s = mul %x, %x %h = sub %x, %s
+                                 %r = sub %one, %x %g = add %r, %s return %x, %h, %g)",
+                          {0, 1}, {1, 4}, "3");
+    const std::vector<Interval> outputs = output_bounds(texture.module, texture.module.textures[0], texture.box);
+    REQUIRE(outputs.size() == 2);
+    CHECK((outputs[0].minimum <= 0 && outputs[0].minimum > -0.02));
+    CHECK((outputs[0].maximum >= 0.25 && outputs[0].maximum < 0.26));
+    CHECK((outputs[1].minimum <= 0.75 && outputs[1].minimum > 0.7));
+    CHECK((outputs[1].maximum >= 1 && outputs[1].maximum < 1.05));
 }
 
 TEST_CASE("bounds: where the height may be no number it counts as 0, and the bounds hold that")
