@@ -3,6 +3,7 @@
 #include "bench/accuracy_points.h"
 #include "bench/accuracy_verdict.h"
 #include "bench/plain_entries.h"
+#include "jit/engine/engine.h"
 
 #include <algorithm>
 #include <cmath>
@@ -105,8 +106,8 @@ public:
             near_and_far.emplace_back(quick ? 100 : 1000, distance, 7);
             truth.emplace_back(programs[0], binding, near_and_far.back());
         }
-        plain = std::make_unique<PlainMethods>(which.field, programs[0].program->module());
         for (int exponent = 2; exponent <= 26; exponent += 2) steps.push_back(std::ldexp(1, -exponent));
+        plain = std::make_unique<PlainMethods>(which.field, programs[0].program->module(), steps);
     }
     std::vector<AccuracyRow> rows(const std::function<void(double)>& progress)
     {
@@ -139,6 +140,7 @@ private:
         made.row.texture = which.name;
         made.row.method = method;
         made.row.precision = precision;
+        made.row.level = jit::isa_name();
         made.row.lane_form = "one";
         made.point = point;
         made.block = block;
@@ -187,13 +189,17 @@ private:
     {
         std::vector<Contender> kept;
         std::map<std::string, size_t> best;
-        for (const PlainMethod& method : plain->add_differences(steps)) {
-            Contender made = contender(method.name, method.precision, method.point, method.block);
-            made.batch = method.batch;
+        for (const PlainMethod& method : plain->methods) {
+            const PlainEntry& entry = *method.entry;
+            Contender made = contender(entry.name, entry.is_f32 ? "f32" : "f64", entry.point, method.block);
+            made.batch = entry.batch;
+            made.row.level = method.level;
+            made.row.flags = method.flags;
             made.row.step = method.step;
             made.row.is_best_step = method.step != 0 && method.step != default_step;
-            const auto [place, is_new] =
-                best.try_emplace(method.name + method.precision + (made.row.is_best_step ? "" : "d"), kept.size());
+            const auto [place, is_new] = best.try_emplace(made.row.method + made.row.precision + made.row.level +
+                                                              (made.row.is_best_step ? "" : "d"),
+                                                          kept.size());
             if (is_new)
                 kept.push_back(std::move(made));
             else if (made.row.errors[0].gradient_max < kept[place->second].row.errors[0].gradient_max)

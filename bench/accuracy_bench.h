@@ -22,6 +22,8 @@ struct AccuracyRow {
     bool is_batch = false; // many points, time per point; else one after the other, each waiting for the last
     std::string method;    // haptel, haptel_difference, cpp_analytic, cpp_dual, cpp_difference_2 | 4 | 6, cpp_sine_N
     std::string precision; // f64, mixed, f32
+    std::string level;     // of the instruction set it was compiled for: x86-64, x86-64-v3 ...; ours: HAPTEL_ISA
+    std::string flags;     // of plain C++
     std::string lane_form; // what lanes hold: one (nothing), iterations (of a loop for one point), points
     uint32_t lanes = 1;    // of points
     double step = 0;       // of differences, in wavelengths

@@ -2,12 +2,14 @@
 // gradients by hand. What Haptel's code is measured against.
 #pragma once
 
+#include "bench/plain_level.h"
+
 #include <array>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
 
-namespace haptel::bench::plain {
+namespace haptel::bench::HAPTEL_PLAIN {
 
 template <typename Real>
 struct Point {
@@ -17,13 +19,6 @@ struct Point {
 template <typename Real>
 struct Sample {
     Real height, gradient[3];
-};
-
-// The library's tables, so that heights are the same.
-template <typename Real>
-struct Tables {
-    std::array<int32_t, 256> shuffle;
-    std::array<Real, 256> gx, gy, gz; // by the shuffle's last number
 };
 
 // The floor of what fits an int, without the call that std::floor is on a processor of which nothing is known.
@@ -60,7 +55,7 @@ struct Dual {
         const Real slope = std::cos(a.value);
         return {std::sin(a.value), slope * a.d[0], slope * a.d[1], slope * a.d[2]};
     }
-    friend Real whole(const Dual& a) { return plain::whole(a.value); }
+    friend Real whole(const Dual& a) { return HAPTEL_PLAIN::whole(a.value); }
 };
 
 // Where each corner of a cell finds its vector; corner 1 + 2 + 4 is the one that is farthest along x, y and z.
@@ -220,4 +215,4 @@ Sample<Real> fourier_with_gradient(const Point<Real>& q, int terms)
         {(across_d[0] * along + across * along_d[0]) * scale, (across_d[1] * along + across * along_d[1]) * scale, 0}};
 }
 
-} // namespace haptel::bench::plain
+} // namespace haptel::bench::HAPTEL_PLAIN

@@ -9,50 +9,23 @@
 #include <cstdint>
 #include <numbers>
 
-namespace haptel::bench::plain {
+namespace haptel::bench::HAPTEL_PLAIN {
 
-// Of the given degree on a quarter turn, by interpolation at Chebyshev's points in the square: within a few per cent of
-// the least error that the degree allows.
+// Of the given degree on a quarter turn; coefficients of folded, folded^3 ... (turn_sine_coefficients()).
 template <int degree, typename Real>
-class TurnSine {
-public:
-    TurnSine();
+struct TurnSine {
+    const std::array<Real, 8>& coefficients;
+
     Real operator()(Real turns) const
     {
+        constexpr int count = (degree + 1) / 2;
         const Real way = turns - whole(turns + Real(0.5)), size = std::fabs(way);
         const Real folded = size > Real(0.25) ? Real(0.5) - size : size, square = folded * folded;
         Real sum = coefficients[count - 1];
         for (int i = count - 2; i >= 0; --i) sum = sum * square + coefficients[static_cast<size_t>(i)];
         return std::copysign(sum * folded, way);
     }
-
-private:
-    static constexpr int count = (degree + 1) / 2;
-    std::array<Real, count> coefficients; // of folded, folded^3 ...
 };
-
-template <int degree, typename Real>
-TurnSine<degree, Real>::TurnSine()
-{
-    // Newton's divided differences of sin(2 pi m) / m over u = m^2 in 0 .. 1/16, then multiplied out.
-    constexpr long double pi = std::numbers::pi_v<long double>;
-    std::array<long double, count> at, value, sum{};
-    for (size_t i = 0; i < count; ++i) {
-        at[i] = (1 - std::cos(pi * (static_cast<long double>(i) + 0.5L) / count)) / 32;
-        const long double m = std::sqrt(at[i]);
-        value[i] = std::sin(2 * pi * m) / m;
-    }
-    for (size_t order = 1; order < count; ++order)
-        for (size_t i = count - 1; i >= order; --i) value[i] = (value[i] - value[i - 1]) / (at[i] - at[i - order]);
-    for (size_t i = count; i-- > 0;) {
-        for (size_t power = count - 1; power > 0; --power) sum[power] = sum[power - 1] - at[i] * sum[power];
-        sum[0] = value[i] - at[i] * sum[0];
-    }
-    for (size_t i = 0; i < count; ++i) coefficients[i] = static_cast<Real>(sum[i]);
-}
-
-template <int degree, typename Real>
-inline const TurnSine<degree, Real> turn_sine;
 
 // fourier_with_gradient, every angle in turns.
 template <int degree, typename Real>
@@ -81,4 +54,4 @@ Sample<Real> fourier_with_gradient_in_turns(const Point<Real>& q, int terms, con
         {(across_d[0] * along + across * along_d[0]) * scale, (across_d[1] * along + across * along_d[1]) * scale, 0}};
 }
 
-} // namespace haptel::bench::plain
+} // namespace haptel::bench::HAPTEL_PLAIN

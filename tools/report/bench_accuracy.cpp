@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <fmt/format.h>
+#include <map>
 
 namespace haptel::tools {
 namespace {
@@ -36,42 +37,53 @@ std::vector<AccuracyRow> sorted(std::vector<AccuracyRow> rows)
     return rows;
 }
 
+// What the plain rows were compiled with, a line for each level.
+std::string flags_text(const std::vector<AccuracyRow>& rows)
+{
+    std::map<std::string, std::string> flags;
+    for (const AccuracyRow& row : rows)
+        if (row.is_plain()) flags.emplace(row.level, row.flags);
+    std::string text;
+    for (const auto& [level, of_level] : flags) text += fmt::format("plain C++ for {}: {}\n", level, of_level);
+    return text;
+}
+
 } // namespace
 
 std::string to_table(const std::vector<bench::AccuracyRow>& rows)
 {
     std::string text =
-        fmt::format("{:<9} {:<5} {:<18} {:<5} {:<10} {:>13} {:>9} {:>9} {:>8}  {:>9} {:>9} {:>9} {:>9}  {}\n",
-                    "texture", "mode", "method", "prec.", "lanes hold", "step", "median ns", "p99 ns", "h only",
-                    "height", "near", "1e3", "1e6", "frontier");
+        fmt::format("{:<9} {:<5} {:<18} {:<5} {:<12} {:<10} {:>13} {:>9} {:>9} {:>8}  {:>9} {:>9} {:>9} {:>9}  {}\n",
+                    "texture", "mode", "method", "prec.", "compiled for", "lanes hold", "step", "median ns", "p99 ns",
+                    "h only", "height", "near", "1e3", "1e6", "frontier");
     std::string last;
     for (const AccuracyRow& row : sorted(rows)) {
         const std::string group = row.texture + mode_of(row);
         if (!last.empty() && group != last) text += "\n";
         last = group;
-        text += fmt::format(
-            "{:<9} {:<5} {:<18} {:<5} {:<10} {:>13} {:>9.1f} {:>9.1f} {:>8}  {:>9.1e} {:>9.1e} {:>9.1e} {:>9.1e}  {}\n",
-            row.texture, mode_of(row), row.method, row.precision, row.lane_form == "one" ? "" : row.lane_form,
-            step_of(row), row.median_ns, row.p99_ns,
-            row.height_only_ns > 0 ? fmt::format("{:.1f}", row.height_only_ns) : "", row.errors[0].height_max,
-            row.errors[0].gradient_max, row.errors[1].gradient_max, row.errors[2].gradient_max,
-            row.is_on_frontier ? "*" : "");
+        text += fmt::format("{:<9} {:<5} {:<18} {:<5} {:<12} {:<10} {:>13} {:>9.1f} {:>9.1f} {:>8}  {:>9.1e} {:>9.1e} "
+                            "{:>9.1e} {:>9.1e}  {}\n",
+                            row.texture, mode_of(row), row.method, row.precision, row.level,
+                            row.lane_form == "one" ? "" : row.lane_form, step_of(row), row.median_ns, row.p99_ns,
+                            row.height_only_ns > 0 ? fmt::format("{:.1f}", row.height_only_ns) : "",
+                            row.errors[0].height_max, row.errors[0].gradient_max, row.errors[1].gradient_max,
+                            row.errors[2].gradient_max, row.is_on_frontier ? "*" : "");
     }
     return text +
            "near, 1e3, 1e6: largest error of the gradient over its largest value, at coordinates within 10, 1e3 "
            "and 1e6 wavelengths; height: the same of the height, near\n" +
-           verdict_text(rows);
+           flags_text(rows) + verdict_text(rows);
 }
 
 std::string to_csv(const std::vector<bench::AccuracyRow>& rows)
 {
-    std::string text =
-        "texture,mode,method,precision,lane_form,lanes,step_wavelengths,median_ns,p99_ns,height_only_ns,wavelengths,"
-        "height_error_max,height_error_rms,gradient_error_max,gradient_error_rms,frontier\n";
+    std::string text = "texture,mode,method,precision,level,lane_form,lanes,step_wavelengths,median_ns,p99_ns,height_"
+                       "only_ns,wavelengths,"
+                       "height_error_max,height_error_rms,gradient_error_max,gradient_error_rms,frontier\n";
     for (const AccuracyRow& row : rows)
         for (const bench::Accuracy& error : row.errors)
-            text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.texture, mode_of(row),
-                                row.method, row.precision, row.lane_form, row.lanes, row.step, row.median_ns,
+            text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.texture, mode_of(row),
+                                row.method, row.precision, row.level, row.lane_form, row.lanes, row.step, row.median_ns,
                                 row.p99_ns, row.height_only_ns, error.wavelengths, error.height_max, error.height_rms,
                                 error.gradient_max, error.gradient_rms, row.is_on_frontier ? 1 : 0);
     return text;
@@ -90,6 +102,8 @@ Json to_json(const bench::AccuracyRow& row)
             {"mode", mode_of(row)},
             {"method", row.method},
             {"precision", row.precision},
+            {"level", row.level},
+            {"flags", row.flags.empty() ? Json(nullptr) : Json(row.flags)},
             {"lane_form", row.lane_form},
             {"lanes", row.lanes},
             {"step_wavelengths", row.step == 0 ? Json(nullptr) : Json(row.step)},

@@ -30,11 +30,9 @@ std::string step_of(const AccuracyRow& row)
 
 Json name_of(const AccuracyRow& row)
 {
-    return {{"texture", row.texture},
-            {"mode", mode_of(row)},
-            {"method", row.method},
-            {"precision", row.precision},
-            {"step_wavelengths", row.step == 0 ? Json(nullptr) : Json(row.step)}};
+    return {{"texture", row.texture}, {"mode", mode_of(row)},
+            {"method", row.method},   {"precision", row.precision},
+            {"level", row.level},     {"step_wavelengths", row.step == 0 ? Json(nullptr) : Json(row.step)}};
 }
 
 Json name_or_null(const AccuracyRow* ours)
@@ -55,9 +53,9 @@ std::string verdict_text(const std::vector<AccuracyRow>& rows)
             ++counts[one.wavelengths].first;
             continue;
         }
-        misses += fmt::format("  {} {} {} {}{} within {:g} wavelengths ({:.1f} ns, error {:.1e}): ", one.plain->texture,
-                              mode_of(*one.plain), one.plain->method, one.plain->precision, step_of(*one.plain),
-                              one.wavelengths, one.plain->median_ns, one.error);
+        misses += fmt::format("  {} {} {} {} for {}{} within {:g} wavelengths ({:.1f} ns, error {:.1e}): ",
+                              one.plain->texture, mode_of(*one.plain), one.plain->method, one.plain->precision,
+                              one.plain->level, step_of(*one.plain), one.wavelengths, one.plain->median_ns, one.error);
         misses += one.close_enough ? fmt::format("{} takes {:.2f} times as long\n", variant_of(one.close_enough),
                                                  one.close_enough->median_ns / one.plain->median_ns)
                                    : "none of ours is as close\n";

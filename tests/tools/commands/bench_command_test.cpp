@@ -196,11 +196,19 @@ TEST_CASE("bench accuracy: every way computes the same texture, each as closely 
     const Json json = Json::parse(ran.out);
     std::map<std::string, double> errors;
     std::map<std::string, int> frontier;
+    std::map<std::string, std::set<std::string>> plain_levels; // of the instruction set, by texture
     for (const Json& row : json["rows"]) {
         const std::string texture = row["texture"], method = row["method"], precision = row["precision"];
         CHECK(row["time_ns"]["median"].get<double>() > 0);
         CHECK(row["errors"].size() == 3);
         errors[texture + " " + method + " " + precision] = row["gradient_error_max"].get<double>();
+        if (method.starts_with("cpp_")) {
+            plain_levels[texture].insert(row["level"]);
+            CHECK(contains(row["flags"], "-O3"));
+            CHECK(contains(row["flags"], "-ffp-contract="));
+            CHECK((row["level"] == "default" || contains(row["flags"], "-march=" + row["level"].get<std::string>())));
+        } else
+            CHECK(row["level"] == json["isa"]);
         if (row["frontier"].get<bool>()) ++frontier[texture + " " + row["mode"].get<std::string>()];
         // at 1e6 wavelengths the place within a wavelength has 33 bits left in f64, and those of its multiples fewer
         if (precision != "f32" && !contains(method, "difference") && !contains(method, "sine"))
@@ -208,6 +216,9 @@ TEST_CASE("bench accuracy: every way computes the same texture, each as closely 
     }
     for (const std::string texture : {"noise", "perlin", "fbm1", "fbm2", "fbm4", "fbm8", "gardner7"}) {
         CAPTURE(texture);
+        // Ours has what this processor has; so has one of the plain ways.
+        CHECK(plain_levels[texture].count("default") == 1);
+        if (contains(json["isa"], "avx")) CHECK(plain_levels[texture].count("x86-64-v3") == 1);
         CHECK((frontier[texture + " point"] > 0 && frontier[texture + " batch"] > 0));
         for (const std::string method : {"haptel", "cpp_analytic", "cpp_dual"}) {
             CHECK(errors[texture + " " + method + " f64"] < 1e-12);
@@ -243,7 +254,7 @@ TEST_CASE("bench accuracy: every way computes the same texture, each as closely 
         const auto time_of = [](const Json& row) { return row["time_ns"]["median"].get<double>(); };
         const auto plain = std::find_if(rows.begin(), rows.end(), [&](const Json& row) {
             return is_same(row, "texture") && is_same(row, "mode") && is_same(row, "method") &&
-                   is_same(row, "precision") && is_same(row, "step_wavelengths");
+                   is_same(row, "precision") && is_same(row, "level") && is_same(row, "step_wavelengths");
         });
         REQUIRE(plain != rows.end());
         const bool one_holds = std::any_of(rows.begin(), rows.end(), [&](const Json& row) {
