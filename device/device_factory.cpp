@@ -120,8 +120,8 @@ DeviceResult open_simulated(std::string_view variant, const DeviceRequest& reque
 
     Hand hand(holding->impedance, Stroke(std::move(curve), request.surface_below, *start), request.press_n,
               1 / request.rate_hz);
-    runtime::DeviceInfo info{request.name, preset->model.force_max_n, preset->model.stiffness_max_n_per_m, 0,
-                             request.press_n};
+    runtime::DeviceInfo info{request.name,    preset->model.force_max_n, preset->model.stiffness_max_n_per_m, 0,
+                             request.press_n, preset->model.encoder_m};
     return {std::make_unique<SimulatedDevice>(
                 std::move(info), preset->model, std::move(hand),
                 SimulatedDevice::Options{request.rate_hz, request.stylus_length_m, request.gripper}),

@@ -29,6 +29,7 @@ struct DeviceInfo {
     double stiffness_max_n_per_m = 0; // recommended at 1 kHz; 0: unknown
     double workspace_radius_m = 0;    // 0: unbounded
     double press_n = 0;               // with which a simulated hand presses; 0: another hand, not known
+    double position_resolution_m = 0; // the step of its position sensors; 0: not known
 };
 
 enum class DeviceStatus : uint8_t {

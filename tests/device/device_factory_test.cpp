@@ -34,6 +34,7 @@ TEST_CASE("every simulated device opens by its name, with its limits")
             CHECK(opened.device->info().name == name);
             CHECK(opened.device->info().force_max_n == preset.model.force_max_n);
             CHECK(opened.device->info().stiffness_max_n_per_m > 0);
+            CHECK(opened.device->info().position_resolution_m == preset.model.encoder_m);
         }
     DeviceRequest request = request_on_plane("simulated");
     request.press_n = 9;

@@ -44,28 +44,19 @@ extern "C" void on_interrupt(int signal)
     std::signal(signal, SIG_DFL);
 }
 
-// A scene ready to run, and what the pictures want to know of it.
-struct Exploration {
-    runtime::LoadedScene loaded;
-    std::vector<plot::SurfaceBelow> surfaces; // as each hand sees them
-};
-
-std::optional<Exploration> load(const ExploreOptions& options, ExploreTextures& textures,
-                                runtime::SurfaceCache& surfaces)
+std::optional<runtime::LoadedScene> load(const ExploreOptions& options, ExploreTextures& textures,
+                                         runtime::SurfaceCache& surfaces)
 {
-    Exploration exploration;
-    const auto devices = [&](runtime::DeviceRequest request) {
-        const std::size_t hand = exploration.surfaces.size();
-        exploration.surfaces.push_back(request.surface_below);
+    const auto devices = [&, hand = std::size_t{0}](runtime::DeviceRequest request) mutable {
         const bool replaced = hand < options.devices.size();
         if (replaced) request.name = options.devices[hand];
+        ++hand;
         runtime::DeviceResult opened = device::open_device(request);
         if (replaced && !opened.device)
             opened.error = fmt::format("`--device {}` in its place: {}", request.name, opened.error);
         return opened;
     };
-    exploration.loaded = runtime::load_scene(options.scene, textures.resolver(), devices, &surfaces);
-    const runtime::LoadedScene& loaded = exploration.loaded;
+    runtime::LoadedScene loaded = runtime::load_scene(options.scene, textures.resolver(), devices, &surfaces);
     fmt::print(stderr, "{}", loaded.diagnostics);
     if (!loaded.scene || loaded.hands.empty()) return std::nullopt;
     if (options.devices.size() > loaded.hands.size()) {
@@ -76,7 +67,7 @@ std::optional<Exploration> load(const ExploreOptions& options, ExploreTextures& 
                         loaded.hands.size() == 1 ? "one device" : fmt::format("{} devices", loaded.hands.size())));
         return std::nullopt;
     }
-    return exploration;
+    return loaded;
 }
 
 runtime::ServoOptions servo_options(const ExploreOptions& options)
@@ -99,12 +90,11 @@ ExitCode explore(const ExploreOptions& options)
 
     ExploreTextures textures;
     runtime::SurfaceCache surfaces;
-    std::optional<Exploration> exploration = load(options, textures, surfaces);
-    if (!exploration) return ExitCode::findings;
-    runtime::LoadedScene& loaded = exploration->loaded;
+    std::optional<runtime::LoadedScene> read = load(options, textures, surfaces);
+    if (!read) return ExitCode::findings;
+    runtime::LoadedScene& loaded = *read;
     textures.watch(*loaded.scene);
-    ExploreHands hands(std::move(loaded.scene), std::move(loaded.hands), std::move(exploration->surfaces),
-                       servo_options(options), options.out);
+    ExploreHands hands(std::move(loaded.scene), std::move(loaded.hands), servo_options(options), options.out);
     if (!hands.error().empty()) {
         say_error(hands.error());
         return ExitCode::findings;

@@ -6,8 +6,7 @@
 namespace haptel::tools {
 
 ExploreHands::ExploreHands(std::shared_ptr<const runtime::Scene> scene, std::vector<runtime::LoadedHand> hands,
-                           std::vector<plot::SurfaceBelow> surfaces, const runtime::ServoOptions& options,
-                           const std::string& folder)
+                           const runtime::ServoOptions& options, const std::string& folder)
     : scene_(std::move(scene)), folder_(folder), newest_(hands.size())
 {
     std::vector<runtime::ServoThread*> servos;
@@ -16,7 +15,8 @@ ExploreHands::ExploreHands(std::shared_ptr<const runtime::Scene> scene, std::vec
         own.hand = hands[i].settings;
         Hand& hand = hands_.emplace_back();
         hand.device = hands[i].device->info().name;
-        hand.surface = std::move(surfaces[i]);
+        hand.workspace = hands[i].settings.workspace;
+        hand.position_resolution_m = hands[i].device->info().position_resolution_m;
         hand.servo = std::make_unique<runtime::ServoThread>(scene_, std::move(hands[i].device), own);
         servos.push_back(hand.servo.get());
         if (!folder.empty()) hand.files.emplace(folder, i);
@@ -60,6 +60,7 @@ bool ExploreHands::drain(ExploreStatus& status)
         // At most one ring: a servo that is faster than its reader must not keep it from hearing Ctrl-C.
         for (std::size_t left = telemetry.capacity(); left > 0 && telemetry.pop(newest_[i]); --left) {
             any = true;
+            hands_[i].heights.add(newest_[i], hands_[i].workspace.scale);
             if (hands_[i].files) hands_[i].files->add(newest_[i]);
         }
     }
@@ -71,8 +72,9 @@ std::vector<HandOutcome> ExploreHands::wait(ExploreStatus& status)
 {
     if (turns_) turns_->wait();
     std::vector<HandOutcome> outcomes;
-    for (Hand& hand : hands_) outcomes.push_back({hand.device, hand.servo->wait()});
+    for (Hand& hand : hands_) outcomes.push_back({hand.device, hand.servo->wait(), {}, hand.position_resolution_m});
     drain(status);
+    for (std::size_t i = 0; i < hands_.size(); ++i) outcomes[i].heights = hands_[i].heights;
     return outcomes;
 }
 
@@ -81,7 +83,7 @@ void ExploreHands::finish(const ExploreOutcome& outcome)
     for (std::size_t i = 0; i < hands_.size(); ++i)
         if (hands_[i].files)
             hands_[i].files->finish(outcome.scene, outcome.hands[i].servo, scene_->servo.force_limit_n,
-                                    hands_[i].surface);
+                                    plot::textured_normal_below(scene_, hands_[i].workspace));
     if (!folder_.empty()) report_error_ = write_report(folder_, outcome);
 }
 

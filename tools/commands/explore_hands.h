@@ -19,10 +19,9 @@ namespace haptel::tools {
 
 class ExploreHands {
 public:
-    // Surfaces as each hand sees them, for the pictures; an empty folder: nothing is written.
+    // An empty folder: nothing is written.
     ExploreHands(std::shared_ptr<const runtime::Scene> scene, std::vector<runtime::LoadedHand> hands,
-                 std::vector<plot::SurfaceBelow> surfaces, const runtime::ServoOptions& options,
-                 const std::string& folder);
+                 const runtime::ServoOptions& options, const std::string& folder);
 
     // Wall clock: a thread each. Virtual clock: one thread, a tick each in turn.
     void start();
@@ -45,7 +44,9 @@ public:
 private:
     struct Hand {
         std::string device;
-        plot::SurfaceBelow surface;
+        runtime::Workspace workspace;
+        double position_resolution_m = 0; // of its device; 0: not known
+        HeightRange heights;              // that it felt
         std::unique_ptr<runtime::ServoThread> servo;
         std::optional<ExploreFiles> files;
     };

@@ -58,8 +58,8 @@ void draw_panel(Picture& picture, const Axes& axes, const std::vector<Point>& li
     draw_axes(picture, axes, style);
 }
 
-// Grey relief of the surface from its facet normals; pale, so that the path stands out.
-Image relief(const Axes& axes, const SurfaceBelow& surface, double metres_per_unit, int columns, int rows)
+// Grey relief of the textured surface; pale, so that the path stands out.
+Image relief(const Axes& axes, const NormalBelow& surface, double metres_per_unit, int columns, int rows)
 {
     static const glm::dvec3 light = glm::normalize(glm::dvec3(-0.55, 0.6, 0.75));
     Image image(columns, rows);
@@ -70,8 +70,8 @@ Image relief(const Axes& axes, const SurfaceBelow& surface, double metres_per_un
             const double x = axes.x.low + (axes.x.high - axes.x.low) * (column + 0.5) / columns;
             const double y = axes.y.high - (axes.y.high - axes.y.low) * (row + 0.5) / rows;
             if (!surface) continue;
-            if (const auto hit = surface(x * metres_per_unit, y * metres_per_unit)) {
-                const double shade = 0.62 + 0.33 * std::max(glm::dot(hit->facet_normal, light), 0.0);
+            if (const auto normal = surface(x * metres_per_unit, y * metres_per_unit)) {
+                const double shade = 0.62 + 0.33 * std::max(glm::dot(*normal, light), 0.0);
                 pixel = {shade, shade, shade};
             }
         }
@@ -119,7 +119,7 @@ Picture draw_force(std::span<const TickRecord> ticks, const std::string& title, 
     return picture;
 }
 
-Picture draw_path(std::span<const TickRecord> ticks, const std::string& title, const SurfaceBelow& surface)
+Picture draw_path(std::span<const TickRecord> ticks, const std::string& title, const NormalBelow& surface)
 {
     Picture picture(512, 512, sharpness);
     glm::dvec2 low(HUGE_VAL), high(-HUGE_VAL);

@@ -53,7 +53,7 @@ std::filesystem::path ExploreFiles::path(const char* name, const char* extension
 }
 
 void ExploreFiles::finish(const std::string& scene, const runtime::ServoReport& servo, double force_limit_n,
-                          const plot::SurfaceBelow& surface)
+                          const plot::NormalBelow& surface)
 {
     const auto note = [&](const std::string& problem) {
         if (error_.empty()) error_ = problem;

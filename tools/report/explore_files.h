@@ -23,7 +23,7 @@ public:
 
     // Closes the trace and draws the pictures.
     void finish(const std::string& scene, const runtime::ServoReport& servo, double force_limit_n,
-                const plot::SurfaceBelow& surface);
+                const plot::NormalBelow& surface);
 
     // Why something could not be written; empty: all is well.
     const std::string& error() const { return error_; }

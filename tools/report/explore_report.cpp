@@ -3,6 +3,7 @@
 #include "lang/abi/abi.h"
 #include "runtime/render/renderer.h"
 
+#include <algorithm>
 #include <fmt/format.h>
 #include <utility>
 
@@ -76,6 +77,11 @@ double percent(uint64_t part, uint64_t whole)
     return whole == 0 ? 0 : 100 * static_cast<double>(part) / static_cast<double>(whole);
 }
 
+std::string micrometres(double metres)
+{
+    return fmt::format("{:.3g} um", metres * 1e6);
+}
+
 void add(Json& json, const HandOutcome& hand)
 {
     const runtime::ServoReport& servo = hand.servo;
@@ -98,6 +104,10 @@ void add(Json& json, const HandOutcome& hand)
     json["grip_force_n"]["rms"] = finite_or_null(servo.grip_force_rms_n);
     json["grip_force_n"]["max"] = finite_or_null(servo.grip_force_max_n);
     json["energy_j"] = finite_or_null(servo.energy_j);
+    json["felt_height_m"]["minimum"] = finite_or_null(hand.heights.minimum_m);
+    json["felt_height_m"]["maximum"] = finite_or_null(hand.heights.maximum_m);
+    json["position_resolution_m"] = hand.position_resolution_m > 0 ? Json(hand.position_resolution_m) : Json(nullptr);
+    json["texture_below_resolution"] = hand.hides_texture();
     json["faults"] = servo.faults;
     json["reloads"] = servo.reloads;
     json["scenes_swapped"] = servo.scenes_swapped;
@@ -143,10 +153,27 @@ std::string lines_of(const HandOutcome& hand, const ExploreOutcome& outcome)
     if (servo.faults > 0) line("faults", fmt::format("in {} ticks: {}", servo.faults, faults_text(servo.fault_bits)));
     if (servo.records_dropped > 0) line("telemetry", fmt::format("{} records were dropped", servo.records_dropped));
     if (!servo.real_time_note.empty()) line("note", servo.real_time_note);
+    if (hand.hides_texture())
+        line("note",
+             fmt::format("the texture is {} high along the path, but {} measures positions in steps of {}: the "
+                         "steps hide it. Make the texture deeper, or take a finer device",
+                         micrometres(hand.heights.width_m()), hand.device, micrometres(hand.position_resolution_m)));
     return text;
 }
 
 } // namespace
+
+void HeightRange::add(const runtime::TickRecord& tick, double scale)
+{
+    if (!(tick.depth_m > 0)) return; // no texture was evaluated
+    minimum_m = std::min(minimum_m, tick.height_m / scale);
+    maximum_m = std::max(maximum_m, tick.height_m / scale);
+}
+
+bool HandOutcome::hides_texture() const
+{
+    return heights.width_m() > 0 && heights.width_m() < 2 * position_resolution_m;
+}
 
 Json to_json(const ExploreOutcome& outcome)
 {

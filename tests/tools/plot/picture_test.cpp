@@ -78,9 +78,7 @@ TEST_CASE("runs are drawn whatever they hold")
     std::vector<haptel::runtime::TickRecord> ticks;
     haptel::runtime::Histogram histogram;
     const auto draw_all = [&] {
-        const auto surface = [](double x, double) {
-            return x > 0 ? std::optional(haptel::runtime::SurfaceHit{{x, 0, 0}, {0, 0, 1}}) : std::nullopt;
-        };
+        const auto surface = [](double x, double) { return x > 0 ? std::optional(glm::dvec3(0, 0, 1)) : std::nullopt; };
         CHECK(draw_force(ticks, "run", 7).write_png(file.path.string()).empty());
         CHECK(draw_path(ticks, "run", surface).write_png(file.path.string()).empty());
         CHECK(draw_path(ticks, "run", nullptr).write_png(file.path.string()).empty());

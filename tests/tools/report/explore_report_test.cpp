@@ -52,3 +52,39 @@ TEST_CASE("a fault is told by its own name")
     servo.fault_bits = haptel::runtime::fault_pose_not_finite | 1u << 31;
     CHECK(to_lines(outcome).find("pose that is not finite (no force); unknown bits 0x80000000") != std::string::npos);
 }
+
+TEST_CASE("a texture lower than two position steps of the device is told, one that is higher is not")
+{
+    using haptel::runtime::TickRecord;
+    const auto outcome_of = [](double height_m, double resolution_m, double scale) {
+        ExploreOutcome outcome;
+        HandOutcome& hand = outcome.hands.emplace_back();
+        hand.device = "simulated:premium";
+        hand.position_resolution_m = resolution_m;
+        TickRecord above;
+        above.height_m = 1; // not touched: no height was felt
+        hand.heights.add(above, scale);
+        for (double height : {-height_m / 2, 0.0, height_m / 2}) {
+            TickRecord tick;
+            tick.contact = 1;
+            tick.depth_m = 1e-4;
+            tick.height_m = height;
+            hand.heights.add(tick, scale);
+        }
+        return outcome;
+    };
+    const std::string note = "the texture is 50 um high along the path, but simulated:premium measures positions in "
+                             "steps of 30 um: the steps hide it.";
+    CHECK(to_lines(outcome_of(50e-6, 30e-6, 1)).find(note) != std::string::npos);
+    CHECK(to_json(outcome_of(50e-6, 30e-6, 1))["texture_below_resolution"] == true);
+    CHECK(to_json(outcome_of(50e-6, 30e-6, 1))["felt_height_m"]["maximum"] == 25e-6);
+    CHECK(to_json(outcome_of(50e-6, 30e-6, 1))["position_resolution_m"] == 30e-6);
+    for (const auto& shown : {outcome_of(61e-6, 30e-6, 1),       // two steps are enough
+                              outcome_of(50e-6, 0, 1),           // an exact device, or one that does not say
+                              outcome_of(0, 30e-6, 1),           // a flat surface
+                              outcome_of(6.1e-6, 30e-6, 0.1)}) { // ten times as high in the hand
+        CHECK(to_lines(shown).find("hide") == std::string::npos);
+        CHECK(to_json(shown)["texture_below_resolution"] == false);
+    }
+    CHECK(to_json(outcome_of(50e-6, 0, 1))["position_resolution_m"].is_null());
+}
