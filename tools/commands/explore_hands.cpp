@@ -5,6 +5,13 @@
 
 namespace haptel::tools {
 
+namespace {
+
+// A slope of a tenth is plain to a hand and hardly seen in shades of grey.
+constexpr double relief_exaggeration = 4;
+
+} // namespace
+
 ExploreHands::ExploreHands(std::shared_ptr<const runtime::Scene> scene, std::vector<runtime::LoadedHand> hands,
                            const runtime::ServoOptions& options, const std::string& folder)
     : scene_(std::move(scene)), folder_(folder), newest_(hands.size())
@@ -83,7 +90,7 @@ void ExploreHands::finish(const ExploreOutcome& outcome)
     for (std::size_t i = 0; i < hands_.size(); ++i)
         if (hands_[i].files)
             hands_[i].files->finish(outcome.scene, outcome.hands[i].servo, scene_->servo.force_limit_n,
-                                    plot::textured_normal_below(scene_, hands_[i].workspace));
+                                    plot::textured_normal_below(scene_, hands_[i].workspace, relief_exaggeration));
     if (!folder_.empty()) report_error_ = write_report(folder_, outcome);
 }
 

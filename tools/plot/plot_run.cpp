@@ -58,6 +58,19 @@ void draw_panel(Picture& picture, const Axes& axes, const std::vector<Point>& li
     draw_axes(picture, axes, style);
 }
 
+// Less than 2 % of the ticks in contact have less: beginnings and ends of touches do not take the colours from the
+// rest.
+double usual_least_force(std::span<const TickRecord> ticks)
+{
+    std::vector<double> forces;
+    for (const TickRecord& tick : ticks)
+        if (tick.contact != 0) forces.push_back(force_of(tick));
+    if (forces.empty()) return 0;
+    const auto least = forces.begin() + static_cast<std::ptrdiff_t>(forces.size() / 50);
+    std::nth_element(forces.begin(), least, forces.end());
+    return *least;
+}
+
 // Grey relief of the textured surface; pale, so that the path stands out.
 Image relief(const Axes& axes, const NormalBelow& surface, double metres_per_unit, int columns, int rows)
 {
@@ -141,8 +154,7 @@ Picture draw_path(std::span<const TickRecord> ticks, const std::string& title, c
     const int pixels = static_cast<int>(axes.rect.width * sharpness);
     picture.image(axes.rect, relief(axes, surface, 1 / unit.per_m, pixels, pixels));
 
-    Axis force = fitted("force (N)", 0, force_max_n);
-    force.low = 0;
+    const Axis force = fitted("force (N)", usual_least_force(ticks), force_max_n);
     picture.begin_clip(axes.rect);
     for (std::size_t i = 1; i < ticks.size(); ++i) {
         const auto at = [&](const TickRecord& tick) {
@@ -150,12 +162,14 @@ Picture draw_path(std::span<const TickRecord> ticks, const std::string& title, c
         };
         const bool touching = ticks[i].contact != 0;
         picture.line(at(ticks[i - 1]), at(ticks[i]),
-                     touching ? viridis(force.share(force_of(ticks[i]))) : Color{1, 1, 1, 0.8}, touching ? 1.3 : 0.7);
+                     touching ? viridis(force.share(force_of(ticks[i]))) : Color{1, 1, 1, 0.8}, touching ? 2 : 0.7);
     }
     picture.end_clip();
     draw_axes(picture, axes);
     draw_color_bar(picture, {axes.rect.right() + 10, axes.rect.y, 9, axes.rect.height}, force, viridis);
-    draw_title(picture, title, "path of the tip from above (+z), coloured by force; pale where it did not touch");
+    draw_title(
+        picture, title,
+        "path of the tip from above (+z), coloured by force, over the texture in relief; pale where it did not touch");
     return picture;
 }
 

@@ -7,7 +7,8 @@ namespace haptel::tools::plot {
 
 using namespace runtime;
 
-NormalBelow textured_normal_below(const std::shared_ptr<const Scene>& scene, const Workspace& workspace)
+NormalBelow textured_normal_below(const std::shared_ptr<const Scene>& scene, const Workspace& workspace,
+                                  double exaggeration)
 {
     if (scene->objects.empty()) return {};
     const SceneObject& object = scene->objects.front();
@@ -17,8 +18,9 @@ NormalBelow textured_normal_below(const std::shared_ptr<const Scene>& scene, con
     const glm::dvec3 middle_m = workspace.to_hand(object.placement.to_world((low_m + high_m) / 2.0));
     const double reach_m = glm::length(high_m - low_m) / workspace.scale; // from its middle, in every direction
 
-    return [scene, workspace, middle_m, reach_m, reader = std::make_shared<TextureReader>(*object.texture)](
-               double x_m, double y_m) -> std::optional<glm::dvec3> {
+    return [scene, workspace, exaggeration, middle_m, reach_m,
+            reader = std::make_shared<TextureReader>(*object.texture)](double x_m,
+                                                                       double y_m) -> std::optional<glm::dvec3> {
         const SceneObject& seen = scene->objects.front();
         const auto to_object = [&](double z_m) {
             return seen.placement.to_object(workspace.to_scene({x_m, y_m, z_m}));
@@ -26,7 +28,7 @@ NormalBelow textured_normal_below(const std::shared_ptr<const Scene>& scene, con
         const auto hit = seen.surface->first_hit(to_object(middle_m.z + reach_m), to_object(middle_m.z - reach_m));
         if (!hit) return std::nullopt;
         const SurfacePoint at{hit->point_m, shade(*seen.surface, hit->face, hit->side, hit->barycentric), 0};
-        const glm::dvec3 bent = at.shading.normal - sample_texture(*reader, at).surface_gradient;
+        const glm::dvec3 bent = at.shading.normal - exaggeration * sample_texture(*reader, at).surface_gradient;
         return glm::normalize(workspace.direction_to_hand(seen.placement.direction_to_world(bent)));
     };
 }

@@ -32,6 +32,11 @@ TEST_CASE("explore feels a scene and reports it as promised")
     CHECK(json["textures_compiled"] == 1);
     CHECK(json["reloads"] == 0);
     CHECK((json["allocations_in_tick"] == 0 || json["allocations_in_tick"].is_null()));
+    CHECK(json["position_resolution_m"] == 30e-6); // of simulated:premium
+    const double felt_m =
+        json["felt_height_m"]["maximum"].get<double>() - json["felt_height_m"]["minimum"].get<double>();
+    CHECK(std::fabs(felt_m - 120e-6) < 1e-6); // twice the grooves' depth: the circle crosses them
+    CHECK(json["texture_below_resolution"] == false);
     CHECK(json["force_n"]["max"] > 0.3);
     CHECK(json["force_n"]["max"] <= 7.0);
     CHECK(json["tick_ns"]["median"] > 0);
