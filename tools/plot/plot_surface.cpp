@@ -18,8 +18,11 @@ NormalBelow textured_normal_below(const std::shared_ptr<const Scene>& scene, con
     const glm::dvec3 middle_m = workspace.to_hand(object.placement.to_world((low_m + high_m) / 2.0));
     const double reach_m = glm::length(high_m - low_m) / workspace.scale; // from its middle, in every direction
 
-    return [scene, workspace, exaggeration, middle_m, reach_m,
-            reader = std::make_shared<TextureReader>(*object.texture)](double x_m,
+    // A reader leaves its slot when it goes: the slot stays as long.
+    const std::shared_ptr<TextureReader> reader(new TextureReader(*object.texture),
+                                                [slot = object.texture](TextureReader* one) { delete one; });
+
+    return [scene, workspace, exaggeration, middle_m, reach_m, reader](double x_m,
                                                                        double y_m) -> std::optional<glm::dvec3> {
         const SceneObject& seen = scene->objects.front();
         const auto to_object = [&](double z_m) {
