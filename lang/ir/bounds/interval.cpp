@@ -37,18 +37,25 @@ Interval sum(double a, double b)
     double s = a + b, b_part = s - a, error = (a - (s - b_part)) + (b - b_part);
     return rounded(s, std::isinf(a) || std::isinf(b) || error == 0);
 }
+// Of a product or a quotient, which has this sign however small it is.
+Interval signed_as(bool is_negative, const Interval& a)
+{
+    return is_negative ? Interval{a.minimum, std::min(a.maximum, 0.0)} : Interval{std::max(a.minimum, 0.0), a.maximum};
+}
 Interval product(double a, double b)
 {
     if (a == 0 || b == 0) return {0, 0}; // an infinite end is a bound, not a value
     double p = a * b;
     // the error of a product too small cannot be seen
-    return rounded(p, std::isinf(a) || std::isinf(b) || (std::fabs(p) > 1e-280 && std::fma(a, b, -p) == 0));
+    const bool is_exact = std::isinf(a) || std::isinf(b) || (std::fabs(p) > 1e-280 && std::fma(a, b, -p) == 0);
+    return signed_as((a < 0) != (b < 0), rounded(p, is_exact));
 }
 Interval quotient(double a, double b)
 {
     if (a == 0 || std::isinf(b)) return {0, 0};
     double q = a / b;
-    return rounded(q, std::isinf(a) || (std::fabs(q) > 1e-280 && std::fabs(a) > 1e-280 && std::fma(-q, b, a) == 0));
+    const bool is_exact = std::isinf(a) || (std::fabs(q) > 1e-280 && std::fabs(a) > 1e-280 && std::fma(-q, b, a) == 0);
+    return signed_as((a < 0) != (b < 0), rounded(q, is_exact));
 }
 
 Interval hull(std::initializer_list<Interval> parts)
@@ -150,8 +157,8 @@ Interval wave(const Interval& a, double period, double crest, const F& f)
         return at + k * period <= a.maximum + slack;
     };
     const double left = f(a.minimum), right = f(a.maximum);
-    return {meets(crest + period / 2) ? -1 : std::max(-1.0, down(std::min(left, right), 4)),
-            meets(crest) ? 1 : std::min(1.0, up(std::max(left, right), 4)), nan};
+    return {meets(crest + period / 2) ? -1 : down(std::min(left, right), 4),
+            meets(crest) ? 1 : up(std::max(left, right), 4), nan};
 }
 
 Interval tangent(const Interval& a)
@@ -182,8 +189,7 @@ Interval fraction(const Interval& a)
     if (may_be_infinite(a)) return {0, 1, true};
     double cell = std::floor(a.minimum);
     if (cell != std::floor(a.maximum)) return {0, 1};
-    Interval rest = add(a, {-cell, -cell});
-    return {std::max(rest.minimum, 0.0), std::min(rest.maximum, 1.0)};
+    return add(a, {-cell, -cell});
 }
 
 Interval modulo(const Interval& a, const Interval& b)
@@ -207,7 +213,7 @@ Interval length(std::span<const Interval> parts)
         low[i] = part.minimum, high[i] = part.maximum;
     }
     auto count = static_cast<int>(parts.size());
-    return {std::max(0.0, down(semantics::length(low, count), 4)), up(semantics::length(high, count), 4)};
+    return {down(semantics::length(low, count), 4), up(semantics::length(high, count), 4)};
 }
 
 Interval power(const Interval& a, const Interval& b)
@@ -282,6 +288,29 @@ Interval on_integers(Op op, Type type, std::span<const Interval> operands)
     return {static_cast<double>(range.minimum), static_cast<double>(range.maximum)};
 }
 
+// Operations whose results have ends that are reached and are numbers: what outward rounding leaves of them is clipped.
+// Of an operation that is not listed nothing is clipped.
+struct ClosedRange {
+    Op op;
+    double minimum, maximum;
+};
+constexpr ClosedRange closed_ranges[] = {
+    {Op::sqrt, 0, infinity}, {Op::length2, 0, infinity}, {Op::length3, 0, infinity}, {Op::length4, 0, infinity},
+    {Op::fract, 0, 1},       {Op::sin, -1, 1},           {Op::cos, -1, 1},           {Op::sinturn, -1, 1},
+    {Op::costurn, -1, 1},    {Op::tanh, -1, 1},          {Op::cosh, 1, infinity},    {Op::acosh, 0, infinity},
+    {Op::acos, 0, infinity}, {Op::exp, 0, infinity},     {Op::exp2, 0, infinity},
+};
+
+Interval clipped(Op op, Interval result)
+{
+    for (const ClosedRange& range : closed_ranges)
+        if (range.op == op && !result.is_empty()) {
+            result.minimum = std::max(result.minimum, range.minimum);
+            result.maximum = std::min(result.maximum, range.maximum);
+        }
+    return result;
+}
+
 Interval value_of(Op op, std::span<const Interval> x)
 {
     const Interval& a = x[0];
@@ -309,11 +338,7 @@ Interval value_of(Op op, std::span<const Interval> x)
     case Op::round: return rounding(semantics::round_to_even);
     case Op::fract: return fraction(a);
     case Op::mod: return modulo(a, b);
-    case Op::sqrt: {
-        Interval root = rising_within(a, 0, infinity, [](double v) { return std::sqrt(v); });
-        root.minimum = std::max(root.minimum, 0.0);
-        return root;
-    }
+    case Op::sqrt: return rising_within(a, 0, infinity, [](double v) { return std::sqrt(v); });
     case Op::length2:
     case Op::length3:
     case Op::length4: return length(x);
@@ -429,7 +454,7 @@ Interval evaluate(Op op, std::span<const Interval> operands)
         is_empty |= operand.is_empty();
         may_be_nan |= operand.may_be_nan;
     }
-    Interval result = is_empty ? empty : value_of(op, operands);
+    Interval result = is_empty ? empty : clipped(op, value_of(op, operands));
     result.may_be_nan |= may_be_nan;
     const bool swallows_nan = op == Op::pow && ((operands[0].may_be_nan && operands[1].contains(0)) ||
                                                 (operands[1].may_be_nan && operands[0].contains(1)));

@@ -168,6 +168,7 @@ TEST_CASE("bounds: work is limited, whatever the program asks for")
     CHECK((costly.may_be_nan && costly.minimum == -infinity && costly.maximum == infinity));
 }
 
+// sin(x / 10) written so that its body says nothing: only the declared slope does, from the middle of the box.
 TEST_CASE("bounds: the slope that is declared bounds the value about the middle of a box")
 {
     const Module module = parsed(R"(

@@ -211,4 +211,28 @@ TEST_CASE("intervals: a wave stays between -1 and 1 beside its crests, too")
     }
 }
 
-// sin(x / 10) written so that its body says nothing: only the declared slope does, from the middle of the box.
+TEST_CASE("intervals: results with closed ranges stay within them, and every value within its interval")
+{
+    struct Range {
+        Op op;
+        double from, to, minimum, maximum; // of the operand, of the result
+    };
+    const Range ranges[] = {
+        {Op::exp, -800, -700, 0, 1},   {Op::exp2, -1100, -1000, 0, 1}, {Op::sqrt, 0, 1e-300, 0, 1},
+        {Op::acos, 1 - 1e-9, 1, 0, 1}, {Op::acosh, 1, 1 + 1e-9, 0, 1}, {Op::cosh, -1e-4, 1e-4, 1, 2},
+        {Op::tanh, 10, 30, 0, 1},      {Op::tanh, -30, -10, -1, 0},    {Op::abs, -1e-320, 1e-320, 0, 1},
+        {Op::sin, 1.5, 1.6, 0.9, 1},   {Op::fract, 0.9999999, 1, 0, 1}};
+    std::mt19937 random(5);
+    for (const Range& range : ranges) {
+        CAPTURE(op_info(range.op).name);
+        for (int i = 0; i < 20000; ++i) {
+            const double a = std::uniform_real_distribution(range.from, range.to)(random);
+            const Interval operand[] = {{a, std::nextafter(a, range.to)}};
+            const Interval claimed = evaluate(range.op, operand);
+            Slot<double> in{a, 0}, out, unused;
+            execute(range.op, out, in, unused, unused, unused);
+            REQUIRE(
+                (claimed.contains(out.real) && claimed.minimum >= range.minimum && claimed.maximum <= range.maximum));
+        }
+    }
+}
