@@ -13,16 +13,6 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr uint32_t depth_max = 1000; // beyond, nothing is known: recursion stays bounded
 constexpr Interval nothing{infinity, -infinity, false};
 
-void collect_makers(const Block& block, std::vector<const Instruction*>& makers)
-{
-    for (const Instruction& made : block.instructions) {
-        for (Value result : made.results) makers[result.index] = &made;
-        if (auto* choice = std::get_if<If>(&made.kind))
-            for (const Block& arm : choice->arms) collect_makers(arm, makers);
-        if (auto* loop = std::get_if<For>(&made.kind)) collect_makers(loop->body[0], makers);
-    }
-}
-
 Interval declared_value(const Facts& facts, bool may_be_nan)
 {
     if (!facts.value_minimum || !facts.value_maximum) return {-infinity, infinity, true};
@@ -41,16 +31,6 @@ bool tells_derivative(const Function& function, const IntervalEvaluator::Results
 }
 
 } // namespace
-
-const std::vector<const Instruction*>& IntervalEvaluator::makers_of(uint32_t function)
-{
-    std::vector<const Instruction*>& known = makers[function];
-    if (known.empty()) {
-        known.resize(module.functions[function].value_types.size() + 1);
-        collect_makers(module.functions[function].body, known);
-    }
-    return known;
-}
 
 const std::vector<bool>& IntervalEvaluator::tangents_of(uint32_t index, std::span<const Variation> arguments)
 {
@@ -76,7 +56,7 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     ++depth;
     const size_t count = function.value_types.size();
     Frame frame{function, std::vector<Interval>(count, nothing), std::vector<Variation>(varying ? count : 0),
-                makers_of(index), tangents_of(index, arguments.variations)};
+                structure_of(index), tangents_of(index, arguments.variations)};
     store(frame, function.parameters, arguments);
     const std::optional<Span> outside = user;
     if (function.is_library && !user) user = span;
@@ -147,13 +127,15 @@ Variation IntervalEvaluator::by_facts(const Function& function, const Facts& fac
 IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results& arguments, Span span)
 {
     const Function& function = module.functions[index];
-    bool may_be_nan = false, are_finite = true;
+    bool may_be_nan = false, is_a_number = true, are_finite = true;
     for (const Interval& argument : arguments.values) {
-        may_be_nan |= argument.may_be_nan || argument.is_empty();
+        may_be_nan |= argument.may_be_nan;
+        is_a_number &= !argument.is_empty();
         are_finite &= argument.is_finite();
     }
     const size_t count = function.body.yields.size();
-    if (may_be_nan || function.facts.empty()) return look_inside(index, arguments, span);
+    if (!is_a_number || function.facts.empty()) return look_inside(index, arguments, span);
+    if (may_be_nan) return call_beside_nan(index, arguments, span);
 
     Results declared;
     const Results others = varying ? by_other_arguments(index, arguments, span) : Results{};
@@ -189,6 +171,27 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
     }
     if (near) results.values[0] = intersect(results.values[0], *near);
     return results;
+}
+
+// Facts hold of the numbers that arguments may be; of what is not a number the body alone tells.
+IntervalEvaluator::Results IntervalEvaluator::call_beside_nan(uint32_t index, const Results& arguments, Span span)
+{
+    Results numbers = arguments;
+    for (Interval& argument : numbers.values) argument.may_be_nan = false;
+    Results all = call(index, numbers, span);
+    for (size_t i = 0; i < arguments.values.size(); ++i) {
+        if (!arguments.values[i].may_be_nan) continue;
+        Results beside = arguments;
+        beside.values[i] = {infinity, -infinity, true};
+        const Results there = look_inside(index, beside, span);
+        for (size_t r = 0; r < there.values.size(); ++r) {
+            all.values[r] = join(all.values[r], there.values[r]);
+            if (!varying) continue;
+            if (!there.values[r].is_empty()) all.variations[r] = join(all.variations[r], there.variations[r]);
+            all.variations[r].may_fault |= there.variations[r].may_fault;
+        }
+    }
+    return all;
 }
 
 // |f(x) - f(middle)| <= slope |x - middle|.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace haptel::ir {
 namespace {
@@ -76,7 +77,7 @@ Variation variation_of_input(const BoundsBox& box, Input input, Span span)
 } // namespace
 
 IntervalEvaluator::IntervalEvaluator(const Module& whole, uint64_t operations)
-    : module(whole), limit(operations), makers(whole.functions.size()), dependences(whole)
+    : module(whole), limit(operations), structures(whole.functions.size()), dependences(whole)
 {
 }
 
@@ -96,6 +97,7 @@ IntervalEvaluator::Results IntervalEvaluator::run_varying(uint32_t entry, const 
     left = limit;
     depth = 0;
     varying = true;
+    is_compared = false;
     kinks = 0;
     user.reset();
     undefined_operations.clear();
@@ -191,7 +193,8 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Opera
     const std::span<const Interval> all{operands, made.operands.size()};
     const bool reads_image = op_info(operation.op).operands[0] == 'm';
     Interval result = reads_image ? of_image(operation.op, all) : evaluate(operation.op, all);
-    if (varying) note_undefined(made, operation.op, all, result);
+    const bool is_part = frame.structure.is_part_of_result[made.results[0].index];
+    if (varying && is_part) note_undefined(made, operation.op, all, result);
     result = sharpened(frame, made, operation.op, result);
     frame.values[made.results[0].index] = result;
     if (varying) frame.variations[made.results[0].index] = variation_of(frame, made, operation.op, all, result);
@@ -251,7 +254,8 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
         variation = chain(op, operands, {variations, operands.size()}, partials, of_reals || op == Op::spline);
         const auto may_fault = [](const Variation& operand) { return operand.may_fault; };
         const bool is_new = std::none_of(variations, variations + operands.size(), may_fault);
-        if (variation.may_fault && is_new) note_derivative(made, op, operands, result);
+        const bool is_part = frame.structure.is_part_of_result[made.results[0].index];
+        if (variation.may_fault && is_new && is_part) note_derivative(made, op, operands, result);
     }
     if (!variation.is_active) return variation;
     if (op == Op::detach) { // the gradient that is returned is another function's, which may bend anyhow
@@ -326,8 +330,15 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadT
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Call& callee)
 {
     const Results arguments = gather(frame, made.operands);
+    const auto is_part = [&](Value result) { return frame.structure.is_part_of_result[result.index]; };
+    const bool is_whole = std::any_of(made.results.begin(), made.results.end(), is_part);
+    const bool was_compared = std::exchange(is_compared, is_compared || !is_whole);
     Results results = call(callee.function, arguments, made.span);
+    is_compared = was_compared;
     if (varying) pass_faults(callee.function, arguments, results);
+    for (Variation& variation : results.variations) // what is made by the compiler has no place
+        if (variation.smoothness != Smoothness::smooth && variation.cause.span.end == 0)
+            variation.cause = {made.span, {}, module.functions[callee.function].is_library};
     store(frame, made.results, results);
 }
 

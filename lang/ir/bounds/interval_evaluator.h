@@ -33,13 +33,23 @@ public:
     // Functions whose facts the last run_varying() believed although they are not proven.
     const std::set<uint32_t>& believed() const { return believed_functions; }
 
+    // How far a sum of multiples is written out: enough for the edges of a smoothstep.
+    static constexpr uint32_t linear_steps_max = 16;
+    // By Value::index.
+    struct Structure {
+        std::vector<const Instruction*> makers; // null: a parameter
+        std::vector<bool> has_shared_terms;     // a sum that, written out, names some value twice
+        std::vector<bool> is_part_of_result;    // and not only compared
+    };
+
 private:
     struct Frame {
         const Function& function;
         std::vector<Interval> values;      // by Value::index
         std::vector<Variation> variations; // likewise, or empty
-        const std::vector<const Instruction*>& makers;
+        const Structure& structure;
         const std::vector<bool>& has_tangent; // by Value::index; empty where no variations are asked for
+        const std::vector<const Instruction*>& makers = structure.makers;
     };
     struct Narrowed {
         Value value;
@@ -54,17 +64,18 @@ private:
     PartialRules rules;
     uint32_t kinks = 0;       // numbered as they are met
     bool is_trying = false;   // arms are evaluated where they meet
+    bool is_compared = false; // inside a call whose results are only compared
     std::optional<Span> user; // the call, while inside the library
     std::vector<Undefined> undefined_operations;
     std::set<uint32_t> believed_functions;
     const BoundsBox* box = nullptr;
-    std::vector<std::vector<const Instruction*>> makers; // by function, then Value::index; filled when first needed
+    std::vector<Structure> structures; // by function; filled when first needed
 
     Dependences dependences;
     // By function and which of its parameters have a tangent: which of its values have.
     std::map<std::pair<uint32_t, std::vector<bool>>, std::vector<bool>> tangents;
 
-    const std::vector<const Instruction*>& makers_of(uint32_t function);
+    const Structure& structure_of(uint32_t function);
     const std::vector<bool>& tangents_of(uint32_t function, std::span<const Variation> arguments);
     Variation variation_at(const Frame& frame, Value value) const;
     // Arguments and results of calls, carried values of loops, yields of arms.
@@ -78,10 +89,12 @@ private:
     void note_undefined(const Instruction& made, Op op, std::span<const Interval> operands, const Interval& result);
     void note_derivative(const Instruction& made, Op op, std::span<const Interval> operands, const Interval& result);
     void note(const Undefined& found);
+    std::optional<Interval> of_linear_sum(const Frame& frame, Value whole) const;
     bool is_guarded_division(const Frame& frame, const Instruction& made, Op op) const;
     Interval sharpened(const Frame& frame, const Instruction& made, Op op, const Interval& result) const;
 
     Results call(uint32_t function, const Results& arguments, Span span);
+    Results call_beside_nan(uint32_t function, const Results& arguments, Span span);
     void pass_faults(uint32_t function, const Results& arguments, Results& results);
     Results look_inside(uint32_t function, const Results& arguments, Span span);
     Variation by_facts(const Function& function, const Facts& facts, const Results& arguments,

@@ -51,7 +51,7 @@ std::vector<Smoothness> IntervalEvaluator::meeting(Frame& frame, const Instructi
     if (!border.is_point() || frame.variations[fixed.index].is_active || of_moving.smoothness < Smoothness::c0)
         return meets;
 
-    Frame there{frame.function, frame.values, std::vector<Variation>(frame.variations.size()), frame.makers,
+    Frame there{frame.function, frame.values, std::vector<Variation>(frame.variations.size()), frame.structure,
                 frame.has_tangent};
     there.values[moving.index] = border;
     there.variations[moving.index] = axis(0);

@@ -32,6 +32,7 @@ void IntervalEvaluator::note_derivative(const Instruction& made, Op op, std::spa
 // Each place once; the library's is the call.
 void IntervalEvaluator::note(const Undefined& found)
 {
+    if (is_compared) return;
     const Span span = user.value_or(found.span);
     for (const Undefined& known : undefined_operations)
         if (known.op == found.op && known.span.file == span.file && known.span.begin == span.begin) return;
