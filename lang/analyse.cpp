@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <set>
 
 namespace haptel::lang {
 namespace {
@@ -70,15 +71,17 @@ std::string smooth_form(const ir::Cause& cause)
     }
 }
 
+std::string shown(double value)
+{
+    if (!std::isfinite(value)) return "unbounded";
+    std::array<char, 32> text;
+    std::snprintf(text.data(), text.size(), "%.3g", value);
+    return text.data();
+}
+
 std::string shown(const ir::Interval& range)
 {
-    const auto end = [](double value) {
-        if (!std::isfinite(value)) return std::string("unbounded");
-        std::array<char, 32> text;
-        std::snprintf(text.data(), text.size(), "%.3g", value);
-        return std::string(text.data());
-    };
-    return end(range.minimum) + " .. " + end(range.maximum);
+    return shown(range.minimum) + " .. " + shown(range.maximum);
 }
 
 // As the author wrote it.
@@ -161,6 +164,20 @@ void report(const ir::Undefined& found, Diagnostics& diagnostics)
     }
 }
 
+void report(const ir::FalseFact& fact, Diagnostics& diagnostics)
+{
+    using What = ir::FalseFact::What;
+    const auto most = [](const std::optional<double>& size) { return shown(size.value_or(infinity)); };
+    const std::string said =
+        fact.what == What::value ? "a value within " + shown({*fact.facts.value_minimum, *fact.facts.value_maximum}) +
+                                       ", found " + shown(fact.found)
+        : fact.what == What::slope ? "a slope of at most " + most(fact.facts.slope) + ", found a steeper place"
+                                   : "a curvature of at most " + most(fact.facts.curvature) + ", found a greater one";
+    diagnostics.warning(fact.facts.span, "false-facts", "this function is not as its facts say: expected " + said)
+        .hint =
+        "bounds are computed with what is declared here, and are wrong if it is: haptel test measures the true sizes";
+}
+
 // A scale that is no number, or would pull instead of push, counts as 1: no author means that.
 void report_scales(const ir::Texture& texture, std::span<const ir::Interval> scales, Diagnostics& diagnostics)
 {
@@ -202,6 +219,10 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
                          ir::output_bounds(program.module, texture, at_values, where.evaluations),
                          ir::output_bounds(program.module, texture, over_ranges, where.evaluations)};
     report_scales(texture, found.outputs_over_ranges, diagnostics);
+    std::set<std::pair<uint32_t, ir::FalseFact::What>> told; // by place: each once
+    for (const ir::TextureBounds* bounds : {&found.at_values, &found.over_ranges})
+        for (const ir::FalseFact& fact : bounds->contradicted)
+            if (told.emplace(fact.facts.span.begin, fact.what).second) report(fact, diagnostics);
 
     const std::vector<ir::Undefined> said = ir::undefined_in(program.module, texture, over_ranges);
     for (const ir::Undefined& undefined : said) report(undefined, diagnostics);

@@ -135,12 +135,14 @@ enum class Smoothness : uint8_t { unknown, jump, c0, c1, c2, smooth };
 Smoothness lowered(Smoothness smoothness); // of the derivative
 
 // Proven or declared properties of one result of a function; norms with respect to its first non-function argument,
-// all other arguments within their ranges. Absent: unknown.
+// all other arguments within their ranges. Absent: unknown. Slope and curvature are of the pieces between jumps and,
+// the curvature, kinks: of what lies on two pieces they say something only where the class does.
 struct Facts {
     std::optional<double> value_minimum, value_maximum;
     std::optional<double> slope, curvature;
     std::optional<Smoothness> smoothness;
     bool proven = false; // the standard library's; others print as `declared`
+    Span span = {};      // where they are declared
 };
 
 struct Function {

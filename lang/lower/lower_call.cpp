@@ -42,6 +42,7 @@ ir::Facts facts_of(const FactsComment& comment, bool is_library)
     facts.curvature = comment.curvature;
     facts.smoothness = ir::smoothness_named(comment.continuity);
     facts.proven = is_library;
+    facts.span = comment.span;
     return facts;
 }
 
@@ -194,7 +195,7 @@ LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector
     body.input_parameters(made.reads);
     body.bind_functions(passed);
     function.is_library = info.is_library;
-    if (info.tree->facts) function.facts = {facts_of(*info.tree->facts, info.is_library)};
+    if (info.tree->facts) function.facts.assign(info.result.components(), facts_of(*info.tree->facts, info.is_library));
     const Values results = body.whole_body(*info.tree->body, info.result);
     made.index = body.builder.finish(results);
     made.depth = body.depth;
@@ -230,7 +231,7 @@ uint32_t ModuleLowering::smooth_ramp()
     function.first_argument_size = 1;
     function.is_library = true;
     // |6 t (1 - t)| is 3/2 at 1/2, |6 - 12 t| is 6 at the ends, where the second derivative jumps to 0
-    function.facts = {{0.0, 1.0, 1.5, 6.0, ir::Smoothness::c1, true}};
+    function.facts = {{0.0, 1.0, 1.5, 6.0, ir::Smoothness::c1, true, {}}};
     ramp = builder.finish(std::vector<Value>{make(ir::Op::mul, make(ir::Op::mul, t, t), slant)});
     return *ramp;
 }

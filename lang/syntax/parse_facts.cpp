@@ -68,27 +68,45 @@ FactsComment Grammar::parse_facts(Span where)
 {
     FactsComment facts;
     facts.span = where;
+    Span last{}; // of the last number
     const auto signed_number = [&]() -> std::optional<double> {
+        last = span();
         const bool negative = accept(Token::minus);
         const Number read = read_number(at(Token::number) ? text() : std::string_view{});
         if (!read.error.empty()) {
             error(span(), "facts", at(Token::number) ? read.error : "expected a number" + found()).hint = read.hint;
             return std::nullopt;
         }
+        last = join(last, span());
         advance();
         return negative ? -read.value : read.value;
+    };
+    const auto size = [&](std::string_view what) {
+        const std::optional<double> found = signed_number();
+        if (found && *found < 0)
+            error(last, "facts",
+                  "expected a " + std::string(what) + " of 0 or more, found " + printable(sources.text(last)))
+                .hint = "it is a length: the greatest there is, whatever its direction";
+        return found;
     };
     do {
         const std::string_view what = text();
         advance();
         if (what == "value") {
             facts.value_minimum = signed_number();
+            const Span first = last;
             if (facts.value_minimum && expect(Token::dot_dot, "between least and greatest value"))
                 facts.value_maximum = signed_number();
+            if (facts.value_maximum && *facts.value_minimum > *facts.value_maximum)
+                error(join(first, last), "facts",
+                      "expected the least value before the greatest, found " +
+                          printable(sources.text(join(first, last))))
+                    .hint =
+                    "write value " + std::string(sources.text(last)) + " .. " + std::string(sources.text(first));
         } else if (what == "slope") {
-            facts.slope = signed_number();
+            facts.slope = size(what);
         } else if (what == "curvature") {
-            facts.curvature = signed_number();
+            facts.curvature = size(what);
         } else if (what == "class") {
             constexpr std::string_view classes[] = {"jump", "C0", "C1", "C2"};
             if (std::find(std::begin(classes), std::end(classes), text()) != std::end(classes))

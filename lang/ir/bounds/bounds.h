@@ -38,6 +38,14 @@ struct Undefined {
     Span span;        // innermost user code
 };
 
+// Declared facts that exclude what a body was shown to do.
+struct FalseFact {
+    enum class What : uint8_t { value, slope, curvature };
+    Facts facts;
+    What what;
+    Interval found; // a value, where it is that
+};
+
 // What is known of a texture over a box; infinite where nothing was found.
 struct TextureBounds {
     Interval height;            // metres; includes 0 where the height may be not finite
@@ -46,6 +54,7 @@ struct TextureBounds {
     Smoothness smoothness;      // as a function of p
     Cause cause;                // of what makes it no smoother
     std::vector<std::string> declared; // functions whose facts these bounds believe, by name: declared, not proven
+    std::vector<FalseFact> contradicted = {}; // of these
 };
 
 // Refined by bisecting point inputs and real parameters, best first, until `evaluations` are spent or 5 % improvement

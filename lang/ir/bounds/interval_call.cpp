@@ -19,6 +19,46 @@ Interval declared_value(const Facts& facts, bool may_be_nan)
     return {*facts.value_minimum, *facts.value_maximum, may_be_nan};
 }
 
+// How far the first argument's box reaches from its middle; infinite between integers, which have nothing there.
+double reach_of(const Function& function, const IntervalEvaluator::Results& arguments)
+{
+    double square = 0;
+    for (uint32_t i = 0; i < function.first_argument_size; ++i) {
+        const Interval& argument = arguments.values[i];
+        if (function.type(function.parameters[i]) != Type::real && !argument.is_point()) return infinity;
+        const double at = argument.minimum / 2 + argument.maximum / 2;
+        const double reach = std::max(argument.maximum - at, at - argument.minimum);
+        square += reach * reach;
+    }
+    return std::sqrt(square) * (1 + 1e-14);
+}
+
+bool are_apart(const Interval& a, const Interval& b)
+{
+    return !a.is_empty() && !a.may_be_nan && (a.maximum < b.minimum || b.maximum < a.minimum);
+}
+
+template <size_t size>
+bool are_apart(const std::array<Interval, size>& a, const std::array<Interval, size>& b)
+{
+    bool any = false;
+    for (size_t j = 0; j < size; ++j) any |= are_apart(a[j], b[j]);
+    return any;
+}
+
+// What a body does, over all of a box, although its facts exclude it.
+std::optional<FalseFact::What> contradicted_by(const IntervalEvaluator::Results& found,
+                                               const IntervalEvaluator::Results& declared, size_t result)
+{
+    using What = FalseFact::What;
+    if (are_apart(found.values[result], declared.values[result])) return What::value;
+    if (found.variations.empty() || found.variations[result].smoothness < Smoothness::c1) return std::nullopt;
+    const Variation &by_body = found.variations[result], &by_facts = declared.variations[result];
+    if (are_apart(by_body.gradient, by_facts.gradient)) return What::slope;
+    if (are_apart(by_body.hessian, by_facts.hessian)) return What::curvature;
+    return std::nullopt;
+}
+
 // Whether facts cover every gradient that code computes of these arguments. Of infinite ones they say nothing, nor of
 // how the result varies with others than the first, even where they move by 0.
 bool tells_derivative(const Function& function, const IntervalEvaluator::Results& arguments, bool are_finite)
@@ -137,6 +177,8 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
     if (!is_a_number || function.facts.empty()) return look_inside(index, arguments, span);
     if (may_be_nan) return call_beside_nan(index, arguments, span);
 
+    const double reach = reach_of(function, arguments);
+    bool is_narrow = false; // as seen from a wave of it: natural evaluation says more than the facts do
     Results declared;
     const Results others = varying ? by_other_arguments(index, arguments, span) : Results{};
     bool is_all_told = function.facts.size() >= count; // nothing is left to find out inside
@@ -147,6 +189,8 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
         const bool says_something = facts.value_minimum || facts.slope || facts.curvature || facts.smoothness;
         if (varying && says_something && !facts.proven) believed_functions.insert(index);
         is_all_told &= facts.value_minimum && facts.value_maximum && facts.slope;
+        const Interval& value = declared.values.back();
+        is_narrow |= facts.slope && *facts.slope * reach < (value.maximum - value.minimum) / 2;
         if (!varying) continue;
         Variation& variation = declared.variations.emplace_back(
             by_facts(function, facts, arguments, others.variations.empty() ? nullptr : &others.variations[r]));
@@ -155,21 +199,20 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
         if (variation.is_active && variation.cause.span.end == 0) variation.cause = {span, {}, function.is_library};
         is_all_told &= !variation.is_active || (facts.smoothness && variation.curvature < infinity);
     }
-    const Interval& value = declared.values[0];
-    const std::optional<Interval> near = by_slope(index, arguments, (value.maximum - value.minimum) / 2);
-    // Where the slope says nothing, a box is too wide for natural evaluation to say more than the facts do; unless
-    // there is one value alone.
-    const auto first = std::span(arguments.values).first(function.first_argument_size);
-    const bool is_point =
-        std::all_of(first.begin(), first.end(), [](const Interval& argument) { return argument.is_point(); });
-    if (is_all_told && !near && !is_point) return declared;
+    // One value alone is looked at, too.
+    if (is_all_told && !is_narrow && reach > 0) return declared;
 
     Results results = look_inside(index, arguments, span);
     for (size_t r = 0; r < count; ++r) {
+        const bool may_be_false = r < function.facts.size() && !function.facts[r].proven;
+        if (const auto what = may_be_false ? contradicted_by(results, declared, r) : std::nullopt) {
+            false_facts.try_emplace({index, *what}, FalseFact{function.facts[r], *what, results.values[r]});
+            continue; // the body is what runs
+        }
         results.values[r] = intersect(results.values[r], declared.values[r]);
         if (varying) results.variations[r] = intersect(declared.variations[r], results.variations[r]);
     }
-    if (near) results.values[0] = intersect(results.values[0], *near);
+    if (is_narrow) sharpen_by_slope(index, arguments, reach, results);
     return results;
 }
 
@@ -194,27 +237,28 @@ IntervalEvaluator::Results IntervalEvaluator::call_beside_nan(uint32_t index, co
     return all;
 }
 
-// |f(x) - f(middle)| <= slope |x - middle|.
-std::optional<Interval> IntervalEvaluator::by_slope(uint32_t index, const Results& arguments, double useful_radius)
+// |f(x) - f(middle)| <= slope |x - middle|, where nothing jumps on the way.
+void IntervalEvaluator::sharpen_by_slope(uint32_t index, const Results& arguments, double reach, Results& results)
 {
     const Function& function = module.functions[index];
-    const std::optional<double> slope = function.facts[0].slope;
-    if (!slope) return std::nullopt;
+    const auto is_lipschitz = [](const Facts& facts) {
+        return facts.slope && facts.smoothness && *facts.smoothness >= Smoothness::c0;
+    };
+    if (std::none_of(function.facts.begin(), function.facts.end(), is_lipschitz)) return;
     Results middle{arguments.values, {}};
-    double square = 0;
     for (uint32_t i = 0; i < function.first_argument_size; ++i) {
         const Interval& argument = arguments.values[i];
-        double at = argument.minimum / 2 + argument.maximum / 2;
-        double reach = std::max(argument.maximum - at, at - argument.minimum);
-        square += reach * reach;
+        const double at = argument.minimum / 2 + argument.maximum / 2;
         middle.values[i] = {at, at};
     }
-    const double change = *slope * std::sqrt(square) * (1 + 1e-14);
-    if (!(change < useful_radius) || change == 0) return std::nullopt;
     const bool was_varying = std::exchange(varying, false);
-    const Interval there = look_inside(index, middle, {}).values[0];
+    const Results there = look_inside(index, middle, {});
     varying = was_varying;
-    return add(there, {-change, change});
+    for (size_t r = 0; r < std::min(function.facts.size(), results.values.size()); ++r) {
+        if (!is_lipschitz(function.facts[r])) continue;
+        const double change = *function.facts[r].slope * reach * (1 + 1e-14);
+        results.values[r] = intersect(results.values[r], add(there.values[r], {-change, change}));
+    }
 }
 
 } // namespace haptel::ir

@@ -32,6 +32,8 @@ public:
     const std::vector<Undefined>& undefined() const { return undefined_operations; }
     // Functions whose facts the last run_varying() believed although they are not proven.
     const std::set<uint32_t>& believed() const { return believed_functions; }
+    // Facts that are not true, of any run so far.
+    const std::map<std::pair<uint32_t, FalseFact::What>, FalseFact>& contradicted() const { return false_facts; }
 
     // How far a sum of multiples is written out: enough for the edges of a smoothstep.
     static constexpr uint32_t linear_steps_max = 16;
@@ -68,6 +70,7 @@ private:
     std::optional<Span> user; // the call, while inside the library
     std::vector<Undefined> undefined_operations;
     std::set<uint32_t> believed_functions;
+    std::map<std::pair<uint32_t, FalseFact::What>, FalseFact> false_facts; // by function
     const BoundsBox* box = nullptr;
     std::vector<Structure> structures; // by function; filled when first needed
 
@@ -100,7 +103,7 @@ private:
     Variation by_facts(const Function& function, const Facts& facts, const Results& arguments,
                        const Variation* by_others) const;
     Results by_other_arguments(uint32_t function, const Results& arguments, Span span);
-    std::optional<Interval> by_slope(uint32_t function, const Results& arguments, double useful_radius);
+    void sharpen_by_slope(uint32_t function, const Results& arguments, double reach, Results& results);
     Variation variation_of(Frame& frame, const Instruction& made, Op op, std::span<const Interval> operands,
                            const Interval& result);
     // Operations of images, in interval_image.cpp.

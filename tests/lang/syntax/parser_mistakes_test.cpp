@@ -149,6 +149,12 @@ TEST_CASE("facts that cannot be read")
           "1:5-18 facts: expected value, slope, curvature or class in the facts\n");
     CHECK(in_file("/// @facts class C7\nfloat f() {}") == "1:18-20 facts: expected jump, C0, C1 or C2, found 'C7'\n");
     CHECK(in_file("/// @facts slope big\nfloat f() {}") == "1:18-21 facts: expected a number, found 'big'\n");
+    CHECK(in_file("/// @facts value 1 .. -1\nfloat f() {}") ==
+          "1:18-25 facts: expected the least value before the greatest, found 1 .. -1\n");
+    CHECK(in_file("/// @facts class C1, slope -3\nfloat f() {}") ==
+          "1:28-30 facts: expected a slope of 0 or more, found -3\n");
+    CHECK(in_file("/// @facts curvature -2\nfloat f() {}") ==
+          "1:22-24 facts: expected a curvature of 0 or more, found -2\n");
     CHECK(in_file("/// @facts slope 1\ntexture t() {}") ==
           "1:5-19 facts: facts belong to functions; those of a texture are found by the compiler\n");
 }

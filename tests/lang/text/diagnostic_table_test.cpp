@@ -12,7 +12,8 @@ namespace {
 // Findings of analyse(), which the examples of others may have as well.
 bool is_of_bounds(std::string_view code)
 {
-    return code == "jump" || code == "kink" || code == "division" || code == "domain" || code == "scale";
+    return code == "jump" || code == "kink" || code == "division" || code == "domain" || code == "scale" ||
+           code == "false-facts";
 }
 
 // A compilation in which imports find the text itself, and nothing else; if wanted with what its bounds show.

@@ -172,8 +172,9 @@ TEST_CASE("bounds: work is limited, whatever the program asks for")
 TEST_CASE("bounds: the slope that is declared bounds the value about the middle of a box")
 {
     const Module module = parsed(R"(
-        function "wave" (%x: real) first 1 facts minimum -1 maximum 1 slope 0.1 proven {
-          %tenth = real 0.1 %a = mul %x, %tenth %big = real 100 %c = mul %x, %big %d = add %a, %c %e = sub %d, %c
+        function "wave" (%x: real) first 1 facts minimum -1 maximum 1 slope 0.1 class C2 proven {
+          %tenth = real 0.1 %a = mul %x, %tenth %big = real 10 %s = mul %x, %x %t = mul %s, %big
+          %u = mul %x, %big %v = mul %u, %x %d = add %a, %t %e = sub %d, %v
           %h = sin %e
           return %h
         }
