@@ -105,7 +105,7 @@ public:
                 const double at = all.minimum + std::fmod(0.5 + k * step, 1.0) * (all.maximum - all.minimum);
                 *sides[i] = {at, at};
             }
-            evaluator.run_varying(entry, box);
+            evaluator.run_varying(entry, box, false);
         }
     }
 
@@ -159,7 +159,8 @@ private:
         if (of_height) {
             height = evaluator.run(entry, {}, &box)[of_result];
         } else {
-            IntervalEvaluator::Results results = evaluator.run_varying(entry, box);
+            IntervalEvaluator::Results results =
+                evaluator.run_varying(entry, box, pieces.empty() && goals[0] == Goal::slope);
             height = results.values[0];
             variation = results.variations[0];
             const auto is_finite = [](const Interval& value) { return value.is_finite(); };

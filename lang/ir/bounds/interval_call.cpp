@@ -10,7 +10,6 @@ namespace haptel::ir {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr uint32_t depth_max = 1000; // beyond, nothing is known: recursion stays bounded
 constexpr Interval nothing{infinity, -infinity, false};
 
 Interval declared_value(const Facts& facts, bool may_be_nan)
@@ -199,6 +198,7 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
         if (variation.is_active && variation.cause.span.end == 0) variation.cause = {span, {}, function.is_library};
         is_all_told &= !variation.is_active || (facts.smoothness && variation.curvature < infinity);
     }
+    if (seams && varying) cross_call(function, index, arguments, declared, span);
     // One value alone is looked at, too.
     if (is_all_told && !is_narrow && reach > 0) return declared;
 
@@ -214,6 +214,27 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
     }
     if (is_narrow) sharpen_by_slope(index, arguments, reach, results);
     return results;
+}
+
+// Where arguments cross a seam results are of the arguments on both sides.
+void IntervalEvaluator::cross_call(const Function& function, uint32_t index, const Results& arguments, Results& results,
+                                   Span span)
+{
+    std::vector<Seams::Operand> operands;
+    for (size_t p = 0; p < arguments.values.size(); ++p)
+        operands.push_back(
+            seams->operand(arguments.variations[p], arguments.values[p], function.type(function.parameters[p])));
+    for (size_t r = 0; r < results.values.size(); ++r)
+        seams->cross(
+            operands, results.values[r],
+            [&](auto parts) { return seams->numbers.of(ValueNumbers::Other::call, uint64_t{index} << 32 | r, parts); },
+            [&](auto values) {
+                const bool was_varying = std::exchange(varying, false);
+                const Interval value = look_inside(index, {{values.begin(), values.end()}, {}}, span).values[r];
+                varying = was_varying;
+                return value;
+            },
+            [](auto, bool) { return std::nullopt; }, results.variations[r]);
 }
 
 // Facts hold of the numbers that arguments may be; of what is not a number the body alone tells.

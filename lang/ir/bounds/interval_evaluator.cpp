@@ -12,7 +12,6 @@ namespace haptel::ir {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr uint32_t depth_max = 1000; // beyond, nothing is known: recursion stays bounded
 constexpr Interval nothing{infinity, -infinity, false};
 
 Interval integer(Type type, uint32_t bits)
@@ -28,13 +27,6 @@ Interval cell(const Table& table, size_t index)
                                               : Interval{table.reals[index], table.reals[index]};
     uint32_t word = table.words[index];
     return integer(table.element, word);
-}
-
-// One of the two is 0, always.
-bool is_zero_side(std::span<const Interval> operands)
-{
-    return std::any_of(operands.begin(), operands.end(),
-                       [](const Interval& operand) { return operand.minimum == 0 && operand.maximum == 0; });
 }
 
 // Inputs move with p by their Jacobian, of which only bounds are known, and of its own change nothing.
@@ -91,18 +83,22 @@ std::vector<Interval> IntervalEvaluator::run(uint32_t function, std::span<const 
     return look_inside(function, {{arguments.begin(), arguments.end()}, {}}, {}).values;
 }
 
-IntervalEvaluator::Results IntervalEvaluator::run_varying(uint32_t entry, const BoundsBox& where)
+IntervalEvaluator::Results IntervalEvaluator::run_varying(uint32_t entry, const BoundsBox& where, bool with_class)
 {
     box = &where;
     left = limit;
     depth = 0;
     varying = true;
     is_compared = false;
+    seams.reset();
+    if (with_class) seams.emplace();
     kinks = 0;
     user.reset();
     undefined_operations.clear();
     believed_functions.clear();
-    return look_inside(entry, {}, {});
+    Results results = look_inside(entry, {}, {});
+    for (Variation& variation : results.variations) variation = settled(std::move(variation));
+    return results;
 }
 
 // ---- several values at once
@@ -164,14 +160,14 @@ IntervalEvaluator::Results IntervalEvaluator::unknown(const Function& function, 
     return results;
 }
 
-// What depends on an undecided choice that depends on the point may jump with it.
+// What depends on an undecided choice that depends on the point jumps with it.
 void IntervalEvaluator::roughen_all(Results& results, const Variation& by, Span where) const
 {
     if (!by.is_active) return;
     for (Variation& variation : results.variations) {
         variation.is_active = true;
         variation.kink = 0;
-        roughen(variation, std::min(by.smoothness, Smoothness::jump), {where, {}});
+        if (by.smoothness <= Smoothness::jump) roughen(variation, by.smoothness, {where, {}});
     }
 }
 
@@ -197,80 +193,12 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Opera
     if (varying && is_part) note_undefined(made, operation.op, all, result);
     result = sharpened(frame, made, operation.op, result);
     frame.values[made.results[0].index] = result;
-    if (varying) frame.variations[made.results[0].index] = variation_of(frame, made, operation.op, all, result);
-}
-
-// Of `a` where only it can be chosen, of both where either can; `by`: what the choice depends on, if on the point.
-Variation IntervalEvaluator::chosen(Frame& frame, const Instruction& made, bool first, bool second,
-                                    const Variation* by) const
-{
-    const size_t count = made.operands.size();
-    const Variation& a = frame.variations[made.operands[count - 2].index];
-    const Variation& b = frame.variations[made.operands[count - 1].index];
-    Results either{{}, {first && second ? join(a, b) : first ? a : b}};
-    if (by && first && second) roughen_all(either, *by, made.span);
-    return either.variations[0];
-}
-
-Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made, Op op,
-                                          std::span<const Interval> operands, const Interval& result)
-{
-    Variation variations[operands_max];
-    uint32_t active = 0, differentiated = 0; // the code does not know what these intervals know, and takes part in more
-    for (size_t i = 0; i < operands.size(); ++i) {
-        variations[i] = variation_at(frame, made.operands[i]);
-        if (variations[i].is_active) active |= 1u << i;
-        if (variations[i].is_active || variations[i].has_tangent) differentiated |= 1u << i;
-    }
-    if (differentiated == 0) return {};
-    left -= std::min<uint64_t>(left, 3); // what it costs more than a value alone
-    const Interval& a = operands[0];
-    if (op == Op::select) {
-        Variation either = chosen(frame, made, a.contains(1), a.contains(0), &variations[0]);
-        if (is_guarded_division(frame, made, op)) {
-            either.may_fault = variations[1].may_fault;
-            for (Value part : frame.makers[made.operands[2].index]->operands)
-                either.may_fault |= frame.variations[part.index].may_fault;
-        }
-        return either;
-    }
-
-    Variation variation;
-    Partials partials{};
-    if (op == Op::min || op == Op::max) {
-        const Interval& b = operands[1];
-        const bool a_can = op == Op::min ? a.minimum <= b.maximum : a.maximum >= b.minimum;
-        const bool b_can = op == Op::min ? b.minimum <= a.maximum : b.maximum >= a.minimum;
-        variation = chosen(frame, made, a_can || !b_can, b_can, nullptr);
-        if (a.may_be_nan || b.may_be_nan) // which counts as a tie: the mean of both
-            variation.may_fault |= variations[0].may_fault || variations[1].may_fault;
-    } else {
-        const OpInfo& info = op_info(op);
-        const bool of_reals = info.result == 'r' && info.operands.find_first_not_of('r') == std::string_view::npos;
-        if (op == Op::spline)
-            partials = spline_partials(operands);
-        else if (of_reals)
-            partials = rules.of(op, operands, differentiated, true);
-        variation = chain(op, operands, {variations, operands.size()}, partials, of_reals || op == Op::spline);
-        const auto may_fault = [](const Variation& operand) { return operand.may_fault; };
-        const bool is_new = std::none_of(variations, variations + operands.size(), may_fault);
-        const bool is_part = frame.structure.is_part_of_result[made.results[0].index];
-        if (variation.may_fault && is_new && is_part) note_derivative(made, op, operands, result);
-    }
-    if (!variation.is_active) return variation;
-    if (op == Op::detach) { // the gradient that is returned is another function's, which may bend anyhow
-        variation.curvature = infinity;
-        variation.hessian.fill({-infinity, infinity});
-    }
-    const Smoothness own = smoothness_of(op, operands, active, result, partials);
-    const bool was_smooth = variation.smoothness == Smoothness::smooth;
-    if (own != Smoothness::smooth) variation.wrap = wrap_made_by(op, operands, variations[0]);
-    roughen(variation, own, {made.span, op});
-    if (own != Smoothness::smooth && variation.kink != 0) variation.kink = 0;
-    const bool is_length = op == Op::length2 || op == Op::length3 || op == Op::length4;
-    const bool at_zero = op == Op::abs || is_length || ((op == Op::min || op == Op::max) && is_zero_side(operands));
-    if (own == Smoothness::c0 && was_smooth && at_zero) variation.kink = ++kinks, variation.kink_power = 1;
-    return variation;
+    if (!varying) return;
+    Variation variation = variation_of(frame, made, operation.op, all, result);
+    if (seams && variation.number == ValueNumbers::none)
+        seams->cross(operation.op, seam_operands(frame, made.operands), result, variation);
+    if (operation.op == Op::select) variation = chosen_at(std::move(variation), made.span);
+    frame.variations[made.results[0].index] = std::move(variation);
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const RealConstant& constant)
@@ -295,6 +223,9 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadI
 {
     const Interval value = box ? box->input[static_cast<size_t>(read.input)] : everything(Type::real);
     store(frame, made.results[0], value, varying ? variation_of_input(*box, read.input, made.span) : Variation{});
+    if (varying && seams)
+        frame.variations[made.results[0].index].number =
+            seams->numbers.of(ValueNumbers::Other::input, static_cast<uint64_t>(read.input), {});
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadParameter& read)
@@ -307,24 +238,37 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadP
     frame.values[made.results[0].index] = box && read.parameter < box->parameters.size()
                                               ? box->parameters[read.parameter]
                                               : everything(frame.function.type(made.results[0]));
+    if (varying && seams)
+        frame.variations[made.results[0].index].number =
+            seams->numbers.of(ValueNumbers::Other::parameter, read.parameter, {});
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadTable& read)
 {
     const Table& table = module.tables[read.table];
+    const auto cells = [&](const Interval& index) {
+        const double last = table.size() - 1.0;
+        Interval all = nothing;
+        const auto first_cell = static_cast<size_t>(std::clamp(index.minimum, 0.0, last));
+        const auto last_cell = static_cast<size_t>(std::clamp(index.maximum, 0.0, last));
+        for (size_t i = first_cell; i <= last_cell; ++i) all = join(all, cell(table, i));
+        left -= std::min<uint64_t>(left, (last_cell - first_cell) / 16);
+        return all;
+    };
     const Interval& index = frame.values[made.operands[0].index];
-    const double last = table.size() - 1.0;
-    Interval all = nothing;
-    auto first_cell = static_cast<size_t>(std::clamp(index.minimum, 0.0, last));
-    auto last_cell = static_cast<size_t>(std::clamp(index.maximum, 0.0, last));
-    for (size_t i = first_cell; i <= last_cell; ++i) all = join(all, cell(table, i));
-    left -= std::min<uint64_t>(left, (last_cell - first_cell) / 16);
+    const Interval all = cells(index);
     frame.values[made.results[0].index] = all;
     if (!varying) return;
     Variation& variation = frame.variations[made.results[0].index];
     const Variation& of_index = frame.variations[made.operands[0].index];
-    variation.is_active = of_index.is_active && first_cell != last_cell;
-    if (variation.is_active) roughen(variation, std::min(of_index.smoothness, Smoothness::jump), {made.span, {}});
+    variation = {};
+    variation.is_active = of_index.is_active && !index.is_point();
+    if (variation.is_active) roughen(variation, of_index.smoothness, {made.span, {}});
+    if (seams)
+        seams->cross(
+            seam_operands(frame, made.operands), all,
+            [&](auto parts) { return seams->numbers.of(ValueNumbers::Other::table, read.table, parts); },
+            [&](auto values) { return cells(values[0]); }, [](auto, bool) { return std::nullopt; }, variation);
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Call& callee)
@@ -347,45 +291,6 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Point
     store(frame, made.results[0], everything(Type::real), unknown_variation(made.span)); // in no verified program
 }
 
-void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const If& choice)
-{
-    const Interval condition = frame.values[made.operands[0].index];
-    Results all = nothing_yet(made.results.size());
-    for (bool taken : {true, false}) {
-        if (!condition.contains(taken ? 1 : 0)) continue;
-        const Results yields = arm(frame, choice.arms[taken ? 0 : 1], made.operands[0], taken, made.span);
-        if (!yields.values.empty()) join_into(all, yields);
-    }
-    const Variation* by = varying ? &frame.variations[made.operands[0].index] : nullptr;
-    if (by) all.variations.resize(made.results.size());
-    if (by && by->is_active && !condition.is_point()) {
-        const std::vector<Smoothness> meets = meeting(frame, made, choice, all);
-        for (size_t i = 0; i < meets.size(); ++i) {
-            all.variations[i].is_active = true;
-            all.variations[i].kink = 0;
-            roughen(all.variations[i], meets[i], {made.span, {}});
-        }
-    }
-    store(frame, made.results, all);
-}
-
-IntervalEvaluator::Results IntervalEvaluator::arm(Frame& frame, const Block& source, Value condition, bool taken,
-                                                  Span span)
-{
-    if (depth >= depth_max) return unknown(frame.function, source.yields, span);
-    ++depth;
-    Results results;
-    std::vector<Narrowed> undo;
-    if (narrow(frame, condition, taken, undo)) {
-        block(frame, source);
-        results = gather(frame, source.yields);
-    }
-    for (auto narrowed = undo.rbegin(); narrowed != undo.rend(); ++narrowed)
-        frame.values[narrowed->value.index] = narrowed->before;
-    --depth;
-    return results;
-}
-
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const For& loop)
 {
     const Block& body = loop.body[0];
@@ -406,7 +311,11 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const For& 
     --depth;
     if (varying) {
         all.variations.resize(made.results.size());
-        if (!trips.is_point()) roughen_all(all, frame.variations[made.operands[0].index], made.span);
+        if (!trips.is_point()) {
+            Variation by = frame.variations[made.operands[0].index];
+            by.smoothness = std::min(by.smoothness, Smoothness::jump);
+            roughen_all(all, by, made.span);
+        }
     }
     store(frame, made.results, all);
 }

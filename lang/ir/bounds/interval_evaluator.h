@@ -1,10 +1,11 @@
 // One interval evaluation of a function and everything it calls; where asked for, with bounds of its derivatives.
 //
-// interval_evaluator.cpp walks blocks, interval_call.cpp knows calls and facts, interval_narrow.cpp conditions.
+// interval_evaluator.cpp walks blocks, interval_variation.cpp knows how operations vary, interval_choice.cpp `if`s,
+// interval_call.cpp calls and facts, interval_narrow.cpp conditions.
 #pragma once
 
 #include "lang/ir/bounds/bounds.h"
-#include "lang/ir/bounds/variation.h"
+#include "lang/ir/bounds/seams.h"
 #include "lang/ir/derive/activity.h"
 
 #include <map>
@@ -27,7 +28,9 @@ public:
         std::vector<Interval> values;
         std::vector<Variation> variations;
     };
-    Results run_varying(uint32_t entry, const BoundsBox& box);
+    // `with_class`: how smooth results are is looked for, at seams and where arms meet; else they are no smoother than
+    // they are said to be.
+    Results run_varying(uint32_t entry, const BoundsBox& box, bool with_class);
     // Met by the last run_varying(), each place once.
     const std::vector<Undefined>& undefined() const { return undefined_operations; }
     // Functions whose facts the last run_varying() believed although they are not proven.
@@ -45,6 +48,8 @@ public:
     };
 
 private:
+    static constexpr uint32_t depth_max = 1000; // beyond, nothing is known: recursion stays bounded
+
     struct Frame {
         const Function& function;
         std::vector<Interval> values;      // by Value::index
@@ -64,10 +69,11 @@ private:
     uint32_t depth = 0; // blocks and calls inside each other
     bool varying = false;
     PartialRules rules;
-    uint32_t kinks = 0;       // numbered as they are met
-    bool is_trying = false;   // arms are evaluated where they meet
-    bool is_compared = false; // inside a call whose results are only compared
-    std::optional<Span> user; // the call, while inside the library
+    std::optional<Seams> seams; // where the class is asked for
+    uint32_t kinks = 0;         // numbered as they are met
+    bool is_trying = false;     // arms are evaluated where they meet
+    bool is_compared = false;   // inside a call whose results are only compared
+    std::optional<Span> user;   // the call, while inside the library
     std::vector<Undefined> undefined_operations;
     std::set<uint32_t> believed_functions;
     std::map<std::pair<uint32_t, FalseFact::What>, FalseFact> false_facts; // by function
@@ -109,10 +115,13 @@ private:
     // Operations of images, in interval_image.cpp.
     Interval of_image(Op op, std::span<const Interval> operands) const;
     Partials spline_partials(std::span<const Interval> operands) const;
+    std::vector<Seams::Operand> seam_operands(const Frame& frame, std::span<const Value> values);
+    void cross_call(const Function& function, uint32_t index, const Results& arguments, Results& results, Span span);
     Variation chosen(Frame& frame, const Instruction& made, bool first, bool second, const Variation* by) const;
     void block(Frame& frame, const Block& block);
     // How smooth each result of an undecided `if` is where its arms meet: they may meet in value, and in slope.
     std::vector<Smoothness> meeting(Frame& frame, const Instruction& made, const If& choice, const Results& joined);
+    void choose(Frame& frame, const Instruction& made, const If& choice, const Results (&arms)[2], Results& all);
     // Arms that cannot be entered give no values at all.
     Results arm(Frame& frame, const Block& block, Value condition, bool taken, Span span);
     bool narrow(Frame& frame, Value condition, bool taken, std::vector<Narrowed>& undo);

@@ -39,8 +39,7 @@ const Value* added_to(Value unchanged, const Instruction* changed)
 std::vector<Smoothness> IntervalEvaluator::meeting(Frame& frame, const Instruction& made, const If& choice,
                                                    const Results& joined)
 {
-    const Smoothness by = frame.variations[made.operands[0].index].smoothness;
-    std::vector<Smoothness> meets(made.results.size(), std::min(by, Smoothness::jump));
+    std::vector<Smoothness> meets(made.results.size(), Smoothness::jump);
     const Instruction* comparison = frame.makers[made.operands[0].index];
     auto* operation = comparison ? std::get_if<Operation>(&comparison->kind) : nullptr;
     if (is_trying || depth > 32 || !operation || (operation->op != Op::lt && operation->op != Op::le)) return meets;
@@ -53,6 +52,7 @@ std::vector<Smoothness> IntervalEvaluator::meeting(Frame& frame, const Instructi
 
     Frame there{frame.function, frame.values, std::vector<Variation>(frame.variations.size()), frame.structure,
                 frame.has_tangent};
+    for (size_t i = 0; i < there.variations.size(); ++i) there.variations[i].number = frame.variations[i].number;
     there.values[moving.index] = border;
     there.variations[moving.index] = axis(0);
     is_trying = true;
@@ -76,7 +76,7 @@ std::vector<Smoothness> IntervalEvaluator::meeting(Frame& frame, const Instructi
     is_trying = false;
     if (left == 0) return meets;
     for (size_t i = 0; i < meets.size(); ++i) {
-        const Variation &first = sides[0].variations[i], &second = sides[1].variations[i];
+        const Variation first = settled(sides[0].variations[i]), second = settled(sides[1].variations[i]);
         const double size = size_of(joined.values[i]);
         if (!std::isfinite(size) || !are_equal(sides[0].values[i], sides[1].values[i], size)) continue;
         meets[i] = Smoothness::c0;

@@ -1,7 +1,6 @@
 // What of a function's text an evaluation asks about, found once.
 #include "lang/ir/bounds/interval_evaluator.h"
 
-
 #include <algorithm>
 
 namespace haptel::ir {

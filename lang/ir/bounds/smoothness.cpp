@@ -83,14 +83,4 @@ Smoothness smoothness_of(Op op, std::span<const Interval> operands, uint32_t act
     return by_bounds(operands, active, result, partials);
 }
 
-std::optional<Variation::Wrap> wrap_made_by(Op op, std::span<const Interval> operands, const Variation& operand)
-{
-    const Smoothness between = smoothness_but_for_turns(operand);
-    if (is_step(op)) return Variation::Wrap{1, {}, Smoothness::smooth};
-    if (op == Op::fract && between >= Smoothness::c0) return Variation::Wrap{1, 0, between};
-    if (op == Op::mod && operands[1].is_point() && !operands[1].contains(0) && operand.smoothness >= Smoothness::c0)
-        return Variation::Wrap{operands[1].minimum, 0, operand.smoothness};
-    return {};
-}
-
 } // namespace haptel::ir

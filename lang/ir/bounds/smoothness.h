@@ -12,7 +12,4 @@ namespace haptel::ir {
 Smoothness smoothness_of(Op op, std::span<const Interval> operands, uint32_t active, const Interval& result,
                          const Partials& partials);
 
-// What is known of the jumps of an operation that jumps; `operand`: its first.
-std::optional<Variation::Wrap> wrap_made_by(Op op, std::span<const Interval> operands, const Variation& operand);
-
 } // namespace haptel::ir

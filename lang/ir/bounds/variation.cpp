@@ -1,5 +1,7 @@
 #include "lang/ir/bounds/variation.h"
 
+#include "lang/ir/bounds/seams.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -145,57 +147,6 @@ void keep_kink(Op op, std::span<const Variation> variations, Variation& made)
     made.smoothness = of_power(power);
 }
 
-using Wrap = Variation::Wrap;
-
-// What does not jump wraps by 0; a constant from where it is.
-Wrap wrap_of(const Variation& a, const Interval& value)
-{
-    if (a.wrap) return *a.wrap;
-    const bool is_constant = !a.is_active && value.is_point();
-    return {0, is_constant ? std::optional(value.minimum) : std::nullopt, a.smoothness};
-}
-
-Wrap negated(const Wrap& a)
-{
-    return {-a.by, a.from ? std::optional(-*a.from) : std::nullopt, a.between};
-}
-
-bool is_whole(double by)
-{
-    return std::isfinite(by) && std::floor(by) == by;
-}
-
-std::optional<Wrap> sum(const Wrap& a, const Wrap& b)
-{
-    const Smoothness between = std::min(a.between, b.between);
-    if (a.by != 0 && b.by != 0)
-        return is_whole(a.by) && is_whole(b.by) ? std::optional(Wrap{1, {}, between}) : std::nullopt;
-    return Wrap{a.by + b.by, a.from && b.from ? std::optional(*a.from + *b.from) : std::nullopt, between};
-}
-
-// A wrap moves with the value; folded at its middle it is a kink, and none to what repeats with every whole number.
-void keep_wrap(Op op, std::span<const Interval> operands, std::span<const Variation> variations, Variation& made)
-{
-    if (std::none_of(variations.begin(), variations.end(), [](const Variation& part) { return part.wrap.has_value(); }))
-        return;
-    const Wrap a = wrap_of(variations[0], operands[0]);
-    if (op == Op::sinturn || op == Op::costurn) made.smoothness = smoothness_but_for_turns(variations[0]);
-    if (op == Op::abs && a.from == -0.5 * a.by) made.smoothness = std::min(a.between, Smoothness::c0);
-    if (op == Op::neg) made.wrap = negated(a);
-    if (variations.size() != 2) return;
-    const Wrap b = wrap_of(variations[1], operands[1]);
-    const auto constant = [](const Wrap& wrap) { return wrap.by == 0 ? wrap.from : std::nullopt; };
-    const auto product = [](const Wrap& wrap, double by) {
-        return Wrap{wrap.by * by, wrap.from ? std::optional(*wrap.from * by) : std::nullopt, wrap.between};
-    };
-    if (op == Op::add) made.wrap = sum(a, b);
-    if (op == Op::sub) made.wrap = sum(a, negated(b));
-    if (op == Op::mul && constant(b)) made.wrap = product(a, *b.from);
-    if (op == Op::mul && constant(a)) made.wrap = product(b, *a.from);
-    if (op == Op::div && constant(b))
-        made.wrap = {a.by / *b.from, a.from ? std::optional(*a.from / *b.from) : std::nullopt, a.between};
-}
-
 bool is_bounded(const std::array<Interval, axes>& gradient)
 {
     return std::all_of(gradient.begin(), gradient.end(),
@@ -245,6 +196,11 @@ void roughen(Variation& variation, Smoothness smoothness, const Cause& cause)
 
 Variation join(const Variation& a, const Variation& b)
 {
+    return merge(settled(a), settled(b));
+}
+
+Variation merge(const Variation& a, const Variation& b)
+{
     Variation all;
     all.is_active = a.is_active || b.is_active;
     all.has_tangent = a.has_tangent || b.has_tangent;
@@ -258,14 +214,14 @@ Variation join(const Variation& a, const Variation& b)
     return all;
 }
 
-Smoothness smoothness_but_for_turns(const Variation& variation)
+bool stays_between_jumps(const Variation& variation)
 {
-    return variation.wrap && is_whole(variation.wrap->by) ? variation.wrap->between : variation.smoothness;
+    return variation.slope == 0 && variation.curvature == 0;
 }
 
 Variation intersect(const Variation& a, const Variation& b)
 {
-    Variation both = a.smoothness >= b.smoothness ? a : b;
+    Variation both = settled(a).smoothness >= settled(b).smoothness ? a : b;
     both.is_active = a.is_active && b.is_active;
     both.may_fault = a.may_fault && b.may_fault;
     for (size_t j = 0; j < both.gradient.size(); ++j) both.gradient[j] = intersect(a.gradient[j], b.gradient[j]);
@@ -330,7 +286,6 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
     made.curvature = curvature * rounding_up;
     tighten(made, second);
     keep_kink(op, variations, made);
-    keep_wrap(op, operands, variations, made);
     if (is_norm && shortest > 0) smooth_in_length(variations, made);
     return made;
 }

@@ -7,8 +7,10 @@
 #include "lang/ir/bounds/partials.h"
 
 #include <array>
+#include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace haptel::ir {
 
@@ -19,6 +21,8 @@ struct Cause {
     std::optional<Op> op;
     bool is_library = false;
 };
+
+struct Crossing;
 
 struct Variation {
     static constexpr size_t directions = 3; // the axes of p
@@ -33,15 +37,10 @@ struct Variation {
     // C2..
     uint32_t kink = 0;       // which kink: values that share it are 0 in the same places
     uint32_t kink_power = 0; // of max(u, 0) in it
-    // The value jumps by multiples of this alone, as fract and mod do, and is so smooth between: whole jumps are none
-    // to what repeats with every whole number. Where it only jumps between `from` and from + by, and these lie as far
-    // from 0, they are one and the same to |value|.
-    struct Wrap {
-        double by;
-        std::optional<double> from;
-        Smoothness between;
-    };
-    std::optional<Wrap> wrap;
+    // Where it jumps, or may, at seams (seams.h) that its class does not speak of; null: nowhere. And which value it is
+    // among its like (value_numbers.h; 0: not known).
+    std::shared_ptr<const std::vector<Crossing>> crossings;
+    uint32_t number = 0;
     std::array<Interval, 3> gradient = {}; // by axis
     std::array<Interval, 6> hessian = {};  // xx xy xz yy yz zz
     double slope = 0;                      // sup of the gradient's Euclidean norm
@@ -54,11 +53,13 @@ Variation unknown_variation(Span where);
 // Rougher of the two, with its cause.
 void roughen(Variation& variation, Smoothness smoothness, const Cause& cause);
 
-// How smooth it is but for jumps by whole numbers.
-Smoothness smoothness_but_for_turns(const Variation& variation);
+// Whether the value stays as it is between jumps.
+bool stays_between_jumps(const Variation& variation);
 
-// Of what may be either: an `if`, a choice, the lesser of two.
+// Of what may be either: an `if`, a choice, the lesser of two. Crossings become part of the class, but in `merge`,
+// which leaves them out.
 Variation join(const Variation& a, const Variation& b);
+Variation merge(const Variation& a, const Variation& b);
 // Of what is known by two ways.
 Variation intersect(const Variation& a, const Variation& b);
 

@@ -167,7 +167,8 @@ TEST_CASE("class: the roughest part that can be met, with its place")
     CHECK(class_of(x + "%h = max %x, %t return %h", {0.2, 1}) == Smoothness::smooth);
     CHECK(class_of(x + "%h = sqrt %x return %h", {0, 1}) == Smoothness::c0);
     CHECK(class_of(x + "%h = div %t, %x return %h", {-1, 1}) == Smoothness::jump);
-    CHECK(class_of(x + "%c = lt %x, %t %h = select %c, %x, %t return %h", {-1, 1}) == Smoothness::jump);
+    CHECK(class_of(x + "%c = lt %x, %t %h = select %c, %x, %t return %h", {-1, 1}) == Smoothness::c0); // they meet
+    CHECK(class_of(x + "%c = lt %x, %t %k = real 0 %h = select %c, %x, %k return %h", {-1, 1}) == Smoothness::jump);
     CHECK(class_of(x + "%c = lt %x, %t %h = select %c, %x, %t return %h", {-1, 0}) == Smoothness::smooth);
     CHECK(class_of(x + "%c = lt %x, %t %h = if %c { yield %t } else { yield %x } return %h", {-1, 1}) ==
           Smoothness::c0); // they meet

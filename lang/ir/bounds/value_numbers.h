@@ -1,0 +1,79 @@
+// Which values are the same number whatever the point: by what they are made of, not by what they evaluate to.
+//
+// Sums of multiples are written out, and what does not change a result is left out: the sign of an even function's
+// argument, whole turns, whole numbers in fract(). Factors that differ by rounding alone count as equal, so that
+// "equal" here is equal but for some 1e-11 of the parts. What is not seen as equal is only not known to be.
+#pragma once
+
+#include "lang/ir/ir.h"
+
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace haptel::ir {
+
+class ValueNumbers {
+public:
+    using Number = uint32_t;
+    static constexpr Number none = 0;
+
+    Number unlike_any(bool is_whole = false);
+    Number constant(double value);
+    std::optional<double> constant_of(Number number) const;
+    Number of(Op op, std::span<const Number> operands);
+    // Of what is no operation: equal kinds of equal operands are equal.
+    enum class Other : uint8_t { input, parameter, table, call };
+    Number of(Other kind, uint64_t which, std::span<const Number> operands);
+
+    // scale * base + offset, by value.
+    struct Line {
+        Number base;
+        double scale, offset;
+    };
+    // The value as a multiple of another and a constant; of a sum of several, of the first.
+    Number linear(const Line& line);
+    // factor * mod(of, by) + offset, by value of constants.
+    struct Remainder {
+        Number of;
+        double by, factor, offset;
+    };
+    std::optional<Remainder> remainder(Number number) const;
+    // What `number` is where `place` is `value`: in sums; inside of functions it stays.
+    Number where(Number number, Number place, Number value);
+
+private:
+    struct Part {
+        Number number;
+        double factor;
+        bool operator==(const Part&) const = default;
+    };
+    struct Sum {
+        double constant = 0;
+        std::vector<Part> parts; // ascending
+    };
+    struct Definition {
+        bool is_sum = false, is_whole = false;
+        Sum sum;
+        std::vector<uint64_t> function = {}; // operation and operands, where it is one
+    };
+    std::vector<Definition> definitions{1}; // by number
+    std::map<std::vector<uint64_t>, Number> known;
+
+    Sum sum_of(Number number) const;
+    Number of(Sum sum);
+    Number function(std::vector<uint64_t> key, bool is_whole);
+    bool is_function(Number number, Op op) const;
+    static void add(Sum& sum, const Sum& other, double factor);
+    // Makes the first factor positive; whether that turned the sign.
+    static bool turn(Sum& sum);
+    Number without_sign(Number number, bool& is_turned);
+    // Takes whole numbers away, and gives them.
+    Sum take_whole(Sum& sum) const;
+    std::optional<Number> real(Op op, std::span<const Number> operands);
+    Number product(Op op, Number a, Number b);
+    std::optional<Number> written_out(Number a, Number b);
+};
+
+} // namespace haptel::ir
