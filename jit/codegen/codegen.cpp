@@ -113,7 +113,8 @@ private:
     llvm::Function& declare(std::vector<llvm::Type*> arguments, unsigned block)
     {
         auto* type = llvm::FunctionType::get(llvm::Type::getVoidTy(context()), arguments, false);
-        auto* function = llvm::Function::Create(type, llvm::GlobalValue::ExternalLinkage, entry.name, module.target);
+        auto* function =
+            llvm::Function::Create(type, llvm::GlobalValue::ExternalLinkage, symbol_of(entry), module.target);
         function->setDoesNotThrow();
         for (unsigned i : {0u, block, block + 1}) {
             function->addParamAttr(i, llvm::Attribute::NoAlias);
@@ -158,6 +159,17 @@ std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const
     for (const EntryPoint& entry : entries) {
         const std::pair form{entry.lanes, entry.precision};
         ModuleEmitter& emitter =
+uint32_t function_of(const EntryPoint& entry)
+{
+    const ir::Texture& texture = *entry.texture;
+    return texture.height_gradient != UINT32_MAX ? texture.height_gradient : texture.height;
+}
+
+std::string symbol_of(const EntryPoint& entry)
+{
+    return "entry " + entry.name; // no identifier has a space
+}
+
             emitters.try_emplace(form, module, *generated, processor, entry.lanes, entry.precision, kernels, is_draft)
                 .first->second;
         if (!kernels && entry.lanes == LaneForm::points) emitter.called_by_batches = worth_a_kernel(module);

@@ -169,15 +169,15 @@ CodeResult Engine::link(const Object& object, std::span<const EntryPoint> entrie
 
     const bool is_replaceable = object.effort != Effort::full;
     for (const EntryPoint& entry : entries) {
-        entry_addresses[entry.name];
-        if (is_replaceable) entry_addresses[slot_of(entry.name)];
+        entry_addresses[symbol_of(entry)];
+        if (is_replaceable) entry_addresses[slot_of(entry)];
     }
     const Linker::Linked linked = linker.link(object.bytes, callee_addresses, entry_addresses);
     if (!linked.place) return {nullptr, object.is_from_disk ? "" : linked.error};
     auto code = std::make_shared<LinkedCode>(*linked.place);
     for (const EntryPoint& entry : entries) {
-        code->add(entry, entry_addresses[entry.name]);
-        if (is_replaceable) code->add_slot(entry, entry_addresses[slot_of(entry.name)]);
+        code->add(entry, entry_addresses[symbol_of(entry)]);
+        if (is_replaceable) code->add_slot(entry, entry_addresses[slot_of(entry)]);
     }
     if (!is_replaceable) code->set_full();
     times.link_s = stopwatch.lap_s();
