@@ -3,8 +3,11 @@
 // In f64 every operation means what lang/ir/semantics.h says, bit for bit: no fast-math flags, no contraction,
 // elementary functions by the templates of lang/ir/elementary_*.h. Iterations in lanes alone may add in another order.
 // In mixed and f32, what varies is fused where the processor can: a product that a sum or difference takes is not
-// rounded by itself (the choice rests on the two operations alone, so that a height with and without its gradient has
-// the same bits).
+// rounded by itself.
+//
+// The height alone is made from the function that has the gradient too: what of it the height needs, in the forms that
+// it has there. Precision, fusing and lanes are decided once, so that a height with and without its gradient has the
+// same bits.
 //
 // Functions that an entry reaches become internal LLVM functions; tables become constant globals. The module must be
 // verified (lang/ir/verify.h): table indices and trip counts are trusted here.

@@ -120,7 +120,7 @@ std::string Engine::identity_of(const KernelCalls& calls, std::span<const EntryP
     for (const EntryPoint& entry : entries) {
         const bool is_height = entry.kind == EntryPoint::Kind::height;
         add(entry.name);
-        add(to_text(calls.hash_of(is_height ? entry.texture->height : entry.texture->height_gradient)));
+        add(to_text(calls.hash_of(function_of(entry))));
         for (uint32_t number :
              {uint32_t{is_height}, static_cast<uint32_t>(entry.lanes), static_cast<uint32_t>(entry.precision),
               entry.texture->writes, static_cast<uint32_t>(entry.texture->parameters.size())})
