@@ -315,12 +315,13 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadT
     auto last_cell = static_cast<size_t>(std::clamp(index.maximum, 0.0, last));
     for (size_t i = first_cell; i <= last_cell; ++i) all = join(all, cell(table, i));
     left -= std::min<uint64_t>(left, (last_cell - first_cell) / 16);
-    frame.values[made.results[0].index] = all;
-    if (!varying) return;
-    Variation& variation = frame.variations[made.results[0].index];
-    const Variation& of_index = frame.variations[made.operands[0].index];
-    variation.is_active = of_index.is_active && first_cell != last_cell;
-    if (variation.is_active) roughen(variation, std::min(of_index.smoothness, Smoothness::jump), {made.span, {}});
+    Variation variation;
+    if (varying && first_cell != last_cell) {
+        const Variation& of_index = frame.variations[made.operands[0].index];
+        variation.is_active = of_index.is_active;
+        if (of_index.is_active) roughen(variation, std::min(of_index.smoothness, Smoothness::jump), {made.span, {}});
+    }
+    store(frame, made.results[0], all, variation);
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Call& callee)
