@@ -8,6 +8,7 @@
 #include "jit/engine/compilers.h"
 #include "jit/engine/hot_swap.h"
 #include "jit/engine/linker.h"
+#include "jit/engine/llvm_library.h"
 #include "jit/engine/shared_code.h"
 #include "jit/engine/stopwatch.h"
 
@@ -37,6 +38,7 @@ public:
     void prepare_kernels(const ir::Module& module, std::span<const EntryPoint> entries);
     void remove(llvm::orc::JITDylib& place) { linker.remove(place); }
     std::string name() const { return machine_name; }
+    std::string identity() const { return target; }
     size_t kernel_count() { return shared.count(); }
     uint32_t lanes() const { return processor.lanes; }
     std::string isa() const { return isa_text; }
@@ -98,15 +100,15 @@ std::string Engine::start()
     const char* const wanted = std::getenv("HAPTEL_ISA");
     if (std::string error = restrict_to_isa(*host, wanted ? wanted : ""); !error.empty()) return error;
     host->getOptions().AllowFPOpFusion = llvm::FPOpFusion::Strict;
-    machine_name = "LLVM " LLVM_VERSION_STRING " " + host->getTargetTriple().str() + " " + host->getCPU();
+    machine_name = "LLVM " + llvm_version() + " " + host->getTargetTriple().str() + " " + host->getCPU();
 
     if (std::string error = compilers.start(*host); !error.empty()) return error;
     compilers.with_machine([&](const llvm::TargetMachine& machine) {
         make_code_generator_tables(machine);
         processor = processor_of(machine);
         isa_text = isa_of(machine);
-        target = std::string(code_version) + ";" + machine_name + ";" + machine.getTargetFeatureString().str() + ";" +
-                 std::to_string(processor.lanes);
+        target = std::string(code_version) + ";" + llvm_identity() + ";" + machine_name + ";" +
+                 machine.getTargetFeatureString().str() + ";" + std::to_string(processor.lanes);
         fault = linker.start(*host, machine.createDataLayout());
     });
     return fault;
@@ -280,6 +282,11 @@ uint32_t batch_lanes()
 std::string isa_name()
 {
     return Engine::get().isa();
+}
+
+std::string code_identity()
+{
+    return Engine::get().identity();
 }
 
 std::string engine_name()
