@@ -19,12 +19,12 @@ struct Output {
     std::optional<size_t> yield; // none: 1
 };
 
-std::vector<Output> outputs_of(const EntryPoint& entry)
+// `faults_alone`: the result that holds the faults of the height alone, the last.
+std::vector<Output> outputs_of(const EntryPoint& entry, size_t faults_alone)
 {
-    const bool with_gradient = entry.kind == EntryPoint::Kind::height_gradient;
     std::vector<Output> outputs{{offsetof(haptel_sample, height_m), offsetof(haptel_samples, height_m), 0},
-                                {offsetof(haptel_sample, faults), offsetof(haptel_samples, faults), 1}};
-    if (!with_gradient) return outputs;
+                                {offsetof(haptel_sample, faults), offsetof(haptel_samples, faults), faults_alone}};
+    if (entry.kind == EntryPoint::Kind::height) return outputs;
     outputs[1].yield = 4;
     for (size_t i = 0; i < 3; ++i)
         outputs.push_back({offsetof(haptel_sample, gradient) + i * sizeof(double),
@@ -39,18 +39,24 @@ std::vector<Output> outputs_of(const EntryPoint& entry)
 
 class EntryEmitter {
 public:
-    EntryEmitter(ModuleEmitter& owner, const EntryPoint& point) : module(owner), entry(point) {}
+    EntryEmitter(ModuleEmitter& owner, const EntryPoint& point)
+        : module(owner)
+        , entry(point)
+        , source(owner.source.functions[function_of(point)])
+        , outputs(outputs_of(point, source.body.yields.size() - 1))
+    {
+    }
 
     void one_point()
     {
         llvm::Function& function = declare({pointer(), pointer(), pointer()}, 1);
         llvm::BasicBlock::Create(context(), "", &function);
         const ValueForms forms = entry_forms();
-        FunctionEmitter emitter(module, source(), function, forms,
+        FunctionEmitter emitter(module, source, function, forms,
                                 {.points = function.getArg(0), .block = function.getArg(1), .texture = entry.texture});
         const std::vector<Value*> yields = emitter.body(results({}));
         llvm::IRBuilder<>& builder = emitter.at_end();
-        for (const Output& output : outputs_of(entry))
+        for (const Output& output : outputs)
             builder.CreateStore(result(output, yields), place(builder, function.getArg(2), output.offset));
         builder.CreateRetVoid();
     }
@@ -81,11 +87,11 @@ public:
             outside.CreateAdd(outside.CreateVectorSplat(module.lanes, first), outside.CreateStepVector(indices));
         Value* is_there = outside.CreateICmpULT(index, outside.CreateVectorSplat(module.lanes, count));
         const ValueForms forms = entry_forms();
-        FunctionEmitter emitter(module, source(), function, forms,
+        FunctionEmitter emitter(module, source, function, forms,
                                 {function.getArg(0), function.getArg(2), entry.texture, first, is_there});
         const std::vector<Value*> yields = emitter.body(results({.in_lanes = true}));
         llvm::IRBuilder<>& builder = emitter.at_end();
-        for (const Output& output : outputs_of(entry))
+        for (const Output& output : outputs)
             store_lanes(builder, result(output, yields), place(builder, function.getArg(3), output.array_offset), first,
                         is_there);
         first->addIncoming(builder.CreateAdd(first, builder.getInt64(module.lanes)), builder.GetInsertBlock());
@@ -95,25 +101,29 @@ public:
 private:
     ModuleEmitter& module;
     const EntryPoint& entry;
+    const ir::Function& source;
+    const std::vector<Output> outputs;
 
     llvm::LLVMContext& context() { return module.target.getContext(); }
     llvm::Type* pointer() { return llvm::PointerType::getUnqual(context()); }
-    uint32_t index() const
+    ValueForms entry_forms()
     {
-        return entry.kind == EntryPoint::Kind::height ? entry.texture->height : entry.texture->height_gradient;
+        Signature signature;
+        signature.wide_results.resize(source.body.yields.size());
+        signature.needed_results.resize(source.body.yields.size());
+        for (const Output& output : outputs)
+            if (output.yield) signature.needed_results[*output.yield] = true;
+        if (entry.kind == EntryPoint::Kind::height_gradient) signature.needed_results.clear();
+        return module.forms(function_of(entry), signature);
     }
-    const ir::Function& source() const { return module.source.functions[index()]; }
-    ValueForms entry_forms() const
-    {
-        return module.forms(index(), {{}, {}, std::vector<bool>(source().body.yields.size()), {}});
-    }
-    std::vector<Form> results(Form form) const { return std::vector(source().body.yields.size(), form); }
+    std::vector<Form> results(Form form) const { return std::vector(source.body.yields.size(), form); }
 
     // The last argument is what is written.
     llvm::Function& declare(std::vector<llvm::Type*> arguments, unsigned block)
     {
         auto* type = llvm::FunctionType::get(llvm::Type::getVoidTy(context()), arguments, false);
-        auto* function = llvm::Function::Create(type, llvm::GlobalValue::ExternalLinkage, entry.name, module.target);
+        auto* function =
+            llvm::Function::Create(type, llvm::GlobalValue::ExternalLinkage, symbol_of(entry), module.target);
         function->setDoesNotThrow();
         for (unsigned i : {0u, block, block + 1}) {
             function->addParamAttr(i, llvm::Attribute::NoAlias);
@@ -148,6 +158,17 @@ private:
 };
 
 } // namespace
+
+uint32_t function_of(const EntryPoint& entry)
+{
+    const ir::Texture& texture = *entry.texture;
+    return texture.height_gradient != UINT32_MAX ? texture.height_gradient : texture.height;
+}
+
+std::string symbol_of(const EntryPoint& entry)
+{
+    return "entry " + entry.name; // no identifier has a space
+}
 
 std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const EntryPoint> entries,
                                        const Processor& processor, llvm::LLVMContext& context, KernelCalls* kernels,

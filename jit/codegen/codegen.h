@@ -3,8 +3,11 @@
 // In f64 every operation means what lang/ir/semantics.h says, bit for bit: no fast-math flags, no contraction,
 // elementary functions by the templates of lang/ir/elementary_*.h. Iterations in lanes alone may add in another order.
 // In mixed and f32, what varies is fused where the processor can: a product that a sum or difference takes is not
-// rounded by itself (the choice rests on the two operations alone, so that a height with and without its gradient has
-// the same bits).
+// rounded by itself.
+//
+// The height alone is made from the function that has the gradient too: what of it the height needs, in the forms that
+// it has there. Precision, fusing and lanes are decided once, so that a height with and without its gradient has the
+// same bits.
 //
 // Functions that an entry reaches become internal LLVM functions; tables become constant globals. The module must be
 // verified (lang/ir/verify.h): table indices and trip counts are trusted here.
@@ -49,7 +52,8 @@ enum class LaneForm : uint8_t {
 // A batch asks for memory ahead of the lanes that it works on: what is not near yet arrives meanwhile.
 constexpr uint32_t points_ahead = 128;
 
-// One entry point to be emitted: a haptel_entry of this name, or for points in lanes a haptel_batch_entry.
+// One entry point to be emitted: a haptel_entry, or for points in lanes a haptel_batch_entry. The name is any text; it
+// tells the entries of one program apart.
 struct EntryPoint {
     enum class Kind : uint8_t { height, height_gradient };
     std::string name;
@@ -58,6 +62,13 @@ struct EntryPoint {
     LaneForm lanes = LaneForm::one;
     Precision precision = Precision::f64;
 };
+
+// The function that an entry is made from, of which the height alone leaves out what it does not need.
+uint32_t function_of(const EntryPoint& entry);
+
+// What an entry is called in an object, where its name stands beside those of code_library(), of kernels and of
+// whatever the linker knows: no name that an author can give is one of them.
+std::string symbol_of(const EntryPoint& entry);
 
 class KernelCalls;
 

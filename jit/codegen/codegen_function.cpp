@@ -40,6 +40,18 @@ FunctionEmitter::FunctionEmitter(ModuleEmitter& owner, const ir::Function& from,
 {
 }
 
+Value* FunctionEmitter::value(ir::Value used)
+{
+    Value* const held = values[used.index];
+    return held || forms.is_needed(used) ? held : llvm::PoisonValue::get(type(used));
+}
+
+bool FunctionEmitter::is_needed(const ir::Instruction& made) const
+{
+    return std::any_of(made.results.begin(), made.results.end(),
+                       [&](ir::Value result) { return forms.is_needed(result); });
+}
+
 Value* FunctionEmitter::value(ir::Value used, Form wanted)
 {
     Value* held = value(used);
@@ -77,7 +89,7 @@ std::vector<Value*> FunctionEmitter::block(const ir::Block& from, const std::vec
 
 void FunctionEmitter::emit(const ir::Instruction& made)
 {
-    std::visit([&](const auto& kind) { emit(made, kind); }, made.kind);
+    if (is_needed(made)) std::visit([&](const auto& kind) { emit(made, kind); }, made.kind);
 }
 
 bool FunctionEmitter::computes_in_singles(const ir::Instruction& made) const
@@ -196,6 +208,10 @@ void FunctionEmitter::emit(const ir::Instruction& made, const ir::Call& call)
     if (!forms.in_order.empty()) // else all of the points' form
         for (ir::Value operand : made.operands) signature.in_order.push_back(forms.in_order[operand.index]);
     for (ir::Value result : made.results) signature.wide_results.push_back(forms.is_wide(result));
+    for (ir::Value result : made.results) signature.needed_results.push_back(forms.is_needed(result));
+    if (std::find(signature.needed_results.begin(), signature.needed_results.end(), false) ==
+        signature.needed_results.end())
+        signature.needed_results.clear();
     const ModuleEmitter::Function& callee = module.function(call.function, signature);
     const std::vector<bool>& called = module.called_by_batches;
     if (!source.is_library && !called.empty() && called[call.function])

@@ -47,7 +47,8 @@ private:
     std::vector<const ir::Instruction*> products; // likewise: what multiplied them
     std::set<const ir::Instruction*> done;        // ahead of their blocks
 
-    llvm::Value* value(ir::Value used) const { return values[used.index]; }
+    llvm::Value* value(ir::Value used); // poison if no result needs it
+    bool is_needed(const ir::Instruction& made) const;
     llvm::Value* value(ir::Value used, Form wanted);
     llvm::Value* rounded(llvm::Value* real, bool to_single);
     bool computes_in_singles(const ir::Instruction& made) const;

@@ -208,7 +208,7 @@ void FunctionEmitter::emit_one_by_one(const ir::Block& body, const LaneLoop& loo
 void FunctionEmitter::take_out_of_lanes(const ir::Block& from, std::map<uint32_t, llvm::AllocaInst*>& rooms)
 {
     for (const ir::Instruction& made : from.instructions) {
-        if (done.contains(&made)) continue;
+        if (done.contains(&made) || !is_needed(made)) continue;
         for (ir::Value used : made.operands) {
             take_out_of_lanes(used, rooms);
             if (const ir::Instruction* product = module.fuses() ? products[used.index] : nullptr)
@@ -230,6 +230,11 @@ void FunctionEmitter::take_out_of_lanes(ir::Value used, std::map<uint32_t, llvm:
 {
     if (!forms[used].in_lanes) return;
     Value* lanes = value(used);
+    forms.in_lanes[used.index] = false;
+    if (!forms.is_needed(used)) {
+        values[used.index] = nullptr;
+        return;
+    }
     if (source.type(used) == ir::Type::boolean)
         lanes = builder.CreateZExt(lanes, llvm::FixedVectorType::get(builder.getInt8Ty(), module.lanes));
     llvm::IRBuilder<> at_entry(&target.getEntryBlock(), target.getEntryBlock().begin());
@@ -238,7 +243,6 @@ void FunctionEmitter::take_out_of_lanes(ir::Value used, std::map<uint32_t, llvm:
     room->setAlignment(llvm::Align(64));
     builder.CreateStore(lanes, room);
     rooms.emplace(used.index, room);
-    forms.in_lanes[used.index] = false;
 }
 
 } // namespace haptel::jit

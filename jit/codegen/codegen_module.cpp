@@ -3,6 +3,7 @@
 #include "jit/codegen/codegen_function.h"
 #include "jit/codegen/kernels.h"
 #include "jit/codegen/uniformity.h"
+#include "lang/ir/dead_code.h"
 
 #include <algorithm>
 #include <iterator>
@@ -78,12 +79,27 @@ llvm::GlobalVariable* ModuleEmitter::table(uint32_t index, bool is_single)
     return made;
 }
 
-ValueForms ModuleEmitter::forms(uint32_t index, const Signature& signature) const
+const std::vector<bool>& ModuleEmitter::needed_values(uint32_t index, const std::vector<bool>& results)
+{
+    const std::pair key{index, results};
+    if (const auto known = needs.find(key); known != needs.end()) return known->second;
+    const auto parameters = [&](uint32_t callee, const std::vector<bool>& of_call) {
+        const std::vector<bool>& inside = needed_values(callee, of_call);
+        std::vector<bool> needed;
+        for (ir::Value parameter : source.functions[callee].parameters) needed.push_back(inside[parameter.index]);
+        return needed;
+    };
+    return needs.emplace(key, ir::needed_values(source.functions[index], results, parameters)).first->second;
+}
+
+ValueForms ModuleEmitter::forms(uint32_t index, const Signature& signature)
 {
     const ir::Function& from = source.functions[index];
-    ValueForms made{
-        from, varying_values(from, signature.arguments), {}, plan.wide_values(index, signature.wide_results), {}, {},
-        {}};
+    ValueForms made{from, varying_values(from, signature.arguments),
+                    {},   plan.wide_values(index, signature.wide_results),
+                    {},   {},
+                    {},   {}};
+    if (!signature.needed_results.empty()) made.needed = needed_values(index, signature.needed_results);
     if (form == LaneForm::points) {
         made.in_lanes = made.varies;
         return made;
@@ -110,9 +126,9 @@ Form ModuleEmitter::result(const Key& key, size_t i) const
 
 std::string Signature::text() const
 {
-    static_assert(sizeof(Signature) == 4 * sizeof(std::vector<bool>), "what a signature gains belongs into its text");
+    static_assert(sizeof(Signature) == 5 * sizeof(std::vector<bool>), "what a signature gains belongs into its text");
     std::string bits;
-    for (const std::vector<bool>* flags : {&arguments, &in_lanes, &wide_results, &in_order}) {
+    for (const std::vector<bool>* flags : {&arguments, &in_lanes, &wide_results, &in_order, &needed_results}) {
         for (bool flag : *flags) bits += flag ? '1' : '0';
         bits += ';';
     }

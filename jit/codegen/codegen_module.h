@@ -25,6 +25,8 @@ struct Signature {
     std::vector<bool> in_lanes;     // arguments that differ between lanes
     std::vector<bool> wide_results; // that are f64
     std::vector<bool> in_order;     // arguments that differ between iterations that lanes would hold, were it no draft
+    // The others are left out, in the forms of all else; empty: all of them. No function for all has a list of all.
+    std::vector<bool> needed_results;
     auto operator<=>(const Signature&) const = default;
     std::string text() const; // all of it: equal texts, equal signatures
 };
@@ -36,9 +38,11 @@ struct ValueForms {
     LaneLoops loops;            // whose iterations are lanes
     LaneLoops ordered;          // whose iterations follow one another, with the bits of lanes
     std::vector<bool> in_order; // what differs between these iterations
+    std::vector<bool> needed;   // empty: everything
 
     bool is_varying(ir::Value value) const { return varies[value.index]; }
     bool is_wide(ir::Value value) const { return wide[value.index]; }
+    bool is_needed(ir::Value value) const { return needed.empty() || needed[value.index]; }
     Form operator[](ir::Value value) const
     {
         const bool is_real = function.type(value) == ir::Type::real;
@@ -75,7 +79,7 @@ public:
     const Function& function(uint32_t index, const Signature& signature);
     void finish();
 
-    ValueForms forms(uint32_t index, const Signature& signature) const;
+    ValueForms forms(uint32_t index, const Signature& signature);
     llvm::GlobalVariable* table(uint32_t index, bool is_single);
     llvm::Type* type(ir::Type type, Form held);
 
@@ -102,7 +106,9 @@ private:
     Functions functions;
     std::vector<Functions::const_iterator> unfinished;
     std::map<std::pair<uint32_t, bool>, llvm::GlobalVariable*> tables;
+    std::map<std::pair<uint32_t, std::vector<bool>>, std::vector<bool>> needs; // by function and results: by value
 
+    const std::vector<bool>& needed_values(uint32_t index, const std::vector<bool>& results);
     Form result(const Key& key, size_t i) const;
     void write_body(const Key& key, const Function& function);
 };

@@ -23,7 +23,7 @@ void FunctionEmitter::emit_in_order(const ir::Instruction& made, const ir::Block
         held.push_back(forms[body.parameters[i + 1]]);
         Value* const by = one.by == ir::Value{} ? nullptr : value(one.by, held[i]);
         progress.emplace_back(builder, one.kind, type(body.parameters[i + 1]), by, lanes);
-        if (one.kind == Kind::sum) sums.push_back(i);
+        if (one.kind == Kind::sum && forms.is_needed(body.parameters[i + 1])) sums.push_back(i);
     }
     const auto sum_count = static_cast<uint32_t>(sums.size());
     llvm::IRBuilder<> at_entry(&target.getEntryBlock(), target.getEntryBlock().begin());

@@ -21,6 +21,7 @@ public:
     {
         text.clear();
         values(function.parameters);
+        word(function.is_library);
         word(function.first_argument_size);
         word(function.value_types.size());
         for (ir::Type type : function.value_types) text += static_cast<char>(type);

@@ -8,6 +8,7 @@
 #include "jit/engine/compilers.h"
 #include "jit/engine/hot_swap.h"
 #include "jit/engine/linker.h"
+#include "jit/engine/llvm_library.h"
 #include "jit/engine/shared_code.h"
 #include "jit/engine/stopwatch.h"
 
@@ -37,6 +38,7 @@ public:
     void prepare_kernels(const ir::Module& module, std::span<const EntryPoint> entries);
     void remove(llvm::orc::JITDylib& place) { linker.remove(place); }
     std::string name() const { return machine_name; }
+    std::string identity() const { return target; }
     size_t kernel_count() { return shared.count(); }
     uint32_t lanes() const { return processor.lanes; }
     std::string isa() const { return isa_text; }
@@ -98,15 +100,15 @@ std::string Engine::start()
     const char* const wanted = std::getenv("HAPTEL_ISA");
     if (std::string error = restrict_to_isa(*host, wanted ? wanted : ""); !error.empty()) return error;
     host->getOptions().AllowFPOpFusion = llvm::FPOpFusion::Strict;
-    machine_name = "LLVM " LLVM_VERSION_STRING " " + host->getTargetTriple().str() + " " + host->getCPU();
+    machine_name = "LLVM " + llvm_version() + " " + host->getTargetTriple().str() + " " + host->getCPU();
 
     if (std::string error = compilers.start(*host); !error.empty()) return error;
     compilers.with_machine([&](const llvm::TargetMachine& machine) {
         make_code_generator_tables(machine);
         processor = processor_of(machine);
         isa_text = isa_of(machine);
-        target = std::string(code_version) + ";" + machine_name + ";" + machine.getTargetFeatureString().str() + ";" +
-                 std::to_string(processor.lanes);
+        target = std::string(code_version) + ";" + llvm_identity() + ";" + machine_name + ";" +
+                 machine.getTargetFeatureString().str() + ";" + std::to_string(processor.lanes);
         fault = linker.start(*host, machine.createDataLayout());
     });
     return fault;
@@ -120,7 +122,7 @@ std::string Engine::identity_of(const KernelCalls& calls, std::span<const EntryP
     for (const EntryPoint& entry : entries) {
         const bool is_height = entry.kind == EntryPoint::Kind::height;
         add(entry.name);
-        add(to_text(calls.hash_of(is_height ? entry.texture->height : entry.texture->height_gradient)));
+        add(to_text(calls.hash_of(function_of(entry))));
         for (uint32_t number :
              {uint32_t{is_height}, static_cast<uint32_t>(entry.lanes), static_cast<uint32_t>(entry.precision),
               entry.texture->writes, static_cast<uint32_t>(entry.texture->parameters.size())})
@@ -169,15 +171,15 @@ CodeResult Engine::link(const Object& object, std::span<const EntryPoint> entrie
 
     const bool is_replaceable = object.effort != Effort::full;
     for (const EntryPoint& entry : entries) {
-        entry_addresses[entry.name];
-        if (is_replaceable) entry_addresses[slot_of(entry.name)];
+        entry_addresses[symbol_of(entry)];
+        if (is_replaceable) entry_addresses[slot_of(entry)];
     }
     const Linker::Linked linked = linker.link(object.bytes, callee_addresses, entry_addresses);
     if (!linked.place) return {nullptr, object.is_from_disk ? "" : linked.error};
     auto code = std::make_shared<LinkedCode>(*linked.place);
     for (const EntryPoint& entry : entries) {
-        code->add(entry, entry_addresses[entry.name]);
-        if (is_replaceable) code->add_slot(entry, entry_addresses[slot_of(entry.name)]);
+        code->add(entry, entry_addresses[symbol_of(entry)]);
+        if (is_replaceable) code->add_slot(entry, entry_addresses[slot_of(entry)]);
     }
     if (!is_replaceable) code->set_full();
     times.link_s = stopwatch.lap_s();
@@ -280,6 +282,11 @@ uint32_t batch_lanes()
 std::string isa_name()
 {
     return Engine::get().isa();
+}
+
+std::string code_identity()
+{
+    return Engine::get().identity();
 }
 
 std::string engine_name()

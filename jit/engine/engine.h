@@ -89,4 +89,7 @@ std::string isa_name();
 // "LLVM 19.1.7 x86_64-pc-linux-gnu skylake-avx512": for reports.
 std::string engine_name();
 
+// What decides which code is made of an IR, and code on disk is known by: code generator, LLVM, processor.
+std::string code_identity();
+
 } // namespace haptel::jit

@@ -10,7 +10,7 @@
 namespace haptel::jit {
 
 // The symbol of an entry's slot, which holds the address of its code.
-std::string slot_of(const std::string& entry);
+std::string slot_of(const EntryPoint& entry);
 
 void make_replaceable(llvm::Module& module, std::span<const EntryPoint> entries);
 

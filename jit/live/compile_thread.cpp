@@ -54,8 +54,9 @@ void CompileThread::add(Client* client)
 
 void CompileThread::remove(Client* client)
 {
-    const std::lock_guard lock(clients_mutex);
+    std::unique_lock lock(clients_mutex);
     std::erase(clients, client);
+    update_ended.wait(lock, [&] { return in_update != client; });
 }
 
 void CompileThread::wake()
@@ -87,13 +88,38 @@ try {
     // Not even telling went well.
 }
 
+bool CompileThread::begin_update(Client* client)
+{
+    const std::lock_guard lock(clients_mutex);
+    if (std::find(clients.begin(), clients.end(), client) == clients.end()) return false;
+    in_update = client;
+    return true;
+}
+
+void CompileThread::end_update()
+{
+    const std::lock_guard lock(clients_mutex);
+    in_update = nullptr;
+    update_ended.notify_all();
+}
+
+// Of those that there are at the start: who is added meanwhile wakes the thread anew.
 void CompileThread::update_clients()
 try {
-    const std::lock_guard lock(clients_mutex);
+    std::unique_lock lock(clients_mutex);
+    const std::vector<Client*> all = clients;
+    lock.unlock();
     std::set<std::string> files;
-    for (Client* client : clients) {
+    for (Client* client : all) {
+        if (!begin_update(client)) continue;
         update(*client);
-        files.merge(client->files());
+        try {
+            files.merge(client->files());
+        } catch (...) {
+            end_update();
+            throw;
+        }
+        end_update();
     }
     watch.watch(files);
 } catch (...) {

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <memory>
 #include <mutex>
 #include <set>
@@ -36,8 +37,9 @@ public:
     CompileThread(const CompileThread&) = delete;
     CompileThread& operator=(const CompileThread&) = delete;
 
+    // Any thread, from within an update of another client too.
     void add(Client* client);
-    void remove(Client* client); // waits while a client is being updated
+    void remove(Client* client); // waits while it is being updated
     void wake();                 // update soon, without a change of a file
 
 private:
@@ -45,14 +47,18 @@ private:
 
     void run();
     void update_clients();
+    bool begin_update(Client* client); // false: it is gone
+    void end_update();
     static void update(Client& client);
     bool wait(Clock::time_point until); // true: woken by wake()
 
     FileWatch watch;
     int wake_event;
     std::atomic<bool> stopping{false};
-    std::mutex clients_mutex;
+    std::mutex clients_mutex; // never held while a client is at work: it may add and remove others
     std::vector<Client*> clients;
+    Client* in_update = nullptr;
+    std::condition_variable update_ended;
     std::thread thread;
 };
 

@@ -21,7 +21,8 @@ struct LiveOptions {
 };
 
 struct LiveCallbacks {
-    // Called on the compile thread. They may take their time and publish to a slot, but not destroy the LiveTexture.
+    // Called on the compile thread. They may take their time, publish to a slot, make and destroy other LiveTextures,
+    // but not destroy their own.
     std::function<void(TextureBinding)> publish;
     std::function<void(std::string_view diagnostics)> report; // rendered text; may be empty: nobody listens
 };

@@ -89,7 +89,8 @@ Tiff open(Source& source)
 
 struct Layout {
     uint32_t width = 0, height = 0;
-    uint16_t bits = 1, samples = 1, format = SAMPLEFORMAT_UINT, planes = PLANARCONFIG_CONTIG, meaning = 0;
+    uint16_t bits = 1, samples = 1, format = SAMPLEFORMAT_UINT, planes = PLANARCONFIG_CONTIG, meaning = 0,
+             orientation = ORIENTATION_TOPLEFT;
     bool has_meaning = false, tiled = false;
 
     explicit Layout(TIFF* tiff) : tiled(TIFFIsTiled(tiff) != 0)
@@ -100,11 +101,28 @@ struct Layout {
         TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &samples);
         TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &format);
         TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &planes);
+        TIFFGetFieldDefaulted(tiff, TIFFTAG_ORIENTATION, &orientation);
         has_meaning = TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &meaning) != 0;
         if (format == SAMPLEFORMAT_VOID) format = SAMPLEFORMAT_UINT;
     }
     bool is_real() const { return format == SAMPLEFORMAT_IEEEFP; }
     bool is_rgb() const { return has_meaning && meaning == PHOTOMETRIC_RGB && samples >= 3; }
+    // The file's rows are the picture's columns.
+    bool is_turned() const { return orientation >= ORIENTATION_LEFTTOP && orientation <= ORIENTATION_LEFTBOT; }
+    // Where in the picture, whose rows begin at the bottom, a pixel of the file belongs.
+    size_t place(size_t row, size_t column) const
+    {
+        const bool from_right = orientation == ORIENTATION_TOPRIGHT || orientation == ORIENTATION_BOTRIGHT,
+                   from_bottom = orientation == ORIENTATION_BOTRIGHT || orientation == ORIENTATION_BOTLEFT;
+        const bool turned_from_right = orientation == ORIENTATION_RIGHTTOP || orientation == ORIENTATION_RIGHTBOT,
+                   turned_from_bottom = orientation == ORIENTATION_RIGHTBOT || orientation == ORIENTATION_LEFTBOT;
+        if (is_turned()) {
+            const size_t x = turned_from_right ? height - 1 - row : row;
+            return (turned_from_bottom ? column : width - 1 - column) * height + x;
+        }
+        const size_t x = from_right ? width - 1 - column : column;
+        return (from_bottom ? row : height - 1 - row) * width + x;
+    }
     // Whether the samples are read as they are, all their bits.
     bool is_plain() const
     {
@@ -199,10 +217,8 @@ bool read_plain(TIFF* tiff, const Layout& layout, Picture& made)
             });
             if (!whole) return false;
             for (uint32_t y = 0; y < std::min(down, layout.height - top); ++y)
-                for (uint32_t x = 0; x < std::min(across, layout.width - left); ++x) {
-                    const size_t row = layout.height - 1 - (top + y);
-                    made.gray[row * layout.width + left + x] = block.gray(size_t{y} * across + x);
-                }
+                for (uint32_t x = 0; x < std::min(across, layout.width - left); ++x)
+                    made.gray[layout.place(top + y, left + x)] = block.gray(size_t{y} * across + x);
         }
     return true;
 }
@@ -211,10 +227,12 @@ bool read_plain(TIFF* tiff, const Layout& layout, Picture& made)
 bool read_converted(TIFF* tiff, const Layout& layout, Picture& made)
 {
     std::vector<uint32_t> pixels(made.gray.size());
-    if (!TIFFReadRGBAImageOriented(tiff, layout.width, layout.height, pixels.data(), ORIENTATION_BOTLEFT, 1))
+    // Asked for in its own orientation it comes in the order of the file: the library turns no rows into columns.
+    if (!TIFFReadRGBAImageOriented(tiff, layout.width, layout.height, pixels.data(), layout.orientation, 1))
         return false;
-    std::transform(pixels.begin(), pixels.end(), made.gray.begin(),
-                   [](uint32_t pixel) { return brightness(TIFFGetR(pixel), TIFFGetG(pixel), TIFFGetB(pixel)) / 255; });
+    for (size_t i = 0; i < pixels.size(); ++i)
+        made.gray[layout.place(i / layout.width, i % layout.width)] =
+            brightness(TIFFGetR(pixels[i]), TIFFGetG(pixels[i]), TIFFGetB(pixels[i])) / 255;
     return true;
 }
 
@@ -236,7 +254,8 @@ Picture read_tiff(std::string_view bytes)
     };
     if (!tiff) return damaged();
     const Layout layout(tiff.get());
-    Picture made = picture_of(layout.width, layout.height);
+    Picture made =
+        layout.is_turned() ? picture_of(layout.height, layout.width) : picture_of(layout.width, layout.height);
     if (!made.error.empty()) return made;
     if (layout.is_plain()) return read_plain(tiff.get(), layout, made) ? made : damaged();
     char reason[1024] = "";

@@ -5,20 +5,13 @@
 namespace haptel::ir {
 namespace {
 
-class Remover {
+class Marker {
 public:
-    explicit Remover(Function& whole) : function(whole), needed(whole.value_types.size(), false) {}
-
-    void run()
+    // Without `parameters` a call needs all of its operands.
+    explicit Marker(const Function& whole, const ParametersNeeded* parameters = nullptr)
+        : needed(whole.value_types.size(), false), parameters_needed(parameters)
     {
-        need(function.body.yields);
-        mark(function.body);
-        sweep(function.body);
-        number();
     }
-
-private:
-    Function& function;
     std::vector<bool> needed; // by Value::index
 
     void need(Value value) { needed[value.index] = true; }
@@ -26,10 +19,11 @@ private:
     {
         for (Value value : values) need(value);
     }
+    bool is_needed(Value value) const { return needed[value.index]; }
     bool is_needed(const Instruction& instruction) const
     {
         return std::any_of(instruction.results.begin(), instruction.results.end(),
-                           [&](Value value) { return needed[value.index]; });
+                           [&](Value value) { return is_needed(value); });
     }
 
     // From the last instruction back: a block's uses are all seen before their makers.
@@ -46,10 +40,24 @@ private:
                 }
             } else if (auto* loop = std::get_if<For>(&instruction->kind)) {
                 mark_loop(*instruction, loop->body[0]);
+            } else if (auto* call = std::get_if<Call>(&instruction->kind); call && parameters_needed) {
+                mark_call(*instruction, *call);
             } else {
                 need(instruction->operands);
             }
         }
+    }
+
+private:
+    const ParametersNeeded* const parameters_needed;
+
+    void mark_call(const Instruction& made, const Call& call)
+    {
+        std::vector<bool> results;
+        for (Value result : made.results) results.push_back(is_needed(result));
+        const std::vector<bool> parameters = (*parameters_needed)(call.function, results);
+        for (size_t i = 0; i < made.operands.size(); ++i)
+            if (parameters[i]) need(made.operands[i]);
     }
 
     // A carried value is needed if its result is, or if the next iteration of a needed one reads it: a round of marking
@@ -75,6 +83,23 @@ private:
         }
     }
     static constexpr int rounds_max = 8;
+};
+
+class Remover {
+public:
+    explicit Remover(Function& whole) : function(whole), marker(whole) {}
+
+    void run()
+    {
+        marker.need(function.body.yields);
+        marker.mark(function.body);
+        sweep(function.body);
+        number();
+    }
+
+private:
+    Function& function;
+    Marker marker;
 
     template <typename Keep>
     static void filter(std::vector<Value>& values, size_t first, const Keep& keep)
@@ -87,13 +112,13 @@ private:
 
     void sweep(Block& block)
     {
-        std::erase_if(block.instructions, [&](const Instruction& made) { return !is_needed(made); });
+        std::erase_if(block.instructions, [&](const Instruction& made) { return !marker.is_needed(made); });
         for (Instruction& made : block.instructions) {
             auto* choice = std::get_if<If>(&made.kind);
             auto* loop = std::get_if<For>(&made.kind);
             if (!choice && !loop) continue;
             const std::vector<Value> results = made.results;
-            auto keep = [&](size_t i) { return static_cast<bool>(needed[results[i].index]); };
+            auto keep = [&](size_t i) { return marker.is_needed(results[i]); };
             filter(made.results, 0, keep);
             if (loop) filter(made.operands, 1, keep);
             for (Block& inner : choice ? choice->arms : loop->body) {
@@ -140,6 +165,16 @@ private:
 };
 
 } // namespace
+
+std::vector<bool> needed_values(const Function& function, const std::vector<bool>& results,
+                                const ParametersNeeded& parameters)
+{
+    Marker marker(function, &parameters);
+    for (size_t i = 0; i < results.size(); ++i)
+        if (results[i]) marker.need(function.body.yields[i]);
+    marker.mark(function.body);
+    return std::move(marker.needed);
+}
 
 void remove_dead_code(Function& function)
 {

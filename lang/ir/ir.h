@@ -176,8 +176,8 @@ struct Parameter {
 
 // A texture and its entry functions. An entry has no parameters; it reads inputs and block.
 //   height:           results (height_m: real, faults: u32)
-//   height_gradient:  results (height_m, gx, gy, gz: real, faults: u32, then a real per bit of `writes`), height
-//                     bit-equal to that of `height`
+//   height_gradient:  results (height_m, gx, gy, gz: real, faults: u32, then a real per bit of `writes`, then the
+//                     faults of the height alone: u32), height bit-equal to that of `height`
 // Both test their results: no entry returns a value that is not finite (see HAPTEL_FAULT_*).
 struct Texture {
     std::string name, doc;

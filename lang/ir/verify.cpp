@@ -348,6 +348,7 @@ std::string verify(const Module& module)
         for (size_t with_outputs : {0, 2})
             entries[with_outputs].second.resize(
                 entries[with_outputs].second.size() + static_cast<size_t>(std::popcount(texture.writes)), real);
+        entries[2].second.push_back(faults);
         for (const auto& [index, results] : entries) {
             if (std::string problem = check_entry(module, texture, index, results); !problem.empty()) return problem;
             if (index == UINT32_MAX) continue;

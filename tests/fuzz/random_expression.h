@@ -11,8 +11,8 @@
 
 namespace haptel::fuzz {
 
-enum class Kind : uint8_t { real, whole, word, truth, vec2, vec3, mat2 };
-inline constexpr uint64_t kinds = 7;
+enum class Kind : uint8_t { real, whole, word, truth, vec2, vec3, vec4, mat2, mat3 };
+inline constexpr uint64_t kinds = 9;
 const char* type_of(Kind kind);
 
 struct Variable {
@@ -21,8 +21,9 @@ struct Variable {
     bool assignable;
 };
 
-// Functions of the program by what they take: float(float, float), float(vec3), vec2(vec2), int(int, uint).
-enum class Shape : uint8_t { of_two, field, map, of_ints };
+// Functions of the program by what they take: float(float, float), float(vec3), vec2(vec2), int(int, uint),
+// bool(float), float(float[3], bool).
+enum class Shape : uint8_t { of_two, field, map, of_ints, test, of_array };
 struct Callable {
     std::string name;
     Shape shape;
@@ -50,18 +51,21 @@ protected:
     std::string word(int depth);
     std::string truth(int depth);
     std::string vector(int size, int depth);
-    std::string matrix(int depth);
+    std::string matrix(int size, int depth);
     std::string number();
     std::string whole_number();
+    std::string swizzle(int from, int size); // ".xy", of a vector of `from` components
 
 private:
     std::mt19937_64 random;
     int names = 0;
 
     std::string variable_or(Kind kind, const std::function<std::string()>& other);
+    std::string choice(Kind kind, int depth);
     const Callable* any_callable(Shape shape);
-    std::string real_of_vectors(int depth);
+    std::string real_of_parts(int depth);
     std::string real_of_calls(int depth);
+    std::string reals(int size, int depth); // a list of arguments
 };
 
 } // namespace haptel::fuzz

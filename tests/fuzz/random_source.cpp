@@ -7,22 +7,37 @@ namespace {
 
 class Writer : public ExpressionWriter {
 public:
-    using ExpressionWriter::ExpressionWriter;
+    Writer(uint64_t seed, bool odd) : ExpressionWriter(seed), is_odd(odd) {}
 
     std::string program()
     {
         line("const float T[4] = {0.5, -1.25, 2.0, " + number() + "};");
-        line("const int W[4] = {3, -7, 2147483647, " + whole_number() + "};");
+        line("const int W[] = {3, -7, 2147483647, " + whole_number() + ",};");
+        line("const uint[3] U = {1u, 4294967295u, 0x10u};");
+        line("const vec2 V[3] = {vec2(0.5), vec2(1.0, -2.0), vec2(" + number() + ")};");
+        line("const mat2 M[2] = {mat2(0.6, 0.8, -0.8, 0.6), mat2(2.0)};");
+        line("const float C1 = " + number() + " * 0.5, C2 = 1.0 - " + number() + ";");
+        line("const int FEW = 1 + 2;");
         line("float by_two(float f(float, float), float x) { return f(x, 0.5) - f(0.25, x); }");
-        for (int i = static_cast<int>(below(3)); i > 0; --i) function();
-        line("texture t(float a = 0.7 in 0.1 .. 2.0, int k = 3 in 1 .. 5, bool b = true)\n{");
+        line("float over(float f(vec3), const vec3 v) { return f(v.zxy) - 0.5 * f(v); }");
+        for (int i = static_cast<int>(below(4)); i > 0; --i) function();
+        has_output = below(3) == 0;
+        line("texture t(float a = 0.7 in 0.1 .. 2.0, int k = 3 in 1 .. 5, bool b = true, uint m = 2 in 0 .. 4" +
+             std::string(has_output ? ", out float friction_scale)\n{" : ",)\n{"));
         ++indent;
         line("vec3 q = p / 1m;");
-        scope = {{"q", Kind::vec3, true},   {"a", Kind::real, false}, {"k", Kind::whole, false},
-                 {"b", Kind::truth, false}, {"n", Kind::vec3, false}, {"uv", Kind::vec2, false}};
+        scope = {{"q", Kind::vec3, true},    {"a", Kind::real, false},  {"k", Kind::whole, false},
+                 {"b", Kind::truth, false},  {"m", Kind::word, false},  {"n", Kind::vec3, false},
+                 {"uv", Kind::vec2, false},  {"C1", Kind::real, false}, {"C2", Kind::real, false},
+                 {"FEW", Kind::whole, false}};
+        few = {"k", "FEW", "int(m)", "k - 1"};
+        if (has_output) {
+            line("friction_scale = 1.0 + abs(" + tame(2) + ");");
+            scope.push_back({"friction_scale", Kind::real, true});
+        }
         in_texture = true;
         statements(2 + static_cast<int>(below(5)), 0);
-        line("return 1m * (" + real(3) + ");");
+        line("return " + returned(3) + ";");
         --indent;
         line("}");
         return text;
@@ -30,31 +45,41 @@ public:
 
 private:
     std::string text;
+    const bool is_odd;
     int indent = 0, loops = 0;
-    bool in_texture = false, in_loop = false;
+    bool in_texture = false, has_output = false;
+    Kind result = Kind::real;
+    std::vector<std::string> few; // whole numbers between -1 and 5 for certain
 
     void line(const std::string& code) { text += std::string(static_cast<size_t>(indent) * 4, ' ') + code + "\n"; }
+    std::string returned(int depth) { return in_texture ? "1m * (" + real(depth) + ")" : of(result, depth); }
 
     // One of the shapes that expressions know to call.
     void function()
     {
         static const struct {
             Kind result;
-            const char *type, *parameters;
+            const char* parameters;
             std::vector<Variable> variables;
         } shapes[] = {
-            {Kind::real, "float", "float x, float y", {{"x", Kind::real, true}, {"y", Kind::real, true}}},
-            {Kind::real, "float", "vec3 v", {{"v", Kind::vec3, true}}},
-            {Kind::vec2, "vec2", "vec2 w", {{"w", Kind::vec2, true}}},
-            {Kind::whole, "int", "int i, uint j", {{"i", Kind::whole, true}, {"j", Kind::word, true}}},
+            {Kind::real, "float x, const in float y", {{"x", Kind::real, true}, {"y", Kind::real, false}}},
+            {Kind::real, "vec3 v", {{"v", Kind::vec3, true}}},
+            {Kind::vec2, "in vec2 w", {{"w", Kind::vec2, true}}},
+            {Kind::whole, "int i, uint j", {{"i", Kind::whole, true}, {"j", Kind::word, true}}},
+            {Kind::truth, "float x", {{"x", Kind::real, true}}},
+            {Kind::real, "float l[3], bool c", {{"c", Kind::truth, true}}},
         };
         const size_t shape = below(std::size(shapes));
         const std::string name = "f" + std::to_string(callables.size());
-        line(std::string(shapes[shape].type) + " " + name + "(" + shapes[shape].parameters + ")\n{");
+        result = shapes[shape].result;
+        line(std::string(type_of(result)) + " " + name + "(" + shapes[shape].parameters + ")\n{");
         ++indent;
         scope = shapes[shape].variables;
+        few = {"2", "FEW", "int(3u)"};
+        if (static_cast<Shape>(shape) == Shape::of_array) list("l");
+        if (below(2)) scope.push_back({"C2", Kind::real, false});
         statements(static_cast<int>(below(4)), 0);
-        line("return " + of(shapes[shape].result, 3) + ";");
+        line("return " + returned(3) + ";");
         --indent;
         line("}");
         callables.push_back({name, static_cast<Shape>(shape)});
@@ -76,24 +101,28 @@ private:
 
     void statement(int depth)
     {
-        switch (below(12)) {
+        switch (below(15)) {
         case 0:
         case 1:
             if (depth < 3) return branch(depth);
             break;
         case 2:
+        case 3:
             if (depth < 3 && loops < 2) return loop(depth);
             break;
-        case 3:
+        case 4:
             if (depth < 3) return array();
             break;
-        case 4:
         case 5:
-        case 6: return assignment();
-        case 7:
-            if (depth > 0 && !in_loop && below(3) == 0 && in_texture)
-                return line("if (" + truth(1) + ") return 1m * (" + real(2) + ");");
+        case 6:
+        case 7: return assignment();
+        case 8:
+            if (depth > 0 && below(3) == 0) return line("if (" + truth(1) + ") return " + returned(2) + ";");
             break;
+        case 9:
+            if (depth < 3) return block(depth);
+            break;
+        case 10: return late();
         default: break;
         }
         declaration();
@@ -102,9 +131,35 @@ private:
     void declaration()
     {
         const auto kind = static_cast<Kind>(below(kinds));
+        const std::string name = fresh(), value = of(kind, 3);
+        const bool is_const = below(5) == 0;
+        if (!is_const && below(5) == 0) {
+            const std::string other = fresh();
+            line(std::string(type_of(kind)) + " " + name + " = " + value + ", " + other + " = " + of(kind, 1) + ";");
+            scope.push_back({other, kind, true});
+        } else {
+            line((is_const ? "const " : "") + std::string(type_of(kind)) + " " + name + " = " + value + ";");
+        }
+        scope.push_back({name, kind, !is_const});
+    }
+
+    // Declared first, then given a value on every path.
+    void late()
+    {
+        const auto kind = static_cast<Kind>(below(kinds));
         const std::string name = fresh();
-        line(std::string(type_of(kind)) + " " + name + " = " + of(kind, 3) + ";");
+        line(std::string(type_of(kind)) + " " + name + ";");
+        line("if (" + truth(2) + ") " + name + " = " + of(kind, 2) + ";");
+        line("else if (" + truth(1) + ") { " + name + " = " + of(kind, 1) + "; }");
+        line("else " + name + " = " + of(kind, 2) + ";");
         scope.push_back({name, kind, true});
+    }
+
+    void block(int depth)
+    {
+        line("{;");
+        body(depth);
+        line("}");
     }
 
     void assignment()
@@ -113,15 +168,29 @@ private:
         if (!target) return declaration();
         const std::string name = target->name;
         switch (target->kind) {
-        case Kind::real: return line(name + one_of({" = ", " += ", " -= ", " *= "}) + tame(3) + ";");
-        case Kind::whole: return line(name + one_of({" = ", " += ", " *= ", " ^= ", " <<= ", " %= "}) + whole(2) + ";");
-        case Kind::word: return line(name + one_of({" = ", " += ", " -= ", " >>= ", " |= "}) + word(2) + ";");
+        case Kind::real:
+            if (below(8) == 0)
+                return line(one_of({"++" + name, name + "--", name + " /= (1.5 + abs(" + tame(2) + "))"}) + ";");
+            return line(name + one_of({" = ", " += ", " -= ", " *= "}) + tame(3) + ";");
+        case Kind::whole:
+            if (below(5) == 0) return line(one_of({"++" + name, name + "++", "--" + name}) + ";");
+            return line(name + one_of({" = ", " += ", " -= ", " *= ", " /= ", " ^= ", " <<= ", " %= "}) + whole(2) +
+                        ";");
+        case Kind::word:
+            return line(name + one_of({" = ", " += ", " -= ", " *= ", " >>= ", " |= ", " &= ", " %= "}) + word(2) +
+                        ";");
         case Kind::truth: return line(name + " = " + truth(2) + ";");
-        case Kind::vec2: return line(name + one_of({" = ", " += ", ".yx = "}) + vector(2, 2) + ";");
+        case Kind::vec2:
+            if (below(4) == 0) return line(name + "[" + index(2, 1) + "] = " + real(2) + ";");
+            return line(name + one_of({" = ", " += ", ".yx = ", " /= 2.0 + "}) + vector(2, 2) + ";");
         case Kind::vec3:
-            if (below(2)) return line(name + one_of({".xz = ", ".yx += "}) + vector(2, 2) + ";");
+            if (below(2)) return line(name + one_of({".xz = ", ".yx += ", ".gb *= "}) + vector(2, 2) + ";");
             return line(name + one_of({" = ", " += ", ".zxy = "}) + vector(3, 2) + ";");
-        case Kind::mat2: return line(name + "[" + std::to_string(below(2)) + "] = " + vector(2, 2) + ";");
+        case Kind::vec4: return line(name + one_of({".wx = ", ".st -= ", ".br *= "}) + vector(2, 2) + ";");
+        case Kind::mat2: return line(name + "[" + index(2, 1) + "] = " + vector(2, 2) + ";");
+        case Kind::mat3:
+            if (below(2)) return line(name + " *= " + tame(2) + ";");
+            return line(name + "[" + std::to_string(below(3)) + "][" + index(3, 1) + "] = " + real(2) + ";");
         }
     }
 
@@ -129,6 +198,10 @@ private:
     {
         line("if (" + truth(2) + ") {");
         body(depth);
+        if (below(3) == 0) {
+            line("} else if (" + truth(1) + ") {");
+            body(depth);
+        }
         if (below(2)) {
             line("} else {");
             body(depth);
@@ -136,18 +209,56 @@ private:
         line("}");
     }
 
+    // Between -1 and 5 for certain, from what the body of no loop changes.
+    std::string small() { return below(2) ? std::to_string(below(6)) : few[below(few.size())]; }
+
+    // A start or bound from -2 to 10: a small number, a sum of two, or a variable of its own that is held between.
+    std::string end_of_loop()
+    {
+        switch (below(4)) {
+        case 0: return small() + " + " + small();
+        case 1: {
+            const std::string own = fresh(); // in no scope: the body leaves it alone
+            line("int " + own + " = " + whole(2) + ";");
+            return one_of({"clamp(" + own + ", -2, 4)", "min(max(" + own + ", 0), 4)", "(" + own + " & 3)"});
+        }
+        default: return small();
+        }
+    }
+
     void loop(int depth)
     {
+        const bool is_odd_here = is_odd && below(3) > 0, is_word = !is_odd_here && below(4) == 0, up = below(3) > 0;
         const std::string counter = fresh();
-        std::string bound = one_of({"4", "3", in_texture ? "k" : "5"});
-        if (below(3) == 0) { // a variable of its own, which the body leaves alone
-            const std::string turns = fresh();
-            line("int " + turns + " = " + whole(2) + ";");
-            bound = "min(" + turns + ", 4)";
+        const auto end = [&] { return is_word ? "uint(clamp(" + end_of_loop() + ", 0, 9))" : end_of_loop(); };
+        std::string start = end(), bound = end();
+        if (!is_word && below(5) == 0) { // each held on its own side only
+            const std::string first = fresh(), last = fresh();
+            line("int " + first + " = " + whole(2) + ", " + last + " = " + whole(2) + ";");
+            start = (up ? "max(" : "min(") + first + (up ? ", -2)" : ", 4)");
+            bound = (up ? "min(" : "max(") + last + (up ? ", 4)" : ", -2)");
         }
-        line("for (int " + counter + " = 0; " + counter + " < " + bound + "; ++" + counter + ") {");
+        std::string step = up ? one_of({"++" + counter, counter + "++", counter + " += 2", counter + " += FEW"})
+                              : one_of({"--" + counter, counter + "--", counter + " -= 2"});
+        if (is_word && step.ends_with("FEW")) step = counter + " += 2u";
         scope.push_back({counter, Kind::whole, false});
-        const bool outer = std::exchange(in_loop, true);
+        if (is_odd_here) { // what is refused must be told, whatever stands there
+            if (below(2)) bound = one_of({counter + " + 2", "10 - " + counter, "min(" + whole(1) + ", 4)", whole(2)});
+            if (below(4) == 0) step = counter + " += " + one_of({counter, whole(1)});
+            if (below(4) == 0) start = whole(1);
+        }
+        const std::string compare = up ? one_of({" < ", " <= "}) : one_of({" > ", " >= "});
+        const std::string mirrored = compare == " < "    ? " > "
+                                     : compare == " <= " ? " >= "
+                                     : compare == " > "  ? " < "
+                                                         : " <= ";
+        const std::string condition = below(4) ? counter + compare + bound : "(" + bound + ")" + mirrored + counter;
+        line("for (" + std::string(is_word ? "uint " : "int ") + counter + " = " + start + "; " + condition + "; " +
+             step + ") {");
+        scope.back().kind = is_word ? Kind::word : Kind::whole;
+        const std::vector<std::string> outer_few = few;
+        if (!is_word) few.push_back("clamp(" + counter + ", -1, 5)");
+        if (!is_word) few.push_back("(FEW - clamp(" + counter + ", 0, 2))");
         ++loops;
         if (below(3) == 0) {
             ++indent;
@@ -156,19 +267,28 @@ private:
         }
         body(depth);
         --loops;
-        in_loop = outer;
+        few = outer_few;
         scope.pop_back();
         line("}");
     }
 
     // Elements are read back into a variable: expressions need not know of arrays.
-    void array()
+    void list(const std::string& name)
     {
-        const std::string name = fresh(), element = fresh();
-        line("float " + name + "[3] = {" + real(2) + ", " + real(1) + ", " + number() + "};");
-        line(name + "[" + index(3, 2) + "] = " + real(2) + ";");
+        const std::string element = fresh();
         line("float " + element + " = " + name + "[" + index(3, 1) + "] + " + name + "[1];");
         scope.push_back({element, Kind::real, true});
+    }
+
+    void array()
+    {
+        const std::string name = fresh(), whole_copy = fresh();
+        line(one_of({"float " + name + "[3]", "float[3] " + name, "float[] " + name}) + " = {" + real(2) + ", " +
+             real(1) + ", " + number() + "};");
+        line(name + "[" + index(3, 2) + "]" + one_of({" = ", " += ", " *= "}) + tame(2) + ";");
+        line("float " + whole_copy + "[3] = " + name + ";");
+        line(whole_copy + "[2] = " + real(1) + ";");
+        list(below(2) ? name : whole_copy);
     }
 };
 
@@ -176,7 +296,12 @@ private:
 
 std::string random_source(uint64_t seed)
 {
-    return Writer(seed).program();
+    return Writer(seed, false).program();
+}
+
+std::string odd_source(uint64_t seed)
+{
+    return Writer(seed, true).program();
 }
 
 } // namespace haptel::fuzz

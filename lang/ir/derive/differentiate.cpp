@@ -189,8 +189,9 @@ void Differentiator::make_entries(Texture& texture)
         const Value zero = builder.real(0), height = emitter.primal(source.body.yields[0]);
         const Value height_is_fine = builder.operation(Op::is_finite, {height});
         std::vector<Value> results{builder.operation(Op::select, {height_is_fine, height, zero})};
-        Value faults = builder.operation(Op::select,
-                                         {height_is_fine, builder.u32(0), builder.u32(HAPTEL_FAULT_HEIGHT_NOT_FINITE)});
+        const Value height_fault = builder.operation(
+            Op::select, {height_is_fine, builder.u32(0), builder.u32(HAPTEL_FAULT_HEIGHT_NOT_FINITE)});
+        Value faults = height_fault;
 
         if (directions > 0) {
             std::vector<Value> gradient;
@@ -209,7 +210,10 @@ void Differentiator::make_entries(Texture& texture)
             faults = either(builder, faults, gradient_fault);
         }
         results.push_back(faults);
-        if (directions > 0) material_outputs(builder, emitter, source.body.yields, results);
+        if (directions > 0) {
+            material_outputs(builder, emitter, source.body.yields, results);
+            results.push_back(height_fault);
+        }
         return builder.finish(results);
     };
     texture.height = make(0, texture.name + " height");

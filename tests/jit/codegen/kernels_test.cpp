@@ -199,4 +199,7 @@ TEST_CASE("the hash of a function covers all that decides its code, and neither 
     module = parsed(text("f", "2", "add", "1, 2", "3"));
     module.functions[0].body.instructions[0].span = {3, 14, 15};
     CHECK(jit::to_text(jit::function_hashes(module).back()) == plain);
+    module = parsed(text("f", "2", "add", "1, 2", "3"));
+    module.functions[0].is_library = true; // the choice of what is called and what is written in reads it
+    CHECK(jit::to_text(jit::function_hashes(module).back()) != plain);
 }

@@ -64,7 +64,7 @@ TEST_CASE("a library texture becomes an object for AArch64 that asks for nothing
     CHECK(head.e_machine == EM_AARCH64);
     const Symbols symbols = symbols_of(made.object);
     std::set<std::string> wanted;
-    for (const jit::EntryPoint& entry : entries) wanted.insert(entry.name);
+    for (const jit::EntryPoint& entry : entries) wanted.insert(jit::symbol_of(entry));
     CHECK(symbols.defined == wanted);
     const auto library = jit::code_library();
     for (const std::string& name : symbols.undefined) {

@@ -348,3 +348,46 @@ TEST_CASE("200 edits in a row, every fourth broken: the last good one is felt, a
     }
     CHECK(jit::programs_alive() == before);
 }
+
+TEST_CASE("a callback may make another live texture, and destroy it")
+{
+    const test::Folder folder;
+    folder.write("t.haptel", constant("1"));
+    std::mutex mutex;
+    std::condition_variable changed;
+    int published = 0;
+    bool is_gone = false;
+    std::vector<std::unique_ptr<jit::LiveTexture>> others;
+    const auto request = [&](const std::string& file) {
+        folder.write(file, constant("2"));
+        TextureRequest asked = test::request_over(0.05);
+        asked.reference = folder.file(file + ":t");
+        return asked;
+    };
+    const auto other = [&](const std::string& file) {
+        const auto publish = [&](TextureBinding) {
+            const std::lock_guard lock(mutex);
+            ++published;
+            changed.notify_all();
+        };
+        return std::make_unique<jit::LiveTexture>(request(file), jit::LiveCallbacks{publish, {}},
+                                                  jit::LiveOptions{std::make_shared<jit::ProgramCache>()});
+    };
+    jit::LiveCallbacks callbacks;
+    callbacks.publish = [&](TextureBinding) { others.push_back(other("published.haptel")); };
+    callbacks.report = [&](std::string_view) {
+        others.push_back(other("reported.haptel"));
+        other("gone.haptel");
+        const std::lock_guard lock(mutex);
+        is_gone = true;
+        changed.notify_all();
+    };
+    jit::LiveTexture first(request("first.haptel"), callbacks, jit::LiveOptions{std::make_shared<jit::ProgramCache>()});
+    folder.write("first.haptel", "texture t() { return 1mm }"); // what is to be reported
+    std::unique_lock lock(mutex);
+    CHECK(changed.wait_for(lock, 20s, [&] { return published >= 1 && is_gone; }));
+    lock.unlock();
+    folder.write("first.haptel", constant("3"));
+    lock.lock();
+    CHECK(changed.wait_for(lock, 20s, [&] { return published >= 2; }));
+}

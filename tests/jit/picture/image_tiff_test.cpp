@@ -6,6 +6,7 @@
 #include <tiffio.h>
 
 #include <array>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <utility>
@@ -84,4 +85,70 @@ TEST_CASE("picture: a TIFF in which white is 0 is turned over where it has whole
     CHECK(read(white, real, 0.1, 1.0) == Grays{0.1, 1});
     CHECK(read(PHOTOMETRIC_MINISBLACK, real, 0.25f, -3.5f) == Grays{0.25, -3.5});
     CHECK(read(PHOTOMETRIC_MINISBLACK, whole, uint8_t{51}, uint8_t{255}) == Grays{0.2, 1});
+}
+
+namespace {
+
+// Three columns and two rows as they stand in the file, of so many bits a sample; the numbers are in steps of 1/10.
+jit::Picture six_texels(const std::string& file, uint16_t bits, uint16_t orientation, bool of_a_palette)
+{
+    TIFF* const tiff = TIFFOpen(file.c_str(), "w");
+    REQUIRE(tiff);
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, uint32_t{3});
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, uint32_t{2});
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits);
+    TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, uint16_t{1});
+    TIFFSetField(tiff, TIFFTAG_ORIENTATION, orientation);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, of_a_palette ? PHOTOMETRIC_PALETTE : PHOTOMETRIC_MINISBLACK);
+    std::array<uint16_t, 256> grays{};
+    for (uint16_t i = 0; i < 256; ++i) grays[i] = static_cast<uint16_t>(257 * i);
+    if (of_a_palette) TIFFSetField(tiff, TIFFTAG_COLORMAP, grays.data(), grays.data(), grays.data());
+    for (uint32_t row = 0; row < 2; ++row) {
+        std::array<uint8_t, 3> bytes{};
+        std::array<uint16_t, 3> words{};
+        for (uint32_t column = 0; column < 3; ++column) {
+            const uint32_t tenths = 1 + 3 * row + column;
+            bytes[column] = static_cast<uint8_t>(25.5 * tenths);
+            words[column] = static_cast<uint16_t>(6553.5 * tenths);
+        }
+        CHECK(TIFFWriteScanline(tiff, bits == 8 ? static_cast<void*>(bytes.data()) : words.data(), row, 0) == 1);
+    }
+    TIFFClose(tiff);
+    std::ifstream in(file, std::ios::binary);
+    return jit::read_tiff(std::string{std::istreambuf_iterator<char>(in), {}});
+}
+
+} // namespace
+
+// TIFF 6.0, section 8, "Orientation": which side of the picture the file's row 0 and column 0 are.
+TEST_CASE("picture: a TIFF lies as its orientation says, whatever its bits")
+{
+    const Folder folder;
+    struct Lying {
+        uint16_t orientation;
+        int64_t width, height;
+        std::string rows; // of tenths, from the top
+    };
+    const Lying all[] = {
+        {ORIENTATION_TOPLEFT, 3, 2, "123456"},  {ORIENTATION_TOPRIGHT, 3, 2, "321654"},
+        {ORIENTATION_BOTRIGHT, 3, 2, "654321"}, {ORIENTATION_BOTLEFT, 3, 2, "456123"},
+        {ORIENTATION_LEFTTOP, 2, 3, "142536"},  {ORIENTATION_RIGHTTOP, 2, 3, "415263"},
+        {ORIENTATION_RIGHTBOT, 2, 3, "635241"}, {ORIENTATION_LEFTBOT, 2, 3, "362514"},
+    };
+    for (const Lying& lying : all)
+        for (const auto& [bits, of_a_palette] : {std::pair{8, false}, {16, false}, {8, true}}) {
+            INFO("orientation " << lying.orientation << ", " << bits << " bits, palette " << of_a_palette);
+            const jit::Picture picture =
+                six_texels(folder.file("lying.tif"), static_cast<uint16_t>(bits), lying.orientation, of_a_palette);
+            CHECK(picture.error.empty());
+            CHECK(picture.width == lying.width);
+            CHECK(picture.height == lying.height);
+            REQUIRE(picture.gray.size() == 6);
+            std::string rows;
+            for (int64_t row = picture.height; row-- > 0;) // a picture's begin at the bottom
+                for (int64_t column = 0; column < picture.width; ++column)
+                    rows += static_cast<char>(
+                        '0' + std::lround(10 * picture.gray[static_cast<size_t>(row * picture.width + column)]));
+            CHECK(rows == lying.rows);
+        }
 }

@@ -199,7 +199,7 @@ TEST_CASE("verify: an entry returns as many material outputs as its texture writ
     const auto with = [](const std::string& writes) {
         return verify(parsed(R"(
         function "b" () { %h = real 0 %s = real 1 return %h, %s }
-        function "hg" () { %h = real 0 %s = real 1 %f = u32 0 return %h, %h, %h, %h, %f, %s }
+        function "hg" () { %h = real 0 %s = real 1 %f = u32 0 return %h, %h, %h, %h, %f, %s, %f }
         texture "t" { block 56 reads 0 writes )" +
                              writes + " body \"b\" height_gradient \"hg\" }"));
     };

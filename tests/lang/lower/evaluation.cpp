@@ -52,7 +52,7 @@ Sample evaluate(const std::string& source, const Inputs& inputs)
     sample.height = std::get<double>(results[0]);
     for (size_t i = 0; i < 3; ++i) sample.gradient[i] = std::get<double>(results[1 + i]);
     sample.faults = std::get<uint32_t>(results[4]);
-    for (size_t i = 5; i < results.size(); ++i) sample.outputs.push_back(std::get<double>(results[i]));
+    for (size_t i = 5; i + 1 < results.size(); ++i) sample.outputs.push_back(std::get<double>(results[i]));
     return sample;
 }
 
