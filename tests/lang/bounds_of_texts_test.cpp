@@ -60,6 +60,8 @@ TEST_CASE("facts: a curvature says nothing of a gradient across a kink, nor a sl
          {"value 0 .. 2, slope 1.1, curvature 0.1, class C0", "value 0 .. 2, slope 1.1, curvature 0.1"})
         for (const double size : {1e-3, 0.1, 0.9})
             check_holds("/// @facts " + facts + "\n" + bent, -size, 0.8 * size, {-1 - 0.1 * size, 1 + 0.08 * size});
+    // left of 0 for the millionth part of the box, which is nowhere the middle of what it is cut into
+    check_holds("/// @facts value 0 .. 2, slope 1.1, curvature 0.1, class C0\n" + bent, -1e-6, 1, {-1, 1.1});
     // a roof of half a width of 0.00001: its gradient is 1, -1, and 0 in the middle of the box
     const std::string roof = "float f(float q) { return max(0.00001 - abs(q - 0.0312347), 0.0); }\n"
                              "texture t() { return grad(f)(p.x / 1m); }";
