@@ -263,8 +263,7 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
     if (own != Smoothness::smooth) variation.wrap = wrap_made_by(op, operands, variations[0]);
     roughen(variation, own, {made.span, op});
     if (own != Smoothness::smooth && variation.kink != 0) variation.kink = 0;
-    const bool is_length = op == Op::length2 || op == Op::length3 || op == Op::length4;
-    const bool at_zero = op == Op::abs || is_length || ((op == Op::min || op == Op::max) && is_zero_side(operands));
+    const bool at_zero = op == Op::abs || is_length(op) || ((op == Op::min || op == Op::max) && is_zero_side(operands));
     if (own == Smoothness::c0 && was_smooth && at_zero) variation.kink = ++kinks, variation.kink_power = 1;
     return variation;
 }
