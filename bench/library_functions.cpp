@@ -1,6 +1,6 @@
 #include "bench/library_functions.h"
 
-#include <cmath>
+#include "lang/math/elementary_exact.h"
 
 namespace haptel::bench {
 namespace {
@@ -12,26 +12,15 @@ template <typename Real, typename Use>
 auto with_function(Op op, const Use& use)
 {
     switch (op) {
-    case Op::sin: return use([](Real a, Real) { return std::sin(a); });
-    case Op::cos: return use([](Real a, Real) { return std::cos(a); });
-    case Op::tan: return use([](Real a, Real) { return std::tan(a); });
-    case Op::asin: return use([](Real a, Real) { return std::asin(a); });
-    case Op::acos: return use([](Real a, Real) { return std::acos(a); });
-    case Op::atan: return use([](Real a, Real) { return std::atan(a); });
-    case Op::atan2: return use([](Real a, Real b) { return a == 0 && b == 0 ? Real(0) : std::atan2(a, b); });
-    case Op::sinh: return use([](Real a, Real) { return std::sinh(a); });
-    case Op::cosh: return use([](Real a, Real) { return std::cosh(a); });
-    case Op::tanh: return use([](Real a, Real) { return std::tanh(a); });
-    case Op::asinh: return use([](Real a, Real) { return std::asinh(a); });
-    case Op::acosh: return use([](Real a, Real) { return std::acosh(a); });
-    case Op::atanh: return use([](Real a, Real) { return std::atanh(a); });
-    case Op::exp: return use([](Real a, Real) { return std::exp(a); });
-    case Op::exp2: return use([](Real a, Real) { return std::exp2(a); });
-    case Op::log: return use([](Real a, Real) { return std::log(a); });
-    case Op::log2: return use([](Real a, Real) { return std::log2(a); });
-    case Op::pow: return use([](Real a, Real b) { return std::pow(a, b); });
-    default: return use([](Real a, Real) { return a; });
+#define ELEMENTARY(name, ...)                                                                                          \
+    case Op::name: return use([](Real a, Real) { return ir::exact::name(a); });
+#define ELEMENTARY2(name, ...)                                                                                         \
+    case Op::name: return use([](Real a, Real b) { return ir::exact::name(a, b); });
+#define OP(name, ...)                                                                                                  \
+    case Op::name: break;
+#include "lang/ir/ops.def"
     }
+    return use([](Real a, Real) { return a; });
 }
 
 template <typename Real>

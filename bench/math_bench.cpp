@@ -46,27 +46,12 @@ void add_texture(ir::Module& module, Op op)
     module.textures.push_back(std::move(texture));
 }
 
-// Ordinary arguments of a function.
+// Ordinary arguments of a function: where it is defined, not far away, and of a power where it is a number.
 std::pair<double, double> usual(Op op)
 {
-    switch (op) {
-    case Op::log:
-    case Op::log2: return {1e-3, 1e3};
-    case Op::pow: return {0.1, 5};
-    case Op::asin:
-    case Op::acos:
-    case Op::atanh: return {-1, 1};
-    case Op::acosh: return {1, 100};
-    case Op::exp:
-    case Op::exp2:
-    case Op::sinh:
-    case Op::cosh: return {-20, 20};
-    case Op::tanh:
-    case Op::atan:
-    case Op::atan2:
-    case Op::asinh: return {-5, 5};
-    default: return {-100, 100};
-    }
+    const ir::Traits& row = ir::traits(op);
+    if (row.shape == ir::Shape::power) return {0.1, 5};
+    return {std::max(row.from, -20.0), std::min(row.to, 20.0)};
 }
 
 // The same numbers as points one by one, and as arrays.
@@ -190,7 +175,7 @@ std::vector<MathRow> bench_math(bool quick, const std::function<void(double)>& p
     const std::vector<Op> ops = ir::elementary_ops();
     for (const Op op : ops) {
         progress(0.5 * static_cast<double>(rows.size()) / static_cast<double>(ops.size()));
-        rows.push_back({std::string(ir::op_info(op).name), jit::batch_lanes(), ir::elementary_error(op), {}, {}});
+        rows.push_back({std::string(ir::op_info(op).name), jit::batch_lanes(), ir::traits(op).ulp, {}, {}});
         measure_errors(rows.back(), op, quick ? 500 : 20'000);
         measured.emplace_back(op, *code[0], *code[1]);
     }

@@ -49,26 +49,7 @@ std::string smooth_form(const ir::Cause& cause)
 {
     if (cause.is_library) return "haptel info tells how smooth the library's functions are";
     if (!cause.op) return "blend the two with smoothstep() where they are to differ, or let them meet";
-    switch (*cause.op) {
-    case Op::abs: return "smoothabs(x, k) rounds the kink off";
-    case Op::min: return "smoothmin(a, b, k) rounds the kink off";
-    case Op::max: return "smoothmax(a, b, k) rounds the kink off";
-    case Op::length2:
-    case Op::length3:
-    case Op::length4: return "a length has a tip where it is 0: use dot(x, x), or sqrt(dot(x, x) + k * k)";
-    case Op::floor:
-    case Op::ceil:
-    case Op::trunc:
-    case Op::round:
-    case Op::sign: return "smoothstep() makes a ramp of the step";
-    case Op::fract:
-    case Op::mod: return "sinturn() and wave() repeat smoothly";
-    case Op::sqrt:
-    case Op::pow: return "its slope has no bound at 0: add a small constant to what it is of";
-    case Op::div: return "keep the divisor away from 0";
-    case Op::atan2: return "the angle jumps by a whole turn: use it inside sin() or cos()";
-    default: return "blend with smoothstep(), smoothabs(), smoothmin() or smoothmax()";
-    }
+    return std::string(ir::traits(*cause.op).instead);
 }
 
 std::string shown(double value)
@@ -87,20 +68,8 @@ std::string shown(const ir::Interval& range)
 // As the author wrote it.
 std::string name_of(Op op)
 {
-    switch (op) {
-    case Op::add: return "this sum";
-    case Op::sub: return "this difference";
-    case Op::mul: return "this product";
-    case Op::div: return "this quotient";
-    case Op::length2:
-    case Op::length3:
-    case Op::length4: return "this length";
-    case Op::atan2: return "atan()";
-    case Op::r_to_i: return "int()";
-    case Op::r_to_u: return "uint()";
-    case Op::spline: return "this picture";
-    default: return std::string(ir::op_info(op).name) + "()";
-    }
+    const std::string name(ir::called(op));
+    return name.find(' ') == name.npos ? name + "()" : name;
 }
 
 // The call that all of `text` is, as it was written: "clamp()" of "clamp(x, 0.0, 1.0)", "grad(noise)" of

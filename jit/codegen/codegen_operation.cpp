@@ -221,24 +221,9 @@ Value* Emitter::emit(ir::Op op, llvm::Type* result, bool fuses)
     case Op::length4: return length();
     case Op::sinturn: return sine_of_turns(builder, way_to_whole_turn(), result, fuses);
     case Op::costurn: return cosine_of_turns(builder, way_to_whole_turn(), result, fuses);
-    case Op::sin:
-    case Op::cos:
-    case Op::tan:
-    case Op::asin:
-    case Op::acos:
-    case Op::atan:
-    case Op::atan2:
-    case Op::sinh:
-    case Op::cosh:
-    case Op::tanh:
-    case Op::asinh:
-    case Op::acosh:
-    case Op::atanh:
-    case Op::exp:
-    case Op::exp2:
-    case Op::log:
-    case Op::log2:
-    case Op::pow: return call_elementary(builder, op, operands, result);
+#define ELEMENTARY(name, ...) case Op::name:
+#include "lang/ir/ops.def"
+        return call_elementary(builder, op, operands, result);
     case Op::lt: return builder.CreateFCmpOLT(a(), b());
     case Op::le: return builder.CreateFCmpOLE(a(), b());
     case Op::eq: return builder.CreateFCmpOEQ(a(), b());

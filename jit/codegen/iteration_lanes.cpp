@@ -216,12 +216,10 @@ private:
             return try_one(choice->arms[0].yields[static_cast<size_t>(place)]) &&
                    try_one(choice->arms[1].yields[static_cast<size_t>(place)]);
         }
-        switch (operation(maker).value_or(Op::neg)) {
-        case Op::add: return try_one(maker->operands[0]) || try_one(maker->operands[1]);
-        case Op::sub: return try_one(maker->operands[0]);
-        case Op::select: return try_one(maker->operands[1]) && try_one(maker->operands[2]);
-        default: return false;
-        }
+        const std::optional<Op> op = operation(maker);
+        if (op == Op::add) return try_one(maker->operands[0]) || try_one(maker->operands[1]);
+        if (op == Op::sub) return try_one(maker->operands[0]);
+        return op == Op::select && try_one(maker->operands[1]) && try_one(maker->operands[2]);
     }
 };
 

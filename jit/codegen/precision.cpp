@@ -10,45 +10,26 @@ namespace haptel::jit {
 
 namespace {
 
+using ir::Growth;
 using ir::Op;
 using Sinks = PrecisionPlan::Sinks;
 
 constexpr double unknown = std::numeric_limits<double>::infinity();
 constexpr double large = 8; // f32 resolves what is smaller to 5e-7
 
-// A whole number of cells must not be rounded on its way to an integer either.
-bool is_reducing(Op op)
-{
-    return ir::op_info(op).reducing || op == Op::r_to_i || op == Op::r_to_u;
-}
-
 // |result| of an operation on values of at most those sizes.
 double bound_of(Op op, const std::vector<double>& of)
 {
-    switch (op) {
-    case Op::add:
-    case Op::sub: return of[0] + of[1];
-    case Op::mul: return of[0] == 0 || of[1] == 0 ? 0 : of[0] * of[1];
-    case Op::neg:
-    case Op::abs:
-    case Op::detach: return of[0];
-    case Op::min:
-    case Op::max: return std::fmax(of[0], of[1]);
-    case Op::select: return std::fmax(of[1], of[2]);
-    case Op::sign:
-    case Op::fract:
-    case Op::sin:
-    case Op::cos:
-    case Op::sinturn:
-    case Op::costurn:
-    case Op::tanh: return 1;
-    case Op::asin:
-    case Op::acos:
-    case Op::atan:
-    case Op::atan2: return 3.2;
-    case Op::mod: return of[1];
-    default: return unknown;
+    const ir::Traits& row = ir::traits(op);
+    switch (row.growth) {
+    case Growth::range: return std::fmax(std::fabs(row.least), std::fabs(row.most));
+    case Growth::sum: return of[0] + of[1];
+    case Growth::product: return of[0] == 0 || of[1] == 0 ? 0 : of[0] * of[1];
+    case Growth::first: return of[0];
+    case Growth::largest: return std::fmax(of[of.size() - 2], of[of.size() - 1]);
+    case Growth::last: return of.back();
     }
+    return unknown;
 }
 
 Sinks result_sink(size_t result)
@@ -156,7 +137,7 @@ private:
     {
         for (ir::Value operand : made.operands) {
             if (function.type(made.results[0]) == ir::Type::real) flow(operand, sinks_of(made.results[0]));
-            if (is_reducing(operation.op)) flow(operand, 1);
+            if (ir::traits(operation.op).reduces) flow(operand, 1);
         }
     }
     void trace(const ir::Instruction& made, const ir::Call& call)

@@ -11,14 +11,6 @@
 namespace haptel::ir {
 namespace {
 
-bool commutes(Op op)
-{
-    return op == Op::add || op == Op::mul || op == Op::min || op == Op::max || op == Op::eq || op == Op::ieq ||
-           op == Op::ueq || op == Op::land || op == Op::lor || op == Op::lxor || op == Op::iadd || op == Op::imul ||
-           op == Op::iand || op == Op::ior || op == Op::ixor || op == Op::imin || op == Op::imax || op == Op::umin ||
-           op == Op::umax;
-}
-
 enum KeyKind : uint32_t {
     operation,
     real,
@@ -222,7 +214,7 @@ Value Builder::operation(Op op, std::span<const Value> operands)
 
     Value ordered[4];
     std::copy(operands.begin(), operands.end(), ordered);
-    if (commutes(op) && ordered[1].index < ordered[0].index) std::swap(ordered[0], ordered[1]);
+    if (traits(op).commutes && ordered[1].index < ordered[0].index) std::swap(ordered[0], ordered[1]);
     Instruction instruction{Operation{op}, {operands.begin(), operands.end()}, {}, span};
     return state->emit(key_of(KeyKind::operation, static_cast<uint32_t>(op), {ordered, operands.size()}),
                        std::move(instruction), {&*result, 1}, &made);

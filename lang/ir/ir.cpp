@@ -7,35 +7,18 @@
 namespace haptel::ir {
 namespace {
 
-constexpr std::string_view operands_of(std::string_view signature)
+constexpr bool are_whole(std::span<const OpInfo> rows)
 {
-    return signature.substr(0, signature.find('>'));
-}
-
-enum Flag { none, reducing };
-
-constexpr OpInfo table[] = {
-#define OP(name, arity, signature, continuity, flag, meaning)                                                          \
-    {Op::name,                                                                                                         \
-     #name,                                                                                                            \
-     arity,                                                                                                            \
-     operands_of(signature),                                                                                           \
-     std::string_view(signature).back(),                                                                               \
-     Continuity::continuity,                                                                                           \
-     flag == reducing,                                                                                                 \
-     meaning},
-#include "lang/ir/ops.def"
-#undef OP
-};
-
-constexpr bool arities_fit_signatures()
-{
-    return std::all_of(std::begin(table), std::end(table), [](const OpInfo& info) {
-        return info.operands.size() == info.arity && info.arity <= 4 &&
-               info.operands.find_first_not_of("riubm*") == std::string_view::npos;
+    return std::all_of(rows.begin(), rows.end(), [](const OpInfo& row) {
+        const bool is_spelled = row.arity <= 4 && row.operands.find_first_not_of("riubm*") == std::string_view::npos;
+        const bool is_elementary = row.kind == OpKind::elementary || row.kind == OpKind::angular;
+        const bool has_bounds = !is_elementary || (row.traits.shape != Shape::own && row.traits.ulp > 0);
+        const bool is_piecewise = row.continuity != Continuity::smooth && row.operands[0] == 'r';
+        return is_spelled && has_bounds && (!is_piecewise || row.traits.decides != Decision::nothing);
     });
 }
-static_assert(arities_fit_signatures());
+static_assert(are_whole(all_ops()),
+              "a row of ops.def does not say how its bounds are made, or what decides its pieces");
 // Adding a function to a module must not move the blocks of the others: they are held by pointer while it is built.
 static_assert(std::is_nothrow_move_constructible_v<Function>);
 
@@ -62,19 +45,9 @@ char letter(Type type)
 
 } // namespace
 
-const OpInfo& op_info(Op op)
-{
-    return table[static_cast<size_t>(op)];
-}
-
-std::span<const OpInfo> all_ops()
-{
-    return table;
-}
-
 std::optional<Op> op_named(std::string_view name)
 {
-    for (const OpInfo& info : table)
+    for (const OpInfo& info : all_ops())
         if (info.name == name) return info.op;
     return std::nullopt;
 }

@@ -22,7 +22,6 @@ enum class Type : uint8_t { real, i32, u32, boolean, image };
 enum class Op : uint8_t {
 #define OP(name, ...) name,
 #include "lang/ir/ops.def"
-#undef OP
 };
 
 // Index of a value in its function; dense. Values are made by instructions, by function parameters and by block

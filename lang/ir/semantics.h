@@ -1,19 +1,15 @@
 // The meaning of every operation on numbers, once, for any real type T: the interpreter executes it, the builder folds
 // constants by it, and code generation must agree with it bit for bit over double.
 //
-// Three classes for code generation:
-//   image calls    spline image_width image_height call the functions of spline.h
-//   elementary     sin cos tan asin acos atan sinh cosh tanh asinh acosh atanh exp exp2 log log2 pow atan2 are
-//   templates
-//                  over what code is made of (elementary_number.h), so that every engine takes the same steps.
-//   inline         everything else, in IEEE arithmetic rounded to nearest, in the order written here. fma, sqrt, floor,
-//                  ceil, trunc and round-to-even are exact or correctly rounded, so that an instruction and the library
-//                  agree.
+// Code for the elementary functions is made of templates over what code is made of (elementary_number.h), that for
+// images calls spline.h; all else is in IEEE arithmetic rounded to nearest, in the order written here. fma, sqrt,
+// floor, ceil, trunc and round-to-even are exact or correctly rounded, so that an instruction and the library agree.
 // Bits of a NaN are not part of the meaning: no operation can see them.
 #pragma once
 
 #include "lang/ir/elementary.h"
 #include "lang/ir/ir.h"
+#include "lang/math/elementary_exact.h"
 #include "lang/math/spline.h"
 #include "lang/math/turn_polynomials.h"
 
@@ -217,45 +213,20 @@ T cosine_of_turns(const T& a)
     return parts.is_behind_quarter ? T(-size) : size;
 }
 
-template <typename T>
-T angle(const T& y, const T& x)
-{
-    using std::atan2;
-    return y == T(0) && x == T(0) ? T(0) : T(atan2(y, x));
-}
-
-inline double angle(double y, double x)
-{
-    return elementary_f64(Op::atan2, y, x);
-}
-
 // For is_elementary(op): exact functions of an oracle's number, and those of this project for double.
 template <typename T>
 T elementary_value(Op op, const T& a, const T& b)
 {
-    using std::acos, std::acosh, std::asin, std::asinh, std::atan, std::atanh, std::cos, std::cosh, std::exp, std::exp2,
-        std::log, std::log2, std::pow, std::sin, std::sinh, std::tan, std::tanh;
     switch (op) {
-    case Op::sin: return sin(a);
-    case Op::cos: return cos(a);
-    case Op::tan: return tan(a);
-    case Op::asin: return asin(a);
-    case Op::acos: return acos(a);
-    case Op::atan: return atan(a);
-    case Op::atan2: return angle(a, b);
-    case Op::sinh: return sinh(a);
-    case Op::cosh: return cosh(a);
-    case Op::tanh: return tanh(a);
-    case Op::asinh: return asinh(a);
-    case Op::acosh: return acosh(a);
-    case Op::atanh: return atanh(a);
-    case Op::exp: return exp(a);
-    case Op::exp2: return exp2(a);
-    case Op::log: return log(a);
-    case Op::log2: return log2(a);
-    case Op::pow: return pow(a, b);
-    default: return a;
+#define ELEMENTARY(name, ...)                                                                                          \
+    case Op::name: return exact::name(a);
+#define ELEMENTARY2(name, ...)                                                                                         \
+    case Op::name: return exact::name(a, b);
+#define OP(name, ...)                                                                                                  \
+    case Op::name: break;
+#include "lang/ir/ops.def"
     }
+    return a;
 }
 
 inline double elementary_value(Op op, double a, double b)
@@ -336,24 +307,10 @@ inline void execute(Op op, Slot<T>& result, const Slot<T>& a, const Slot<T>& b, 
     }
     case Op::sinturn: result.real = s::sine_of_turns(a.real); return;
     case Op::costurn: result.real = s::cosine_of_turns(a.real); return;
-    case Op::sin:
-    case Op::cos:
-    case Op::tan:
-    case Op::asin:
-    case Op::acos:
-    case Op::atan:
-    case Op::atan2:
-    case Op::sinh:
-    case Op::cosh:
-    case Op::tanh:
-    case Op::asinh:
-    case Op::acosh:
-    case Op::atanh:
-    case Op::exp:
-    case Op::exp2:
-    case Op::log:
-    case Op::log2:
-    case Op::pow: result.real = s::elementary_value(op, a.real, b.real); return;
+#define ELEMENTARY(name, ...) case Op::name:
+#include "lang/ir/ops.def"
+        result.real = s::elementary_value(op, a.real, b.real);
+        return;
     case Op::lt: result.bits = a.real < b.real; return;
     case Op::le: result.bits = a.real <= b.real; return;
     case Op::eq: result.bits = a.real == b.real; return;

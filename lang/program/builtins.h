@@ -1,7 +1,7 @@
 // The built-in functions: what they are called, what they take, how they are lowered. The list is builtins.def.
 #pragma once
 
-#include "lang/ir/ir.h"
+#include "lang/ir/op_info.h"
 #include "lang/syntax/resolution.h"
 
 #include <optional>

@@ -9,7 +9,7 @@ namespace haptel::test {
 namespace {
 
 // Rounding in units of half an ulp (2^-53 of the number): an IEEE operation makes one at most. Elementary functions are
-// right to 2 ulp, many to 1 (ir::elementary_error); turn forms to 2 beside the rounding of 2 pi.
+// right to 2 ulp, many to 1 (Traits::ulp); turn forms to 2 beside the rounding of 2 pi.
 constexpr int one_rounding = 1, library = 4;
 
 // What operations round to.
@@ -306,6 +306,18 @@ Ball copysign(const Ball& a, const Ball& sign)
 } // namespace haptel::test
 
 // What double does at once, and would seem worse if it were put together from balls.
+namespace haptel::ir::exact {
+
+template <>
+test::Ball atan2(const test::Ball& y, const test::Ball& x)
+{
+    const bool is_origin = y.middle == 0 && x.middle == 0;
+    const bool is_exact = y.radius == 0 && x.radius == 0;
+    return is_origin ? test::Ball(0, is_exact ? 0 : 7) : test::atan2(y, x);
+}
+
+} // namespace haptel::ir::exact
+
 namespace haptel::ir::semantics {
 
 using test::Ball, test::are_apart, test::rounded;
@@ -375,14 +387,6 @@ Ball cosine_of_turns(const Ball& a)
 {
     const Quad reach = two_pi<Quad>() * a.radius;
     return rounded(cosine_of_turns(a.middle), reach <= 2 ? reach : Quad(2), test::library + 3);
-}
-
-template <>
-Ball angle(const Ball& y, const Ball& x)
-{
-    const bool is_origin = y.middle == 0 && x.middle == 0;
-    const bool is_exact = y.radius == 0 && x.radius == 0;
-    return is_origin ? Ball(0, is_exact ? 0 : 7) : atan2(y, x);
 }
 
 template <>

@@ -118,6 +118,14 @@ Interval absolute(const Interval& a)
     return {a.contains(0) ? 0.0 : std::min(low, high), std::max(low, high)};
 }
 
+// Of reals: what the operation is there.
+double value_at(Op op, double a, double b = 0)
+{
+    Slot<double> result;
+    execute(op, result, Slot<double>{a}, Slot<double>{b}, {}, {});
+    return result.real;
+}
+
 // f rises over the interval and is exact, or right to four units in the last place.
 template <typename F>
 Interval rising(const Interval& a, const F& f, bool is_exact = false)
@@ -134,12 +142,12 @@ Interval within(const Interval& a, double low, double high, bool& may_be_nan)
 }
 
 template <typename F>
-Interval rising_within(const Interval& a, double low, double high, const F& f)
+Interval rising_within(const Interval& a, double low, double high, const F& f, bool is_exact)
 {
     bool nan = false;
     Interval part = within(a, low, high, nan);
     if (part.is_empty()) return empty;
-    Interval result = rising(part, f);
+    Interval result = rising(part, f, is_exact);
     result.may_be_nan = nan;
     return result;
 }
@@ -168,17 +176,19 @@ Interval tangent(const Interval& a)
     if (cell != other || !(std::fabs(cell) < 1e9) ||
         to_pole < 1e-15 * (1 + std::fabs(a.minimum) + std::fabs(a.maximum)))
         return {-infinity, infinity, may_be_infinite(a)};
-    return rising(a, [](double x) { return elementary_f64(Op::tan, x); });
+    return rising(a, [](double x) { return value_at(Op::tan, x); });
 }
 
-Interval angle(const Interval& y, const Interval& x)
+// The direction of (x, y), behind the origin to half a turn either way.
+Interval angle(Op op, const Interval& y, const Interval& x)
 {
+    const double half_turn = traits(op).period / 2;
     const bool cut = y.contains(0) && x.minimum <= 0;
-    if (cut) return {down(-pi, 4), up(pi, 4)};
+    if (cut) return {down(-half_turn, 4), up(half_turn, 4)};
     Interval all = empty;
     for (double b : {y.minimum, y.maximum})
         for (double a : {x.minimum, x.maximum}) {
-            double value = semantics::angle(b, a);
+            double value = value_at(op, b, a);
             all = {std::min(all.minimum, value), std::max(all.maximum, value), false};
         }
     return {down(all.minimum, 4), up(all.maximum, 4)};
@@ -222,7 +232,7 @@ Interval power(const Interval& a, const Interval& b)
         Interval all = empty;
         for (double x : {base.minimum, base.maximum})
             for (double y : {b.minimum, b.maximum}) {
-                double value = elementary_f64(Op::pow, x, y);
+                double value = value_at(Op::pow, x, y);
                 all = {std::min(all.minimum, value), std::max(all.maximum, value), false};
             }
         return Interval{std::max(0.0, down(all.minimum, 4)), up(all.maximum, 4)};
@@ -233,7 +243,7 @@ Interval power(const Interval& a, const Interval& b)
     const bool is_whole = b.is_point() && std::isfinite(b.minimum) && b.minimum == std::floor(b.minimum);
     if (!is_whole) return {-size.maximum, size.maximum, true};
     if (std::fmod(b.minimum, 2) == 0) return size;
-    double low = elementary_f64(Op::pow, a.minimum, b.minimum), high = elementary_f64(Op::pow, a.maximum, b.minimum);
+    double low = value_at(Op::pow, a.minimum, b.minimum), high = value_at(Op::pow, a.maximum, b.minimum);
     return {down(std::min(low, high), 4), up(std::max(low, high), 4)};
 }
 
@@ -288,36 +298,50 @@ Interval on_integers(Op op, Type type, std::span<const Interval> operands)
     return {static_cast<double>(range.minimum), static_cast<double>(range.maximum)};
 }
 
-// Operations whose results have ends that are reached and are numbers: what outward rounding leaves of them is clipped.
-// Of an operation that is not listed nothing is clipped.
-struct ClosedRange {
-    Op op;
-    double minimum, maximum;
-};
-constexpr ClosedRange closed_ranges[] = {
-    {Op::sqrt, 0, infinity}, {Op::length2, 0, infinity}, {Op::length3, 0, infinity}, {Op::length4, 0, infinity},
-    {Op::fract, 0, 1},       {Op::sin, -1, 1},           {Op::cos, -1, 1},           {Op::sinturn, -1, 1},
-    {Op::costurn, -1, 1},    {Op::tanh, -1, 1},          {Op::cosh, 1, infinity},    {Op::acosh, 0, infinity},
-    {Op::acos, 0, infinity}, {Op::exp, 0, infinity},     {Op::exp2, 0, infinity},
-};
+Interval by_shape(Op op, std::span<const Interval> x)
+{
+    const Interval& a = x[0];
+    const Traits& row = traits(op);
+    const bool is_exact = row.ulp == 0;
+    const auto value = [op](double v) { return value_at(op, v); };
+    switch (row.shape) {
+    case Shape::rising: return rising_within(a, row.from, row.to, value, is_exact);
+    case Shape::falling:
+        return negated(rising_within(a, row.from, row.to, [&](double v) { return -value(v); }, is_exact));
+    case Shape::even: return rising(absolute(a), value, is_exact);
+    case Shape::wave: return wave(a, row.period, row.crest, value);
+    case Shape::angle: return angle(op, a, x[1]);
+    case Shape::tangent: return tangent(a);
+    case Shape::power: return power(a, x[1]);
+    case Shape::own: break;
+    }
+    return {-infinity, infinity, true};
+}
 
+// Outward rounding leaves nothing beyond what the operation can be.
 Interval clipped(Op op, Interval result)
 {
-    for (const ClosedRange& range : closed_ranges)
-        if (range.op == op && !result.is_empty()) {
-            result.minimum = std::max(result.minimum, range.minimum);
-            result.maximum = std::min(result.maximum, range.maximum);
-        }
-    return result;
+    if (result.is_empty()) return result;
+    const Traits& row = traits(op);
+    return {std::max(result.minimum, row.least), std::min(result.maximum, row.most), result.may_be_nan};
 }
 
 Interval value_of(Op op, std::span<const Interval> x)
 {
     const Interval& a = x[0];
     const Interval& b = x.size() > 1 ? x[1] : x[0];
-    const auto rounding = [&](double (*f)(double)) { return rising(a, f, true); };
-    const auto elementary = [op](double v) { return elementary_f64(op, v); };
     switch (op) {
+#define ELEMENTARY(name, ...) case Op::name:
+#include "lang/ir/ops.def"
+    case Op::abs:
+    case Op::sign:
+    case Op::floor:
+    case Op::ceil:
+    case Op::trunc:
+    case Op::round:
+    case Op::sqrt:
+    case Op::sinturn:
+    case Op::costurn: return by_shape(op, x);
     case Op::add: return add(a, b);
     case Op::sub: return add(a, negated(b));
     case Op::mul: return multiply(a, b);
@@ -330,38 +354,11 @@ Interval value_of(Op op, std::span<const Interval> x)
     }
     case Op::min: return {std::min(a.minimum, b.minimum), std::min(a.maximum, b.maximum)};
     case Op::max: return {std::max(a.minimum, b.minimum), std::max(a.maximum, b.maximum)};
-    case Op::abs: return absolute(a);
-    case Op::sign: return rising(a, [](double v) { return semantics::sign(v); }, true);
-    case Op::floor: return rounding(std::floor);
-    case Op::ceil: return rounding(std::ceil);
-    case Op::trunc: return rounding(std::trunc);
-    case Op::round: return rounding(semantics::round_to_even);
     case Op::fract: return fraction(a);
     case Op::mod: return modulo(a, b);
-    case Op::sqrt: return rising_within(a, 0, infinity, [](double v) { return std::sqrt(v); });
     case Op::length2:
     case Op::length3:
     case Op::length4: return length(x);
-    case Op::sin: return wave(a, 2 * pi, pi / 2, elementary);
-    case Op::cos: return wave(a, 2 * pi, 0, elementary);
-    case Op::tan: return tangent(a);
-    case Op::sinturn: return wave(a, 1, 0.25, [](double v) { return semantics::sine_of_turns(v); });
-    case Op::costurn: return wave(a, 1, 0, [](double v) { return semantics::cosine_of_turns(v); });
-    case Op::asin: return rising_within(a, -1, 1, elementary);
-    case Op::acos: return negated(rising_within(a, -1, 1, [](double v) { return -elementary_f64(Op::acos, v); }));
-    case Op::atan: return rising(a, elementary);
-    case Op::atan2: return angle(a, b);
-    case Op::sinh: return rising(a, elementary);
-    case Op::cosh: return rising(absolute(a), elementary);
-    case Op::tanh: return rising(a, elementary);
-    case Op::asinh: return rising(a, elementary);
-    case Op::acosh: return rising_within(a, 1, infinity, elementary);
-    case Op::atanh: return rising_within(a, -1, 1, elementary);
-    case Op::exp: return rising(a, elementary);
-    case Op::exp2: return rising(a, elementary);
-    case Op::log: return rising_within(a, 0, infinity, elementary);
-    case Op::log2: return rising_within(a, 0, infinity, elementary);
-    case Op::pow: return power(a, b);
     case Op::spline: return {-infinity, infinity, true}; // images are the evaluator's to know
     case Op::image_width:
     case Op::image_height: return {1, INT32_MAX};
@@ -414,11 +411,11 @@ Interval value_of(Op op, std::span<const Interval> x)
 bool holds_pole(Op op, std::span<const Interval> operands)
 {
     const Interval& a = operands[0];
+    const Traits& row = traits(op);
     if (op == Op::div) return operands[1].contains(0);
-    if (op == Op::log || op == Op::log2) return a.contains(0);
-    if (op == Op::atanh) return a.contains(-1) || a.contains(1);
-    if (op == Op::pow) return a.contains(0) && operands[1].minimum < 0;
-    return op == Op::tan && may_be_infinite(tangent(a)); // in double never met, only 1e16
+    if (row.shape == Shape::power) return a.contains(0) && operands[1].minimum < 0;
+    if (row.shape == Shape::tangent) return may_be_infinite(tangent(a)); // in double never met, only 1e16
+    return row.has_pole_at_ends && (a.contains(row.from) || a.contains(row.to));
 }
 
 bool Interval::is_finite() const
@@ -456,8 +453,9 @@ Interval evaluate(Op op, std::span<const Interval> operands)
     }
     Interval result = is_empty ? empty : clipped(op, value_of(op, operands));
     result.may_be_nan |= may_be_nan;
-    const bool swallows_nan = op == Op::pow && ((operands[0].may_be_nan && operands[1].contains(0)) ||
-                                                (operands[1].may_be_nan && operands[0].contains(1)));
+    const bool swallows_nan =
+        traits(op).shape == Shape::power &&
+        ((operands[0].may_be_nan && operands[1].contains(0)) || (operands[1].may_be_nan && operands[0].contains(1)));
     return swallows_nan ? join(result, {1, 1}) : result; // pow(NaN, 0) and pow(1, NaN)
 }
 

@@ -103,8 +103,7 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
         if (own == Smoothness::jump && seams->begin(op, all, result, outside, variation)) own = Smoothness::smooth;
     }
     roughen(variation, own, cause);
-    const bool is_length = op == Op::length2 || op == Op::length3 || op == Op::length4;
-    const bool at_zero = op == Op::abs || is_length || ((op == Op::min || op == Op::max) && is_zero_side(operands));
+    const bool at_zero = op == Op::abs || is_length(op) || ((op == Op::min || op == Op::max) && is_zero_side(operands));
     if (own == Smoothness::c0 && was_smooth && at_zero) variation.kink = ++kinks, variation.kink_power = 1;
     return variation;
 }

@@ -14,10 +14,9 @@ namespace {
 // partial is a number for every normal double beside it.
 bool is_guarded(Op op, std::span<const Interval> operands)
 {
-    const bool has_guard = op == Op::sqrt || op == Op::asin || op == Op::acos || op == Op::acosh || op == Op::atan2 ||
-                           op == Op::length2 || op == Op::length3 || op == Op::length4 || op == Op::pow;
     const auto is_finite = [](const Interval& operand) { return operand.is_finite(); };
-    return has_guard && std::all_of(operands.begin(), operands.end(), is_finite) && evaluate(op, operands).is_finite();
+    return traits(op).is_guarded && std::all_of(operands.begin(), operands.end(), is_finite) &&
+           evaluate(op, operands).is_finite();
 }
 
 } // namespace

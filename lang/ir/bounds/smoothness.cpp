@@ -24,11 +24,6 @@ bool is_bounded(const Interval& a)
     return std::isfinite(a.minimum) && std::isfinite(a.maximum);
 }
 
-bool is_step(Op op)
-{
-    return op == Op::sign || op == Op::floor || op == Op::ceil || op == Op::trunc || op == Op::round;
-}
-
 // Where a derivative has no bound the function is not even Lipschitz there; what is unbounded itself jumps.
 Smoothness by_bounds(std::span<const Interval> operands, uint32_t active, const Interval& result,
                      const Partials& partials)
@@ -61,13 +56,14 @@ Smoothness smoothness_of(Op op, std::span<const Interval> operands, uint32_t act
         return cell.is_point() ? Smoothness::smooth : Smoothness::jump;
     }
     if (is_step(op)) return result.is_point() ? Smoothness::smooth : Smoothness::jump;
-    if (op == Op::length2 || op == Op::length3 || op == Op::length4) {
+    if (is_length(op)) {
         const bool reaches_zero =
             std::all_of(operands.begin(), operands.end(), [](const Interval& part) { return part.contains(0); });
         return reaches_zero ? Smoothness::c0 : Smoothness::smooth;
     }
     if (op == Op::div && b.contains(0) && (active & 2)) return Smoothness::jump;
-    if (op == Op::atan2) return b.minimum <= 0 && a.contains(0) ? Smoothness::jump : Smoothness::smooth;
+    if (traits(op).shape == Shape::angle)
+        return b.minimum <= 0 && a.contains(0) ? Smoothness::jump : Smoothness::smooth;
     if (op == Op::spline) { // cubic; what it depends on in which direction is not looked at
         const auto orders = static_cast<uint32_t>(operands[3].minimum);
         constexpr Smoothness classes[] = {Smoothness::c2, Smoothness::c1, Smoothness::c0, Smoothness::jump};

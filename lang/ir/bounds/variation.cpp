@@ -1,10 +1,12 @@
 #include "lang/ir/bounds/variation.h"
 
 #include "lang/ir/bounds/seams.h"
+#include "lang/ir/op_info.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace haptel::ir {
 namespace {
@@ -107,11 +109,6 @@ Variation roughest_of(std::span<const Variation> parts)
 Smoothness of_power(uint32_t power)
 {
     return power == 1 ? Smoothness::c0 : power == 2 ? Smoothness::c1 : Smoothness::c2;
-}
-
-bool is_length(Op op)
-{
-    return op == Op::length2 || op == Op::length3 || op == Op::length4;
 }
 
 // A length that is not 0 is smooth in the squares of its parts: of kinks where they are 0, twice the power is left.
@@ -239,7 +236,7 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
         made.may_fault |= variations[i].has_tangent && (variations[i].may_fault || partials.may_fault[i]);
     if (!made.is_active) return made;
     // The direction of a length is a unit vector, and turns the slower the longer it is: as an angle does.
-    const bool is_norm = is_length(op), is_angle = op == Op::atan2;
+    const bool is_norm = is_length(op), is_angle = traits(op).shape == Shape::angle;
     Partials by = partials;
     double shortest = 0;
     for (size_t i = 0; i < operands.size() && (is_norm || is_angle); ++i) {
@@ -247,7 +244,7 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
         shortest += least * least;
     }
     shortest = std::sqrt(shortest) / rounding_up;
-    const double steepest = is_norm ? 1 : 1 / shortest;
+    const double steepest = is_norm ? 1 : traits(op).period / (2 * std::numbers::pi) / shortest;
     for (size_t i = 0; i < operands.size() && (is_norm || is_angle); ++i)
         by.first[i] = intersect(by.first[i], around_zero(steepest));
 

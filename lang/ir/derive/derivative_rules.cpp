@@ -90,11 +90,7 @@ Term pick(const Term& a, const Term& b, const Term& less, const Term& greater)
 
 bool has_derivative(Op op)
 {
-    const OpInfo& info = op_info(op);
-    bool from_reals = info.operands.find_first_of("r*") != std::string_view::npos;
-    bool to_real = info.result == 'r' || info.result == '*';
-    bool is_step = op == Op::floor || op == Op::ceil || op == Op::trunc || op == Op::round || op == Op::sign;
-    return from_reals && to_real && !is_step && op != Op::detach;
+    return op_info(op).kind != OpKind::discrete && op != Op::detach;
 }
 
 Tangent differentiate(Builder& builder, Op op, std::span<const Value> operands, Value result,
@@ -191,52 +187,10 @@ Tangent differentiate(Builder& builder, Op op, std::span<const Value> operands, 
         return (along(db, 0) + along(dc, 1)).value;
     }
     case Op::select: return where(operands[0], db, dc).value;
-    case Op::sign:
-    case Op::floor:
-    case Op::ceil:
-    case Op::trunc:
-    case Op::round:
     case Op::detach:
-    case Op::image_width:
-    case Op::image_height:
-    case Op::i_to_r:
-    case Op::u_to_r:
-    case Op::lt:
-    case Op::le:
-    case Op::eq:
-    case Op::is_finite:
-    case Op::ilt:
-    case Op::ile:
-    case Op::ieq:
-    case Op::ult:
-    case Op::ule:
-    case Op::ueq:
-    case Op::land:
-    case Op::lor:
-    case Op::lxor:
-    case Op::lnot:
-    case Op::iadd:
-    case Op::isub:
-    case Op::imul:
-    case Op::idiv:
-    case Op::irem:
-    case Op::iand:
-    case Op::ior:
-    case Op::ixor:
-    case Op::ishl:
-    case Op::ishr:
-    case Op::imin:
-    case Op::imax:
-    case Op::udiv:
-    case Op::urem:
-    case Op::ushr:
-    case Op::umin:
-    case Op::umax:
-    case Op::r_to_i:
-    case Op::r_to_u:
-    case Op::i_as_u:
-    case Op::u_as_i:
-    case Op::b_to_i: return {}; // see has_derivative
+#define DISCRETE(name, ...) case Op::name:
+#include "lang/ir/ops.def"
+        return {}; // see has_derivative
     }
     return {};
 }
