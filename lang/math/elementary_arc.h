@@ -1,4 +1,4 @@
-// atan, atan2, asin, acos: a constant in two parts, and a polynomial of what is left.
+// atan, atan2, atan2pi, asin, acos: a constant in two parts, and a polynomial of what is left.
 #pragma once
 
 #include "lang/math/elementary_constants.h"
@@ -21,18 +21,41 @@ R assembled(const Pair<R>& start, R sign, R of, R rest)
     return sum.high + (sum.low + (start.low + sign * rest));
 }
 
+// Angles that a direction begins from, in two parts, and the small angle t + rest of radians that is added to one.
+template <typename R>
+struct InRadians {
+    using C = Constants<typename R::Float>;
+    static constexpr const double (&half_turn)[2] = C::pi, (&quarter_turn)[2] = C::half_pi,
+                                  (&eighth_turn)[2] = C::quarter_pi, (&of_half)[2] = C::atan_of_half;
+    static R sum(R t, R rest) { return t + rest; }
+};
+
+template <typename R>
+struct InHalfTurns {
+    using C = Constants<typename R::Float>;
+    static constexpr double half_turn[] = {1, 0}, quarter_turn[] = {0.5, 0}, eighth_turn[] = {0.25, 0};
+    static constexpr const double (&of_half)[2] = C::half_turns_of_half;
+    static R sum(R t, R rest)
+    {
+        const R upper = without_low_half(t);
+        return upper * C::inverse_pi[0] +
+               ((t - upper) * C::inverse_pi[0] + (t * C::inverse_pi[1] + rest * (C::inverse_pi[0] + C::inverse_pi[1])));
+    }
+};
+
 // start + sign atan(n / d) for 0 <= n <= d, both far from overflow. Of the quotient what is nearest of 0, 1 / 2 and 1
 // is taken away: tan(a - b) = (tan a - tan b) / (1 + tan a tan b).
-template <typename R>
+template <typename Unit, typename R>
 R turned(const Pair<R>& start, R sign, R n, R d)
 {
-    using C = Constants<typename R::Float>;
     const auto is_mid = n > 0.4375 * d, is_high = n > 0.6875 * d;
     const Pair<R> zero{constant(n, 0), constant(n, 0)};
-    const Pair<R> base = select(is_high, pair_of(n, C::quarter_pi), select(is_mid, pair_of(n, C::atan_of_half), zero));
+    const Pair<R> base =
+        select(is_high, pair_of(n, Unit::eighth_turn), select(is_mid, pair_of(n, Unit::of_half), zero));
     const R c = select(is_high, constant(n, 1), select(is_mid, constant(n, 0.5), zero.high));
     const R t = (n - c * d) / (d + c * n), u = t * t;
-    return assembled(start, sign, base.high, base.low + (t + t * u * polynomial(C::arc_tangent, u)));
+    const R rest = t * u * polynomial(Constants<typename R::Float>::arc_tangent, u);
+    return assembled(start, sign, base.high, base.low + Unit::sum(t, rest));
 }
 
 template <typename R>
@@ -44,19 +67,18 @@ R atan(R a)
     const auto is_steep = size > one;
     const Pair<R> start = select(is_steep, pair_of(a, C::half_pi), Pair<R>{nought, nought});
     const R n = select(is_steep, one, size), d = select(is_steep, size, one);
-    return flipped(turned(start, select(is_steep, -one, one), n, d), a);
+    return flipped(turned<InRadians<R>>(start, select(is_steep, -one, one), n, d), a);
 }
 
-// At the origin 0, whatever the signs of zeros.
-template <typename R>
-R atan2(R y, R x)
+// The direction of (x, y), at the origin 0, whatever the signs of zeros.
+template <typename Unit, typename R>
+R direction(R y, R x)
 {
-    using C = Constants<typename R::Float>;
     constexpr double large = R::is_single ? 0x1p100 : 0x1p900, factor = R::is_single ? 0x1p-40 : 0x1p-300;
     const R one = constant(x, 1), nought = constant(x, 0), width = abs(x), height = abs(y);
     const auto is_steep = height > width, is_behind = x < nought;
-    const Pair<R> start =
-        select(is_steep, pair_of(x, C::half_pi), select(is_behind, pair_of(x, C::pi), Pair<R>{nought, nought}));
+    const Pair<R> start = select(is_steep, pair_of(x, Unit::quarter_turn),
+                                 select(is_behind, pair_of(x, Unit::half_turn), Pair<R>{nought, nought}));
     const R sign = select(is_behind, select(is_steep, one, -one), select(is_steep, -one, one));
     // away from overflow and from subnormal numbers; of infinities, their direction
     R n = select(is_steep, width, height), d = select(is_steep, height, width);
@@ -64,9 +86,21 @@ R atan2(R y, R x)
     n = select(is_endless, select(n == d, one, nought), n);
     d = select(is_endless, one, d);
     const R scale = select(d > large, constant(x, factor), select(d < 1 / large, constant(x, 1 / factor), one));
-    const R angle = flipped(turned(start, sign, n * scale, d * scale), y);
+    const R angle = flipped(turned<Unit>(start, sign, n * scale, d * scale), y);
     const R sum = x + y, known = select(x == x, select(y == y, angle, sum), sum);
     return select(height == nought, select(width == nought, nought, known), known);
+}
+
+template <typename R>
+R atan2(R y, R x)
+{
+    return direction<InRadians<R>>(y, x);
+}
+
+template <typename R>
+R atan2pi(R y, R x)
+{
+    return direction<InHalfTurns<R>>(y, x);
 }
 
 // For asin and acos: of |a| <= 1/2 the sine itself, else that of half the angle's complement, u = (1 - |a|) / 2.

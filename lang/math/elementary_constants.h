@@ -48,6 +48,8 @@ struct Constants<double> {
     static constexpr double half_pi[] = {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54};
     static constexpr double quarter_pi[] = {0x1.921fb54442d18p-1, 0x1.1a62633145c07p-55};
     static constexpr double atan_of_half[] = {0x1.dac670561bb4fp-2, 0x1.a2b7f222f65e2p-56};
+    static constexpr double half_turns_of_half[] = {0x1.2e4051d9df308p-3, 0x1.995a23db6b8d4p-57}; // atan(1 / 2) / pi
+    static constexpr double inverse_pi[] = {0x1.45f3068p-2, 0x1.727220a94fe14p-28};
 
     // Beyond these the result is infinite or 0, or the function is the identity
     static constexpr double exp_range[] = {-746, 710}, exp2_range[] = {-1076, 1025};
@@ -79,6 +81,8 @@ struct Constants<float> {
     static constexpr double half_pi[] = {0x1.921fb6p+0, -0x1.777a5cp-25};
     static constexpr double quarter_pi[] = {0x1.921fb6p-1, -0x1.777a5cp-26};
     static constexpr double atan_of_half[] = {0x1.dac670p-2, 0x1.586ed4p-28};
+    static constexpr double half_turns_of_half[] = {0x1.2e4052p-3, -0x1.31067cp-30};
+    static constexpr double inverse_pi[] = {0x1.45ep-2, 0x1.306dcap-14};
 
     static constexpr double exp_range[] = {-104, 89}, exp2_range[] = {-151, 129};
     static constexpr double sinh_limit = 90, tanh_limit = 10, identity_below = 0x1p-13;

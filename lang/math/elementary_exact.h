@@ -39,6 +39,13 @@ T atan2(const T& y, const T& x)
     return y == T(0) && x == T(0) ? T(0) : T(atan2(y, x));
 }
 
+// In half turns.
+template <typename T>
+T atan2pi(const T& y, const T& x)
+{
+    return exact::atan2(y, x) / (T(4) * exact::atan(T(1)));
+}
+
 template <typename T>
 T pow(const T& a, const T& b)
 {

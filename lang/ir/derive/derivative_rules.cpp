@@ -141,11 +141,13 @@ Tangent differentiate(Builder& builder, Op op, std::span<const Value> operands, 
         return (op == Op::asin ? da * partial : -(da * partial)).value;
     }
     case Op::atan: return unary([&] { return 1.0 / (1.0 + a * a); });
-    case Op::atan2: { // angle of the point (b, a)
+    case Op::atan2:
+    case Op::atan2pi: { // angle of the point (b, a)
         Term distance = apply(Op::length2, b, a);
         Term across = da.is_zero() ? da : da * zero_where_zero(distance, b / distance / distance);
         Term along = db.is_zero() ? db : db * zero_where_zero(distance, a / distance / distance);
-        return (across - along).value;
+        const Term angle = across - along;
+        return (op == Op::atan2 ? angle : 1 / pi * angle).value;
     }
     case Op::sinh: return unary([&] { return apply(Op::cosh, a); });
     case Op::cosh: return unary([&] { return apply(Op::sinh, a); });
