@@ -1,13 +1,12 @@
 #include "jit/picture/image_file.h"
 
+#include "input/regular_file.h"
 #include "jit/codegen/content_hash.h"
 #include "jit/picture/picture.h"
 #include "lang/text/diagnostic.h"
 
 #include <chrono>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <mutex>
 
@@ -59,12 +58,22 @@ ImageFile read_image(const std::string& path, const std::string& folder)
     const std::string shown = lang::printable(path);
     std::error_code fault;
     const fs::path file = image_file(path, folder);
-    if (!fs::exists(file, fault))
-        return fail("there is no file '" + shown + "'", "it was looked for at " + lang::printable(file.string()) +
-                                                            "; a scene's pictures lie beside the scene");
-    if (!fs::is_regular_file(file, fault)) return fail("'" + shown + "' is not a file");
+    const auto refuse = [&](const input::Refused& refused) {
+        switch (refused.refusal) {
+        case input::Refusal::missing:
+            return fail("there is no file '" + shown + "'", "it was looked for at " + lang::printable(file.string()) +
+                                                                "; a scene's pictures lie beside the scene");
+        case input::Refusal::unreadable: return fail("'" + shown + "' " + refused.why, "may you read it?");
+        case input::Refusal::none:
+        case input::Refusal::folder:
+        case input::Refusal::not_regular:
+        case input::Refusal::too_large: break;
+        }
+        return fail("'" + shown + "' " + refused.why);
+    };
+    const input::Refused look = input::look_at_regular_file(file, image_bytes_max);
+    if (look.refusal != input::Refusal::none) return refuse(look);
     const uintmax_t size = fs::file_size(file, fault);
-    if (fault || size > image_bytes_max) return fail("'" + shown + "' is too large to read");
     const auto written = fs::last_write_time(file, fault);
 
     const std::lock_guard lock(mutex);
@@ -74,9 +83,9 @@ ImageFile read_image(const std::string& path, const std::string& folder)
     if (image && known.size == size && known.written == written && known.read > written + tick_longest)
         return {image, {}, {}};
     const auto now = fs::file_time_type::clock::now();
-    std::ifstream in(file, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-    if (!in.is_open() || in.bad()) return fail("'" + shown + "' cannot be read", "may you read it?");
+    const input::FileBytes read = input::read_regular_file(file, image_bytes_max);
+    if (read.refused.refusal != input::Refusal::none) return refuse(read.refused);
+    const std::string& bytes = read.bytes;
     const ContentHash content = content_hash(bytes);
     ImageFile made = image && known.content == content ? ImageFile{image, {}, {}} : decode(bytes, shown);
     known = {written, now, size, content, made.image};

@@ -3,6 +3,32 @@
 #include "jit/picture/picture_damage.h"
 #include "lang/ir/bounds/spline_image.h"
 
+#include <cstdlib>
+#include <memory>
+
+namespace haptel::jit {
+namespace {
+
+// What one allocation of the reader below may take, set by who calls it: some formats do not say what their bytes
+// unpack to, and a kilobyte may hold a gigabyte of zeros.
+thread_local std::size_t allocation_max = 0;
+
+void* allocate(std::size_t bytes)
+{
+    return bytes <= allocation_max ? std::malloc(bytes) : nullptr;
+}
+
+void* reallocate(void* old, std::size_t bytes)
+{
+    return bytes <= allocation_max ? std::realloc(old, bytes) : nullptr;
+}
+
+} // namespace
+} // namespace haptel::jit
+
+#define STBI_MALLOC(bytes) haptel::jit::allocate(bytes)
+#define STBI_REALLOC(old, bytes) haptel::jit::reallocate(old, bytes)
+#define STBI_FREE(old) std::free(old)
 #define STBI_ONLY_PNG
 #define STBI_ONLY_JPEG
 #define STBI_ONLY_BMP
@@ -12,8 +38,6 @@
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #include <stb/stb_image.h>
-
-#include <memory>
 
 namespace haptel::jit {
 
@@ -61,12 +85,19 @@ Picture read_common_picture(std::string_view bytes)
     if (const std::string damage = picture_damage(bytes); !damage.empty())
         return no_picture("is damaged: " + damage, formats);
     int width = 0, height = 0, channels = 0;
+    allocation_max = 1 << 20;
     if (!stbi_info_from_memory(data, size, &width, &height, &channels))
         return no_picture("is no picture that can be read", formats);
     Picture made = picture_of(width, height);
     if (!made.error.empty()) return made;
+    // Twice, as it grows by doubling: the file's own bytes, and 4 channels of 16 bits for each texel.
+    allocation_max += 2 * (bytes.size() + 8 * made.gray.size() + static_cast<size_t>(height));
     const std::unique_ptr<stbi_us, void (*)(void*)> gray(
         stbi_load_16_from_memory(data, size, &width, &height, &channels, 1), stbi_image_free);
+    if (!gray && std::string_view(stbi_failure_reason()) == "Out of memory")
+        return no_picture("is damaged: it unpacks to more than " + std::to_string(width) + " x " +
+                              std::to_string(height) + " texels",
+                          formats);
     if (!gray) return no_picture(std::string("is damaged: ") + stbi_failure_reason(), formats);
     if (width != made.width || height != made.height) return no_picture("is damaged: it has two sizes");
     const stbi_us* from = gray.get();

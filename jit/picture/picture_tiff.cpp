@@ -16,7 +16,8 @@ namespace {
 
 constexpr const char* readable = "TIFF of 8, 16 or 32 bits, gray or RGB, whole numbers or real ones";
 
-constexpr tmsize_t memory_max = tmsize_t{1} << 30; // of one allocation that a file asks for
+// Of one allocation that a file asks for: the largest picture in one strip, 4 channels of 32 bits.
+constexpr tmsize_t memory_max = (tmsize_t{16} << 24) + (1 << 20);
 
 // The file in memory, and the first thing that the library says of it.
 struct Source {

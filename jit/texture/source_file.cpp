@@ -1,13 +1,11 @@
 #include "jit/texture/source_file.h"
 
+#include "input/regular_file.h"
 #include "lang/text/diagnostic.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <utility>
 #include <vector>
 
 namespace haptel::jit {
@@ -54,23 +52,17 @@ bool is_name(std::string_view text)
 
 SourceText read_source(const std::string& path)
 {
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (status.type() == fs::file_type::not_found)
-        return {{}, "cannot read this file: it does not exist", did_you_mean(path)};
-    if (error) return {{}, "cannot read this file: " + error.message(), {}};
-    if (fs::is_directory(status))
-        return {{}, "cannot read this file: it is a folder", "name a texture file inside it: FILE.haptel"};
-    if (!fs::is_regular_file(status)) return {{}, "cannot read this file: it is not a regular file", {}};
-    std::ifstream file(path, std::ios::binary);
-    if (!file) return {{}, std::string("cannot read this file: ") + std::strerror(errno), {}};
-    SourceText result;
-    if (fs::file_size(path, error) <= source_bytes_max && !error)
-        result.text.assign(std::istreambuf_iterator<char>(file), {});
-    else
-        return {{}, "this file is larger than any texture: at most 16 MiB are read", {}};
-    if (file.bad()) return {{}, "cannot read this file: the disk reports an error", {}};
-    return result;
+    input::FileBytes file = input::read_regular_file(path, source_bytes_max);
+    const std::string error = "cannot read this file: it " + file.refused.why;
+    switch (file.refused.refusal) {
+    case input::Refusal::none: return {std::move(file.bytes), {}, {}};
+    case input::Refusal::missing: return {{}, error, did_you_mean(path)};
+    case input::Refusal::folder: return {{}, error, "name a texture file inside it: FILE.haptel"};
+    case input::Refusal::too_large: return {{}, error, "no texture is as large: is it the right file?"};
+    case input::Refusal::not_regular:
+    case input::Refusal::unreadable: return {{}, error, {}};
+    }
+    return {{}, error, {}};
 }
 
 std::optional<lang::SourceFile> load_beside(std::string_view path, std::string_view importer)

@@ -9,6 +9,9 @@ namespace haptel::runtime {
 
 namespace {
 
+// Each has a servo with a thread and some MiB of records that nobody has read yet.
+constexpr std::size_t devices_max = 64;
+
 Workspace read_workspace(const toml::table& source, const std::string& name, FileMessages& messages)
 {
     Workspace workspace;
@@ -93,6 +96,12 @@ std::vector<DeviceText> read_devices(const toml::table& root, const ProbeSetting
     if (!list || !list->is_array_of_tables())
         return {read_device(table_named(root, "device", messages), "[device]", common, folder, messages)};
     std::vector<DeviceText> devices;
+    if (list->size() > devices_max) {
+        messages.error((*list)[devices_max].source(), "a scene may have " + std::to_string(devices_max) +
+                                                          " devices, each with a thread of its own, and this one has " +
+                                                          std::to_string(list->size()) + ": leave some out");
+        return devices;
+    }
     for (const toml::node& device : *list)
         devices.push_back(read_device(*device.as_table(), "[[device]]", common, folder, messages));
     return devices;

@@ -10,6 +10,9 @@ namespace haptel::runtime {
 
 namespace {
 
+// Some 10 ns of a tick each.
+constexpr std::size_t regions_max = 10'000;
+
 // Of the smallest half side: where a region does not say how wide its edge is.
 constexpr double default_edge = 0.25;
 
@@ -164,6 +167,10 @@ std::vector<Region> read_regions(const toml::table& root, double rate_hz, FileMe
     const toml::array* list = node->as_array();
     if (!list || !list->is_array_of_tables())
         messages.error(node->source(), "expected `[[region]]` in double brackets: a scene may hold several regions");
+    else if (list->size() > regions_max)
+        messages.error((*list)[regions_max].source(), "a scene may have " + std::to_string(regions_max) +
+                                                          " regions, each looked at in every tick, and this one has " +
+                                                          std::to_string(list->size()) + ": leave some out");
     else
         for (const toml::node& region : *list) regions.push_back(read_region(*region.as_table(), rate_hz, messages));
     return regions;

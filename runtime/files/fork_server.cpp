@@ -291,6 +291,12 @@ ForkedProcess::~ForkedProcess()
         if (end >= 0) close(end);
 }
 
+bool ForkedProcess::answers_within(std::chrono::milliseconds time) const
+{
+    pollfd end{answer_, POLLIN, 0};
+    return poll(&end, 1, static_cast<int>(time.count())) != 0;
+}
+
 std::optional<int> ForkedProcess::wait()
 {
     if (answer_ >= 0) close(answer_);

@@ -6,6 +6,7 @@
 // program, however that ends, and is not its child: there is nothing to wait for, and no signal.
 #pragma once
 
+#include <chrono>
 #include <optional>
 #include <string>
 
@@ -32,6 +33,8 @@ public:
     const std::string& error() const { return error_; }
 
     int answer() const { return answer_; } // to read from
+    // Waits so long for something to read, or the end of it.
+    bool answers_within(std::chrono::milliseconds time) const;
 
     // Reads no more: a process that still sends ends by that. How it ended, as waitpid() tells; nothing: nobody knows.
     std::optional<int> wait();

@@ -2,7 +2,8 @@
 
 #include "runtime/surface/build/joined_surfaces.h"
 
-#include <algorithm>
+#include <array>
+#include <map>
 #include <memory>
 #include <sstream>
 #include <string>
@@ -33,35 +34,37 @@ std::string joined_key(const Scene& scene, const std::vector<ObjectAtRest>& join
 
 void warn_of_doubles(const Scene& scene, const std::vector<ObjectAtRest>& at_rest, FileMessages& messages)
 {
-    const auto object = [&](const ObjectAtRest& one) -> const SceneObject& { return scene.objects[one.number]; };
-    for (auto second = at_rest.begin(); second != at_rest.end(); ++second) {
-        const auto first = std::find_if(at_rest.begin(), second, [&](const ObjectAtRest& other) {
-            const Placement &a = object(other).placement, &b = object(*second).placement;
-            return object(other).surface == object(*second).surface && a.position_m == b.position_m &&
-                   a.rotation == b.rotation;
-        });
-        if (first == second) continue;
-        messages.warning(second->at, "objects " + std::to_string(first->number + 1) + " and " +
-                                         std::to_string(second->number + 1) + " are both `" + object(*second).name +
-                                         "` in the same place: their forces add, as of one that is as stiff as both. "
-                                         "Move one of them (`position_m`), or leave it out");
+    std::map<std::pair<const Surface*, std::array<double, 12>>, uint32_t> first_there;
+    for (const ObjectAtRest& one : at_rest) {
+        const SceneObject& object = scene.objects[one.number];
+        const glm::dmat3& r = object.placement.rotation;
+        const glm::dvec3& p = object.placement.position_m;
+        const std::array<double, 12> place{r[0].x, r[0].y, r[0].z, r[1].x, r[1].y, r[1].z,
+                                           r[2].x, r[2].y, r[2].z, p.x,    p.y,    p.z};
+        const auto [first, is_first] = first_there.try_emplace({object.surface.get(), place}, one.number);
+        if (is_first) continue;
+        messages.warning(one.at, "objects " + std::to_string(first->second + 1) + " and " +
+                                     std::to_string(one.number + 1) + " are both `" + object.name +
+                                     "` in the same place: their forces add, as of one that is as stiff as both. "
+                                     "Move one of them (`position_m`), or leave it out");
     }
 }
 
-void join_objects(Scene& scene, std::vector<ObjectAtRest> joinable, SurfaceCache* surfaces, FileMessages& messages)
+void join_objects(Scene& scene, std::vector<ObjectAtRest> joinable, SurfaceCache* surfaces, FileMessages& messages,
+                  const Loading* loading)
 {
     std::erase_if(joinable, [](const ObjectAtRest& one) { return !one.joined; });
     std::vector<PlacedSurface> placed;
     for (const ObjectAtRest& one : joinable)
         placed.push_back({scene.objects[one.number].surface, scene.objects[one.number].placement});
-    for (const MeetingSurfaces& meeting : find_meeting(placed)) {
+    for (const MeetingSurfaces& meeting : find_meeting(placed, loading)) {
         std::string error = meeting.error;
         std::shared_ptr<const Surface> joined;
         if (error.empty()) {
             const std::string key = joined_key(scene, joinable, meeting.numbers);
             if (surfaces) joined = surfaces->find(key);
             if (!joined) {
-                SurfaceResult built = join(placed, meeting.numbers);
+                SurfaceResult built = join(placed, meeting.numbers, loading);
                 joined = std::move(built.surface);
                 error = std::move(built.error);
                 if (surfaces && joined) surfaces->keep(key, joined);

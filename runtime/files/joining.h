@@ -22,6 +22,7 @@ struct ObjectAtRest {
 void warn_of_doubles(const Scene& scene, const std::vector<ObjectAtRest>& at_rest, FileMessages& messages);
 
 // Fills scene.joined. What cannot be joined is told and stays apart.
-void join_objects(Scene& scene, std::vector<ObjectAtRest> at_rest, SurfaceCache* surfaces, FileMessages& messages);
+void join_objects(Scene& scene, std::vector<ObjectAtRest> at_rest, SurfaceCache* surfaces, FileMessages& messages,
+                  const Loading* loading);
 
 } // namespace haptel::runtime

@@ -1,9 +1,13 @@
+#include "input/regular_file.h"
 #include "runtime/files/mesh_process.h"
+#include "runtime/files/obj_groups.h"
 #include "runtime/files/table_reader.h"
 
 #include <assimp/DefaultLogger.hpp>
+#include <assimp/IOSystem.hpp>
 #include <assimp/Importer.hpp>
 #include <assimp/LogStream.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -12,9 +16,7 @@
 #include <cctype>
 #include <cmath>
 #include <exception>
-#include <fstream>
 #include <limits>
-#include <map>
 #include <new>
 #include <optional>
 #include <sstream>
@@ -27,6 +29,9 @@ namespace {
 // Assimp reads some forty formats, many of them rarely tested; these are the ones people have.
 constexpr std::array<std::string_view, 8> extensions = {".obj", ".ply", ".stl",  ".off",
                                                         ".3ds", ".dae", ".gltf", ".glb"};
+
+// Some ten million triangles as text.
+constexpr std::uintmax_t mesh_bytes_max = 1 << 30;
 
 std::string lower_case(std::string text)
 {
@@ -89,52 +94,69 @@ private:
     std::string heard_;
 };
 
-// What assimp does not tell of an OBJ file. A file with smoothing groups is read with each of them as a material of its
-// own, which it keeps apart; objects, groups and materials of the file do not matter here.
-class ObjGroups {
+// What a file names is read like the file itself: a pipe, a device or what is too large is refused, and told.
+class RegularFiles final : public Assimp::IOSystem {
 public:
-    static constexpr std::string_view prefix = "smoothing ";
-
-    explicit ObjGroups(const std::filesystem::path& file)
+    bool Exists(const char* file) const override
     {
-        std::ifstream in(file, std::ios::binary);
-        text_ = "usemtl " + std::string(prefix) + "off\n";
-        for (std::string line; std::getline(in, line);) {
-            line += '\n';
-            if (line.find_first_of("sumog") != line.find_first_not_of(" \t")) { // most of a large file, as it is
-                text_ += line;
-                continue;
-            }
-            std::istringstream words(line);
-            std::string first, second;
-            words >> first >> second;
-            if (first == "s" && !second.empty()) {
-                found_ = true;
-                text_ += "usemtl " + std::string(prefix) + (second == "0" ? "off" : second) + "\n";
-            } else if (first != "usemtl" && first != "mtllib" && first != "o" && first != "g") {
-                text_ += line;
-            }
-        }
+        std::error_code ignored;
+        return std::filesystem::exists(file, ignored);
     }
-
-    bool found() const { return found_; }
-    const std::string& text() const { return text_; }
-
-    // Of a part that was read from the text: 0 for `off`, else one number per name.
-    uint32_t group_of(const aiScene& scene, const aiMesh& part)
+    char getOsSeparator() const override { return '/'; }
+    Assimp::IOStream* Open(const char* file, const char* /*mode*/) override
     {
-        aiString name;
-        scene.mMaterials[part.mMaterialIndex]->Get(AI_MATKEY_NAME, name);
-        const std::string group = name.C_Str();
-        if (group == std::string(prefix) + "off") return 0;
-        return numbers_.try_emplace(group, static_cast<uint32_t>(numbers_.size() + 1)).first->second;
+        input::FileBytes read = input::read_regular_file(file, mesh_bytes_max);
+        const auto& [refusal, why] = read.refused;
+        if (refusal == input::Refusal::none) return new Stream(std::move(read.bytes));
+        if (refusal != input::Refusal::missing && refused_.empty())
+            refused_ = "`" + std::filesystem::path(file).lexically_normal().string() + "` " + why;
+        return nullptr;
     }
+    void Close(Assimp::IOStream* stream) override { delete stream; }
+
+    const std::string& refused() const { return refused_; } // the first one that is there; empty: none
 
 private:
-    bool found_ = false;
-    std::string text_;
-    std::map<std::string, uint32_t> numbers_;
+    struct Bytes {
+        std::string bytes;
+    };
+    struct Stream final : private Bytes, public Assimp::MemoryIOStream {
+        explicit Stream(std::string read)
+            : Bytes{std::move(read)}
+            , MemoryIOStream(reinterpret_cast<const uint8_t*>(Bytes::bytes.data()), Bytes::bytes.size())
+        {
+        }
+    };
+
+    std::string refused_;
 };
+
+std::string material_of(const aiScene& scene, const aiMesh& part)
+{
+    aiString name;
+    scene.mMaterials[part.mMaterialIndex]->Get(AI_MATKEY_NAME, name);
+    return name.C_Str();
+}
+
+// Cutting a polygon into triangles takes time by the square of its corners, up to some nanoseconds each.
+constexpr double polygon_squares_max = 3e8;
+
+std::string fault_of_polygons(const aiScene& scene)
+{
+    double squares = 0;
+    unsigned most = 0;
+    for (unsigned i = 0; i < scene.mNumMeshes; ++i)
+        for (unsigned f = 0; f < scene.mMeshes[i]->mNumFaces; ++f) {
+            const unsigned corners = scene.mMeshes[i]->mFaces[f].mNumIndices;
+            if (corners <= 4) continue; // at once
+            squares += static_cast<double>(corners) * corners;
+            most = std::max(most, corners);
+        }
+    if (squares <= polygon_squares_max) return {};
+    return "its polygons have too many corners, up to " + std::to_string(most) +
+           ": they are cut into triangles in a time that grows by the square of that. Cut them before the model is "
+           "exported (\"triangulate\")";
+}
 
 // Coordinates come from assimp as 32-bit numbers, also where the file has more digits: far from the origin that is
 // coarse. Of the vertices that triangles use, in the file's units.
@@ -177,12 +199,14 @@ MeshFileResult unreadable(const std::string& why)
 }
 
 // A machine that is slow, and a build that checks everything, read a megabyte in this time.
-constexpr double processor_s_per_byte = 1e-6, processor_s_min = 10;
+constexpr double processor_s_per_byte = 1e-6, processor_s_min = 1.5;
+// What a file says about its sizes may be wrong, so that its reader asks for far more than its bytes can fill.
+constexpr std::uintmax_t memory_per_byte = 32, memory_bytes_min = 256 << 20;
 
 MeshReadLimits limits_for(std::uintmax_t size_bytes)
 {
     const double processor_s = processor_s_min + processor_s_per_byte * static_cast<double>(size_bytes);
-    return {processor_s, 6 * processor_s};
+    return {processor_s, 6 * processor_s, memory_bytes_min + memory_per_byte * size_bytes};
 }
 
 std::string extension_of(const std::filesystem::path& file)
@@ -213,13 +237,19 @@ MeshFileResult read_mesh(const std::filesystem::path& file)
     const std::string extension = extension_of(file);
     const IndexListener listener;
     Assimp::Importer importer;
-    constexpr unsigned steps = aiProcess_Triangulate | aiProcess_PreTransformVertices;
+    auto* const files = new RegularFiles; // the importer's
+    importer.SetIOHandler(files);
     std::optional<ObjGroups> groups;
-    if (extension == ".obj") groups.emplace(file);
+    if (extension == ".obj") groups.emplace(input::read_regular_file(file, mesh_bytes_max).bytes);
     const bool grouped = groups && groups->found();
-    const aiScene* scene = grouped
-                               ? importer.ReadFileFromMemory(groups->text().data(), groups->text().size(), steps, "obj")
-                               : importer.ReadFile(file.string(), steps);
+    const aiScene* scene = groups && groups->needed()
+                               ? importer.ReadFileFromMemory(groups->text().data(), groups->text().size(), 0, "obj")
+                               : importer.ReadFile(file.string(), 0);
+    if (!files->refused().empty()) return failed("it is made of other files, and " + files->refused());
+    if (scene) {
+        if (const std::string fault = fault_of_polygons(*scene); !fault.empty()) return failed(fault);
+        scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_PreTransformVertices);
+    }
     if (!scene) {
         const std::string why = importer.GetErrorString();
         if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
@@ -231,6 +261,12 @@ MeshFileResult read_mesh(const std::filesystem::path& file)
     }
     if (!listener.heard().empty()) return unreadable(listener.heard());
 
+    std::size_t triangles = 0;
+    for (unsigned i = 0; i < scene->mNumMeshes; ++i) triangles += scene->mMeshes[i]->mNumFaces;
+    if (triangles > mesh_triangles_max)
+        return failed("it has " + std::to_string(triangles) + " triangles, and at most " +
+                      std::to_string(mesh_triangles_max) + " are read: simplify the model before it is exported");
+
     MeshFileResult result;
     bool with_uv = scene->mNumMeshes > 0;
     for (unsigned i = 0; i < scene->mNumMeshes; ++i) with_uv = with_uv && scene->mMeshes[i]->HasTextureCoords(0);
@@ -238,21 +274,28 @@ MeshFileResult read_mesh(const std::filesystem::path& file)
         append(result.mesh, *scene->mMeshes[i], with_uv);
         if (grouped)
             result.mesh.smoothing_groups.resize(result.mesh.triangles.size(),
-                                                groups->group_of(*scene, *scene->mMeshes[i]));
+                                                groups->group_of(material_of(*scene, *scene->mMeshes[i])));
     }
     if (result.mesh.triangles.empty()) return failed(no_triangle);
     result.warning = warning_of_rounding(result.mesh);
+    if (groups && groups->dropped())
+        result.warning += (result.warning.empty() ? "" : "; ") +
+                          ("it has more than " + std::to_string(ObjGroups::parts_max) +
+                           " smoothing groups, which are not kept apart then: it is felt round where it is not sharper "
+                           "than `crease_deg`");
     return result;
 }
 
 } // namespace
 
-MeshFileResult load_mesh(const std::filesystem::path& file, std::optional<MeshReadLimits> limits)
+MeshFileResult load_mesh(const std::filesystem::path& file, std::optional<MeshReadLimits> limits,
+                         const Loading* loading)
 try {
     std::error_code ignored;
-    if (!std::filesystem::exists(file, ignored))
+    const input::Refused look = input::look_at_regular_file(file, mesh_bytes_max);
+    if (look.refusal == input::Refusal::missing)
         return failed("there is no such file (looked for " + file.string() + ")" + did_you_mean(file));
-    if (!std::filesystem::is_regular_file(file, ignored)) return failed("this is not a file");
+    if (look.refusal != input::Refusal::none) return failed("it " + look.why);
     const std::uintmax_t size_bytes = std::filesystem::file_size(file, ignored);
     if (size_bytes == 0) return failed("the file is empty");
     const std::string extension = extension_of(file);
@@ -269,7 +312,7 @@ try {
                 return unreadable(problem.what());
             }
         },
-        std::filesystem::absolute(file).string(), limits.value_or(limits_for(size_bytes)));
+        std::filesystem::absolute(file).string(), limits.value_or(limits_for(size_bytes)), loading);
     if (!reading.gave_up.empty())
         return failed("the reader of " + extension + " files gave up: " + reading.gave_up +
                       "; the file may be damaged or cut off: export it again, or as OBJ or STL");

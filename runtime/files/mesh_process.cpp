@@ -1,5 +1,6 @@
 #include "runtime/files/mesh_process.h"
 
+#include "input/regular_file.h"
 #include "runtime/files/fork_server.h"
 
 #include <algorithm>
@@ -85,12 +86,13 @@ void start_timer(__itimer_which_t clock, double seconds)
 }
 
 // Its own memory beside what it was born with.
-void limit_memory()
+void limit_memory(std::uintmax_t memory_bytes)
 {
     const auto page = static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
     rlim_t pages_now = 0;
+    const rlim_t half = static_cast<rlim_t>(sysconf(_SC_PHYS_PAGES)) / 2 * page;
     if (std::ifstream("/proc/self/statm") >> pages_now)
-        lower(RLIMIT_AS, (pages_now + static_cast<rlim_t>(sysconf(_SC_PHYS_PAGES)) / 2) * page);
+        lower(RLIMIT_AS, pages_now * page + std::min<rlim_t>(half, memory_bytes));
 }
 
 // Leaves no core, and is what goes first where memory ends.
@@ -98,7 +100,7 @@ void limit(const MeshReadLimits& limits)
 {
     std::ofstream("/proc/self/oom_score_adj") << 1000;
     prctl(PR_SET_DUMPABLE, 0);
-    limit_memory();
+    limit_memory(limits.memory_bytes);
     start_timer(ITIMER_PROF, limits.processor_s);
     start_timer(ITIMER_REAL, limits.wall_s);
 }
@@ -126,8 +128,11 @@ std::string seconds(double number)
 std::string why_it_ended(int status, const MeshReadLimits& limits)
 {
     if (WIFEXITED(status))
-        return WEXITSTATUS(status) == exit_memory ? "it asked for more memory than half of what this machine has"
-                                                  : "it ended early";
+        return WEXITSTATUS(status) != exit_memory ? "it ended early"
+               : limits.memory_bytes > std::uintmax_t{1} << 40
+                   ? "it asked for more memory than half of what this machine has"
+                   : "it asked for more memory than " + input::size_in_words(limits.memory_bytes) +
+                         ", or half of what this machine has";
     if (WTERMSIG(status) == SIGPROF)
         return "it came to no end in " + seconds(limits.processor_s) + " of processor time";
     if (WTERMSIG(status) == SIGALRM) return "it came to no end in " + seconds(limits.wall_s);
@@ -137,7 +142,8 @@ std::string why_it_ended(int status, const MeshReadLimits& limits)
 
 } // namespace
 
-MeshReading read_in_own_process(MeshReader read, const std::string& argument, const MeshReadLimits& limits)
+MeshReading read_in_own_process(MeshReader read, const std::string& argument, const MeshReadLimits& limits,
+                                const Loading* loading)
 {
     const auto failed = [](const std::string& why) { return MeshReading{{{}, why}, {}}; };
     const Job job{read, limits};
@@ -145,6 +151,10 @@ MeshReading read_in_own_process(MeshReader read, const std::string& argument, co
     request += argument;
     ForkedProcess reader(be_the_reader, request);
     if (!reader.error().empty()) return failed(reader.error());
+    while (loading && !reader.answers_within(std::chrono::milliseconds(50))) {
+        if (loading->stopped()) return failed(std::string(loading_was_stopped)); // and so is the reader
+        if (loading->tell) loading->tell("reading it");
+    }
     MeshReading reading;
     bool received = false;
     try {

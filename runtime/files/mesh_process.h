@@ -17,7 +17,8 @@ struct MeshReading {
 // path is best absolute.
 using MeshReader = MeshFileResult (*)(const std::string& argument);
 
-// Memory: half of what the machine has. Never throws but for want of memory.
-MeshReading read_in_own_process(MeshReader read, const std::string& argument, const MeshReadLimits& limits);
+// Never throws but for want of memory.
+MeshReading read_in_own_process(MeshReader read, const std::string& argument, const MeshReadLimits& limits,
+                                const Loading* loading = nullptr);
 
 } // namespace haptel::runtime

@@ -1,5 +1,6 @@
 #include "runtime/files/scene_file.h"
 
+#include "input/regular_file.h"
 #include "runtime/files/device_reader.h"
 #include "runtime/files/effects_reader.h"
 #include "runtime/files/fork_server.h"
@@ -15,10 +16,10 @@
 
 #include <algorithm>
 #include <exception>
-#include <fstream>
-#include <iterator>
+#include <map>
 #include <optional>
 #include <sstream>
+#include <tuple>
 #include <utility>
 
 namespace haptel::runtime {
@@ -27,6 +28,9 @@ namespace {
 
 // Side of a built-in shape whose size the scene does not say, metres.
 constexpr double default_shape_size_m = 0.1;
+
+// What is tried with servos is half of it. Who meets whom is found in a time that may grow by the square.
+constexpr std::size_t objects_max = 20'000;
 
 // What a scene file says, before anything else is opened.
 struct ObjectText {
@@ -128,14 +132,25 @@ SceneText read_scene(const toml::table& root, const std::filesystem::path& folde
         messages.error("a scene needs something to touch: add an `[[object]]` with a `mesh` or a `shape`");
     else if (!list || !list->is_array_of_tables())
         messages.error(objects->source(), "expected `[[object]]` in double brackets: a scene may hold several objects");
+    else if (list->size() > objects_max)
+        messages.error((*list)[objects_max].source(), "a scene may hold " + std::to_string(objects_max) +
+                                                          " objects, and this one has " + std::to_string(list->size()) +
+                                                          ": leave some out");
     else
         for (const toml::node& object : *list)
             text.objects.push_back(read_object(*object.as_table(), text.servo.rate_hz, messages));
     return text;
 }
 
+// Told as being about that.
+Loading about(const std::string& what, const Loading& loading)
+{
+    if (!loading.tell) return loading;
+    return {[&loading, what](std::string_view doing) { loading.tell(what + ": " + std::string(doing)); }, loading.stop};
+}
+
 void load_geometry(ObjectText& text, const std::filesystem::path& folder, SurfaceCache* surfaces,
-                   FileMessages& messages)
+                   const Loading& loading, FileMessages& messages)
 {
     text.object.name = text.mesh.empty() ? text.shape : text.mesh;
     const std::filesystem::path file = text.mesh.empty() ? "" : (folder / text.mesh).lexically_normal();
@@ -143,11 +158,12 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, Surfac
         file, text.shape, text.size_m, text.own_crease ? std::optional(text.crease_deg) : std::nullopt);
     if (surfaces) text.object.surface = surfaces->find(key);
     if (text.object.surface) return;
+    const Loading of_mesh = about("mesh `" + text.object.name + "`", loading);
     Mesh mesh;
     if (text.mesh.empty()) {
         mesh = make_shape(text.shape).value_or(Mesh{});
     } else {
-        MeshFileResult read = load_mesh(file);
+        MeshFileResult read = load_mesh(file, std::nullopt, &of_mesh);
         if (!read.error.empty()) {
             messages.error(text.mesh_at, "mesh `" + text.mesh + "`: " + read.error);
             return;
@@ -162,7 +178,7 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, Surfac
                                         "`: all its faces are without a smoothing group (`s off`) and felt flat; write "
                                         "`crease_deg = 40` to feel it round where it is not sharper than that");
     if (text.size_m > 0) scale_to_size(mesh, text.size_m);
-    SurfaceResult built = build_surface(mesh, text.crease_deg);
+    SurfaceResult built = build_surface(mesh, text.crease_deg, &of_mesh);
     if (!built.surface)
         messages.error(text.mesh_at, "mesh `" + text.object.name + "`: " + built.error);
     else if (const std::string warning = built.report.warning(); !warning.empty())
@@ -234,57 +250,61 @@ double hand_speed_max_m_per_s(const SceneText& scene)
 }
 
 LoadedScene load(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
-                 SurfaceCache* surfaces, FileMessages& messages)
+                 SurfaceCache* surfaces, const Loading& loading, FileMessages& messages)
 {
     LoadedScene loaded;
-    std::error_code unknown;
     if (file.extension().string().starts_with(".haptel")) { // with or without ":NAME" behind it
         messages.error("this is a texture, and a scene is needed: a TOML file with an `[[object]]` that has this "
                        "`texture`");
         return loaded;
     }
-    if (std::filesystem::exists(file, unknown) && !std::filesystem::is_regular_file(file, unknown)) {
-        // A pipe may never end, and a folder is no text.
-        messages.error(std::filesystem::is_directory(file, unknown) ? "this is a folder: name the scene file in it"
-                                                                    : "this is not a regular file");
+    const input::FileBytes source = input::read_regular_file(file, scene_bytes_max);
+    if (const auto& [refusal, why] = source.refused; refusal != input::Refusal::none) {
+        messages.error(refusal == input::Refusal::missing     ? "the scene could not be read: is the path right?"
+                       : refusal == input::Refusal::folder    ? "this is a folder: name the scene file in it"
+                       : refusal == input::Refusal::too_large ? "the scene " + why + ": is it the right file?"
+                                                              : "the scene " + why);
         return loaded;
     }
-    std::ifstream in(file, std::ios::binary);
-    const std::string source{std::istreambuf_iterator<char>(in), {}};
-    if (!in.is_open() || in.bad()) {
-        messages.error("the scene could not be read: is the path right?");
+    if (const std::optional<TooDeep> fault = too_deep(source.bytes)) {
+        messages.error(fault->at, fault->message);
         return loaded;
     }
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
     SceneText text;
     try {
-        text = read_scene(toml::parse(source), folder, messages);
+        text = read_scene(toml::parse(source.bytes), folder, messages);
     } catch (const toml::parse_error& problem) {
         messages.error(problem.source(), said_of_syntax(problem));
     }
     if (messages.any_error()) return loaded;
 
+    using Geometry = std::tuple<std::string, std::string, double, double, bool>;
+    std::map<Geometry, std::vector<ObjectText>::iterator> first_of;
     for (auto object = text.objects.begin(); object != text.objects.end(); ++object) {
-        const auto same = std::find_if(text.objects.begin(), object, [&](const ObjectText& other) {
-            return other.mesh == object->mesh && other.shape == object->shape && other.size_m == object->size_m &&
-                   other.crease_deg == object->crease_deg && other.own_crease == object->own_crease;
-        });
+        const Geometry geometry{object->mesh, object->shape, object->size_m, object->crease_deg, object->own_crease};
+        const auto same = first_of.try_emplace(geometry, object).first->second;
         if (same == object) {
             if (!object->mesh.empty()) loaded.meshes.push_back((folder / object->mesh).lexically_normal());
-            load_geometry(*object, folder, surfaces, messages);
+            load_geometry(*object, folder, surfaces, loading, messages);
         } else { // what is there many times is held once
             object->object.name = same->object.name;
             object->object.surface = same->object.surface;
             object->surface_key = same->surface_key;
         }
+        if (loading.stopped()) break;
         if (object->object.surface && same == object) check_unit(*object, text.devices, messages);
         if (object->object.surface) check_swing(*object, text.devices, messages);
         if (object->object.surface) check_reach(*object, text.devices, messages);
     }
     if (messages.any_error()) return loaded;
     const HandLimits hands{hand_speed_max_m_per_s(text), text.servo.rate_hz};
-    for (ObjectText& object : text.objects)
+    for (ObjectText& object : text.objects) {
+        if (loading.stopped()) break;
+        if (loading.tell && !object.texture.reference.empty())
+            loading.tell("texture `" + object.texture.reference + "`");
         load_texture(object.object, object.texture, hands, folder, textures, messages);
+    }
     if (messages.any_error()) return loaded;
 
     auto scene = std::make_shared<Scene>();
@@ -299,7 +319,12 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
         scene->objects.push_back(std::move(object.object));
     }
     warn_of_doubles(*scene, at_rest, messages);
-    join_objects(*scene, std::move(at_rest), surfaces, messages);
+    const Loading of_joining = about("objects that meet", loading);
+    join_objects(*scene, std::move(at_rest), surfaces, messages, &of_joining);
+    if (loading.stopped()) {
+        messages.error(std::string(loading_was_stopped));
+        return loaded;
+    }
 
     // All that a scene can break is told above, where it is written; a renderer asks for this, too.
     if (const std::string faults = validate(scene.get(), {.probe = text.devices.front().probe}); !faults.empty())
@@ -319,13 +344,13 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
 } // namespace
 
 LoadedScene load_scene(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
-                       SurfaceCache* surfaces)
+                       SurfaceCache* surfaces, const Loading& loading)
 {
     start_fork_server(); // a mesh may come into the scene while a servo runs
     FileMessages messages(file);
     LoadedScene loaded;
     try {
-        loaded = load(file, textures, devices, surfaces, messages);
+        loaded = load(file, textures, devices, surfaces, loading, messages);
     } catch (const std::exception& problem) {
         messages.error(std::string("the scene could not be loaded: ") + problem.what());
     }

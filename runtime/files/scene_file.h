@@ -2,12 +2,14 @@
 // or text with a unit; paths are relative to the scene.
 #pragma once
 
+#include "runtime/surface/loading.h"
 #include "lang/abi/texture_binding.h"
 #include "runtime/files/surface_cache.h"
 #include "runtime/hand/hand.h"
 #include "runtime/hand/haptic_device.h"
 #include "runtime/scene/scene.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -32,8 +34,11 @@ struct LoadedScene {
 
 // Reads, checks, loads the meshes, asks `textures` for every texture and `devices` for each device. Either may be
 // empty: objects are then smooth, and no device is opened. `surfaces`: what it holds is not built again, what is built
-// it keeps. Never throws.
+// it keeps. `loading` hears what takes long, and may end it: then there is no scene. Never throws.
 LoadedScene load_scene(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
-                       SurfaceCache* surfaces = nullptr);
+                       SurfaceCache* surfaces = nullptr, const Loading& loading = {});
+
+// Some hundred thousand objects. What the parser makes of a file takes some thirty times its size.
+inline constexpr std::uintmax_t scene_bytes_max = 16 << 20;
 
 } // namespace haptel::runtime

@@ -63,7 +63,9 @@ const toml::table& table_named(const toml::table& root, std::string_view name, F
 
 std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates)
 {
+    constexpr std::size_t word_max = 64; // no name is as long, and the search takes time by its length
     std::optional<std::string> nearest;
+    if (word.size() > word_max) return nearest;
     std::size_t smallest = std::max<std::size_t>(1, word.size() / 3) + 1;
     for (const std::string& candidate : candidates) {
         // A key without its unit is the most common slip of all: "stiffness" for "stiffness_n_per_m".
@@ -89,10 +91,17 @@ std::string either_of(const std::vector<std::string_view>& words)
 
 void FileMessages::write(toml::source_position at, std::string_view severity, const std::string& message)
 {
+    if (full()) {
+        ++left_out_;
+        return;
+    }
     at.line = std::max<toml::source_index>(at.line, 1);
     at.column = std::max<toml::source_index>(at.column, 1);
-    messages_.push_back({at, file_.string() + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
-                                 std::string(severity) + ": " + message + "\n"});
+    messages_.push_back(
+        {at, file_.string() + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
+                 std::string(severity) + ": " +
+                 (message.size() > message_bytes_max ? message.substr(0, message_bytes_max) + " ..." : message) +
+                 "\n"});
 }
 
 std::string FileMessages::text() const
@@ -101,6 +110,9 @@ std::string FileMessages::text() const
     std::stable_sort(sorted.begin(), sorted.end(), [](const Message& a, const Message& b) { return a.at < b.at; });
     std::string all;
     for (const Message& message : sorted) all += message.text;
+    if (left_out_ > 0)
+        all += file_.string() + ":1:1: note: " + std::to_string(left_out_) +
+               " more errors, warnings and notes are not shown: mend the first ones first\n";
     return all + added_;
 }
 
@@ -289,6 +301,10 @@ void TableReader::report_unknown_keys()
 {
     for (const auto& [key, value] : table_) {
         if (std::find(known_.begin(), known_.end(), key.str()) != known_.end()) continue;
+        if (messages_.full()) { // whatever would be said
+            messages_.error(key.source(), "");
+            continue;
+        }
         const std::string in = name_.empty() ? "" : " in " + name_;
         if (const auto meant = nearest_word(key.str(), known_)) {
             messages_.error(key.source(),

@@ -21,9 +21,12 @@
 
 namespace haptel::runtime {
 
-// Messages about one file: "FILE:LINE:COLUMN: error: ...", one per line, in the order of the file.
+// Messages about one file: "FILE:LINE:COLUMN: error: ...", one per line, in the order of the file. Of a file that is
+// wrong all over the first ones are kept, none longer than a screen, and the others are counted.
 class FileMessages {
 public:
+    static constexpr std::size_t messages_max = 200, message_bytes_max = 2000;
+
     explicit FileMessages(std::filesystem::path file) : file_(std::move(file)) {}
 
     void error(const toml::source_region& where, const std::string& message);
@@ -34,6 +37,7 @@ public:
 
     bool any_error() const { return errors_ > 0; }
     std::size_t errors() const { return errors_; } // so far
+    bool full() const { return messages_.size() >= messages_max; }
     std::string text() const;
 
 private:
@@ -46,7 +50,7 @@ private:
     std::filesystem::path file_;
     std::vector<Message> messages_;
     std::string added_;
-    std::size_t errors_ = 0;
+    std::size_t errors_ = 0, left_out_ = 0;
 };
 
 class TableReader {

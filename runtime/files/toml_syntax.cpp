@@ -1,5 +1,7 @@
 #include "runtime/files/toml_syntax.h"
 
+#include <algorithm>
+#include <cstddef>
 #include <string_view>
 
 namespace haptel::runtime {
@@ -54,6 +56,77 @@ std::string said_of_syntax(const toml::parse_error& problem)
     for (const Slip& slip : slips)
         if (found.find(slip.words) != std::string_view::npos) return said.append(". ").append(slip.mend);
     return said;
+}
+
+namespace {
+
+// Goes through a text by what may hide brackets and dots from a reader: strings and comments.
+class Depth {
+public:
+    explicit Depth(std::string_view text) : text_(text) {}
+
+    // Whether some place is too deep; then that is where it stands.
+    bool goes_too_deep()
+    {
+        while (at_ < text_.size()) {
+            const char c = text_[at_];
+            if (c == '"' || c == '\'') {
+                skip_string(c);
+                continue;
+            }
+            if (c == '#') {
+                at_ = std::min(text_.find('\n', at_), text_.size());
+                continue;
+            }
+            // A key ends where its line, its value or a bracket does.
+            if (c == '[' || c == '{') ++open_, dots_ = 0;
+            if ((c == ']' || c == '}') && open_ > 0) --open_, dots_ = 0;
+            if (c == '\n' || c == '=' || c == ',') dots_ = 0;
+            if (c == '.') ++dots_;
+            if (open_ + dots_ > levels_max) return true;
+            ++at_;
+        }
+        return false;
+    }
+
+    toml::source_position place() const
+    {
+        const std::string_view before = text_.substr(0, at_);
+        const auto lines = std::count(before.begin(), before.end(), '\n');
+        const std::size_t line_begin = before.rfind('\n') + 1; // npos + 1: 0
+        return {static_cast<toml::source_index>(lines + 1), static_cast<toml::source_index>(at_ - line_begin + 1)};
+    }
+
+private:
+    // One that does not end on its line is no TOML, unless it is of three quotes.
+    void skip_string(char quote)
+    {
+        const std::string three(3, quote);
+        const bool long_one = text_.substr(at_, 3) == three;
+        for (at_ += long_one ? 3 : 1; at_ < text_.size(); ++at_) {
+            if (text_[at_] == '\\' && quote == '"')
+                ++at_;
+            else if (long_one ? text_.substr(at_, 3) == three : text_[at_] == quote || text_[at_] == '\n')
+                break;
+        }
+        at_ = std::min(at_ + (long_one ? 3 : 1), text_.size());
+    }
+
+    std::string_view text_;
+    std::size_t at_ = 0;
+    unsigned open_ = 0, dots_ = 0;
+};
+
+} // namespace
+
+std::optional<TooDeep> too_deep(std::string_view text)
+{
+    Depth depth(text);
+    if (!depth.goes_too_deep()) return std::nullopt;
+    const toml::source_position at = depth.place();
+    return TooDeep{{at, at, nullptr},
+                   "keys and brackets nest deeper than " + std::to_string(levels_max) +
+                       " levels, and a scene needs four: is a bracket open, or is it the right file?"};
 }
 
 } // namespace haptel::runtime

@@ -1,9 +1,11 @@
 #include "runtime/servo/recording.h"
 
+#include "input/regular_file.h"
+
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cstddef>
-#include <fstream>
 #include <ostream>
 #include <span>
 #include <variant>
@@ -47,6 +49,46 @@ bool parse(std::string_view text, const Field& field)
         field);
 }
 
+// Some days of ticks.
+constexpr std::uintmax_t trace_bytes_max = std::uintmax_t{64} << 30;
+
+// A file's lines one by one, so that a trace may be longer than memory holds of text.
+class Lines {
+public:
+    explicit Lines(const std::filesystem::path& file) : file_(file, trace_bytes_max), bytes_(2 * longest) {}
+
+    static constexpr std::size_t longest = 1 << 14; // a trace's are some 300 bytes
+
+    // Without its end. False: the file has, or too_long(), or refused() tells why not.
+    bool next(std::string_view& line)
+    {
+        while (true) {
+            const std::string_view left(bytes_.data() + begin_, end_ - begin_);
+            const std::size_t size = left.find('\n');
+            if (size != left.npos || (is_end_ && !left.empty() && !too_long())) {
+                line = left.substr(0, size);
+                begin_ += std::min(line.size() + 1, left.size());
+                if (line.ends_with('\r')) line.remove_suffix(1);
+                return true;
+            }
+            if (is_end_ || too_long()) return false;
+            std::copy(left.begin(), left.end(), bytes_.begin());
+            begin_ = 0, end_ = left.size();
+            const std::size_t got = file_.read(bytes_.data() + end_, bytes_.size() - end_);
+            is_end_ = got == 0;
+            end_ += got;
+        }
+    }
+    bool too_long() const { return end_ - begin_ > longest; }
+    const input::Refused& refused() const { return file_.refused(); }
+
+private:
+    input::RegularFile file_;
+    std::vector<char> bytes_;
+    std::size_t begin_ = 0, end_ = 0;
+    bool is_end_ = false;
+};
+
 } // namespace
 
 void write_trace_header(std::ostream& out)
@@ -76,19 +118,21 @@ TraceResult read_trace(const std::filesystem::path& file)
         return result;
     };
 
-    std::ifstream in(file);
-    std::string line;
-    if (!in || !std::getline(in, line))
-        return fail(
-            "expected a trace (a CSV file as `haptel explore --out` writes it), but the file is missing or empty");
-    const auto without_return = [&] {
-        return std::string_view(line).substr(0, line.size() - (line.ends_with('\r') ? 1 : 0));
+    Lines lines(file);
+    const auto why_no_line = [&]() -> std::string {
+        if (lines.refused().refusal != input::Refusal::none) return "the trace " + lines.refused().why;
+        if (lines.too_long())
+            return "a line of more than " + std::to_string(Lines::longest) + " bytes is none of a trace";
+        return line_number == 1 ? "the file is empty" : "";
     };
+    std::string_view line;
+    if (!lines.next(line))
+        return fail("expected a trace (a CSV file as `haptel explore --out` writes it), but " + why_no_line());
 
     const std::vector<std::string_view> wanted = split(trace_columns);
     std::vector<std::size_t> column_of_cell; // column_count: ignored
     std::array<bool, column_count> present = {};
-    for (const std::string_view name : split(without_return())) {
+    for (const std::string_view name : split(line)) {
         std::size_t column = 0;
         while (column < wanted.size() && wanted[column] != name) ++column;
         column_of_cell.push_back(column);
@@ -97,10 +141,9 @@ TraceResult read_trace(const std::filesystem::path& file)
     for (std::size_t column = 0; column < columns_required; ++column)
         if (!present[column]) return fail("the trace has no column `" + std::string(wanted[column]) + "`");
 
-    while (std::getline(in, line)) {
-        ++line_number;
-        if (without_return().empty()) continue;
-        const std::vector<std::string_view> cells = split(without_return());
+    while (++line_number, lines.next(line)) {
+        if (line.empty()) continue;
+        const std::vector<std::string_view> cells = split(line);
         if (cells.size() != column_of_cell.size())
             return fail("expected " + std::to_string(column_of_cell.size()) + " values, found " +
                         std::to_string(cells.size()));
@@ -112,6 +155,7 @@ TraceResult read_trace(const std::filesystem::path& file)
                             std::string(cells[i]) + "`");
         result.records.push_back(record);
     }
+    if (const std::string why = why_no_line(); !why.empty()) return fail(why);
     return result;
 }
 

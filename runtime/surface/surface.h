@@ -22,6 +22,7 @@ namespace haptel::runtime {
 
 class BoxTree;
 class SweptTree;
+struct Loading;
 
 // What was found in a mesh and mended. All counts, no unit.
 struct MeshReport {
@@ -146,7 +147,8 @@ struct SurfaceResult {
 // rounds everything but what the mesh's smoothing groups part.
 inline constexpr double default_crease_deg = 40;
 
-// Never throws on bad geometry; memory is all that it can run out of.
-SurfaceResult build_surface(const Mesh& mesh, double crease_deg = default_crease_deg);
+// Never throws on bad geometry. A mesh of which too much lies in one place is refused; `loading` hears what takes long,
+// and may end it.
+SurfaceResult build_surface(const Mesh& mesh, double crease_deg = default_crease_deg, const Loading* loading = nullptr);
 
 } // namespace haptel::runtime

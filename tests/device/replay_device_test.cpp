@@ -2,12 +2,15 @@
 #include "runtime/render/renderer.h"
 #include "runtime/servo/recording.h"
 #include "tests/support/catch.h"
+#include "tests/support/folder.h"
 #include "tests/support/touch_scenes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
 
@@ -158,4 +161,27 @@ TEST_CASE("a trace that cannot be replayed is refused with the reason")
 
     std::ofstream(file.path) << "a,b,c\n1,2,3\n";
     CHECK(!file.open().device);
+}
+
+TEST_CASE("a replay of what is no regular file, or of a line without end, is refused by what it is")
+{
+    const test::Folder folder;
+    const auto error = [](const std::string& file) {
+        DeviceRequest request;
+        request.name = "replay:" + file;
+        const DeviceResult opened = open_device(request);
+        CHECK(!opened.device);
+        return opened.error.substr(std::min(file.size(), opened.error.size()));
+    };
+    const std::string expected = ":1: expected a trace (a CSV file as `haptel explore --out` writes it), but ";
+    const std::string pipe = folder.file("pipe"), sparse = folder.write("sparse.csv", "");
+    REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
+    std::filesystem::resize_file(sparse, std::uintmax_t{1} << 35); // zeros, and no end of a line in them
+    CHECK(error(pipe) == expected + "the trace is a pipe, not a regular file");
+    CHECK(error("/dev/zero") == expected + "the trace is a device, not a regular file");
+    CHECK(error(folder.path.string()) == expected + "the trace is a folder");
+    CHECK(error(folder.file("none")) == expected + "the trace does not exist");
+    CHECK(error(sparse) == expected + "a line of more than 16384 bytes is none of a trace");
+    const std::string torn = folder.write("torn.csv", std::string(trace_columns) + "\n" + std::string(100'000, '1'));
+    CHECK(error(torn) == ":2: a line of more than 16384 bytes is none of a trace");
 }

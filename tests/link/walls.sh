@@ -8,12 +8,13 @@ set -euo pipefail
 # HOUSE: ITS ROOMS FROM THE GROUND UP | WHAT OF OTHER HOUSES ALL OF THEM MAY USE. A room may include its own files and
 # those of rooms before it; '.' is the house's own folder. '!' refuses what a later word would allow.
 houses=(
+    'input: . |'
     'lang: abi text math ir ir/run ir/derive ir/bounds syntax format program lower check check/dimension . |'
     'stdlib: . |'
-    'jit: codegen engine picture texture live check | lang stdlib'
-    'runtime: geometry hand surface surface/build contact texture scene force files render servo | lang/abi'
+    'jit: codegen engine picture texture live check | input lang stdlib'
+    'runtime: geometry hand surface surface/build contact texture scene force files render servo | input lang/abi'
     'device: . | !runtime/files runtime lang/abi'
-    'tools: output arguments plot report commands . | lang stdlib jit runtime device bench'
+    'tools: output arguments plot report commands . | input lang stdlib jit runtime device bench'
     'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h lang stdlib'
     'tests/runtime: . | tests/support runtime lang/abi'
 )
@@ -97,7 +98,7 @@ while IFS=: read -r file line directive; do
     elif [[ -n $from_house ]] && ((${floor[$room]:-99} > ${floor[$from_room]})); then
         crossed "$from_room may not look up to \"$header\""
     fi
-done < <(for folder in lang stdlib jit runtime device tools examples bench tests; do
+done < <(for folder in input lang stdlib jit runtime device tools examples bench tests; do
     [[ ! -d $folder ]] || grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*[<"]' "$folder" \
         --include='*.h' --include='*.c' --include='*.cpp' --include='*.def' --exclude-dir=broken_house || true
 done)

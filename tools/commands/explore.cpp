@@ -11,6 +11,7 @@
 #include "tools/report/explore_status.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstddef>
@@ -35,12 +36,13 @@ struct ExploreOptions {
     bool json = false;
 };
 
-volatile std::sig_atomic_t interrupted = 0;
+std::atomic<bool> interrupted = false;
+static_assert(std::atomic<bool>::is_always_lock_free); // set by a signal
 
 // The first Ctrl-C, or the terminal's end, asks for a clean end; the second one gets what it always gets.
 extern "C" void on_interrupt(int signal)
 {
-    interrupted = 1;
+    interrupted = true;
     std::signal(signal, SIG_DFL);
 }
 
@@ -56,7 +58,9 @@ std::optional<runtime::LoadedScene> load(const ExploreOptions& options, ExploreT
             opened.error = fmt::format("`--device {}` in its place: {}", request.name, opened.error);
         return opened;
     };
-    runtime::LoadedScene loaded = runtime::load_scene(options.scene, textures.resolver(), devices, &surfaces);
+    Steps steps;
+    const runtime::Loading loading{[&](std::string_view doing) { steps.show(doing); }, &interrupted};
+    runtime::LoadedScene loaded = runtime::load_scene(options.scene, textures.resolver(), devices, &surfaces, loading);
     fmt::print(stderr, "{}", loaded.diagnostics);
     if (!loaded.scene || loaded.hands.empty()) return std::nullopt;
     if (options.devices.size() > loaded.hands.size()) {
@@ -83,7 +87,7 @@ runtime::ServoOptions servo_options(const ExploreOptions& options)
 
 ExitCode explore(const ExploreOptions& options)
 {
-    interrupted = 0;
+    interrupted = false;
     std::signal(SIGINT, on_interrupt);
     std::signal(SIGTERM, on_interrupt);
     if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN); // nohup: the terminal may go

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <fstream>
-#include <iterator>
 #include <poll.h>
 #include <set>
 #include <system_error>
@@ -27,8 +25,8 @@ constexpr auto absence_forgiven = 500ms;
 
 std::string content_of(const std::filesystem::path& file)
 {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
+    const input::FileBytes read = input::read_regular_file(file, runtime::scene_bytes_max);
+    return read.bytes.empty() ? read.refused.why : read.bytes;
 }
 
 } // namespace
@@ -133,7 +131,7 @@ void ExploreScene::load()
     std::string now = state();
     if (now == loaded_state_) return;
     loaded_state_ = std::move(now);
-    runtime::LoadedScene loaded = runtime::load_scene(file_, textures_.resolver(), {}, &surfaces_);
+    runtime::LoadedScene loaded = runtime::load_scene(file_, textures_.resolver(), {}, &surfaces_, {{}, &stop_});
     if (!loaded.meshes.empty()) {
         meshes_ = std::move(loaded.meshes);
         loaded_state_ = state();

@@ -36,6 +36,15 @@ Progress::~Progress()
     if (is_shown) fmt::print(stderr, "\r{:40}\r", "");
 }
 
+void Steps::show(std::string_view doing)
+{
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next || doing == shown) return;
+    next = now + std::chrono::milliseconds(500);
+    shown = doing;
+    fmt::print(stderr, "haptel: loading: {}\n", doing);
+}
+
 namespace {
 
 void say(std::string_view kind, const char* color, std::string_view text)

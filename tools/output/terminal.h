@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <string>
 #include <string_view>
 
 namespace haptel::tools {
@@ -24,6 +25,16 @@ public:
 private:
     std::chrono::steady_clock::time_point next = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
     bool is_shown = false;
+};
+
+// What is being done, for who waits: a line each time that it changes, from half a second on.
+class Steps {
+public:
+    void show(std::string_view doing); // often
+
+private:
+    std::chrono::steady_clock::time_point next = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
+    std::string shown;
 };
 
 // "haptel: error: text" and "haptel: warning: text", each on a line of its own.

@@ -5,36 +5,49 @@
 namespace haptel::runtime {
 
 // Links, fans, tree and walls of the faces as they are.
-static void connect(Surface& surface, SurfaceResult& result)
+static void connect(Surface& surface, SurfaceResult& result, BuildWork& work)
 {
     surface.fans.clear();
     surface.pierced_by.clear();
     for (Face& face : surface.faces) face.pierced_begin = face.pierced_end = 0;
     result.report.border_edges = result.report.nonmanifold_edges = result.report.pierced = 0;
+    if (!work.begin("which of its triangles are neighbours")) return;
     link_faces(surface, result.report);
-    make_fans(surface);
+    make_fans(surface, work);
+    if (!work.begin("where its triangles lie")) return;
     surface.tree = BoxTree::build(surface.vertices, surface.faces, result.error);
-    if (surface.tree) find_piercing(surface, result.report);
+    if (surface.tree) find_piercing(surface, result.report, work);
 }
 
-SurfaceResult build_surface(const Mesh& mesh, double crease_deg)
+SurfaceResult build_surface(const Mesh& mesh, double crease_deg, const Loading* loading)
 {
     SurfaceResult result;
     auto surface = std::make_shared<Surface>();
+    // Where joining gives up, much is left that cuts each other.
+    constexpr size_t left_by_joining = 2'000'000;
+    BuildWork work(mesh.triangles.size() + (mesh.origins.empty() ? 0 : left_by_joining), loading);
+    work.begin("which of its vertices are one");
     if (!repair(mesh, *surface, result.report)) {
         const std::string warning = result.report.warning();
         result.error = "the mesh has no triangle to touch" + (warning.empty() ? "" : ": " + warning);
         return result;
     }
-    close_cracks(*surface, result.report);
-    if (!surface->origins.empty()) imprint(*surface, result.error);
+    close_cracks(*surface, result.report, work);
+    if (!surface->origins.empty() && !work.over()) {
+        BuildWork joining(mesh.triangles.size(), loading); // has limits of its own, too, and leaves what is beyond them
+        imprint(*surface, result.error, joining);
+        if (joining.over()) result.error = joining.error();
+        if (!result.error.empty()) return result;
+    }
     int rounds = 0;
     do {
-        connect(*surface, result);
-        if (!surface->tree) return result;
-    } while (++rounds < 3 && part_crossing_sheets(*surface));
-    make_shading_normals(*surface, crease_deg);
-    result.surface = std::move(surface);
+        connect(*surface, result, work);
+        if (work.over()) result.error = work.error();
+        if (!result.error.empty()) return result;
+    } while (++rounds < 3 && part_crossing_sheets(*surface, work));
+    if (work.begin("how round it is")) make_shading_normals(*surface, crease_deg);
+    result.error = work.error();
+    if (result.error.empty()) result.surface = std::move(surface);
     return result;
 }
 

@@ -59,6 +59,13 @@ public:
         visit(0, order_.size(), 0, minimum, maximum, visit_one);
     }
 
+    // At least all that come within `reach` of the segment, and of others not many.
+    template <class Visit>
+    void visit_near(const glm::dvec3& from, const glm::dvec3& to, double reach, Visit&& visit_one) const
+    {
+        near(0, order_.size(), 0, from, to - from, 0, 1, 2 * reach, visit_one); // twice: whatever rounding does
+    }
+
 private:
     void build(size_t begin, size_t end, int axis)
     {
@@ -86,13 +93,36 @@ private:
         if (maximum[axis] >= p[axis]) visit(middle + 1, end, (axis + 1) % 3, minimum, maximum, visit_one);
     }
 
+    // As far as the segment goes on a side of a vertex, with `reach` more on either side of the plane between.
+    template <class Visit>
+    void near(size_t begin, size_t end, int axis, const glm::dvec3& from, const glm::dvec3& along, double first,
+              double last, double reach, Visit& visit_one) const
+    {
+        if (begin >= end || !(first <= last)) return;
+        const size_t middle = begin + (end - begin) / 2;
+        const double from_plane = positions_[order_[middle]][axis] - from[axis], slope = along[axis];
+        // Where the segment is up to `reach` above the plane, and down to `reach` below it.
+        double below_first = first, below_last = last, above_first = first, above_last = last;
+        if (slope != 0) {
+            const double leaves = (from_plane + reach) / slope, enters = (from_plane - reach) / slope;
+            (slope > 0 ? below_last : below_first) = slope > 0 ? std::min(last, leaves) : std::max(first, leaves);
+            (slope > 0 ? above_first : above_last) = slope > 0 ? std::max(first, enters) : std::min(last, enters);
+        } else {
+            if (from_plane < -reach) below_last = first - 1;
+            if (from_plane > reach) above_last = first - 1;
+        }
+        near(begin, middle, (axis + 1) % 3, from, along, below_first, below_last, reach, visit_one);
+        visit_one(order_[middle]);
+        near(middle + 1, end, (axis + 1) % 3, from, along, above_first, above_last, reach, visit_one);
+    }
+
     const std::vector<glm::dvec3>& positions_;
     std::vector<uint32_t> order_;
 };
 
 class CrackFiller {
 public:
-    explicit CrackFiller(Surface& surface) : surface_(surface) { find(); }
+    CrackFiller(Surface& surface, BuildWork& work) : surface_(surface), work_(work) { find(); }
 
     bool open() const { return !borders_.empty(); }
 
@@ -108,8 +138,10 @@ public:
         size_t welded = 0;
         const VerticesInBox near(surface_.vertices, corners_);
         for (uint32_t corner : corners_) {
+            if (work_.over()) return 0;
             uint32_t first = corner;
             near.visit(at(corner) - crack, at(corner) + crack, [&](uint32_t other) {
+                work_.spend();
                 if (other < first && becomes[other] == other && glm::distance(at(corner), at(other)) <= crack &&
                     !std::binary_search(joined.begin(), joined.end(), std::pair(other, corner)))
                     first = other;
@@ -132,6 +164,7 @@ public:
         const VerticesInBox corners(surface_.vertices, corners_);
         std::vector<bool> touched(surface_.faces.size());
         for (const BorderEdge& border : borders_) {
+            if (work_.over()) return 0;
             if (touched[border.face]) continue; // its other edges: next time
             uint32_t corner = 0;
             double share = 1;
@@ -154,6 +187,7 @@ private:
 
     void find()
     {
+        work_.spend(3 * surface_.faces.size());
         borders_ = border_edges(surface_.faces);
         corners_.clear();
         for (const BorderEdge& border : borders_) {
@@ -170,7 +204,8 @@ private:
         const uint32_t tip = surface_.faces[border.face].vertex[previous(border.edge)];
         const double length = glm::length(along);
         share = 1;
-        corners.visit(glm::min(a, b) - crack, glm::max(a, b) + crack, [&](uint32_t candidate) {
+        corners.visit_near(a, b, crack, [&](uint32_t candidate) {
+            work_.spend();
             const glm::dvec3 beside = at(candidate) - a;
             const double way = glm::dot(beside, along) / length;
             if (candidate == tip || way <= crack || way >= length - crack || way / length >= share ||
@@ -200,19 +235,21 @@ private:
     }
 
     Surface& surface_;
+    BuildWork& work_;
     std::vector<BorderEdge> borders_;
     std::vector<uint32_t> corners_; // of the borders, ascending
 };
 
 } // namespace
 
-void close_cracks(Surface& surface, MeshReport& report)
+void close_cracks(Surface& surface, MeshReport& report, BuildWork& work)
 {
-    CrackFiller filler(surface);
+    if (!work.begin("which of its borders lie on each other")) return;
+    CrackFiller filler(surface, work);
     if (!filler.open()) return;
     report.cracks_closed = filler.weld();
     // A round cuts each face once. More corners on one face than rounds: the rest stays open.
-    for (int round = 0; round < 64; ++round) {
+    for (int round = 0; round < 64 && !work.over(); ++round) {
         const size_t cuts = filler.cut();
         report.cracks_closed += cuts;
         if (cuts == 0) break;

@@ -2,6 +2,7 @@
 #include "runtime/surface/corner.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace haptel::runtime {
@@ -28,25 +29,43 @@ void add_fan(Surface& surface, const Sector& start)
 class Meeting {
 public:
     Meeting(Surface& surface, std::vector<uint32_t> fans)
-        : surface_(surface), fans_(std::move(fans)), sheet_(fans_.size())
+        : surface_(surface), fans_(std::move(fans)), sheet_(fans_.size()), circle_(fans_.size())
     {
-        for (size_t i = 0; i < fans_.size(); ++i) sheet_[i] = i;
+        std::iota(sheet_.begin(), sheet_.end(), size_t{0});
+        std::iota(circle_.begin(), circle_.end(), size_t{0});
         for (size_t i = 0; i < fans_.size(); ++i)
             for_each_sector(surface_, start(i), [&](const Sector& sector) {
+                ++sectors_;
                 const uint32_t back = surface_.faces[sector.face].fan[sector.corner][1 - sector.side];
-                const size_t j = size_t(std::find(fans_.begin(), fans_.end(), back) - fans_.begin());
-                const size_t kept = std::min(sheet_[i], sheet_[j]), merged = std::max(sheet_[i], sheet_[j]);
-                std::replace(sheet_.begin(), sheet_.end(), merged, kept);
+                const auto j = static_cast<size_t>(std::lower_bound(fans_.begin(), fans_.end(), back) - fans_.begin());
+                unite(sheet_, i, j);
             });
+        for (size_t i = 0; i < fans_.size(); ++i) sheet_[i] = first(sheet_, i);
     }
 
-    // Joins the fans of different sheets that see each other, unless a third sheet stands between.
-    void join()
+    // Joins the fans of different sheets that see each other, unless a third sheet stands between. False: it is over.
+    bool join(BuildWork& work)
     {
-        for (size_t i = 0; i < fans_.size(); ++i)
-            for (size_t j = 0; j < i; ++j)
-                if (sheet_[i] != sheet_[j] && bound_the_same_space(i, j) && !joined(i, j))
-                    std::swap(surface_.fans[fans_[i]].next, surface_.fans[fans_[j]].next);
+        const size_t count = fans_.size();
+        if (std::all_of(sheet_.begin(), sheet_.end(), [](size_t sheet) { return sheet == 0; })) return true;
+        if (!work.spend(8 * sectors_ * count)) return false;
+        // From along each fan, which of the other sheets' fans are seen.
+        std::vector<std::vector<bool>> seen_from(count, std::vector<bool>(count));
+        for (size_t j = 0; j < count; ++j) {
+            const glm::dvec3 along = direction(j);
+            for (size_t k = 0; k < count; ++k)
+                if (sheet_[k] != sheet_[j]) seen_from[j][k] = sees(k, along);
+        }
+        for (size_t i = 0; i < count; ++i)
+            for (size_t j = 0; j < i; ++j) {
+                if (sheet_[i] == sheet_[j] || !seen_from[j][i] || !seen_from[i][j]) continue;
+                if (first(circle_, i) == first(circle_, j)) continue;
+                if (!work.spend(1 + count / 8)) return false;
+                if (!same_space(seen_from[i], seen_from[j], i, j)) continue;
+                unite(circle_, i, j);
+                std::swap(surface_.fans[fans_[i]].next, surface_.fans[fans_[j]].next);
+            }
+        return true;
     }
 
 private:
@@ -83,31 +102,37 @@ private:
         return glm::dot(outward, direction) > 0;
     }
 
-    bool bound_the_same_space(size_t i, size_t j) const
+    // Whether every third sheet sees both or neither.
+    bool same_space(const std::vector<bool>& of_i, const std::vector<bool>& of_j, size_t i, size_t j) const
     {
-        if (!sees(i, direction(j)) || !sees(j, direction(i))) return false;
         for (size_t k = 0; k < fans_.size(); ++k)
-            if (sheet_[k] != sheet_[i] && sheet_[k] != sheet_[j] && sees(k, direction(i)) != sees(k, direction(j)))
-                return false;
+            if (of_i[k] != of_j[k] && sheet_[k] != sheet_[i] && sheet_[k] != sheet_[j]) return false;
         return true;
     }
 
-    bool joined(size_t i, size_t j) const
+    static size_t first(std::vector<size_t>& of, size_t i)
     {
-        for (uint32_t fan = surface_.fans[fans_[i]].next; fan != fans_[i]; fan = surface_.fans[fan].next)
-            if (fan == fans_[j]) return true;
-        return false;
+        while (of[i] != i) i = of[i] = of[of[i]];
+        return i;
+    }
+    static void unite(std::vector<size_t>& of, size_t i, size_t j)
+    {
+        const auto [low, high] = std::minmax({first(of, i), first(of, j)});
+        of[high] = low;
     }
 
     Surface& surface_;
     std::vector<uint32_t> fans_;
-    std::vector<size_t> sheet_; // a number for each fan, equal for the fans of one sheet
+    // For each fan the first of its sheet, and on the way to the first of its circle of `next`.
+    std::vector<size_t> sheet_, circle_;
+    size_t sectors_ = 0; // of all fans
 };
 
 } // namespace
 
-void make_fans(Surface& surface)
+void make_fans(Surface& surface, BuildWork& work)
 {
+    if (!work.begin("which of its sheets meet in a vertex")) return;
     for (Face& face : surface.faces) face.fan = {{{unset, unset}, {unset, unset}, {unset, unset}}};
     std::vector<std::pair<uint32_t, uint32_t>> at_vertex; // vertex, fan
     for (uint32_t f = 0; f < surface.faces.size(); ++f)
@@ -123,7 +148,7 @@ void make_fans(Surface& surface)
         std::vector<uint32_t> fans;
         for (end = begin; end < at_vertex.size() && at_vertex[end].first == at_vertex[begin].first; ++end)
             fans.push_back(at_vertex[end].second);
-        if (fans.size() > 2) Meeting(surface, std::move(fans)).join();
+        if (fans.size() > 2 && !Meeting(surface, std::move(fans)).join(work)) return;
     }
 }
 

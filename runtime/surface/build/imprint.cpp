@@ -30,9 +30,15 @@ constexpr double tolerance_max = 65536, share_of_part = 1e-6;
 // on each other that it takes too long. What is left then pierces, and walls hold it.
 constexpr size_t most_cuts = 1000, most_cuts_per_edge = 1, most_looks = 1'000'000, most_looks_per_edge = 200;
 
+// What they take, in looks.
+constexpr size_t looks_per_cut = 100, looks_per_meeting = 2;
+
 class Imprint final : public SegmentVisitor, private CutFaces {
 public:
-    Imprint(Surface& surface, const BoxTree& tree) : CutFaces(surface), tree_(tree) { find_near_others(); }
+    Imprint(Surface& surface, const BoxTree& tree, BuildWork& work) : CutFaces(surface), tree_(tree), work_(work)
+    {
+        find_near_others();
+    }
 
     // The meetings that there are now, without changing anything: visit(part, other part).
     template <class Visit>
@@ -42,6 +48,7 @@ public:
             if (piece.near_others) look_at_edges_of(piece.vertex);
         std::set<std::pair<uint32_t, uint32_t>> known;
         for (const Edge& edge : edges_) {
+            if (work_.over()) return;
             find(edge);
             for (uint32_t piece : near_) {
                 const auto is_known = [&](uint32_t part) { return known.contains({part, part_of(piece)}); };
@@ -70,7 +77,8 @@ public:
             const size_t most_seen = looks_ + most_looks + most_looks_per_edge * edges_.size();
             for (size_t cuts = 0; !edges_.empty(); ++cuts) {
                 if (cuts == most || looks_ > most_seen) return false;
-                while (!edges_.empty() && !cut_first(edges_.first())) edges_.drop_first();
+                if (!work_.spend(looks_per_cut)) return false;
+                while (!edges_.empty() && !work_.over() && !cut_first(edges_.first())) edges_.drop_first();
             }
         }
         return true;
@@ -146,11 +154,13 @@ private:
         box_ = {glm::min(at(edge[0]), at(edge[1])), glm::max(at(edge[0]), at(edge[1]))};
         if (!parts_.empty()) tree_.segment(at(edge[0]), at(edge[1]), *this);
         looks_ += near_.size();
+        work_.spend(looks_per_meeting * near_.size());
         std::sort(near_.begin(), near_.end()); // the tree has no order of its own
     }
 
     double visit(uint32_t face) noexcept override
     {
+        if (!work_.spend()) return 0;
         if (std::find(parts_.begin(), parts_.end(), part_of(face)) == parts_.end()) collect(face);
         return 1.0;
     }
@@ -261,6 +271,7 @@ private:
     }
 
     const BoxTree& tree_; // of the faces as they came
+    BuildWork& work_;
 
     Now now_ = Now::corners;
     std::set<std::pair<Edge, uint32_t>> not_laid_; // edges that could not be laid in a face
@@ -274,23 +285,26 @@ private:
 
 } // namespace
 
-void imprint(Surface& surface, std::string& error)
+void imprint(Surface& surface, std::string& error, BuildWork& work)
 {
+    if (!work.begin("where its parts touch and cross")) return;
     const std::unique_ptr<const BoxTree> tree = BoxTree::build(surface.vertices, surface.faces, error);
     if (!tree) return;
-    Imprint imprint(surface, *tree);
-    if (imprint.run()) imprint.drop_covered(); // else what covers each other has not the same outlines
+    Imprint imprint(surface, *tree, work);
+    const bool is_whole = imprint.run();
+    if (work.over()) return;
+    if (is_whole) imprint.drop_covered(); // else what covers each other has not the same outlines
     imprint.write_faces();
     drop_flat_faces(surface);
     drop_repeated_faces(surface);
 }
 
-std::vector<std::pair<uint32_t, uint32_t>> meeting_parts(Surface& surface, std::string& error)
+std::vector<std::pair<uint32_t, uint32_t>> meeting_parts(Surface& surface, std::string& error, BuildWork& work)
 {
     std::vector<std::pair<uint32_t, uint32_t>> pairs;
     const std::unique_ptr<const BoxTree> tree = BoxTree::build(surface.vertices, surface.faces, error);
-    if (!tree) return pairs;
-    Imprint(surface, *tree).for_each_meeting([&](uint32_t one, uint32_t other) {
+    if (!tree || !work.begin("which of its parts meet")) return pairs;
+    Imprint(surface, *tree, work).for_each_meeting([&](uint32_t one, uint32_t other) {
         pairs.push_back(std::minmax(one, other));
     });
     std::sort(pairs.begin(), pairs.end());

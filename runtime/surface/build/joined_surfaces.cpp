@@ -102,7 +102,7 @@ std::vector<std::vector<uint32_t>> groups_of_overlapping_boxes(std::span<const P
 
 } // namespace
 
-std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surfaces)
+std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surfaces, const Loading* loading)
 {
     std::vector<MeetingSurfaces> found;
     for (const std::vector<uint32_t>& near : groups_of_overlapping_boxes(surfaces)) {
@@ -117,8 +117,10 @@ std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surface
         MeshReport report;
         std::string error;
         if (!repair(placed_together(surfaces, near), together, report)) continue;
+        BuildWork work(triangles, loading);
         Groups meeting(near.size());
-        for (const auto& [one, other] : meeting_parts(together, error)) meeting.unite(one, other);
+        for (const auto& [one, other] : meeting_parts(together, error, work)) meeting.unite(one, other);
+        if (work.over()) error = work.error();
         if (!error.empty()) {
             found.push_back({near, error});
             continue;
@@ -131,9 +133,9 @@ std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surface
     return found;
 }
 
-SurfaceResult join(std::span<const PlacedSurface> surfaces, std::span<const uint32_t> numbers)
+SurfaceResult join(std::span<const PlacedSurface> surfaces, std::span<const uint32_t> numbers, const Loading* loading)
 {
-    return build_surface(placed_together(surfaces, numbers));
+    return build_surface(placed_together(surfaces, numbers), default_crease_deg, loading);
 }
 
 } // namespace haptel::runtime

@@ -7,6 +7,7 @@
 #pragma once
 
 #include "runtime/geometry/placement.h"
+#include "runtime/surface/loading.h"
 #include "runtime/surface/surface.h"
 
 #include <cstdint>
@@ -27,13 +28,14 @@ struct MeetingSurfaces {
     std::vector<uint32_t> numbers;
     std::string error; // why they cannot be joined: too many triangles. Then each is to be touched by itself.
 };
-std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surfaces);
+std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surfaces, const Loading* loading = nullptr);
 
 // Beyond this joining takes too long, and too much memory.
 inline constexpr std::size_t joined_triangles_max = 4'000'000;
 
 // The surfaces named, in the space that they are placed in. `part` of an origin counts in `numbers`. What lies on each
 // other is kept of the first.
-SurfaceResult join(std::span<const PlacedSurface> surfaces, std::span<const uint32_t> numbers);
+SurfaceResult join(std::span<const PlacedSurface> surfaces, std::span<const uint32_t> numbers,
+                   const Loading* loading = nullptr);
 
 } // namespace haptel::runtime

@@ -10,18 +10,29 @@ namespace haptel::runtime {
 
 namespace {
 
+// Beyond it what a surface takes is mostly its list of what cuts what.
+constexpr std::size_t looks_per_test = 8, pairs_min = 2'000'000, pairs_per_face = 32;
+
 // Two faces that are not neighbours cut or touch each other exactly if an edge of one meets the other. Ties count
 // as touching: a face listed in vain only costs time. A face in the plane of the edge cannot stop a path along it.
 class EdgeAgainstFaces final : public SegmentVisitor {
 public:
-    EdgeAgainstFaces(const Surface& surface, std::vector<std::pair<uint32_t, uint32_t>>& pairs)
-        : surface_(surface), pairs_(pairs)
+    EdgeAgainstFaces(const Surface& surface, std::vector<std::pair<uint32_t, uint32_t>>& pairs, BuildWork& work)
+        : surface_(surface), pairs_(pairs), work_(work), is_done_(3 * surface.faces.size())
     {
     }
 
+    // An edge once, with all the faces that have it.
     void run(uint32_t face, uint32_t edge)
     {
-        face_ = face;
+        if (is_done_[3 * face + edge]) return;
+        faces_.clear();
+        for (SideEdge at(face, edge, 0); !is_done_[3 * at.face() + at.edge()];) {
+            is_done_[3 * at.face() + at.edge()] = true;
+            faces_.push_back(at.face());
+            const SideEdge next_face = surface_.faces[at.face()].link[at.edge()][at.side()];
+            at = SideEdge(next_face.face(), next_face.edge(), 1 - next_face.side());
+        }
         from_ = surface_.faces[face].vertex[edge];
         to_ = surface_.faces[face].vertex[next(edge)];
         surface_.tree->segment(surface_.vertices[from_], surface_.vertices[to_], *this);
@@ -29,14 +40,17 @@ public:
 
     double visit(uint32_t other) noexcept override
     {
+        if (!work_.spend()) return 0;
         const auto& corners = surface_.faces[other].vertex;
         for (uint32_t corner : corners)
             if (corner == from_ || corner == to_) return 1.0;
-        if (meets(corners)) {
-            pairs_.emplace_back(face_, other);
-            pairs_.emplace_back(other, face_);
+        work_.spend(looks_per_test);
+        if (!meets(corners)) return 1.0;
+        for (const uint32_t face : faces_) {
+            pairs_.emplace_back(face, other);
+            pairs_.emplace_back(other, face);
         }
-        return 1.0;
+        return work_.spend(2 * faces_.size()) ? 1.0 : 0.0;
     }
 
 private:
@@ -53,17 +67,27 @@ private:
 
     const Surface& surface_;
     std::vector<std::pair<uint32_t, uint32_t>>& pairs_;
-    uint32_t face_ = 0, from_ = 0, to_ = 0;
+    BuildWork& work_;
+    std::vector<bool> is_done_; // [3 * face + edge]
+    std::vector<uint32_t> faces_;
+    uint32_t from_ = 0, to_ = 0;
 };
 
 } // namespace
 
-void find_piercing(Surface& surface, MeshReport& report)
+void find_piercing(Surface& surface, MeshReport& report, BuildWork& work)
 {
+    if (!work.begin("which of its triangles cut each other")) return;
     std::vector<std::pair<uint32_t, uint32_t>> pairs;
-    EdgeAgainstFaces edges(surface, pairs);
-    for (uint32_t f = 0; f < surface.faces.size(); ++f)
-        for (uint32_t i = 0; i < 3; ++i) edges.run(f, i); // shared edges twice: both faces are to be listed
+    const std::size_t pairs_max = pairs_min + pairs_per_face * surface.faces.size();
+    EdgeAgainstFaces edges(surface, pairs, work);
+    for (uint32_t f = 0; f < surface.faces.size(); ++f) {
+        for (uint32_t i = 0; i < 3; ++i) edges.run(f, i);
+        if (pairs.size() > 2 * pairs_max)
+            work.refuse("its triangles cut each other more than " + std::to_string(pairs_max) +
+                        " times: take out parts that lie on or through each other");
+        if (work.over()) return;
+    }
 
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());

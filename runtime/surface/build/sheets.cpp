@@ -87,8 +87,9 @@ void part(Surface& surface, uint32_t vertex, const Faces& sheet, double way)
 
 } // namespace
 
-bool part_crossing_sheets(Surface& surface)
+bool part_crossing_sheets(Surface& surface, BuildWork& work)
 {
+    if (!work.begin("which of its sheets cross in a vertex")) return false;
     std::map<uint32_t, std::vector<std::pair<uint32_t, uint32_t>>> crossings; // by vertex
     for (uint32_t f = 0; f < surface.faces.size(); ++f) {
         const Face& face = surface.faces[f];
@@ -106,15 +107,14 @@ bool part_crossing_sheets(Surface& surface)
     const size_t before = surface.vertices.size();
     for (const auto& [vertex, faces] : around) {
         if (faces.size() > most_faces) continue;
-        const std::vector<Faces> sheets = sheets_at(surface, vertex, faces);
-        const auto sheet_of = [&](uint32_t face) {
-            return std::find_if(sheets.begin(), sheets.end(), [&](const Faces& sheet) {
-                return std::find(sheet.begin(), sheet.end(), face) != sheet.end();
-            });
-        };
         const auto& pairs = crossings[vertex];
+        if (!work.spend(faces.size() * faces.size() + pairs.size())) return false;
+        const std::vector<Faces> sheets = sheets_at(surface, vertex, faces);
+        std::map<uint32_t, size_t> sheet_of; // by face
+        for (size_t k = 0; k < sheets.size(); ++k)
+            for (const uint32_t face : sheets[k]) sheet_of[face] = k;
         if (std::all_of(pairs.begin(), pairs.end(),
-                        [&](const auto& pair) { return sheet_of(pair.first) == sheet_of(pair.second); }))
+                        [&](const auto& pair) { return sheet_of.at(pair.first) == sheet_of.at(pair.second); }))
             continue;
         for (size_t k = 1; k < sheets.size(); ++k) part(surface, vertex, sheets[k], double(k) * apart);
     }

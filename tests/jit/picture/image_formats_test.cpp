@@ -6,7 +6,9 @@
 #include "tests/support/folder.h"
 
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <memory>
 #include <random>
 
 #define STB_IMAGE_WRITE_STATIC
@@ -299,4 +301,24 @@ TEST_CASE("picture: what claims to be huge is refused before memory is taken")
         CHECK_FALSE(picture.error.empty());
         CHECK(picture.gray.empty());
     }
+}
+
+TEST_CASE("image: a picture that unpacks to far more than its texels is refused, and takes no memory for that")
+{
+    std::string zeros(8 << 20, '\0');
+    int size = 0;
+    const std::unique_ptr<unsigned char, void (*)(void*)> packed(
+        stbi_zlib_compress(reinterpret_cast<unsigned char*>(zeros.data()), static_cast<int>(zeros.size()), &size, 8),
+        std::free);
+    REQUIRE(packed);
+    const std::string bytes(reinterpret_cast<const char*>(packed.get()), static_cast<std::size_t>(size));
+    CHECK(decoded(packed_png(1, 1, 8, bytes)).error == "is damaged: it unpacks to more than 1 x 1 texels");
+    CHECK(decoded(packed_png(2048, 2048, 8, bytes)).error.empty()); // 4 MiB of them are its own
+}
+
+TEST_CASE("image: more texels than can be felt are refused by the picture's own size, before they are unpacked")
+{
+    const jit::Picture picture = decoded(packed_png(8192, 8192, 8, "none"));
+    CHECK(picture.error == "is too large: 8192 x 8192 texels");
+    CHECK(picture.hint.find("16777216") != std::string::npos);
 }

@@ -206,7 +206,7 @@ TEST_CASE("image: files that are missing, damaged or no pictures give messages")
     };
     CHECK(contains(said("b.pgm"), "there is no file 'b.pgm'"));
     CHECK(contains(said("b.pgm"), (pictures.folder.path / "b.pgm").string()));
-    CHECK(contains(said("."), "is not a file"));
+    CHECK(contains(said("."), "'.' is a folder"));
     pictures.folder.write("text.png", "not a picture");
     CHECK(contains(said("text.png"), "no picture that can be read"));
     pictures.folder.write("cut.png", std::string("\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x10\0\0\0\x10\x10\0\0\0\0", 29));

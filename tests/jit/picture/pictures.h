@@ -230,6 +230,32 @@ inline std::string exr(int columns, int rows, bool halves, const std::vector<Exr
     return file.bytes;
 }
 
+// PNG, gray, of data that is packed already. bits: 8 or 16.
+inline std::string packed_png(int columns, int rows, int bits, const std::string& packed)
+{
+    FileBytes file(false);
+    file.text("\x89PNG\r\n\x1a\n");
+    const auto chunk = [&](const std::string& type, const std::string& content) {
+        file.put(static_cast<uint32_t>(content.size()));
+        uint32_t crc = ~0u;
+        for (const char c : type + content) {
+            crc ^= static_cast<uint8_t>(c);
+            for (int k = 0; k < 8; ++k) crc = crc & 1 ? 0xedb88320u ^ crc >> 1 : crc >> 1;
+        }
+        file.text(type + content);
+        file.put(~crc);
+    };
+    FileBytes head(false);
+    head.put(static_cast<uint32_t>(columns));
+    head.put(static_cast<uint32_t>(rows));
+    head.put(static_cast<uint8_t>(bits));
+    for (int i = 0; i < 4; ++i) head.put(uint8_t{0}); // gray, deflate, filters, no interlace
+    chunk("IHDR", head.bytes);
+    chunk("IDAT", packed);
+    chunk("IEND", "");
+    return file.bytes;
+}
+
 // PNG, gray, its data stored and not compressed. bits: 8 or 16.
 inline std::string png(int columns, int rows, int bits, const Texels& value)
 {
@@ -257,28 +283,7 @@ inline std::string png(int columns, int rows, int bits, const Texels& value)
         packed.text(part);
     }
     packed.put(b << 16 | a);
-
-    FileBytes file(false);
-    file.text("\x89PNG\r\n\x1a\n");
-    const auto chunk = [&](const std::string& type, const std::string& content) {
-        file.put(static_cast<uint32_t>(content.size()));
-        uint32_t crc = ~0u;
-        for (const char c : type + content) {
-            crc ^= static_cast<uint8_t>(c);
-            for (int k = 0; k < 8; ++k) crc = crc & 1 ? 0xedb88320u ^ crc >> 1 : crc >> 1;
-        }
-        file.text(type + content);
-        file.put(~crc);
-    };
-    FileBytes head(false);
-    head.put(static_cast<uint32_t>(columns));
-    head.put(static_cast<uint32_t>(rows));
-    head.put(static_cast<uint8_t>(bits));
-    for (int i = 0; i < 4; ++i) head.put(uint8_t{0}); // gray, deflate, filters, no interlace
-    chunk("IHDR", head.bytes);
-    chunk("IDAT", packed.bytes);
-    chunk("IEND", "");
-    return file.bytes;
+    return packed_png(columns, rows, bits, packed.bytes);
 }
 
 } // namespace haptel::test

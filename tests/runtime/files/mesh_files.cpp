@@ -120,6 +120,8 @@ TEST_CASE("a reader that crashes, stops, never ends or takes all memory ends alo
     CHECK(gave_up([](const std::string&) -> MeshFileResult {
               throw std::bad_alloc();
           }).starts_with("it asked for more memory"));
+    CHECK(gave_up([](const std::string&) -> MeshFileResult { return {{}, std::string(1 << 26, 'x')}; },
+                  {60, 60, 1 << 24}) == "it asked for more memory than 16 MiB, or half of what this machine has");
 }
 
 TEST_CASE("threads read meshes at once")

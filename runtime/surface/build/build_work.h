@@ -1,0 +1,59 @@
+// What building a surface may cost. Most steps take a time that grows with the triangles; some look at what lies near
+// each other, and of a mesh whose parts all lie in one place that is everything with everything. Such steps count what
+// they look at, and end when it is too much: a mesh that would load for hours is refused in seconds.
+//
+// It is also where building looks up: tells what it does, and sees whether it is to stop. Internal to the runtime.
+#pragma once
+
+#include "runtime/surface/loading.h"
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+namespace haptel::runtime {
+
+class BuildWork {
+public:
+    // A look takes ten to fifty nanoseconds. Scanned and modelled meshes take twenty to forty for each triangle.
+    static constexpr std::size_t looks_min = 40'000'000, looks_per_triangle = 120;
+
+    // `loading` may be null, else it is to outlive this.
+    explicit BuildWork(std::size_t triangles, const Loading* loading = nullptr)
+        : looks_max_(looks_min + looks_per_triangle * triangles), loading_(loading)
+    {
+    }
+
+    // What follows, in words that complete "to find ...". False: it is over.
+    bool begin(std::string_view to_find)
+    {
+        if (over_) return false; // the step that it ended in is told
+        to_find_ = to_find;
+        look_up();
+        return !over_;
+    }
+    // So many things were looked at. False: it is over.
+    bool spend(std::size_t looks = 1) noexcept
+    {
+        looks_ += looks;
+        if (looks_ >= next_look_up_) look_up();
+        return !over_;
+    }
+    bool over() const { return over_; }
+    std::size_t looks() const { return looks_; }
+
+    // Over for a reason of the caller's own. The first reason stays.
+    void refuse(std::string why);
+    std::string error() const; // why it is over; empty: it is not
+
+private:
+    void look_up() noexcept;
+
+    std::size_t looks_ = 0, next_look_up_ = 0, looks_max_;
+    const Loading* loading_;
+    std::string_view to_find_;
+    bool over_ = false, stopped_ = false;
+    std::string refused_;
+};
+
+} // namespace haptel::runtime

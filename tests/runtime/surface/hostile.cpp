@@ -1,0 +1,173 @@
+// Meshes of which everything lies in one place. What a step looks at is counted, and may grow no faster than stands
+// here; beyond a limit such a mesh is refused with the reason, and building ends when it is asked to.
+#include "runtime/surface/box_tree.h"
+#include "runtime/surface/build/build.h"
+#include "runtime/surface/loading.h"
+#include "tests/runtime/surface/meshes.h"
+#include "tests/support/catch.h"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <random>
+#include <set>
+#include <string>
+
+using namespace haptel::runtime;
+using namespace haptel::test;
+using glm::dvec3;
+
+namespace {
+
+// Triangles that share one vertex and nothing else, spread evenly over all directions (a spiral from pole to pole).
+Mesh hedgehog(int spikes)
+{
+    Mesh mesh;
+    mesh.positions_m.push_back(dvec3(0));
+    for (int k = 0; k < spikes; ++k) {
+        const double z = 1 - (2 * k + 1.0) / spikes, r = std::sqrt(1 - z * z), turn = 2.399963 * k;
+        const dvec3 tip(r * std::cos(turn), r * std::sin(turn), z);
+        const uint32_t first = uint32_t(mesh.positions_m.size());
+        mesh.positions_m.push_back(tip);
+        mesh.positions_m.push_back(tip + dvec3(1, 0, 1) * (0.3 / std::sqrt(spikes)));
+        mesh.triangles.push_back({0, first, first + 1});
+    }
+    return mesh;
+}
+
+// A flat roof round one vertex.
+Mesh wheel(uint32_t spokes)
+{
+    Mesh mesh;
+    mesh.positions_m.push_back({0, 0, 0.3});
+    for (uint32_t k = 0; k < spokes; ++k) {
+        const double turn = 6.283185307179586 * k / spokes;
+        mesh.positions_m.push_back({std::cos(turn), std::sin(turn), 0});
+        mesh.triangles.push_back({0, 1 + k, 1 + (k + 1) % spokes});
+    }
+    return mesh;
+}
+
+// Pages that share their back.
+Mesh book(uint32_t pages)
+{
+    Mesh mesh;
+    mesh.positions_m = {{0, 0, 0}, {0, 0, 1}};
+    for (uint32_t k = 0; k < pages; ++k) {
+        const double turn = 6.283185307179586 * k / pages;
+        mesh.positions_m.push_back({std::cos(turn), std::sin(turn), 0.5});
+        mesh.triangles.push_back({0, 1, 2 + k});
+    }
+    return mesh;
+}
+
+Mesh large_soup(int triangles, double height)
+{
+    std::mt19937 random(1);
+    std::uniform_real_distribution<double> side(-1, 1);
+    Mesh mesh;
+    for (int t = 0; t < triangles; ++t) {
+        const uint32_t first = uint32_t(mesh.positions_m.size());
+        for (int i = 0; i < 3; ++i) mesh.positions_m.push_back({side(random), side(random), height * side(random)});
+        mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    return mesh;
+}
+
+size_t looks_of_fans(const Mesh& mesh)
+{
+    Surface surface;
+    MeshReport report;
+    BuildWork work(100'000'000); // as of so large a mesh: it does not end
+    REQUIRE(repair(mesh, surface, report));
+    link_faces(surface, report);
+    make_fans(surface, work);
+    CHECK(!work.over());
+    return work.looks();
+}
+
+bool contains(const std::string& text, const std::string& part)
+{
+    return text.find(part) != std::string::npos;
+}
+
+} // namespace
+
+TEST_CASE("of sheets that meet in one vertex each is looked at from each other one, and no oftener")
+{
+    const size_t few = looks_of_fans(hedgehog(100)), many = looks_of_fans(hedgehog(400));
+    CHECK(double(many) / double(few) < 1.1 * 4 * 4);
+    const SurfaceResult built = build_surface(hedgehog(400));
+    REQUIRE(built.surface);
+    // All of them see each other round their borders: one circle of fans round the vertex.
+    const std::vector<Fan>& fans = built.surface->fans;
+    std::set<uint32_t> circle;
+    for (uint32_t fan = built.surface->faces[0].fan[0][0]; circle.insert(fan).second;) fan = fans[fan].next;
+    CHECK(circle.size() >= 400);
+    CHECK(looks_of_fans(book(5000)) == 0); // one sheet with itself
+}
+
+TEST_CASE("of thousands of triangles round one vertex as many are taken as a tick can go round; more are refused, told "
+          "where to look")
+{
+    CHECK(build_surface(wheel(2000)).surface);
+    CHECK(build_surface(book(2000)).surface);
+    const SurfaceResult wheel_of_many = build_surface(wheel(16'000));
+    CHECK(!wheel_of_many.surface);
+    CHECK(contains(wheel_of_many.error, "to find which of its triangles cut each other takes more than"));
+    CHECK(contains(wheel_of_many.error, "vertices that thousands of triangles share"));
+    CHECK(
+        contains(build_surface(hedgehog(4000)).error, "to find which of its sheets meet in a vertex takes more than"));
+}
+
+TEST_CASE("large triangles at random, in space or nearly in a plane, are refused beyond the limit")
+{
+    CHECK(build_surface(large_soup(300, 1)).surface);
+    CHECK(build_surface(large_soup(300, 0)).surface);
+    for (const double height : {1.0, 1e-7, 0.0}) {
+        CAPTURE(height);
+        const SurfaceResult built = build_surface(large_soup(20'000, height));
+        CHECK(!built.surface);
+        CHECK(contains(built.error, " takes more than 42 million steps. Take out parts"));
+    }
+}
+
+TEST_CASE("a step of building counts what it looks at for each triangle, alike for small and large meshes")
+{
+    for (int n : {20, 80}) {
+        CAPTURE(n);
+        const Mesh mesh = make_plane(n);
+        Surface surface;
+        MeshReport report;
+        BuildWork work(mesh.triangles.size());
+        std::string error;
+        REQUIRE(repair(mesh, surface, report));
+        close_cracks(surface, report, work);
+        link_faces(surface, report);
+        make_fans(surface, work);
+        surface.tree = BoxTree::build(surface.vertices, surface.faces, error);
+        find_piercing(surface, report, work);
+        CHECK(double(work.looks()) < 60 * double(mesh.triangles.size()));
+    }
+}
+
+TEST_CASE("building tells each of its steps, and ends in whichever it is asked to")
+{
+    const Mesh mesh = make_star(3);
+    std::vector<std::string> told;
+    Loading loading{[&](std::string_view doing) { told.emplace_back(doing); }, nullptr};
+    REQUIRE(build_surface(mesh, default_crease_deg, &loading).surface);
+    CHECK(told.size() >= 7);
+    CHECK(std::find(told.begin(), told.end(), "which of its triangles cut each other") != told.end());
+
+    for (size_t step = 0; step < told.size(); ++step) {
+        CAPTURE(step);
+        std::atomic<bool> stop = false;
+        size_t steps = 0;
+        loading = {[&](std::string_view) { stop = steps++ == step; }, &stop};
+        const SurfaceResult ended = build_surface(mesh, default_crease_deg, &loading);
+        CHECK(!ended.surface);
+        CHECK(ended.error == "loading was stopped");
+        CHECK(steps == step + 1); // nothing was begun after it
+    }
+}
