@@ -7,6 +7,7 @@
 #include "lang/lower/lower.h"
 #include "lang/syntax/parser.h"
 
+#include "lang/text/near_name.h"
 #include <algorithm>
 #include <map>
 

@@ -1,6 +1,7 @@
 #include "jit/texture/source_file.h"
 
 #include "lang/text/diagnostic.h"
+#include "lang/text/near_name.h"
 
 #include <algorithm>
 #include <cerrno>

@@ -45,7 +45,7 @@ TypeName Grammar::type_name()
             diagnostics.error(type.base.span, "foreign-word", "'" + type.base.text + "' is not a type of Haptel");
         reported.hint = foreign->hint;
         if (!foreign->replacement.empty()) {
-            reported.fix = FixIt{type.base.span, std::string(foreign->replacement)};
+            if (foreign->is_exact) reported.fix = FixIt{type.base.span, std::string(foreign->replacement)};
             type.base.text = foreign->replacement;
         }
     }
@@ -126,7 +126,6 @@ void Grammar::function_or_variable(File& result)
         Diagnostic& reported =
             diagnostics.error(first, "global-variable", "a variable of a whole file must be constant");
         reported.hint = "write 'const' before it, or make it a parameter of the texture";
-        reported.fix = FixIt{{first.file, first.begin, first.begin}, "const "};
         constants(result);
         if (!result.constants.empty()) result.constants.back().declaration.is_const = true;
         return;

@@ -1,6 +1,7 @@
 #include "lang/syntax/parser.h"
 
 #include "lang/syntax/grammar.h"
+#include "lang/text/near_name.h"
 
 #include <algorithm>
 
@@ -100,7 +101,7 @@ bool Grammar::top_level_name(File& result)
         Diagnostic& reported = diagnostics.error(
             span(), code, "expected 'texture' or the type of a function, found '" + std::string(text()) + "'");
         reported.hint = foreign ? std::string(foreign->hint) : "did you mean '" + std::string(guess) + "'?";
-        reported.fix = FixIt{span(), std::string(guess)};
+        if (!foreign) reported.fix = FixIt{span(), std::string(guess)};
         ++mistakes;
         if (guess == "const") list.tokens[position].kind = Token::kw_const;
         if (guess == "texture") list.tokens[position].kind = Token::kw_texture;
