@@ -70,7 +70,7 @@ void Grammar::array_suffix(TypeName& type)
     }
 }
 
-// import = "import" (string | name {"." name}) ";"
+// import = "import" string ";"
 void Grammar::import_declaration(File& result)
 {
     const Span first = span();
@@ -81,19 +81,16 @@ void Grammar::import_declaration(File& result)
         import.path = quoted.substr(1, quoted.size() - 2);
         if (import.path.empty()) diagnostics.error(span(), "import", "expected a path between the quotes");
         advance();
-    } else {
-        std::optional<Name> part = name("of a library or a path in quotes after 'import'");
-        import.is_library = true;
-        while (part) {
-            import.path += part->text;
-            if (!accept(Token::dot)) break;
-            import.path += '.';
-            part = name("after '.'");
-        }
+        expect_semicolon("the import");
+    } else { // "wood.oak": files are known by their paths, there are no modules
+        Diagnostic& reported = error(span(), "import", "expected a path in quotes after 'import'" + found());
+        std::string path;
+        for (bool is_name = true; at(is_name ? Token::name : Token::dot); is_name = !is_name, advance())
+            path += is_name ? text() : "/";
+        reported.hint = "write the path of a file: import \"" + (path.empty() ? "wood/oak" : path) + ".haptel\";";
     }
-    if (!lost) expect_semicolon("the import");
     import.span = since(first);
-    if (!import.path.empty() && import.path.back() != '.') result.imports.push_back(std::move(import));
+    if (!import.path.empty()) result.imports.push_back(std::move(import));
 }
 
 // constants = "const" type name [...] "=" initializer {"," ...} ";"
