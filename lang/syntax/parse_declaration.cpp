@@ -117,9 +117,7 @@ void Grammar::function_or_variable(File& result)
 {
     const Span first = span();
     const size_t first_token = position;
-    const bool is_head = body_follows();
-    if (is_head) mend_words_of_head();
-    if (kind(1) == Token::name && kind(2) != Token::left_paren && !is_head) {
+    if (kind(1) == Token::name && kind(2) != Token::left_paren && !body_follows()) {
         Diagnostic& reported =
             diagnostics.error(first, "global-variable", "a variable of a whole file must be constant");
         reported.hint = "write 'const' before it, or make it a parameter of the texture";
@@ -127,12 +125,7 @@ void Grammar::function_or_variable(File& result)
         if (!result.constants.empty()) result.constants.back().declaration.is_const = true;
         return;
     }
-    TypeName type;
-    if (kind(1) == Token::left_paren && !is_type_word(text())) // "f(float x) {...}"
-        error(span(), "syntax", "expected the type of the result before '" + std::string(text()) + "'").hint =
-            "write float " + std::string(text());
-    else
-        type = type_name();
+    TypeName type = type_name();
     if (type.base.text.empty()) stand_again();
     std::optional<Name> function_name = lost ? std::nullopt : name("after '" + type.base.text + "'");
     if (function_name) function(result, std::move(type), std::move(*function_name), first_token);
@@ -154,7 +147,6 @@ void Grammar::function(File& result, TypeName result_type, Name function_name, s
     if (expect(Token::left_paren, "after the name of the function")) {
         const bool takes_void = text() == "void" && kind(1) == Token::right_paren;
         if (takes_void) advance();
-        skip_doubled_bracket();
         if (!at(Token::right_paren) && !at(Token::left_brace)) {
             do {
                 const size_t first_position = position;
@@ -201,7 +193,7 @@ FunctionParameter Grammar::function_parameter()
         error(span(), "no-pointers", "there are no pointers or references in Haptel");
         return parameter;
     }
-    std::optional<Name> declared = declared_name(parameter.type);
+    std::optional<Name> declared = name("after '" + parameter.type.base.text + "'");
     if (!declared) return parameter;
     parameter.name = std::move(*declared);
     array_suffix(parameter.type);
@@ -239,7 +231,7 @@ void Grammar::texture(File& result)
                           "facts belong to functions; those of a texture are found by the compiler");
     const Span first = span();
     const uint32_t mistakes_before = mistakes;
-    accept(Token::kw_texture); // missing and reported, or here
+    advance();
     std::optional<Name> texture_name = name("after 'texture'");
     if (!texture_name) return;
     made.name = std::move(*texture_name);
@@ -248,7 +240,6 @@ void Grammar::texture(File& result)
         diagnostics.error(made.name.span, "syntax", "expected '(' after the name of the texture").hint =
             "write 'texture " + made.name.text + "()' if it has no parameters";
     } else if (expect(Token::left_paren, "after the name of the texture")) {
-        skip_doubled_bracket();
         if (!at(Token::right_paren) && !at(Token::left_brace)) {
             do {
                 if (at(Token::right_paren)) break; // a comma behind the last parameter
@@ -287,7 +278,7 @@ TextureParameter Grammar::texture_parameter()
     }
     parameter.type = type_name();
     if (lost) return parameter;
-    std::optional<Name> declared = declared_name(parameter.type);
+    std::optional<Name> declared = name("after '" + parameter.type.base.text + "'");
     if (!declared) return parameter;
     parameter.name = std::move(*declared);
     array_suffix(parameter.type);

@@ -75,6 +75,19 @@ void Grammar::read_misspelt_keyword()
     list.tokens[position].kind = then;
 }
 
+// "float depth = 1mm if 0mm .. 2mm": behind the default.
+void Grammar::read_misspelt_in()
+{
+    const bool is_word = (at(Token::name) && !is_type_word(text())) || at(Token::kw_if);
+    if (lost || !is_word || nearest_name(text(), {"in"}).empty()) return;
+    const Span word = span();
+    list.tokens[position].kind = Token::kw_in;
+    Diagnostic& reported = error(word, "syntax", "expected 'in', ',' or ')'" + found());
+    reported.hint = "did you mean 'in'?";
+    reported.fix = FixIt{word, "in"};
+    lost = false;
+}
+
 // "a and b"; nothing but an operator can stand here. `name` where there is none.
 Token Grammar::foreign_operator()
 {

@@ -111,14 +111,6 @@ bool Grammar::top_level_name(File& result)
     if (kind(1) != Token::name && kind(1) != Token::left_bracket && !is_type_word(text()) && !body_follows())
         return false;
     if (statements_follow()) return false;
-    if (is_texture_without_its_word()) {
-        const Span before{file, span().begin, span().begin};
-        error(span(), "syntax", "expected 'texture' before '" + std::string(text()) + "'").fix =
-            FixIt{before, "texture "};
-        lost = false;
-        texture(result);
-        return true;
-    }
     function_or_variable(result);
     return true;
 }

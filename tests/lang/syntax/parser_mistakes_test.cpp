@@ -127,7 +127,7 @@ TEST_CASE("textures and functions that are incomplete")
           "1:9-12 output-parameter: a function cannot write its parameters\n");
     CHECK(in_file("float f(inout float a) { return a; }") ==
           "1:9-14 output-parameter: a function cannot write its parameters\n");
-    CHECK(in_file("float f(float a, b) { return a; }") == "1:18 syntax: expected a type and a name, found only 'b'\n");
+    CHECK(in_file("float f(float a, b) { return a; }") == "1:19 syntax: expected a name after 'b', found ')'\n");
     CHECK(in_file("float grad(float a) { return a; }") ==
           "1:7-11 reserved-name: 'grad' is the derivative of functions\n");
     CHECK(in_file("float f(float a);\n") ==
