@@ -7,6 +7,7 @@
 #include "lang/lower/lower.h"
 #include "lang/syntax/parser.h"
 
+#include "lang/text/near_name.h"
 #include <algorithm>
 #include <map>
 
@@ -62,13 +63,7 @@ private:
     void import(uint32_t file, size_t which)
     {
         const ast::Import import = files[file].tree.imports[which];
-        if (import.is_library) {
-            diagnostics
-                .error(import.span, "missing-import",
-                       "library '" + import.path + "' is not installed: no libraries are")
-                .hint = "import a file by its path: import \"wood/oak.haptel\";";
-            return;
-        }
+        if (!asked.emplace(file, import.path).second) return;
         std::optional<SourceFile> text;
         if (options.load_import) text = options.load_import(import.path, sources.file(file).name);
         if (!text) {

@@ -1,5 +1,6 @@
 // The haptel command: finds the subcommand, turns its outcome into the exit code, and nothing else.
 #include "lang/text/diagnostic.h"
+#include "lang/text/near_name.h"
 #include "tools/commands/command.h"
 #include "tools/output/terminal.h"
 

@@ -3,6 +3,7 @@
 #include "jit/texture/facts.h"
 #include "jit/texture/texture.h"
 #include "lang/parameter_value.h"
+#include "lang/text/near_name.h"
 
 #include <algorithm>
 #include <cmath>

@@ -2,6 +2,7 @@
 
 #include "input/regular_file.h"
 #include "lang/text/diagnostic.h"
+#include "lang/text/near_name.h"
 
 #include <algorithm>
 #include <filesystem>

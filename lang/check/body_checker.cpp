@@ -2,6 +2,7 @@
 #include "lang/check/body_checker.h"
 #include "lang/check/constant.h"
 #include "lang/syntax/foreign.h"
+#include "lang/text/near_name.h"
 
 #include <algorithm>
 
@@ -111,13 +112,13 @@ void BodyChecker::report_unknown_name(Span span, const std::string& name)
     std::sort(names.begin(), names.end()); // the hash's order must not decide between equals
     scope.collect_constant_names(names);
     for (const Symbol* input : context.inputs) names.push_back(input->name);
-    const std::string_view nearest = nearest_name(name, names);
+    const auto [nearest, is_only] = near_name(name, names);
     // Most likely what declares it could not be read.
     if (in_damaged_body && nearest.empty()) return diagnostics.count_consequence();
     Diagnostic& reported = report();
     if (!nearest.empty()) {
         reported.hint = "did you mean " + quoted(nearest) + "?";
-        reported.fix = FixIt{span, std::string(nearest)};
+        if (is_only) reported.fix = FixIt{span, std::string(nearest)};
         mark_read(nearest); // if it was meant, it is read
     }
 }

@@ -127,7 +127,10 @@ private:
     void report_argument(const Candidate& candidate, size_t index, const ast::Expression& argument,
                          const Argument& argument_class);
     void report_unknown_function(const ast::Expression& e, const ast::Name& callee,
-                                 const std::vector<ast::ExpressionPtr>& arguments);
+                                 const std::vector<ast::ExpressionPtr>& arguments,
+                                 const std::vector<Argument>& classes);
+    bool takes(std::string_view function, const std::vector<ast::ExpressionPtr>& arguments,
+               const std::vector<Argument>& classes) const;
     std::optional<std::string> filled_in(std::string_view pattern,
                                          const std::vector<ast::ExpressionPtr>& arguments) const;
 

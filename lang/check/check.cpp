@@ -33,13 +33,13 @@ Type resolve_type(CheckContext& context, const TypeName& name)
     if (const auto type = type_named(name.base.text)) return *type;
     Diagnostic& reported =
         context.diagnostics.error(name.base.span, "unknown-type", "unknown type " + quoted(name.base.text));
-    const std::string_view nearest = nearest_name(
+    const auto [nearest, is_only] = near_name(
         name.base.text, {"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "image"});
     if (name.base.text.starts_with("mat") && name.base.text.find('x') != std::string::npos) {
         reported.hint = "matrices are square: mat2, mat3 and mat4";
     } else if (!nearest.empty()) {
         reported.hint = "did you mean " + quoted(nearest) + "?";
-        reported.fix = FixIt{name.base.span, std::string(nearest)};
+        if (is_only) reported.fix = FixIt{name.base.span, std::string(nearest)};
     } else {
         reported.hint = "types are float, int, uint, bool, vec2, vec3, vec4, mat2, mat3 and mat4";
     }

@@ -73,7 +73,8 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
         Diagnostic& reported =
             diagnostics.error(call.callee.span, "foreign-word", quoted(call.callee.text) + " is not a type of Haptel");
         reported.hint = foreign->hint;
-        if (!foreign->replacement.empty()) reported.fix = FixIt{call.callee.span, std::string(foreign->replacement)};
+        if (foreign->is_exact && !foreign->replacement.empty())
+            reported.fix = FixIt{call.callee.span, std::string(foreign->replacement)};
         if (const auto type = type_named(foreign->replacement)) return constructor(e, call, *type);
         for (ExpressionPtr& argument : call.arguments) expression(*argument);
         return Type::error();
@@ -205,7 +206,7 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
         candidates = scope.functions(callee.text);
     }
     if (candidates.empty()) {
-        report_unknown_function(e, callee, arguments);
+        report_unknown_function(e, callee, arguments, classes);
         return std::nullopt;
     }
     const auto same_result = [&](const Candidate& c) { return c.result == candidates.front().result; };

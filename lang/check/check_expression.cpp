@@ -40,14 +40,6 @@ std::string conversion_hint(Type from, Type to, const std::string& text, const s
     return "write " + to_string(to) + "(" + text + ")";
 }
 
-// The hint is a plain conversion that --fix may apply.
-bool converts_by_constructor(Type from, Type to)
-{
-    if (from == image_type || to == image_type) return false;
-    const bool makes_matrix = to.is_matrix() && (from.is_matrix() || from.is_scalar());
-    return makes_matrix || (from.is_scalar() && !to.is_array() && !to.is_matrix() && !to.is_error() && to != bool_type);
-}
-
 // As it is written.
 std::string zero_of(Type type)
 {
@@ -135,8 +127,6 @@ bool BodyChecker::require(Expression& e, Type wanted, const std::string& where)
     Diagnostic& reported = diagnostics.error(e.span, "type-mismatch",
                                              "expected " + to_string(wanted) + where + ", found " + to_string(e.type));
     reported.hint = conversion_hint(e.type, wanted, excerpt(e), operand(e));
-    if (converts_by_constructor(e.type, wanted))
-        reported.fix = FixIt{e.span, to_string(wanted) + "(" + std::string(context.sources.text(e.span)) + ")"};
     return false;
 }
 

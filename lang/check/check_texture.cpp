@@ -1,7 +1,7 @@
 // Parameters of textures: the numbers that applications and sliders set, and the material outputs.
 #include "lang/abi/abi.h"
 #include "lang/check/body_checker.h"
-#include "lang/check/constant.h"
+#include "lang/text/near_name.h"
 #include "lang/text/number.h"
 
 #include <cmath>
@@ -65,9 +65,9 @@ uint32_t BodyChecker::check_output(TextureParameter& tree)
     if (bit == 0) {
         Diagnostic& reported =
             diagnostics.error(tree.name.span, "unknown-output", "unknown output " + quoted(tree.name.text));
-        const std::string_view nearest = nearest_name(tree.name.text, {output_names[0].name, output_names[1].name});
+        const auto [nearest, is_only] = near_name(tree.name.text, {output_names[0].name, output_names[1].name});
         reported.hint = nearest.empty() ? names : "did you mean " + quoted(nearest) + "?";
-        if (!nearest.empty()) reported.fix = FixIt{tree.name.span, std::string(nearest)};
+        if (is_only) reported.fix = FixIt{tree.name.span, std::string(nearest)};
         unknown_names.emplace(nearest); // where it is meant it is not news
     }
     const Type type = resolve_type(context, tree.type);

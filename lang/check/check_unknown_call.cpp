@@ -1,6 +1,7 @@
 // Calls of what is no function: a variable, a word of another language, a slip.
 #include "lang/check/body_checker.h"
 #include "lang/syntax/foreign.h"
+#include "lang/text/near_name.h"
 
 #include <algorithm>
 
@@ -34,8 +35,24 @@ std::optional<std::string> BodyChecker::filled_in(std::string_view pattern,
     return is_call ? written : "(" + written + ")";
 }
 
+// A function or type of that name fits the arguments as they are.
+bool BodyChecker::takes(std::string_view name, const std::vector<ExpressionPtr>& arguments,
+                        const std::vector<Argument>& classes) const
+{
+    uint32_t components = 0;
+    for (size_t i = 0; i < arguments.size(); ++i) {
+        if (!classes[i].is_function && arguments[i]->type.is_error()) return false;
+        components += arguments[i]->type.components();
+    }
+    if (const auto type = type_named(name)) return components == type->components();
+    const std::vector<Candidate> candidates = scope.functions(name);
+    return std::any_of(candidates.begin(), candidates.end(),
+                       [&](const Candidate& candidate) { return cost_of(candidate, arguments, classes).has_value(); });
+}
+
 void BodyChecker::report_unknown_function(const Expression& e, const Name& callee,
-                                          const std::vector<ExpressionPtr>& arguments)
+                                          const std::vector<ExpressionPtr>& arguments,
+                                          const std::vector<Argument>& classes)
 {
     if (const Symbol* variable = find(callee.text)) {
         mark_read(callee.text);
@@ -75,10 +92,10 @@ void BodyChecker::report_unknown_function(const Expression& e, const Name& calle
     std::vector<std::string_view> names{"float", "int",  "uint", "bool", "vec2", "vec3",
                                         "vec4",  "mat2", "mat3", "mat4", "grad"};
     scope.collect_function_names(names);
-    if (const std::string_view nearest = nearest_name(callee.text, names); !nearest.empty()) {
+    if (const auto [nearest, is_only] = near_name(callee.text, names); !nearest.empty()) {
         Diagnostic& reported = report();
         reported.hint = "did you mean " + quoted(nearest) + "?";
-        reported.fix = FixIt{callee.span, std::string(nearest)};
+        if (is_only && takes(nearest, arguments, classes)) reported.fix = FixIt{callee.span, std::string(nearest)};
     } else if (context.unknown_functions.insert(callee.text).second) {
         report();
     } else {

@@ -254,8 +254,7 @@ struct Constant {
     Span span;
 }; // global const, tables too
 struct Import {
-    std::string path;
-    bool is_library = false;
+    std::string path; // "wood/oak.haptel"
     Span span;
 }; // "wood/oak.haptel" or wood.oak
 

@@ -1,6 +1,8 @@
 #include "lang/syntax/foreign.h"
 
 #include <algorithm>
+#include <deque>
+#include <string>
 #include <unordered_map>
 
 namespace haptel::lang {
@@ -29,120 +31,33 @@ constexpr std::string_view use_turns =
 constexpr std::string_view use_return = "a texture returns its height: return 1mm;";
 constexpr std::string_view use_image = "an image is a parameter of a texture: texture t(image picture)";
 constexpr std::string_view use_sample = "write sample(picture, uv), a float; outside of 0 .. 1 sample_tiled repeats";
-constexpr std::string_view use_texel = "write texel(picture, column, row), a float";
 constexpr std::string_view leave_out = "leave it out";
 
 constexpr ForeignWord words[] = {
-    {ForeignKind::type, "float2", "vec2", "write vec2"},
-    {ForeignKind::type, "float3", "vec3", "write vec3"},
-    {ForeignKind::type, "float4", "vec4", "write vec4"},
     {ForeignKind::type, "half", "float", use_float},
-    {ForeignKind::type, "half2", "vec2", "write vec2"},
-    {ForeignKind::type, "half3", "vec3", "write vec3"},
-    {ForeignKind::type, "half4", "vec4", "write vec4"},
     {ForeignKind::type, "double", "float", use_float},
-    {ForeignKind::type, "dvec2", "vec2", use_float},
-    {ForeignKind::type, "dvec3", "vec3", use_float},
-    {ForeignKind::type, "dvec4", "vec4", use_float},
-    {ForeignKind::type, "point", "vec3", "write vec3"},
-    {ForeignKind::type, "vector", "vec3", "write vec3"},
-    {ForeignKind::type, "color", "vec3", "write vec3"},
-    {ForeignKind::type, "unsigned", "uint", "write uint"},
-    {ForeignKind::type, "long", "int", "int has 32 bits and wraps"},
-    {ForeignKind::type, "short", "int", "int has 32 bits and wraps"},
-    {ForeignKind::type, "char", "int", "int has 32 bits and wraps"},
-    {ForeignKind::type, "auto", "", "write the type: float, int, vec3 ..."},
-    {ForeignKind::type, "var", "", "write the type: float, int, vec3 ..."},
-    {ForeignKind::type, "let", "", "write the type: float, int, vec3 ..."},
-    {ForeignKind::type, "bvec2", "", no_bvec},
-    {ForeignKind::type, "bvec3", "", no_bvec},
-    {ForeignKind::type, "bvec4", "", no_bvec},
-    {ForeignKind::type, "ivec2", "", no_ivec},
-    {ForeignKind::type, "ivec3", "", no_ivec},
-    {ForeignKind::type, "ivec4", "", no_ivec},
-    {ForeignKind::type, "uvec2", "", no_ivec},
-    {ForeignKind::type, "uvec3", "", no_ivec},
-    {ForeignKind::type, "uvec4", "", no_ivec},
-    {ForeignKind::type, "int2", "", no_ivec},
-    {ForeignKind::type, "int3", "", no_ivec},
-    {ForeignKind::type, "int4", "", no_ivec},
-    {ForeignKind::type, "float2x2", "mat2", "write mat2"},
-    {ForeignKind::type, "half2x2", "mat2", "write mat2"},
-    {ForeignKind::type, "double2x2", "mat2", "write mat2"},
-    {ForeignKind::type, "min16float2x2", "mat2", "write mat2"},
-    {ForeignKind::type, "real2x2", "mat2", "write mat2"},
-    {ForeignKind::type, "dmat2", "mat2", "write mat2"},
-    {ForeignKind::type, "f16mat2", "mat2", "write mat2"},
-    {ForeignKind::type, "f32mat2", "mat2", "write mat2"},
-    {ForeignKind::type, "f64mat2", "mat2", "write mat2"},
-    {ForeignKind::type, "fmat2", "mat2", "write mat2"},
-    {ForeignKind::type, "mat2x2", "mat2", "write mat2"},
-    {ForeignKind::type, "mat2x2f", "mat2", "write mat2"},
-    {ForeignKind::type, "vec2f", "vec2", "write vec2"},
-    {ForeignKind::type, "vec2h", "vec2", "write vec2"},
-    {ForeignKind::type, "double2", "vec2", "write vec2"},
-    {ForeignKind::type, "real2", "vec2", "write vec2"},
-    {ForeignKind::type, "vec2i", "", no_ivec},
-    {ForeignKind::type, "vec2u", "", no_ivec},
-    {ForeignKind::type, "uint2", "", no_ivec},
-    {ForeignKind::type, "bool2", "", no_bvec},
-    {ForeignKind::type, "float3x3", "mat3", "write mat3"},
-    {ForeignKind::type, "half3x3", "mat3", "write mat3"},
-    {ForeignKind::type, "double3x3", "mat3", "write mat3"},
-    {ForeignKind::type, "min16float3x3", "mat3", "write mat3"},
-    {ForeignKind::type, "real3x3", "mat3", "write mat3"},
-    {ForeignKind::type, "dmat3", "mat3", "write mat3"},
-    {ForeignKind::type, "f16mat3", "mat3", "write mat3"},
-    {ForeignKind::type, "f32mat3", "mat3", "write mat3"},
-    {ForeignKind::type, "f64mat3", "mat3", "write mat3"},
-    {ForeignKind::type, "fmat3", "mat3", "write mat3"},
-    {ForeignKind::type, "mat3x3", "mat3", "write mat3"},
-    {ForeignKind::type, "mat3x3f", "mat3", "write mat3"},
-    {ForeignKind::type, "vec3f", "vec3", "write vec3"},
-    {ForeignKind::type, "vec3h", "vec3", "write vec3"},
-    {ForeignKind::type, "double3", "vec3", "write vec3"},
-    {ForeignKind::type, "real3", "vec3", "write vec3"},
-    {ForeignKind::type, "vec3i", "", no_ivec},
-    {ForeignKind::type, "vec3u", "", no_ivec},
-    {ForeignKind::type, "uint3", "", no_ivec},
-    {ForeignKind::type, "bool3", "", no_bvec},
-    {ForeignKind::type, "float4x4", "mat4", "write mat4"},
-    {ForeignKind::type, "half4x4", "mat4", "write mat4"},
-    {ForeignKind::type, "double4x4", "mat4", "write mat4"},
-    {ForeignKind::type, "min16float4x4", "mat4", "write mat4"},
-    {ForeignKind::type, "real4x4", "mat4", "write mat4"},
-    {ForeignKind::type, "dmat4", "mat4", "write mat4"},
-    {ForeignKind::type, "f16mat4", "mat4", "write mat4"},
-    {ForeignKind::type, "f32mat4", "mat4", "write mat4"},
-    {ForeignKind::type, "f64mat4", "mat4", "write mat4"},
-    {ForeignKind::type, "fmat4", "mat4", "write mat4"},
-    {ForeignKind::type, "mat4x4", "mat4", "write mat4"},
-    {ForeignKind::type, "mat4x4f", "mat4", "write mat4"},
-    {ForeignKind::type, "vec4f", "vec4", "write vec4"},
-    {ForeignKind::type, "vec4h", "vec4", "write vec4"},
-    {ForeignKind::type, "double4", "vec4", "write vec4"},
-    {ForeignKind::type, "real4", "vec4", "write vec4"},
-    {ForeignKind::type, "vec4i", "", no_ivec},
-    {ForeignKind::type, "vec4u", "", no_ivec},
-    {ForeignKind::type, "uint4", "", no_ivec},
-    {ForeignKind::type, "bool4", "", no_bvec},
     {ForeignKind::type, "f16", "float", use_float},
     {ForeignKind::type, "f32", "float", use_float},
     {ForeignKind::type, "f64", "float", use_float},
     {ForeignKind::type, "real", "float", use_float},
-    {ForeignKind::type, "min16float", "float", use_float},
-    {ForeignKind::type, "min10float", "float", use_float},
     {ForeignKind::type, "fixed", "float", use_float},
+    {ForeignKind::type, "point", "vec3", "write vec3"},
+    {ForeignKind::type, "vector", "vec3", "write vec3"},
+    {ForeignKind::type, "color", "vec3", "write vec3"},
     {ForeignKind::type, "i32", "int", "write int"},
     {ForeignKind::type, "u32", "uint", "write uint"},
     {ForeignKind::type, "int32_t", "int", "write int"},
     {ForeignKind::type, "uint32_t", "uint", "write uint"},
-    {ForeignKind::type, "size_t", "uint", "write uint"},
-    {ForeignKind::type, "sampler2D", "image", use_image},
-    {ForeignKind::type, "Texture2D", "image", use_image},
-    {ForeignKind::type, "texture2d", "image", use_image},
-    {ForeignKind::type, "SamplerState", "", "leave it out: sample() and sample_tiled() say what is outside of 0 .. 1"},
-    {ForeignKind::type, "matrix", "mat4", "write mat4"},
+    {ForeignKind::type, "unsigned", "uint", "write uint"},
+    {ForeignKind::type, "long", "int", "int has 32 bits and wraps", false},
+    {ForeignKind::type, "short", "int", "int has 32 bits and wraps", false},
+    {ForeignKind::type, "char", "int", "int has 32 bits and wraps", false},
+    {ForeignKind::type, "auto", "", "write the type: float, int, vec3 ..."},
+    {ForeignKind::type, "var", "", "write the type: float, int, vec3 ..."},
+    {ForeignKind::type, "let", "", "write the type: float, int, vec3 ..."},
+    {ForeignKind::type, "sampler2D", "image", use_image, false},
+    {ForeignKind::type, "Texture2D", "image", use_image, false},
+    {ForeignKind::type, "matrix", "mat4", "write mat4", false},
     {ForeignKind::type, "fn", "", use_function},
     {ForeignKind::type, "func", "", use_function},
     {ForeignKind::type, "function", "", use_function},
@@ -150,9 +65,10 @@ constexpr ForeignWord words[] = {
 
     {ForeignKind::function, "lerp", "mix", "write mix"},
     {ForeignKind::function, "frac", "fract", "write fract"},
-    {ForeignKind::function, "fmod", "mod", "write mod; the result has the sign of the divisor"},
+    {ForeignKind::function, "fmod", "", "write mod; the result has the sign of the divisor"},
+    {ForeignKind::function, "modf", "", "write fract(x) and floor(x)"},
     {ForeignKind::function, "saturate", "clamp($1, 0.0, 1.0)", "write clamp(x, 0.0, 1.0)"},
-    {ForeignKind::function, "mul", "$1 * $2", "write a * b"},
+    {ForeignKind::function, "mul", "", "write a * b"},
     {ForeignKind::function, "rcp", "1.0 / $1", "write 1.0 / x"},
     {ForeignKind::function, "exp10", "pow(10.0, $1)", "write pow(10.0, x)"},
     {ForeignKind::function, "log10", "log($1) / log(10.0)", "write log(x) / log(10.0)"},
@@ -161,24 +77,17 @@ constexpr ForeignWord words[] = {
     {ForeignKind::function, "ldexp", "$1 * exp2($2)", "write x * exp2(n)"},
     {ForeignKind::function, "sincos", "", "write sin(x) and cos(x)"},
     {ForeignKind::function, "isfinite", "!(isnan($1) || isinf($1))", "write !(isnan(x) || isinf(x))"},
-    {ForeignKind::function, "isnormal", "", "write !(isnan(x) || isinf(x))"},
-    {ForeignKind::function, "rint", "round", "write round"},
-    {ForeignKind::function, "nearbyint", "round", "write round"},
-    {ForeignKind::function, "arctan", "atan", "write atan"},
-    {ForeignKind::function, "arcsin", "asin", "write asin"},
-    {ForeignKind::function, "arccos", "acos", "write acos"},
     {ForeignKind::function, "rsqrt", "inversesqrt", "write inversesqrt"},
     {ForeignKind::function, "atan2", "atan", "write atan with two arguments"},
     {ForeignKind::function, "mad", "fma", "write fma"},
     {ForeignKind::function, "fabs", "abs", "write abs"},
-    {ForeignKind::function, "fabsf", "abs", "write abs"},
     {ForeignKind::function, "fmin", "min", "write min"},
     {ForeignKind::function, "fmax", "max", "write max"},
-    {ForeignKind::function, "ln", "log", "write log"},
-    {ForeignKind::function, "snoise", "perlin", "write perlin"},
-    {ForeignKind::function, "cnoise", "perlin", "write perlin"},
-    {ForeignKind::function, "pnoise", "perlin", "write perlin"},
-    {ForeignKind::function, "simplex", "perlin", "write perlin"},
+    {ForeignKind::function, "smin", "", "write smoothmin(a, b, k)"},
+    {ForeignKind::function, "smax", "", "write smoothmax(a, b, k)"},
+    {ForeignKind::function, "snoise", "", "write perlin"},
+    {ForeignKind::function, "cnoise", "", "write perlin"},
+    {ForeignKind::function, "pnoise", "", "write perlin"},
     {ForeignKind::function, "worley", "", "write cellular(q, smoothing)"},
     {ForeignKind::function, "voronoi", "", "write cellular(q, smoothing)"},
     {ForeignKind::function, "rand", "", use_noise},
@@ -197,19 +106,13 @@ constexpr ForeignWord words[] = {
     {ForeignKind::function, "fwidth", "", use_grad},
     {ForeignKind::function, "ddx", "", use_grad},
     {ForeignKind::function, "ddy", "", use_grad},
-    {ForeignKind::function, "ddx_fine", "", use_grad},
-    {ForeignKind::function, "ddy_fine", "", use_grad},
-    {ForeignKind::function, "dpdx", "", use_grad},
     {ForeignKind::function, "Du", "", use_grad},
     {ForeignKind::function, "Dv", "", use_grad},
-    {ForeignKind::function, "tex2D", "sample", use_sample},
-    {ForeignKind::function, "texture2D", "sample", use_sample},
+    {ForeignKind::function, "tex2D", "", use_sample},
+    {ForeignKind::function, "texture2D", "", use_sample},
     {ForeignKind::function, "textureLod", "", use_sample},
-    {ForeignKind::function, "texelFetch", "", use_texel},
-    {ForeignKind::function, "imageLoad", "", use_texel},
+    {ForeignKind::function, "texelFetch", "", "write texel(picture, column, row), a float"},
     {ForeignKind::function, "textureSize", "", "write image_width(picture) and image_height(picture)"},
-    {ForeignKind::function, "textureSample", "", use_sample},
-    {ForeignKind::function, "clip", "", "a texture has a height everywhere: return 0.0"},
 
     {ForeignKind::operation, "and", "&&", "write &&"},
     {ForeignKind::operation, "or", "||", "write ||"},
@@ -219,45 +122,35 @@ constexpr ForeignWord words[] = {
     {ForeignKind::name, "PI", "", use_turns},
     {ForeignKind::name, "pi", "", use_turns},
     {ForeignKind::name, "M_PI", "", use_turns},
-    {ForeignKind::name, "TWO_PI", "", use_turns},
     {ForeignKind::name, "TAU", "", use_turns},
     {ForeignKind::name, "P", "p", "the point of contact is p"},
     {ForeignKind::name, "N", "n", "the normal is n"},
-    {ForeignKind::name, "position", "p", "the point of contact is p"},
-    {ForeignKind::name, "normal", "n", "the normal is n"},
+    {ForeignKind::name, "position", "", "the point of contact is p"},
+    {ForeignKind::name, "normal", "", "the normal is n"},
     {ForeignKind::name, "vUv", "uv", "the mesh coordinates are uv"},
-    {ForeignKind::name, "texCoord", "uv", "the mesh coordinates are uv"},
     {ForeignKind::name, "fragCoord", "", "the point of contact is p, the mesh coordinates are uv"},
     {ForeignKind::name, "gl_FragCoord", "", "the point of contact is p, the mesh coordinates are uv"},
     {ForeignKind::name, "gl_FragColor", "", use_return},
     {ForeignKind::name, "fragColor", "", use_return},
     {ForeignKind::name, "Ci", "", use_return},
     {ForeignKind::name, "iTime", "time", "the time is time, in seconds"},
-    {ForeignKind::name, "u_time", "time", "the time is time, in seconds"},
 
     {ForeignKind::qualifier, "static", "", leave_out},
     {ForeignKind::qualifier, "constexpr", "const", "write const"},
     {ForeignKind::qualifier, "inline", "", leave_out},
-    {ForeignKind::qualifier, "extern", "", leave_out},
-    {ForeignKind::qualifier, "export", "", leave_out},
-    {ForeignKind::qualifier, "volatile", "", leave_out},
-    {ForeignKind::qualifier, "register", "", leave_out},
     {ForeignKind::qualifier, "highp", "", no_precision},
     {ForeignKind::qualifier, "mediump", "", no_precision},
     {ForeignKind::qualifier, "lowp", "", no_precision},
     {ForeignKind::qualifier, "precise", "", "leave it out; every operation is IEEE 754 as written"},
     {ForeignKind::qualifier, "invariant", "", leave_out},
     {ForeignKind::qualifier, "flat", "", leave_out},
-    {ForeignKind::qualifier, "centroid", "", leave_out},
-    {ForeignKind::qualifier, "noperspective", "", leave_out},
-    {ForeignKind::qualifier, "groupshared", "", leave_out},
 
     {ForeignKind::statement, "while", "", use_for},
     {ForeignKind::statement, "do", "", use_for},
     {ForeignKind::statement, "switch", "", use_if},
     {ForeignKind::statement, "case", "", use_if},
     {ForeignKind::statement, "default", "", use_if},
-    {ForeignKind::statement, "discard", "return 0.0", "a texture has a height everywhere: return 0.0"},
+    {ForeignKind::statement, "discard", "", "a texture has a height everywhere: return 0.0"},
     {ForeignKind::statement, "continue", "", "put the rest of the loop's body into an if"},
     {ForeignKind::statement, "goto", "", use_if},
 
@@ -270,28 +163,81 @@ constexpr ForeignWord words[] = {
     {ForeignKind::declaration, "attribute", "", use_parameter},
     {ForeignKind::declaration, "varying", "", "the point of contact is p, its normal n, its mesh coordinates uv"},
     {ForeignKind::declaration, "layout", "", leave_out},
-    {ForeignKind::declaration, "surface", "texture", use_texture},
-    {ForeignKind::declaration, "displacement", "texture", use_texture},
-    {ForeignKind::declaration, "shader", "texture", use_texture},
-    {ForeignKind::declaration, "material", "texture", use_texture},
+    {ForeignKind::declaration, "surface", "texture", use_texture, false},
+    {ForeignKind::declaration, "displacement", "texture", use_texture, false},
+    {ForeignKind::declaration, "shader", "texture", use_texture, false},
     {ForeignKind::declaration, "precision", "", no_precision},
     {ForeignKind::declaration, "using", "", leave_out},
     {ForeignKind::declaration, "namespace", "", leave_out},
     {ForeignKind::declaration, "template", "", "functions may take functions: float f(float basis(vec3), vec3 q)"},
 };
 
+// Types of several components: a word before the number of them, and perhaps one behind.
+struct ForeignVector {
+    std::string_view before, behind;
+    bool is_real; // a vecN of ours; there are none of int, uint and bool
+};
+constexpr ForeignVector vectors[] = {
+    {"float", "", true}, {"half", "", true},  {"double", "", true}, {"dvec", "", true},  {"vec", "f", true},
+    {"vec", "h", true},  {"ivec", "", false}, {"uvec", "", false},  {"int", "", false},  {"uint", "", false},
+    {"vec", "i", false}, {"vec", "u", false}, {"bvec", "", false},  {"bool", "", false},
+};
+// Square ones. Where they are made row by row, as in HLSL, ours are their transposes: not the same.
+struct ForeignMatrix {
+    std::string_view before;
+    bool by_columns;
+};
+constexpr ForeignMatrix matrices[] = {
+    {"float", false}, {"half", false}, {"double", false}, {"mat", true}, {"dmat", true}};
+
+class Dictionary {
+public:
+    Dictionary()
+    {
+        for (const ForeignWord& known : words) by_word.emplace(known.word, known);
+        constexpr std::string_view ours[][2] = {{"vec2", "mat2"}, {"vec3", "mat3"}, {"vec4", "mat4"}};
+        constexpr std::string_view advice[][2] = {
+            {"write vec2", "write mat2"}, {"write vec3", "write mat3"}, {"write vec4", "write mat4"}};
+        for (size_t i = 0; i < std::size(ours); ++i) {
+            const std::string size = std::to_string(i + 2);
+            for (const ForeignVector& known : vectors) {
+                const bool is_bool = known.before.starts_with('b');
+                add(std::string(known.before) + size + std::string(known.behind), known.is_real ? ours[i][0] : "",
+                    known.is_real ? advice[i][0]
+                    : is_bool     ? no_bvec
+                                  : no_ivec,
+                    true);
+            }
+            for (const ForeignMatrix& known : matrices)
+                add(std::string(known.before) + size + (known.before == "dmat" ? "" : "x" + size), ours[i][1],
+                    advice[i][1], known.by_columns);
+        }
+    }
+
+    const ForeignWord* find(ForeignKind kind, std::string_view word) const
+    {
+        const auto [first, last] = by_word.equal_range(word);
+        const auto found = std::find_if(first, last, [&](const auto& known) { return known.second.kind == kind; });
+        return found == last ? nullptr : &found->second;
+    }
+
+private:
+    void add(std::string word, std::string_view replacement, std::string_view hint, bool is_exact)
+    {
+        const std::string_view kept = composed.emplace_back(std::move(word));
+        by_word.emplace(kept, ForeignWord{ForeignKind::type, kept, replacement, hint, is_exact});
+    }
+
+    std::deque<std::string> composed; // stay where they are
+    std::unordered_multimap<std::string_view, ForeignWord> by_word;
+};
+
 } // namespace
 
 const ForeignWord* foreign_word(ForeignKind kind, std::string_view word)
 {
-    static const auto by_word = [] {
-        std::unordered_multimap<std::string_view, const ForeignWord*> all;
-        for (const ForeignWord& known : words) all.emplace(known.word, &known);
-        return all;
-    }();
-    const auto [first, last] = by_word.equal_range(word);
-    const auto found = std::find_if(first, last, [&](const auto& known) { return known.second->kind == kind; });
-    return found == last ? nullptr : found->second;
+    static const Dictionary dictionary;
+    return dictionary.find(kind, word);
 }
 
 } // namespace haptel::lang

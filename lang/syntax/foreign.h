@@ -18,10 +18,11 @@ enum class ForeignKind {
 struct ForeignWord {
     ForeignKind kind;
     std::string_view word;
-    // What can stand in its place; empty: nothing that is sure to mean the same. Of a function it may be a whole
-    // expression, "clamp($1, 0.0, 1.0)", of its arguments.
+    // What it is read as; empty: nothing is near enough. Of a function it may be a whole expression,
+    // "clamp($1, 0.0, 1.0)", of its arguments.
     std::string_view replacement;
     std::string_view hint; // what to write instead
+    bool is_exact = true;  // the replacement means the same wherever the word can stand: it may be written
 };
 
 // Null if `word` is not known as such a word.

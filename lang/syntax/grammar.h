@@ -61,13 +61,6 @@ private:
     void find_next_parameter(size_t first_position);
     void find_body();
     bool body_follows() const;
-    bool is_texture_without_its_word() const;
-    void skip_doubled_bracket();
-    void mend_words_of_head();
-
-    // parse_slip.cpp
-    std::optional<ast::Name> declared_name(ast::TypeName& type);
-    void read_misspelt_in();
     bool statements_follow() const;
 
     // parse_recovery.cpp
@@ -102,6 +95,7 @@ private:
     void skip_global_in_or_out();
     void foreign_statement(const ForeignWord& word, Statements& into);
     void read_misspelt_keyword();
+    void read_misspelt_in();
     Token foreign_operator();
     ast::ExpressionPtr cast();
     ast::ExpressionPtr method_call(ast::ExpressionPtr object);

@@ -45,7 +45,7 @@ TypeName Grammar::type_name()
             diagnostics.error(type.base.span, "foreign-word", "'" + type.base.text + "' is not a type of Haptel");
         reported.hint = foreign->hint;
         if (!foreign->replacement.empty()) {
-            reported.fix = FixIt{type.base.span, std::string(foreign->replacement)};
+            if (foreign->is_exact) reported.fix = FixIt{type.base.span, std::string(foreign->replacement)};
             type.base.text = foreign->replacement;
         }
     }
@@ -70,7 +70,7 @@ void Grammar::array_suffix(TypeName& type)
     }
 }
 
-// import = "import" (string | name {"." name}) ";"
+// import = "import" string ";"
 void Grammar::import_declaration(File& result)
 {
     const Span first = span();
@@ -81,19 +81,16 @@ void Grammar::import_declaration(File& result)
         import.path = quoted.substr(1, quoted.size() - 2);
         if (import.path.empty()) diagnostics.error(span(), "import", "expected a path between the quotes");
         advance();
-    } else {
-        std::optional<Name> part = name("of a library or a path in quotes after 'import'");
-        import.is_library = true;
-        while (part) {
-            import.path += part->text;
-            if (!accept(Token::dot)) break;
-            import.path += '.';
-            part = name("after '.'");
-        }
+        expect_semicolon("the import");
+    } else { // "wood.oak": files are known by their paths, there are no modules
+        Diagnostic& reported = error(span(), "import", "expected a path in quotes after 'import'" + found());
+        std::string path;
+        for (bool is_name = true; at(is_name ? Token::name : Token::dot); is_name = !is_name, advance())
+            path += is_name ? text() : "/";
+        reported.hint = "write the path of a file: import \"" + (path.empty() ? "wood/oak" : path) + ".haptel\";";
     }
-    if (!lost) expect_semicolon("the import");
     import.span = since(first);
-    if (!import.path.empty() && import.path.back() != '.') result.imports.push_back(std::move(import));
+    if (!import.path.empty()) result.imports.push_back(std::move(import));
 }
 
 // constants = "const" type name [...] "=" initializer {"," ...} ";"
@@ -120,23 +117,15 @@ void Grammar::function_or_variable(File& result)
 {
     const Span first = span();
     const size_t first_token = position;
-    const bool is_head = body_follows();
-    if (is_head) mend_words_of_head();
-    if (kind(1) == Token::name && kind(2) != Token::left_paren && !is_head) {
+    if (kind(1) == Token::name && kind(2) != Token::left_paren && !body_follows()) {
         Diagnostic& reported =
             diagnostics.error(first, "global-variable", "a variable of a whole file must be constant");
         reported.hint = "write 'const' before it, or make it a parameter of the texture";
-        reported.fix = FixIt{{first.file, first.begin, first.begin}, "const "};
         constants(result);
         if (!result.constants.empty()) result.constants.back().declaration.is_const = true;
         return;
     }
-    TypeName type;
-    if (kind(1) == Token::left_paren && !is_type_word(text())) // "f(float x) {...}"
-        error(span(), "syntax", "expected the type of the result before '" + std::string(text()) + "'").hint =
-            "write float " + std::string(text());
-    else
-        type = type_name();
+    TypeName type = type_name();
     if (type.base.text.empty()) stand_again();
     std::optional<Name> function_name = lost ? std::nullopt : name("after '" + type.base.text + "'");
     if (function_name) function(result, std::move(type), std::move(*function_name), first_token);
@@ -158,7 +147,6 @@ void Grammar::function(File& result, TypeName result_type, Name function_name, s
     if (expect(Token::left_paren, "after the name of the function")) {
         const bool takes_void = text() == "void" && kind(1) == Token::right_paren;
         if (takes_void) advance();
-        skip_doubled_bracket();
         if (!at(Token::right_paren) && !at(Token::left_brace)) {
             do {
                 const size_t first_position = position;
@@ -205,7 +193,7 @@ FunctionParameter Grammar::function_parameter()
         error(span(), "no-pointers", "there are no pointers or references in Haptel");
         return parameter;
     }
-    std::optional<Name> declared = declared_name(parameter.type);
+    std::optional<Name> declared = name("after '" + parameter.type.base.text + "'");
     if (!declared) return parameter;
     parameter.name = std::move(*declared);
     array_suffix(parameter.type);
@@ -243,7 +231,7 @@ void Grammar::texture(File& result)
                           "facts belong to functions; those of a texture are found by the compiler");
     const Span first = span();
     const uint32_t mistakes_before = mistakes;
-    accept(Token::kw_texture); // missing and reported, or here
+    advance();
     std::optional<Name> texture_name = name("after 'texture'");
     if (!texture_name) return;
     made.name = std::move(*texture_name);
@@ -252,7 +240,6 @@ void Grammar::texture(File& result)
         diagnostics.error(made.name.span, "syntax", "expected '(' after the name of the texture").hint =
             "write 'texture " + made.name.text + "()' if it has no parameters";
     } else if (expect(Token::left_paren, "after the name of the texture")) {
-        skip_doubled_bracket();
         if (!at(Token::right_paren) && !at(Token::left_brace)) {
             do {
                 if (at(Token::right_paren)) break; // a comma behind the last parameter
@@ -291,7 +278,7 @@ TextureParameter Grammar::texture_parameter()
     }
     parameter.type = type_name();
     if (lost) return parameter;
-    std::optional<Name> declared = declared_name(parameter.type);
+    std::optional<Name> declared = name("after '" + parameter.type.base.text + "'");
     if (!declared) return parameter;
     parameter.name = std::move(*declared);
     array_suffix(parameter.type);

@@ -248,10 +248,8 @@ ExpressionPtr Grammar::primary()
         return behind_stray_operator();
     }
     Diagnostic& reported = error(first, "expected-expression", "expected an expression" + found());
-    if (at(Token::kw_texture) && kind(1) == Token::left_paren) {
+    if (at(Token::kw_texture) && kind(1) == Token::left_paren)
         reported.hint = foreign_word(ForeignKind::function, "texture2D")->hint;
-        reported.fix = FixIt{first, "sample"};
-    }
     return make(first, ErrorExpression{});
 }
 

@@ -1,5 +1,6 @@
 // What is written as in another language, or misspelt: said once, with what to write, and read as it was meant.
 #include "lang/syntax/grammar.h"
+#include "lang/text/near_name.h"
 
 #include <algorithm>
 
@@ -33,7 +34,9 @@ void Grammar::skip_type_arguments()
     const Span whole = join(span(), span(2));
     Diagnostic& reported = diagnostics.error(whole, "foreign-word", "types take no arguments in angle brackets");
     reported.hint = "write float, vec3, mat3 ...; precision is chosen when the texture is compiled";
-    reported.fix = FixIt{whole, ""};
+    const ForeignWord* argument = foreign_word(ForeignKind::type, text(1));
+    const bool is_real = text(1) == "float" || (argument && argument->replacement == "float");
+    if (is_real) reported.fix = FixIt{whole, ""};
     ++mistakes;
     for (int i = 0; i < 3; ++i) advance();
 }
@@ -50,9 +53,9 @@ void Grammar::read_misspelt_keyword()
     // Between a name that is misspelt and a type that is, the nearer decides.
     std::vector<std::string_view> words{"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4"};
     for (const auto& [word, token] : keywords) words.push_back(word);
-    const std::string_view meant = nearest_name(text(), words);
-    const auto keyword =
-        std::find_if(std::begin(keywords), std::end(keywords), [&](const auto& known) { return known.first == meant; });
+    const auto [meant, is_only] = near_name(text(), words);
+    const auto keyword = std::find_if(std::begin(keywords), std::end(keywords),
+                                      [&, name = meant](const auto& known) { return known.first == name; });
     if (keyword == std::end(keywords) || foreign_word(ForeignKind::statement, text())) return;
     // What follows must be able to follow the keyword, and be no use of a name.
     const Token next = kind(1), then = keyword->second;
@@ -67,9 +70,22 @@ void Grammar::read_misspelt_keyword()
     Diagnostic& reported =
         diagnostics.error(span(), "syntax", "expected a statement, found '" + std::string(text()) + "'");
     reported.hint = "did you mean '" + std::string(meant) + "'?";
-    reported.fix = FixIt{span(), std::string(meant)};
+    if (is_only) reported.fix = FixIt{span(), std::string(meant)};
     ++mistakes;
     list.tokens[position].kind = then;
+}
+
+// "float depth = 1mm if 0mm .. 2mm": behind the default.
+void Grammar::read_misspelt_in()
+{
+    const bool is_word = (at(Token::name) && !is_type_word(text())) || at(Token::kw_if);
+    if (lost || !is_word || nearest_name(text(), {"in"}).empty()) return;
+    const Span word = span();
+    list.tokens[position].kind = Token::kw_in;
+    Diagnostic& reported = error(word, "syntax", "expected 'in', ',' or ')'" + found());
+    reported.hint = "did you mean 'in'?";
+    reported.fix = FixIt{word, "in"};
+    lost = false;
 }
 
 // "a and b"; nothing but an operator can stand here. `name` where there is none.
@@ -124,8 +140,7 @@ ExpressionPtr Grammar::method_call(ExpressionPtr object)
     const Span whole = since(first);
     if (!lost) {
         Diagnostic& reported = diagnostics.error(whole, "not-callable", "values have no functions of their own");
-        reported.hint = "write " + printable(written + ")");
-        reported.fix = FixIt{whole, written + ")"};
+        reported.hint = "write " + printable(written + ")"); // GLSL's q.length() counts components
     }
     ++mistakes;
     return make(whole, CallExpression{std::move(callee), std::move(values)});
@@ -160,7 +175,6 @@ void Grammar::foreign_statement(const ForeignWord& word, Statements& into)
 {
     Diagnostic& reported = error(span(), "foreign-word", "there is no '" + std::string(word.word) + "' in Haptel");
     reported.hint = word.hint;
-    if (!word.replacement.empty()) reported.fix = FixIt{span(), std::string(word.replacement)};
     advance();
     const bool is_loop = word.word == "while" || word.word == "do";
     const Span head = since(span());

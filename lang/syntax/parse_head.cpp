@@ -1,8 +1,6 @@
 // What heads of functions and textures share: parameters one behind the other, and a body that follows.
 #include "lang/syntax/grammar.h"
 
-#include <utility>
-
 namespace haptel::lang {
 
 using namespace ast;
@@ -59,11 +57,7 @@ void Grammar::close_head(Span opener)
 {
     if (accept(Token::right_paren)) return;
     report_unclosed(Token::right_paren, opener, true);
-    if (at(Token::left_brace) && !is_head_damaged) lost = false;  // all parameters were read
-    if (at(Token::left_brace) && kind(1) == Token::right_paren) { // the two have changed places
-        std::swap(list.tokens[position].kind, list.tokens[position + 1].kind);
-        advance();
-    }
+    if (at(Token::left_brace) && !is_head_damaged) lost = false; // all parameters were read
 }
 
 StatementPtr Grammar::body_of(std::string_view what)
@@ -72,14 +66,10 @@ StatementPtr Grammar::body_of(std::string_view what)
     lost = false;
     if (!at(Token::left_brace)) {
         error(span(), "syntax", "expected '{' and the body of " + std::string(what) + found());
-        const bool is_before_body = kind(1) == Token::left_brace || body_follows();
-        if (is_before_body)
+        if (kind(1) == Token::left_brace || body_follows())
             find_body();
         else if (at(Token::semicolon) || at(Token::end) || at(Token::invalid) || at_top_level_start())
             return nullptr;
-        const bool is_alone = on_new_line() && kind(1) != Token::end &&
-                              sources.text({file, span().end, span(1).begin}).find('\n') != std::string_view::npos;
-        if (is_alone && !is_before_body) advance(); // it stands in the brace's place
     }
     depth = 0;
     StatementPtr body = at(Token::left_brace) ? block() : rest_of_block(after_previous()); // the brace was forgotten
@@ -101,47 +91,17 @@ bool Grammar::body_follows() const
     return false;
 }
 
-// "t(float depth = 1mm) {...}": only textures have defaults and outputs.
-bool Grammar::is_texture_without_its_word() const
+// Behind the ';' of what begins here stands what only bodies hold: all of it has strayed.
+bool Grammar::statements_follow() const
 {
-    if (kind(1) != Token::left_paren || is_type_word(text()) || !body_follows()) return false;
-    for (size_t ahead = 2; ahead < farthest_look && kind(ahead) != Token::left_brace; ++ahead)
-        if (kind(ahead) == Token::assign || kind(ahead) == Token::kw_out) return true;
-    return false;
-}
-
-// "f((float x)", behind the first bracket.
-void Grammar::skip_doubled_bracket()
-{
-    if (!at(Token::left_paren)) return;
-    error(span(), "syntax", "expected a parameter or ')'" + found());
-    advance();
-    lost = false;
-}
-
-// "float float f(", "vec2 f f(", "x float f(", "f float(": at the first word of a function's head.
-void Grammar::mend_words_of_head()
-{
-    if (kind(1) != Token::name) return;
-    const bool is_swapped = !is_type_word(text()) && is_own_type(text(1)) && kind(2) == Token::left_paren;
-    const bool has_surplus = kind(2) == Token::name && kind(3) == Token::left_paren;
-    if (is_swapped) {
-        const std::string written = std::string(text(1)) + " " + std::string(text());
-        Diagnostic& reported = error(join(span(), span(1)), "syntax", "expected the type before the name");
-        reported.hint = "write " + written;
-        reported.fix = FixIt{join(span(), span(1)), written};
-    } else if (has_surplus) {
-        const size_t surplus = is_own_type(text()) || !is_own_type(text(1)) ? 1 : 0;
-        error(span(surplus), "syntax",
-              "expected a type and a name before '(', found '" + std::string(text(surplus)) + "' too")
-            .hint = "leave it out";
-        if (surplus == 1 && !at(Token::end)) std::swap(list.tokens[position], list.tokens[position + 1]);
-        advance();
-    } else {
-        return;
-    }
-    lost = false;
-    if (is_swapped && !at(Token::end)) std::swap(list.tokens[position], list.tokens[position + 1]);
+    size_t ahead = 0;
+    while (ahead < farthest_look && kind(ahead) != Token::semicolon && kind(ahead) != Token::left_brace &&
+           kind(ahead) != Token::end)
+        ++ahead;
+    const Token behind = kind(ahead + 1);
+    return kind(ahead) == Token::semicolon &&
+           (behind == Token::kw_return || behind == Token::kw_if || behind == Token::kw_for ||
+            behind == Token::kw_break || behind == Token::right_brace);
 }
 
 } // namespace haptel::lang

@@ -338,7 +338,7 @@ Declaration Grammar::declarator(bool is_const, TypeName type)
 {
     Declaration result;
     result.is_const = is_const;
-    std::optional<Name> declared = declared_name(type);
+    std::optional<Name> declared = name("after '" + type.base.text + "'");
     if (!declared) return result;
     result.name = std::move(*declared);
     array_suffix(type);

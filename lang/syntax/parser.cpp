@@ -1,6 +1,7 @@
 #include "lang/syntax/parser.h"
 
 #include "lang/syntax/grammar.h"
+#include "lang/text/near_name.h"
 
 #include <algorithm>
 
@@ -100,7 +101,7 @@ bool Grammar::top_level_name(File& result)
         Diagnostic& reported = diagnostics.error(
             span(), code, "expected 'texture' or the type of a function, found '" + std::string(text()) + "'");
         reported.hint = foreign ? std::string(foreign->hint) : "did you mean '" + std::string(guess) + "'?";
-        reported.fix = FixIt{span(), std::string(guess)};
+        if (!foreign) reported.fix = FixIt{span(), std::string(guess)};
         ++mistakes;
         if (guess == "const") list.tokens[position].kind = Token::kw_const;
         if (guess == "texture") list.tokens[position].kind = Token::kw_texture;
@@ -110,14 +111,6 @@ bool Grammar::top_level_name(File& result)
     if (kind(1) != Token::name && kind(1) != Token::left_bracket && !is_type_word(text()) && !body_follows())
         return false;
     if (statements_follow()) return false;
-    if (is_texture_without_its_word()) {
-        const Span before{file, span().begin, span().begin};
-        error(span(), "syntax", "expected 'texture' before '" + std::string(text()) + "'").fix =
-            FixIt{before, "texture "};
-        lost = false;
-        texture(result);
-        return true;
-    }
     function_or_variable(result);
     return true;
 }

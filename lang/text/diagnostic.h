@@ -10,7 +10,10 @@
 
 namespace haptel::lang {
 
-// Replaces the text of `span` by `replacement`; applied by `haptel check --fix`.
+// Replaces the text of `span` by `replacement`; `haptel check --fix` does so unseen. Hence it may only be what
+// certainly means the same, in the language that the author writes: an exact synonym, a mark that is missing, a word
+// without effect; and the one name that is near what is written, of a function if the arguments fit it. What is merely
+// likely stands in the hint.
 struct FixIt {
     Span span;
     std::string replacement;
@@ -63,8 +66,5 @@ private:
 // Always valid UTF-8 (other bytes are shown as U+FFFD); long lines are cut around the span. `color`: ANSI colours.
 std::string render(const Diagnostic& diagnostic, const SourceSet& sources, bool color = false);
 std::string render(const std::vector<Diagnostic>& diagnostics, const SourceSet& sources, bool color = false);
-
-// The candidate nearest to `name` by edit distance if near enough to be meant; empty otherwise.
-std::string_view nearest_name(std::string_view name, const std::vector<std::string_view>& candidates);
 
 } // namespace haptel::lang

@@ -1,6 +1,7 @@
 #include "lang/text/number.h"
 
 #include "lang/text/diagnostic.h"
+#include "lang/text/near_name.h"
 
 #include <algorithm>
 #include <charconv>

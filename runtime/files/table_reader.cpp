@@ -1,10 +1,11 @@
 #include "runtime/files/table_reader.h"
 
+#include "lang/text/near_name.h"
+
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 
 namespace haptel::runtime {
 
@@ -27,24 +28,13 @@ std::string kind_of(const toml::node& node)
     return "something else";
 }
 
-// To `b` as it is or without its unit, or whatever else follows a `_`: "stifness" is one letter from
+// To `key` as it is or without its unit, or whatever else follows a `_`: "stifness" is one letter from
 // "stiffness_n_per_m".
-std::size_t edit_distance(std::string_view a, std::string_view b)
+double distance_to(std::string_view word, std::string_view key)
 {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = row[0];
-        row[0] = i + 1;
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
-        }
-    }
-    std::size_t smallest = row.back();
-    for (std::size_t j = 0; j < b.size(); ++j)
-        if (b[j] == '_') smallest = std::min(smallest, row[j]);
+    double smallest = lang::edit_distance(word, key);
+    for (std::size_t end = key.find('_'); end != key.npos; end = key.find('_', end + 1))
+        smallest = std::min(smallest, lang::edit_distance(word, key.substr(0, end)));
     return smallest;
 }
 
@@ -66,11 +56,11 @@ std::optional<std::string> nearest_word(std::string_view word, const std::vector
     constexpr std::size_t word_max = 64; // no name is as long, and the search takes time by its length
     std::optional<std::string> nearest;
     if (word.size() > word_max) return nearest;
-    std::size_t smallest = std::max<std::size_t>(1, word.size() / 3) + 1;
+    double smallest = static_cast<double>(std::max<std::size_t>(1, word.size() / 3)) + 0.01; // as near, or nearer
     for (const std::string& candidate : candidates) {
         // A key without its unit is the most common slip of all: "stiffness" for "stiffness_n_per_m".
         const bool lacks_unit = word.size() >= 3 && candidate.starts_with(word);
-        const std::size_t distance = lacks_unit ? 1 : edit_distance(word, candidate);
+        const double distance = lacks_unit ? 1 : distance_to(word, candidate);
         if (distance < smallest) {
             smallest = distance;
             nearest = candidate;

@@ -23,6 +23,7 @@
 #include "lang/ir/op_info.h"
 #include "lang/ir/verify.h"
 #include "lang/text/diagnostic.h"
+#include "lang/text/near_name.h"
 #include "tests/support/ir_tokens.h"
 
 #include <bit>

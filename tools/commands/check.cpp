@@ -2,6 +2,7 @@
 #include "jit/picture/image_file.h"
 #include "jit/texture/source_file.h"
 #include "lang/parameter_value.h"
+#include "lang/text/near_name.h"
 #include "stdlib/stdlib.h"
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"

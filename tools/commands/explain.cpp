@@ -1,6 +1,7 @@
 #include "tools/commands/explain.h"
 
 #include "lang/text/diagnostic.h"
+#include "lang/text/near_name.h"
 #include "tools/output/json.h"
 #include "tools/output/terminal.h"
 

@@ -2,6 +2,7 @@
 #include "jit/texture/source_file.h"
 #include "lang/compile.h"
 #include "lang/syntax/parser.h"
+#include "lang/text/near_name.h"
 #include "stdlib/stdlib.h"
 #include "tools/commands/command.h"
 #include "tools/commands/reference.h"

@@ -45,12 +45,10 @@ private:
         Diagnostic& said = diagnostics.warning(at, "dimension", finding.message);
         said.related = finding.related;
         // What mends a body for one call would break it for the others.
-        if (instance.choices && *instance.choices > 1 && finding.fix) {
-            said.hint = "'" + instance.name + "' is called with other dimensions too: mend the call";
-        } else {
-            said.hint = finding.hint;
-            said.fix = finding.fix;
-        }
+        const bool has_other_calls = instance.choices && *instance.choices > 1;
+        said.hint = has_other_calls && finding.changes_body
+                        ? "'" + instance.name + "' is called with other dimensions too: mend the call"
+                        : finding.hint;
         if (!instance.called_with.empty())
             said.related.push_back(
                 {instance.called_at, "'" + instance.name + "' is called here with " + instance.called_with});

@@ -23,7 +23,7 @@ struct DimensionFinding {
     Span span;
     std::string message, hint;
     std::vector<Related> related;
-    std::optional<FixIt> fix;
+    bool changes_body = false; // the hint says what to write in the place of what stands there
 };
 
 // A body for one choice of dimensions, or the result of looking at it.

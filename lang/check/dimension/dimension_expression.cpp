@@ -198,7 +198,7 @@ DimensionFinding* DimensionBody::report(Span span, std::string message)
         instance.is_at_fault = true;
         return nullptr;
     }
-    instance.findings.push_back({span, std::move(message), {}, {}, {}});
+    instance.findings.push_back({span, std::move(message), {}, {}});
     return &instance.findings.back();
 }
 
@@ -211,7 +211,7 @@ void DimensionBody::report_expected(const std::string& who, const Expression& e,
     if (auto finding = report(e.span, std::move(message))) propose(*finding, e, expected, found);
 }
 
-// Fixes never change the value: which wavelength or unit is meant is for the author to say.
+// Which wavelength or unit is meant is for the author to say.
 void DimensionBody::propose(DimensionFinding& finding, const Expression& e, Dimension expected, Dimension found)
 {
     const std::string text(owner.sources.text(e.span));
@@ -219,7 +219,7 @@ void DimensionBody::propose(DimensionFinding& finding, const Expression& e, Dime
         const std::string factor = factor_to_plain(found);
         if (factor.empty()) return;
         const std::string fixed = (binds_tightly(e) ? text : "(" + text + ")") + factor;
-        finding.fix = FixIt{e.span, fixed};
+        finding.changes_body = true;
         finding.hint = "write " + printable(fixed) + ", with the quantity you mean instead of " + factor.substr(3);
         return;
     }
@@ -230,7 +230,7 @@ void DimensionBody::propose(DimensionFinding& finding, const Expression& e, Dime
         const std::string number(owner.sources.text(literal->span));
         finding.hint = "give the number a unit";
         if (!takes_unit(number)) return;
-        finding.fix = FixIt{literal->span, number + unit};
+        finding.changes_body = true;
         finding.hint += ": " + number + unit + ", if that is what it means";
     } else if (expected == Dimension::length()) {
         finding.hint = "multiply it by a length, for example 50um";

@@ -73,19 +73,49 @@ TEST_CASE("check: fixes turn other dialects into Haptel")
 {
     const std::string dialects = R"(#version 450
 static const half A = 2.0;
-highp float3 f(float3x3 m, vec3<f32> q) { return mul(m, q + 1.0) * saturate(q.x) / rcp(1.0 + q.y); }
-float g(float x) { if (x > 0.0 and not (x > 1.0)) retrun frac(x); return lerp(sinf(x), fmod(x, A), atan2(x, (float)2)); }
-displacement h(float depth = 1mm) { if (P.x < 0.0) discard; return depth * (g(1.0) + f(float3x3(1.0), n).length()); }
+highp float3 f(mat3x3 m, vec3<f32> q) { return m * (q + 1.0) * saturate(q.x) / rcp(1.0 + q.y); }
+float g(float x) { if (x > 0.0 and not (x > 1.0)) retrun frac(x); return lerp(sinf(x), atan2(x, A), (float)2); }
+texture h(float depth = 1mm) { if (P.x < 0.0) return 0.0; return depth * g(1.0) * f(mat3x3(1.0), n).x; }
 )";
     const std::string haptel = R"(
 const float A = 2.0;
-vec3 f(mat3 m, vec3 q) { return (m * (q + 1.0)) * clamp(q.x, 0.0, 1.0) / (1.0 / (1.0 + q.y)); }
-float g(float x) { if (x > 0.0 && ! (x > 1.0)) return fract(x); return mix(sin(x), mod(x, A), atan(x, float(2))); }
-texture h(float depth = 1mm) { if (p.x < 0.0) return 0.0; return depth * (g(1.0) + length(f(mat3(1.0), n))); }
+vec3 f(mat3 m, vec3 q) { return m * (q + 1.0) * clamp(q.x, 0.0, 1.0) / (1.0 / (1.0 + q.y)); }
+float g(float x) { if (x > 0.0 && ! (x > 1.0)) return fract(x); return mix(sin(x), atan(x, A), float(2)); }
+texture h(float depth = 1mm) { if (p.x < 0.0) return 0.0; return depth * g(1.0) * f(mat3(1.0), n).x; }
 )";
     // What names a function that the parser cannot see is mended in the second round.
     CHECK(mended(mended(dialects)) == haptel);
     const haptel::lang::CompileResult result = haptel::lang::compile({"haptel", haptel}, {});
     INFO(haptel::lang::render(result.diagnostics.all(), result.sources));
     CHECK(result.program);
+}
+
+TEST_CASE("check: what only may be meant is proposed and not written")
+{
+    for (const char* text : {
+             "float f(float x, float i) { return modf(x, i); }",             // two results in C and GLSL
+             "float f(float a, float b, float k) { return smin(a, b, k); }", // of three arguments
+             "float f(float a) { return mxi(a, a); }",                       // mix takes three
+             "float f(float x, float y) { return fmod(x, y); }",             // of another sign
+             "float f(vec3 q) { return q.length(); }",                       // in GLSL their number
+             "vec3 f(float3x3 m, vec3 q) { return m * q; }",                 // made row by row
+             "vec3 f(mat3 m, vec3 q) { return mul(m, q); }",                 // of two vectors their dot product
+             "float f(vec5 q) { return 0.0; }",                              // three types are as near
+             "const float AB = 1.0, AC = 2.0; float f() { return AD; }",     // two constants are
+             "int f(float x) { return x; }",                                 // nearest, below or above
+             "vec3 f(vec3<i32> q) { return q; }",                            // of whole numbers
+             "texture t() { return 1mm * sin(p.x); }",                       // of which wavelength
+             "texture t() { return 1.0 + p.x; }",                            // in which unit
+             "float shift = 1.0;",                                           // a variable, or a constant
+             "texture t() { if (p.x > 0.0) discard; return 0.0; }",          // no height, or a height of 0
+             "displacement t(float depth = 1mm) { return depth; }",          // of another result
+             "texture t(image bark) { return tex2D(bark, uv) * 1mm; }",      // of four components
+         }) {
+        INFO(text);
+        CHECK(mended(text) == text);
+        CHECK(!haptel::lang::compile({"main.haptel", text}, {}).diagnostics.all().empty());
+    }
+    CHECK(mended("float f(float a) { return mxi(a, a, 0.5); }") == "float f(float a) { return mix(a, a, 0.5); }");
+    CHECK(mended("float f(float depth) { return dpeth; }") == "float f(float depth) { return depth; }");
+    CHECK(mended("float f(flaot x) { return x; }") == "float f(float x) { return x; }");
 }

@@ -39,7 +39,7 @@ void check_sane(std::string_view text)
     tree_text(parsed.file);
 }
 
-const char* const valid = R"(import wood.oak;
+const char* const valid = R"(import "wood/oak.haptel";
 const float A[3] = {1.0, 2.0, 3.0};
 /// @facts value -1 .. 1, slope 2, class C1
 float f(float basis(vec3), vec3 q, int n) {

@@ -79,7 +79,6 @@ TEST_CASE("a whole file")
 {
     const Parsed parsed = parse_text(R"(
 import "wood/oak.haptel";
-import wood.oak;
 /// Golden.
 const float PHI = 1.618, E = 2.718;
 const int M[] = {3, 1};
@@ -107,9 +106,8 @@ texture brushed(
 )");
     CHECK(parsed.messages() == "");
     CHECK(tree_text(parsed.file) == R"(import wood/oak.haptel
-import wood.oak (library)
-(const float PHI 1.618) "Golden."
-(const float E 2.718) "Golden."
+(const float PHI 1.618)
+(const float E 2.718)
 (const int[] M ({} 3 1))
 function float fbm (float basis <- vec3) (vec3 q) (int n) "Sum of octaves.|Second line." {(return (call basis q))}
 function void nothing {}

@@ -1,4 +1,5 @@
 #include "lang/text/diagnostic.h"
+#include "lang/text/near_name.h"
 #include "tests/support/catch.h"
 
 using namespace haptel::lang;
