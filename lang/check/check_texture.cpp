@@ -1,6 +1,7 @@
 // Parameters of textures: the numbers that applications and sliders set, and the material outputs.
 #include "lang/abi/abi.h"
 #include "lang/check/body_checker.h"
+#include "lang/check/constant.h"
 #include "lang/text/near_name.h"
 #include "lang/text/number.h"
 
