@@ -8,12 +8,12 @@ namespace haptel::runtime {
 namespace {
 
 std::variant<PointContact, SphereContact, StylusContact, GripperContact>
-make(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, bool skips_free_space)
+make(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, bool skips_free_space, double rate_hz)
 {
     switch (probe.kind) {
     case ProbeKind::point: return PointContact(surface, skips_free_space);
     case ProbeKind::sphere: return SphereContact(surface, probe.radius_m);
-    case ProbeKind::stylus: return StylusContact(surface, skips_free_space);
+    case ProbeKind::stylus: return StylusContact(surface, skips_free_space, rate_hz);
     case ProbeKind::gripper: return GripperContact(surface, skips_free_space);
     }
     return PointContact(surface, skips_free_space);
@@ -51,10 +51,10 @@ std::span<const Contact> any(const Contact& contact)
 } // namespace
 
 ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
-                           bool skips_free_space)
+                           bool skips_free_space, double rate_hz)
     : surface_(surface.get())
     , shares_(is_shared(probe, *surface) ? std::make_unique<PartShares>() : nullptr)
-    , contact_(make(probe, surface, skips_free_space))
+    , contact_(make(probe, surface, skips_free_space, rate_hz))
 {
 }
 

@@ -17,9 +17,9 @@ namespace haptel::runtime {
 
 class ProbeContact {
 public:
-    // `skips_free_space`: a probe that knows its clearance is spared queries.
+    // `skips_free_space`: a probe that knows its clearance is spared queries. `rate_hz`: of the ticks.
     ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
-                 bool skips_free_space = true);
+                 bool skips_free_space = true, double rate_hz = 1000);
 
     // One tick: where it touches, none if it does not. Of a joined surface each is of one part, and where sheets
     // pierce each other of one of them.

@@ -33,11 +33,12 @@ constexpr double ticks_per_region = 4;
 
 } // namespace
 
-StylusContact::StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space)
+StylusContact::StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space, double rate_hz)
     : tip_(surface, skips_free_space)
     , tail_(surface, skips_free_space)
     , skips_free_space_(skips_free_space)
     , tree_(&surface->swept_tree())
+    , patience_ticks_(static_cast<uint32_t>(std::max(1.0, std::round(patience_s * rate_hz))))
 {
 }
 

@@ -42,7 +42,8 @@ namespace haptel::runtime {
 class StylusContact {
 public:
     // `skips_free_space`: a known clearance spares queries.
-    explicit StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true);
+    // `rate_hz`: of the ticks.
+    explicit StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true, double rate_hz = 1000);
 
     // One tick. The first puts the stylus down from its tail: one that enters the object by a front side touches there,
     // with its tip. A tail that is not finite is none: the tip is a point. Returns the contact of the tip, touching or
@@ -71,6 +72,9 @@ public:
 
     const ContactCounters& counters() const noexcept { return counters_; }
     const Surface& surface() const noexcept { return tip_.surface(); }
+
+    // For so long a shaft may fall behind its ends, whatever the rate.
+    static constexpr double patience_s = 0.064;
 
 private:
     static constexpr uint32_t sides_max = 4;
@@ -168,6 +172,7 @@ private:
     uint32_t contact_count_ = 0;
     uint32_t sweeps_left_ = 0; // in this tick
     uint32_t stuck_ticks_ = 0; // in a row
+    uint32_t patience_ticks_;  // patience_s
     CollisionCount collision_; // of the shaft
     ContactCounters counters_;
 };

@@ -29,8 +29,7 @@ constexpr double least_lever = 1e-4;
 // How often the directions of contacts follow the shaft that they turn.
 constexpr int turns_max = 48;
 
-// For so long a shaft may fall behind its ends, after a jump around things or where it is jammed; then it is let go.
-constexpr uint32_t patience_ticks = 64;
+// A shaft that is this far behind its ends, after a jump around things or where it is jammed, is let go after a while.
 constexpr double far_behind = 0x1p20; // lattice units: a millionth of the object
 
 // Lattice units: what a tick may draw the springs of the ends out by, the hand being where it is. More than gaps and
@@ -147,7 +146,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     }
     counters_.walks_cut += stopped;
     stuck_ticks_ = behind && away_first - away(shaft_) < far_behind ? stuck_ticks_ + 1 : 0;
-    if (stuck_ticks_ == patience_ticks) tracked_ = false;
+    if (stuck_ticks_ == patience_ticks_) tracked_ = false;
     if (let_go_of_unreached() || stopped) hold_hand_from_here(grips);
     tip_.proxy_.sliding = tip_slides;
     tail_.proxy_.sliding = tail_slides;

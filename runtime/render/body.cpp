@@ -73,7 +73,7 @@ Body::Body(const Scene& scene, const BodyObjects& of, const ProbeSettings& probe
     : objects(of)
     , motion(of.motion(scene))
     , around(box_of(*of.surface(scene)))
-    , contact(probe, of.surface(scene), scene.servo.skips.free_space)
+    , contact(probe, of.surface(scene), scene.servo.skips.free_space, scene.servo.rate_hz)
     , placement(of.placement(scene))
     , velocity(1 / scene.servo.rate_hz)
     , tail_velocity(1 / scene.servo.rate_hz)
