@@ -93,7 +93,11 @@ runtime::DeviceResult open_replay(std::string name, const std::filesystem::path&
         const double sum = glm::dot(record.tip_m, glm::dvec3(1)) + glm::dot(record.tail_m, glm::dvec3(1));
         if (!std::isfinite(sum))
             return {nullptr, fmt::format("{}: the pose of tick {} is not finite", trace.string(), record.tick)};
-        poses.push_back({record.tip_m, record.tail_m, steps.periods[poses.size()], record.interrupted != 0});
+        if (record.degradation > static_cast<uint32_t>(runtime::Degradation::no_force))
+            return {nullptr, fmt::format("{}: column `degraded` of tick {} must be from 0 to 3, found {}",
+                                         trace.string(), record.tick, record.degradation)};
+        poses.push_back({record.tip_m, record.tail_m, steps.periods[poses.size()], record.interrupted != 0,
+                         static_cast<runtime::Degradation>(record.degradation)});
     }
     runtime::DeviceInfo info{std::move(name), records.front().device_force_max_n, 0, 0};
     return {std::make_unique<ReplayDevice>(std::move(info), std::move(poses)), {}, missing_ticks(trace, records)};

@@ -13,7 +13,7 @@ Workspace read_workspace(const toml::table& source, const std::string& name, Fil
 {
     Workspace workspace;
     TableReader table(source, name, messages);
-    table.number("scale", workspace.scale, Quantity::number, {1e-3, 1e3});
+    workspace_fields(workspace, table.fields());
     workspace.placement = read_placement(table);
     table.report_unknown_keys();
     return workspace;
@@ -65,26 +65,15 @@ ProbeSettings read_probe(const toml::table& source, const std::string& name, Fil
     TableReader table(source, name, messages);
     if (const auto kind = table.word("kind", {"point", "sphere", "stylus", "gripper"}))
         probe.kind = static_cast<ProbeKind>(*kind);
-    table.number("length_m", probe.length_m, Quantity::length, {0, 10, true});
-    table.number("radius_m", probe.radius_m, Quantity::length, {0, 10});
-    if (double grip_m = probe.length_m; table.has("grip_m")) {
-        table.number("grip_m", grip_m, Quantity::length, {0, 10});
-        probe.grip_m = grip_m;
-        if (probe.kind != ProbeKind::stylus)
-            messages.error(table.where("grip_m"), "`grip_m` is for `kind = \"stylus\"` alone: leave it out");
-        else if (grip_m > probe.length_m)
-            messages.error(table.where("grip_m"),
-                           "`grip_m` is measured from the tip, and may not be beyond the stylus's `length_m`");
-    }
+    if (table.has("grip_m")) probe.grip_m = 0.0; // to be read
+    probe_length_field(probe, table.fields());
+    probe_fields(probe, table.fields());
     if (table.has("length_m") && !probe.has_tail())
         messages.error(table.where("length_m"), "`length_m` is for `kind = \"stylus\"` or `\"gripper\"`: write one of "
                                                 "them, or leave `length_m` out");
-    if (probe.kind == ProbeKind::sphere && probe.radius_m == 0)
-        messages.error(table.where(table.has("radius_m") ? "radius_m" : "kind"),
-                       "a sphere needs a radius: write `radius_m = 0.005`, or `kind = \"point\"`");
-    if (probe.kind != ProbeKind::sphere && probe.radius_m > 0)
-        messages.error(table.where("radius_m"),
-                       "`radius_m` is for `kind = \"sphere\"` alone: write that, or leave `radius_m` out");
+    check_probe(probe, [&](std::string_view key, const std::string& why) {
+        messages.error(table.where(table.has(key) ? key : "kind"), why);
+    });
     table.report_unknown_keys();
     return probe;
 }

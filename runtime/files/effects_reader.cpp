@@ -1,6 +1,6 @@
 #include "runtime/files/effects_reader.h"
 
-#include "runtime/files/tick_limit.h"
+#include "runtime/scene/validation.h"
 
 #include <algorithm>
 
@@ -9,8 +9,6 @@
 namespace haptel::runtime {
 
 namespace {
-
-constexpr Range forces_n{0, 100}, dampings_n_s_per_m{0, 1000}, reaches_m{0, 1000, true};
 
 // Of the smallest half side: where a region does not say how wide its edge is.
 constexpr double default_edge = 0.25;
@@ -38,8 +36,7 @@ Magnet read_magnet(TableReader& object, FileMessages& messages)
     if (!source) return magnet;
     const std::size_t errors = messages.errors();
     TableReader table(*source, "`magnet`", messages);
-    table.number("force_n", magnet.force_n, Quantity::force, forces_n);
-    table.number("reach_m", magnet.reach_m, Quantity::length, reaches_m);
+    magnet_fields(magnet, table.fields());
     need(table, "force_n", "a magnet needs its largest pull: write `force_n = 1`", messages);
     need(table, "reach_m", "a magnet needs the distance from which on it pulls: write `reach_m = \"5mm\"`", messages);
     table.report_unknown_keys();
@@ -52,17 +49,15 @@ Vibration read_vibration(const toml::table& source, double rate_hz, double* reac
     Vibration vibration;
     const std::size_t errors = messages.errors();
     TableReader table(source, "`vibration`", messages);
-    table.number("force_n", vibration.force_n, Quantity::force, forces_n);
+    vibration_fields(vibration, table.fields());
     need(table, "force_n", "a vibration needs its amplitude: write `force_n = 0.5`", messages);
-    table.number("frequency_hz", vibration.frequency_hz, Quantity::frequency, {0, 100'000, true});
-    need_slower_than_ticks(table, "frequency_hz", vibration.frequency_hz, Rounds::swings, rate_hz, messages);
-    table.three_numbers("direction", vibration.direction, Quantity::number, {-1e6, 1e6});
+    check_rounds("frequency_hz", vibration.frequency_hz, Rounds::swings, rate_hz, table.broken());
     const double length = glm::length(vibration.direction);
     if (length == 0)
         messages.error(table.where("direction"), "a vibration needs a direction: write `direction = [0, 0, 1]`");
     else
         vibration.direction /= length;
-    if (reach_m) table.number("reach_m", *reach_m, Quantity::length, {0, 1000});
+    if (reach_m) vibration_reach_field(*reach_m, table.fields());
     table.report_unknown_keys();
     warn_if_idle(table, vibration.acts(), "force_n", "vibration", errors, messages);
     return vibration;
@@ -83,9 +78,9 @@ Region read_region(const toml::table& source, double rate_hz, FileMessages& mess
     region.placement = read_placement(table);
 
     double radius_m = 0;
-    table.number("radius_m", radius_m, Quantity::length, {0, 1000, true});
+    table.number("radius_m", radius_m, Quantity::length, region_size_m);
     glm::dvec3 sides_m(0);
-    table.three_numbers("sides_m", sides_m, Quantity::length, {0, 1000, true});
+    table.three_numbers("sides_m", sides_m, Quantity::length, region_size_m);
     const bool ball = shape && region.shape == RegionShape::ball, box = shape && region.shape == RegionShape::box;
     if (ball != table.has("radius_m") && shape)
         messages.error(table.where(ball ? "shape" : "radius_m"), ball ? "a ball needs a radius: write `radius_m = 0.02`"
@@ -97,15 +92,13 @@ Region read_region(const toml::table& source, double rate_hz, FileMessages& mess
     region.half_sides_m = ball ? glm::dvec3(radius_m) : 0.5 * sides_m;
     const double smallest_m = std::min({region.half_sides_m.x, region.half_sides_m.y, region.half_sides_m.z});
     region.edge_m = default_edge * smallest_m;
-    table.number("edge_m", region.edge_m, Quantity::length, {0, 1000, true});
+    region_edge_field(region, table.fields());
     if (table.has("edge_m") && shape && !ball && !box)
         messages.error(table.where("edge_m"), "`edge_m` is for a `shape` with a border, \"ball\" or \"box\"");
-    else if (smallest_m > 0 && region.edge_m > smallest_m)
-        messages.error(table.where("edge_m"), "`edge_m` must be at most " + shortest(smallest_m) +
-                                                  ", half of the region's smallest side: beyond that its effects are "
-                                                  "nowhere felt in full");
+    else
+        check_edge(region, table.broken());
 
-    table.number("damping_n_s_per_m", region.damping_n_s_per_m, Quantity::damping, dampings_n_s_per_m);
+    region_fields(region, table.fields());
     if (const toml::table* vibration = table.table("vibration", vibration_example))
         region.vibration = read_vibration(*vibration, rate_hz, nullptr, messages);
     table.report_unknown_keys();
@@ -121,7 +114,7 @@ Region read_region(const toml::table& source, double rate_hz, FileMessages& mess
 Placement read_placement(TableReader& table)
 {
     Placement placement;
-    table.three_numbers("position_m", placement.position_m, Quantity::length, {-1000, 1000});
+    placement_fields(placement, table.fields());
     glm::dvec3 turn_deg(0);
     table.three_numbers("rotation_deg", turn_deg, Quantity::angle_deg, {-3600, 3600});
     glm::dmat4 rotation(1);
@@ -141,8 +134,7 @@ ObjectEffects read_object_effects(TableReader& object, double rate_hz, FileMessa
     if (const toml::table* source = object.table("viscosity", "{ damping_n_s_per_m = 2, reach_m = \"5mm\" }")) {
         const std::size_t errors = messages.errors();
         TableReader table(*source, "`viscosity`", messages);
-        table.number("damping_n_s_per_m", effects.damping_n_s_per_m, Quantity::damping, dampings_n_s_per_m);
-        table.number("reach_m", effects.damping_reach_m, Quantity::length, reaches_m);
+        viscosity_fields(effects, table.fields());
         need(table, "damping_n_s_per_m", "a viscous medium needs its strength: write `damping_n_s_per_m = 2`",
              messages);
         need(table, "reach_m", "a viscous medium needs to end somewhere: write `reach_m = \"5mm\"`", messages);

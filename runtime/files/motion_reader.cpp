@@ -1,6 +1,6 @@
 #include "runtime/files/motion_reader.h"
 
-#include "runtime/files/tick_limit.h"
+#include "runtime/scene/validation.h"
 
 namespace haptel::runtime {
 
@@ -10,8 +10,7 @@ MotionText read_motion(TableReader& table, const Placement& start, double rate_h
     glm::dvec3 spin_deg_per_s(0);
     SteadyMotion::Figures figures;
     table.three_numbers("spin_deg_per_s", spin_deg_per_s, Quantity::turning_deg_per_s, {-36'000, 36'000});
-    table.three_numbers("swing_m", figures.swing_m, Quantity::length, {-1000, 1000});
-    table.number("swing_hz", figures.swing_hz, Quantity::frequency, {0, 1000, true});
+    swing_fields(figures, table.fields());
     if (table.has("swing_m") != table.has("swing_hz"))
         messages.error(table.where(table.has("swing_m") ? "swing_m" : "swing_hz"),
                        "an object swings by `swing_m = [x, y, z]` at `swing_hz`: write both");
@@ -19,9 +18,9 @@ MotionText read_motion(TableReader& table, const Placement& start, double rate_h
     if (table.has("swing_m") && swing_m == 0 && messages.errors() == errors)
         messages.warning(table.where("swing_m"), "`swing_m` is 0, so that this object does not swing: write more than "
                                                  "0, or leave `swing_m` and `swing_hz` out");
-    need_slower_than_ticks(table, "swing_hz", figures.swing_hz, Rounds::swings, rate_hz, messages);
+    check_rounds("swing_hz", figures.swing_hz, Rounds::swings, rate_hz, table.broken());
     const double rate_deg_per_s = glm::length(spin_deg_per_s);
-    need_slower_than_ticks(table, "spin_deg_per_s", rate_deg_per_s, Rounds::turns, rate_hz, messages);
+    check_rounds("spin_deg_per_s", rate_deg_per_s, Rounds::turns, rate_hz, table.broken());
     if (rate_deg_per_s > 0) {
         figures.axis = spin_deg_per_s / rate_deg_per_s;
         figures.spin_rad_per_s = glm::radians(rate_deg_per_s);

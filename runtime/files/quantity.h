@@ -1,25 +1,13 @@
 // Numbers with units, as people write them in scenes: "15cm", "60 um", "1kHz", "0.8 N/mm". Bare numbers are SI.
 #pragma once
 
-#include <cstdint>
+#include "runtime/scene/scene_fields.h"
+
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace haptel::runtime {
-
-enum class Quantity : uint8_t {
-    number,
-    length,
-    speed,
-    angle_deg,
-    turning_deg_per_s,
-    force,
-    stiffness,
-    damping,
-    frequency,
-    time
-};
 
 // "a length", and how one is written: `a length in metres, such as 0.15 or "15cm"`.
 std::string_view description_of(Quantity quantity);

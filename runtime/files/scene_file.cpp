@@ -54,37 +54,26 @@ ServoSettings read_servo(const toml::table& root, FileMessages& messages)
 {
     ServoSettings servo;
     TableReader table(table_named(root, "servo", messages), "[servo]", messages);
-    table.number("rate_hz", servo.rate_hz, Quantity::frequency, {10, 100'000});
+    servo_fields(servo, table.fields());
     if (const auto model = table.word("force_model", {force_model_names.begin(), force_model_names.end()}))
         servo.force.model = static_cast<ForceModel>(*model);
-    table.number("lateral_depth_m", servo.force.lateral_depth_m, Quantity::length, {0, 1, true});
     if (table.has("lateral_depth_m") && servo.force.model != ForceModel::lateral)
         messages.error(table.where("lateral_depth_m"),
                        "`lateral_depth_m` is for `force_model = \"lateral\"` alone: write that, or leave it out");
-    table.number("force_limit_n", servo.force_limit_n, Quantity::force, {0, 100, true});
-    table.number("v_max_m_per_s", servo.v_max_m_per_s, Quantity::speed, {0, 10, true});
-    table.number("force_rise_s", servo.force_rise_s, Quantity::time, {0, 10});
-    table.number("wait_for_small_force_n", servo.wait_for_small_force_n, Quantity::force, {0, 100});
     table.report_unknown_keys();
     return servo;
 }
 
-Material read_material(TableReader& table, FileMessages& messages)
+Material read_material(TableReader& table)
 {
     Material material;
-    table.number("stiffness_n_per_m", material.stiffness_n_per_m, Quantity::stiffness, {0, 1e6, true});
-    table.number("damping_n_s_per_m", material.damping_n_s_per_m, Quantity::damping, {0, 1e4});
-    table.number("static_friction", material.static_friction, Quantity::number, {0, 10});
-    table.number("dynamic_friction", material.dynamic_friction, Quantity::number, {0, 10});
-    if (material.dynamic_friction <= material.static_friction) return material;
+    material_fields(material, table.fields());
     // A default gives way to what is written.
     if (!table.has("dynamic_friction"))
-        material.dynamic_friction = material.static_friction;
+        material.dynamic_friction = std::min(material.dynamic_friction, material.static_friction);
     else if (!table.has("static_friction"))
-        material.static_friction = material.dynamic_friction;
-    else
-        messages.error(table.where("dynamic_friction"), "`dynamic_friction` must not exceed `static_friction`: a "
-                                                        "surface that slides harder than it sticks chatters");
+        material.static_friction = std::max(material.dynamic_friction, material.static_friction);
+    check_material(material, table.broken());
     return material;
 }
 
@@ -112,7 +101,7 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
     table.yes_or_no("joined", text.joined);
     if (table.has("joined") && text.joined && text.object.motion)
         messages.error(table.where("joined"), "an object that moves cannot be joined to what it meets");
-    text.object.material = read_material(table, messages);
+    text.object.material = read_material(table);
     text.stiffness_at = table.where("stiffness_n_per_m");
     text.object.effects = read_object_effects(table, rate_hz, messages);
     text.reach_at = farthest_reach_at(source, text.object.effects);
@@ -227,20 +216,15 @@ void check_swing(const ObjectText& text, const std::vector<DeviceText>& devices,
     messages.warning(text.motion.swing_at, figures.str());
 }
 
-// What reaches farther than the object is large is not looked for.
 void check_reach(const ObjectText& text, const std::vector<DeviceText>& devices, FileMessages& messages)
 {
-    const double largest_m = largest_side_m(text.object) * (1 + 1e-9);
+    const auto told_at = [&](const toml::source_region& where) {
+        return [&messages, where](std::string_view, const std::string& why) { messages.error(where, why); };
+    };
+    const std::size_t errors = messages.errors();
     for (const DeviceText& device : devices)
-        if (device.probe.kind == ProbeKind::sphere && device.probe.radius_m > largest_m) {
-            messages.error(text.mesh_at, "the probe's `radius_m` is larger than `" + text.object.name +
-                                             "`: at most the largest side of its box");
-            break;
-        }
-    if (text.object.effects.reach_m() > largest_m)
-        messages.error(text.reach_at, "the `reach_m` of an effect is larger than `" + text.object.name +
-                                          "`: at most the largest side of its box; what is felt farther away is a "
-                                          "`[[region]]`");
+        if (messages.errors() == errors) check_probe_size(device.probe, text.object, told_at(text.mesh_at));
+    check_effects_reach(text.object, told_at(text.reach_at));
 }
 
 // How fast hands move in the scene: its speeds are those of the hand times the scale.
@@ -317,6 +301,9 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
     warn_of_doubles(*scene, at_rest, messages);
     join_objects(*scene, std::move(at_rest), surfaces, messages);
 
+    // All that a scene can break is told above, where it is written; a renderer asks for this, too.
+    if (const std::string faults = validate(scene.get(), {.probe = text.devices.front().probe}); !faults.empty())
+        messages.error(faults);
     std::vector<toml::source_region> stiffness_at;
     for (const ObjectText& object : text.objects) stiffness_at.push_back(object.stiffness_at);
     loaded.hands = open_hands(text.devices, scene, stiffness_at, devices, messages);

@@ -10,18 +10,6 @@ namespace haptel::runtime {
 
 namespace {
 
-std::string in_words(const Range& range)
-{
-    if (std::isinf(range.maximum)) return (range.above_minimum ? "more than " : "at least ") + shortest(range.minimum);
-    return (range.above_minimum ? "above " : "from ") + shortest(range.minimum) +
-           (range.above_minimum ? " up to " : " to ") + shortest(range.maximum);
-}
-
-bool inside(double value, const Range& range)
-{
-    return (range.above_minimum ? value > range.minimum : value >= range.minimum) && value <= range.maximum;
-}
-
 std::string kind_of(const toml::node& node)
 {
     switch (node.type()) {
@@ -61,15 +49,6 @@ std::size_t edit_distance(std::string_view a, std::string_view b)
 }
 
 } // namespace
-
-std::string shortest(double value)
-{
-    const double size = std::abs(value);
-    const auto format =
-        size == 0 || (size >= 1e-5 && size < 1e15) ? std::chars_format::fixed : std::chars_format::general;
-    std::array<char, 64> text;
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value, format).ptr};
-}
 
 const toml::table& table_named(const toml::table& root, std::string_view name, FileMessages& messages)
 {
@@ -192,9 +171,8 @@ std::optional<double> TableReader::number_in(const toml::node& node, std::string
                             (node.is_string() && !units.empty() ? " (units that fit: " + units + ")" : ""));
         return std::nullopt;
     }
-    if (!inside(*value, range)) { // NaN is inside nothing
-        messages_.error(node.source(),
-                        "`" + std::string(key) + "` must be " + in_words(range) + ", found " + kind_of(node));
+    if (!range.holds(*value)) {
+        messages_.error(node.source(), out_of_range(key, range, kind_of(node)));
         return std::nullopt;
     }
     return value;
@@ -218,6 +196,11 @@ void TableReader::three_numbers(std::string_view key, glm::dvec3& value, Quantit
     }
     for (int i = 0; i < 3; ++i)
         value[i] = number_in((*list)[static_cast<std::size_t>(i)], key, quantity, range).value_or(value[i]);
+}
+
+Broken TableReader::broken()
+{
+    return [this](std::string_view key, const std::string& why) { messages_.error(where(key), why); };
 }
 
 void TableReader::text(std::string_view key, std::string& value)

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "runtime/files/quantity.h"
+#include "runtime/scene/validation.h"
 
 #include <glm/glm.hpp>
 
@@ -12,6 +13,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -47,12 +49,6 @@ private:
     std::size_t errors_ = 0;
 };
 
-// Closed at both ends, or open at the lower one.
-struct Range {
-    double minimum, maximum;
-    bool above_minimum = false;
-};
-
 class TableReader {
 public:
     // `name` as in the file: "[servo]", "[[object]]".
@@ -63,6 +59,18 @@ public:
 
     void number(std::string_view key, double& value, Quantity quantity, const Range& range);
     void three_numbers(std::string_view key, glm::dvec3& value, Quantity quantity, const Range& range);
+    // A visitor of the fields in scene_fields.h: reads each.
+    auto fields()
+    {
+        return [this](std::string_view key, auto& value, Quantity quantity, const Range& range) {
+            if constexpr (std::is_same_v<decltype(value), double&>)
+                number(key, value, quantity, range);
+            else
+                three_numbers(key, value, quantity, range);
+        };
+    }
+    // What tells the rule between figures that is broken where the figure is written.
+    Broken broken();
     void text(std::string_view key, std::string& value);
     void yes_or_no(std::string_view key, bool& value);
     // The table there, or null if absent or something else, which is told by an example.
@@ -90,9 +98,6 @@ const toml::table& table_named(const toml::table& root, std::string_view name, F
 
 // The candidate that `word` was probably meant to be, or nothing.
 std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& candidates);
-
-// As people write it: 0.1, 500, 1e+20.
-std::string shortest(double value);
 
 // "a", "a or b", "a, b or c"
 std::string either_of(const std::vector<std::string_view>& words);

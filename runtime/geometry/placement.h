@@ -5,7 +5,12 @@
 
 #include <glm/glm.hpp>
 
+#include <string>
+
 namespace haptel::runtime {
+
+// Rotations made by others are rounded; what is farther from one scales or shears.
+inline constexpr double orthonormal_within = 1e-6;
 
 // Rotation and translation, nothing else: object space keeps its metres.
 struct Placement {
@@ -23,5 +28,8 @@ inline bool finite(const Placement& placement)
     return finite(placement.rotation[0]) && finite(placement.rotation[1]) && finite(placement.rotation[2]) &&
            finite(placement.position_m);
 }
+
+// Why it is none, to be put behind what it belongs to; empty: it is one.
+std::string placement_fault(const Placement& placement);
 
 } // namespace haptel::runtime

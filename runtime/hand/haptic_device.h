@@ -2,6 +2,8 @@
 // A simulated, a replayed and a USB device are drivers of equal rank.
 #pragma once
 
+#include "runtime/hand/degradation.h"
+
 #include <glm/glm.hpp>
 
 #include <cstdint>
@@ -21,6 +23,8 @@ struct DevicePose {
     uint64_t periods = 0;
     // No force was on the hand since the pose before: it must not come back at once.
     bool interrupted = false;
+    // What is left out of this tick, at least. A recorded hand says what was then; the servo adds what it leaves out.
+    Degradation degradation = Degradation::none;
 };
 
 struct DeviceInfo {

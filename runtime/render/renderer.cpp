@@ -1,6 +1,7 @@
 #include "runtime/render/renderer.h"
 
-#include "runtime/force/force_model.h"
+#include "runtime/geometry/finite.h"
+#include "runtime/scene/validation.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,12 +22,13 @@ constexpr double effect_stiffness_n_per_m = 1000;
 } // namespace
 
 Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
-    : scene_(std::move(scene))
-    , hand_(hand)
-    , probe_(hand.probe.value_or(scene_->probe))
+    : refused_(validate(scene.get(), hand))
+    , scene_(refused_.empty() ? std::move(scene) : std::make_shared<const Scene>())
+    , hand_(refused_.empty() ? hand : HandSettings())
+    , probe_(hand_.probe.value_or(scene_->probe))
     , period_s_(1 / scene_->servo.rate_hz)
-    , force_limit_n_(hand.force_max_n > 0 ? std::min(hand.force_max_n, scene_->servo.force_limit_n)
-                                          : scene_->servo.force_limit_n)
+    , force_limit_n_(hand_.force_max_n > 0 ? std::min(hand_.force_max_n, scene_->servo.force_limit_n)
+                                           : scene_->servo.force_limit_n)
     , bodies_(make_bodies(*scene_, probe_))
     , effects_(*scene_, hand_)
     , reach_(surroundings(*scene_, bodies_, probe_.radius_m), scene_->servo.skips.objects)
@@ -60,6 +62,7 @@ std::vector<Surroundings> Renderer::surroundings(const Scene& scene, const std::
 
 TickResult Renderer::tick(const DevicePose& pose) noexcept
 {
+    if (!refused_.empty()) return {.faults = fault_scene_refused};
     const Workspace& workspace = hand_.workspace;
     if (!workspace.moves()) return feel(pose);
     TickResult result = feel(workspace.to_scene(pose));
@@ -112,7 +115,9 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         left_ = {};
         effects_.lose_hand();
     }
-    if (effects_.act()) effects_.begin(pose.tip_m, result.time_s, periods);
+    fade_shares(pose.degradation, periods);
+    const bool effects_act = effects_.act() && shares_.effects > 0;
+    if (effects_act) effects_.begin(pose.tip_m, result.time_s, periods);
 
     held_j_ = 0;
     const double way = way_m(pose), near_m = far_enough_m(pose.tip_m, pose.tail_m, way);
@@ -134,7 +139,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         const PartContacts alone{0, contacts};
         const std::span<const PartContacts> parts =
             body.objects.joined ? by_part_.of(*scene_, *body.objects.joined, contacts) : std::span(&alone, 1);
-        if (effects_.act()) update_effects(body, contacts, parts);
+        if (effects_act) update_effects(body, contacts, parts);
         body.tip_friction = body.tail_friction = {};
         if (contacts.empty()) {
             skipped.texture = skipped.texture && (scene_->servo.skips.texture || !feels_in_air(body, pose));
@@ -155,8 +160,8 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     skipped_.texture += skipped.texture;
     skipped_.octaves += skipped.octaves;
     skipped_.mapping += skipped.mapping;
-    if (effects_.act()) {
-        const glm::dvec3 effects_n = effects_.force_n(); // once: its medium lives a tick
+    if (effects_act) {
+        const glm::dvec3 effects_n = shares_.effects * effects_.force_n(); // once: its medium lives a tick
         push(result, pose, 0, effects_n);
         held_j_ += glm::dot(effects_n, effects_n) * hand_.workspace.scale / (2 * effect_stiffness_n_per_m);
     }
@@ -175,85 +180,6 @@ std::span<const Contact> Renderer::update_contact(Body& body, const ProbePose& p
     work_.triangles += counters.triangles_tested - triangles;
     work_.steps += counters.walk_steps - steps;
     return contacts;
-}
-
-// Of a force that does not change, on a hand that goes from one pose to another.
-double Renderer::work_j(const OnHand& on_hand, const DevicePose& from, const DevicePose& to) const noexcept
-{
-    if (!probe_.has_tail()) return glm::dot(on_hand.n, to.tip_m - from.tip_m);
-    const glm::dvec3 before = from.tail_m - from.tip_m, now = to.tail_m - to.tip_m;
-    const double before_m = glm::length(before), now_m = glm::length(now);
-    const glm::dvec3 way = probe_.grip_of(to.tip_m, to.tail_m) - probe_.grip_of(from.tip_m, from.tail_m);
-    double work = glm::dot(on_hand.n, way) + on_hand.grip_n * (now_m - before_m);
-    if (before_m > 0 && now_m > 0) work += glm::dot(on_hand.n_m, glm::cross(before, now)) / (before_m * now_m);
-    return work;
-}
-
-// What of the force and the torque goes to the hand. `lever_m`: of the end that is farther from the grip. Contacts that
-// push against each other may add up to a torque without a force: it is limited by what the largest force has there.
-// `left_work_j`: of what is left over from another scene, in this tick and had it not faded.
-void Renderer::send(TickResult& result, double lever_m, double left_work_j) noexcept
-{
-    if (!finite(result.unlimited_force_n) || !finite(result.unlimited_torque_n_m) ||
-        !std::isfinite(result.grip_force_n)) {
-        result.unlimited_force_n = result.unlimited_torque_n_m = glm::dvec3(0);
-        result.grip_force_n = held_j_ = 0;
-        result.faults |= fault_force_not_finite;
-        interrupted_ = true;
-    }
-    const double small_n = scene_->servo.wait_for_small_force_n;
-    const auto small = [&](const OnHand& of) {
-        return glm::length(of.n) <= small_n && glm::length(of.n_m) <= small_n * lever_m &&
-               std::abs(of.grip_n) <= small_n;
-    };
-    const OnHand computed{result.unlimited_force_n, result.unlimited_torque_n_m, result.grip_force_n};
-    if (std::exchange(swapped_, false)) {
-        rise_period_ = left_period_ = period_;
-        left_ = interrupted_ ? OnHand() : sent_;
-        left_work_j_ = left_work_max_j_ = 0;
-        waiting_ = waiting_ || (small_n > 0 && !small({computed.n - computed_.n, computed.n_m - computed_.n_m,
-                                                       computed.grip_n - computed_.grip_n}));
-    }
-    computed_ = computed;
-    if (waiting_) {
-        waiting_ = !small(computed) || interrupted_;
-        rise_period_ = period_;
-        result.waiting = waiting_;
-    }
-    const double rise_s = scene_->servo.force_rise_s;
-    const auto risen_since = [&](uint64_t period) {
-        const double rising_s = static_cast<double>(period_ - period) * period_s_;
-        return rising_s < rise_s ? rising_s / rise_s : 1.0;
-    };
-    const double risen = waiting_ ? 0.0 : risen_since(rise_period_);
-    glm::dvec3 force_n = risen * result.unlimited_force_n, torque_n_m = risen * result.unlimited_torque_n_m;
-    double grip_n = risen * result.grip_force_n, held_j = risen * held_j_;
-    if (left_ != OnHand()) {
-        // A spring that has given w of the 2 E that its force would give on the way on which it slackens, pushes by
-        // 1 - w / 2E of that force and holds the square of it. It is not stretched again.
-        left_work_j_ += left_work_j;
-        left_work_max_j_ = std::max(left_work_max_j_, left_work_j_);
-        const double unfaded = 1 - risen_since(left_period_);
-        const double stretched = left_work_max_j_ > 0 ? std::max(0.0, 1 - left_work_max_j_ / (2 * left_.held_j)) : 1.0;
-        const double left = unfaded * stretched;
-        held_j += left * stretched * left_.held_j;
-        force_n += left * left_.n;
-        torque_n_m += left * left_.n_m;
-        grip_n += left * left_.grip_n;
-        if (left == 0) left_ = {};
-    }
-    result.force_n = limited(force_n, force_limit_n_);
-    result.grip_force_n = std::clamp(grip_n, -force_limit_n_, force_limit_n_);
-    if (torque_n_m != glm::dvec3(0)) {
-        const double length_n = glm::length(force_n);
-        result.torque_n_m = length_n > force_limit_n_ ? force_limit_n_ / length_n * torque_n_m : torque_n_m;
-        const double sent = glm::length(result.torque_n_m), most = force_limit_n_ * lever_m;
-        if (sent > most) result.force_n *= most / sent, result.torque_n_m *= most / sent;
-    }
-    const auto share = [](double of, double all) { return of < all ? of / all : 1.0; };
-    const double of_force = result.force_n == force_n ? 1.0 : share(glm::length(result.force_n), glm::length(force_n));
-    const double limit = std::min(of_force, share(std::abs(result.grip_force_n), std::abs(grip_n)));
-    sent_ = {result.force_n, result.torque_n_m, result.grip_force_n, limit * limit * held_j};
 }
 
 ContactWork Renderer::work() const noexcept

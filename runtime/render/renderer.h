@@ -25,6 +25,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace haptel::runtime {
@@ -35,8 +36,9 @@ inline constexpr double full_damping_depth_m = 1e-3;
 
 // Bits of TickResult::faults, beside those of TextureSample::faults.
 enum : uint32_t {
-    fault_pose_not_finite = 1u << 16, // force zero, contact kept as it was
-    fault_force_not_finite = 1u << 17 // force zero
+    fault_pose_not_finite = 1u << 16,  // force zero, contact kept as it was
+    fault_force_not_finite = 1u << 17, // force zero
+    fault_scene_refused = 1u << 18     // force zero: Renderer::refused() says why
 };
 
 struct TickResult {
@@ -64,6 +66,7 @@ struct ContactWork {
 
 class Renderer {
 public:
+    // Of a scene that does not validate (validation.h) no tick has a force, and refused() says why.
     explicit Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand = {});
 
     // Of a scene that takes the place of `before`, at the same rate, while the hand is in it.
@@ -87,6 +90,11 @@ public:
     // go of textures replaced on objects out of reach. Changes no force.
     void between_ticks() noexcept;
 
+    // Why nothing is rendered, a line for each reason; empty: all is well.
+    const std::string& refused() const noexcept { return refused_; }
+    double rate_hz() const noexcept { return scene_->servo.rate_hz; }
+    // All force, after a while of DevicePose::degradation's last step.
+    bool faded_away() const noexcept { return shares_.force == 0; }
     double force_limit_n() const noexcept { return force_limit_n_; }
     const SkippedStages& skipped() const noexcept { return skipped_; }
     ContactWork work() const noexcept;
@@ -117,6 +125,9 @@ private:
     struct Skipped { // in this tick
         bool query = true, texture = true, octaves = false, mapping = false;
     };
+    struct Shares { // of what is felt, while something is left out (DevicePose::degradation)
+        double effects = 1, textures = 1, force = 1;
+    };
     struct OnHand {
         glm::dvec3 n{0}, n_m{0};
         double grip_n = 0;
@@ -128,6 +139,7 @@ private:
     static std::vector<Surroundings> surroundings(const Scene& scene, const std::vector<Body>& bodies,
                                                   double probe_radius_m);
     TickResult feel(const DevicePose& pose) noexcept;
+    void fade_shares(Degradation degradation, uint64_t periods) noexcept;
     void push(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept;
     std::span<const Contact> update_contact(Body& body, const ProbePose& pose, const EndsFriction& friction) noexcept;
     void touch(Body& body, std::span<const Contact> contacts, const PartContacts& part, const DevicePose& pose,
@@ -156,7 +168,8 @@ private:
     double time_s() const noexcept { return time_s(period_); }
     double time_s(uint64_t period) const noexcept { return static_cast<double>(period) * period_s_; }
 
-    std::shared_ptr<const Scene> scene_;
+    std::string refused_;
+    std::shared_ptr<const Scene> scene_; // if it is refused, one with nothing in it
     HandSettings hand_;
     ProbeSettings probe_;
     double period_s_;
@@ -173,6 +186,7 @@ private:
     bool interrupted_ = false;    // the tick before sent no force, for a fault
     bool waiting_;                // for a small force
     double held_j_ = 0;           // by what pushes in this tick, before rise and limits
+    Shares shares_;
     SkippedStages skipped_;
     ContactWork work_;
     std::optional<DevicePose> last_pose_;   // that was finite

@@ -144,9 +144,10 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, const Touched& touche
         return result;
     }
 
-    const uint32_t reads = texture_reads(touched.texture);
+    const bool textured = touched.texture.textured() && shares_.textures > 0;
+    const uint32_t reads = textured ? texture_reads(touched.texture) : 0;
     const bool curved = surface.normal_turn_max_per_m > 0, drawn = !surface.uv.empty();
-    const bool turns = scene_->servo.force.model == ForceModel::displaced && touched.texture.textured() && curved;
+    const bool turns = scene_->servo.force.model == ForceModel::displaced && textured && curved;
     const Shaded read{!skips.mapping || turns || (reads & HAPTEL_READS_NORMAL),
                       !skips.mapping || (reads & HAPTEL_READS_UV)};
     result.unmapped = (curved && !read.normal_dp) || (drawn && !read.uv);
@@ -157,9 +158,12 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, const Touched& touche
         at.shading.normal_dp = glm::dmat3(0);
     }
 
-    const TextureSample texture = sample_texture(touched.texture, at);
-    result.textured = touched.texture.textured();
-    result.band_limited = touched.texture.from().binding.band_limited || touched.texture.to().binding.band_limited;
+    TextureSample texture;
+    if (textured) texture = sample_texture(touched.texture, at);
+    if (shares_.textures < 1) texture = mixed({}, texture, shares_.textures);
+    result.textured = textured;
+    result.band_limited =
+        textured && (touched.texture.from().binding.band_limited || touched.texture.to().binding.band_limited);
     const TouchedSurface felt{contact.depth_m,
                               contact.normal,
                               at.shading.normal,

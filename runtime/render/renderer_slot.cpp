@@ -1,13 +1,16 @@
 #include "runtime/render/renderer_slot.h"
 
+#include "runtime/scene/validation.h"
+
 #include <algorithm>
 #include <utility>
 
 namespace haptel::runtime {
 
 RendererSlot::RendererSlot(std::shared_ptr<const Scene> scene, const HandSettings& hand)
-    : hand_(hand), taken_(scene), newest_(std::move(scene))
+    : hand_(hand), newest_(validate(scene.get(), hand).empty() ? std::move(scene) : std::make_shared<const Scene>())
 {
+    taken_ = newest_;
     follow_newest();
 }
 
@@ -17,8 +20,9 @@ RendererSlot::~RendererSlot()
     free_given_back();
 }
 
-void RendererSlot::publish(std::shared_ptr<const Scene> scene)
+std::string RendererSlot::publish(std::shared_ptr<const Scene> scene)
 {
+    if (std::string faults = validate(scene.get(), hand_); !faults.empty()) return faults;
     const std::lock_guard lock(publishers_);
     // Withdrawn first: then the scene that the servo has is known for as long as the next one is made.
     const std::unique_ptr<Carrier> withdrawn(next_.exchange(nullptr, std::memory_order_acq_rel));
@@ -30,6 +34,7 @@ void RendererSlot::publish(std::shared_ptr<const Scene> scene)
     newest_ = std::move(scene);
     follow_newest();
     next_.store(next.release(), std::memory_order_release);
+    return {};
 }
 
 uint64_t RendererSlot::newly_published() const noexcept

@@ -13,6 +13,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -20,14 +21,15 @@ namespace haptel::runtime {
 
 class RendererSlot {
 public:
-    // The scene that the servo starts with.
+    // The scene that the servo starts with; in the place of one that does not validate, nothing.
     RendererSlot(std::shared_ptr<const Scene> scene, const HandSettings& hand);
     ~RendererSlot(); // the servo has ended
     RendererSlot(const RendererSlot&) = delete;
     RendererSlot& operator=(const RendererSlot&) = delete;
 
-    // Any thread but the servo. Of several that were not taken yet only the newest will be.
-    void publish(std::shared_ptr<const Scene> scene);
+    // Any thread but the servo. Of several that were not taken yet only the newest will be. Returns why the scene is
+    // refused, with what is felt left as it is, or nothing.
+    std::string publish(std::shared_ptr<const Scene> scene);
     // Frees what the servo has given back; publish does so too. Any thread but the servo.
     void collect();
 

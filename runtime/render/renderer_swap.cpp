@@ -1,5 +1,6 @@
 // One scene in the place of another while a hand is in it.
 #include "runtime/render/renderer.h"
+#include "runtime/scene/validation.h"
 
 #include <algorithm>
 #include <limits>
@@ -50,6 +51,7 @@ bool share_an_object(const BodyObjects& a, const BodyObjects& b)
 Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand, const Scene& before)
     : Renderer(std::move(scene), hand)
 {
+    if (!refused_.empty() || !validate(&before, hand).empty()) return;
     const ProbeSettings probe = hand.probe.value_or(before.probe);
     was_.assign(bodies_.size(), none);
     if (probe.kind != probe_.kind || probe.radius_m != probe_.radius_m || probe.length_m != probe_.length_m) return;
@@ -80,6 +82,7 @@ void Renderer::take_over(Renderer& before) noexcept
     period_ = before.period_;
     interrupted_ = before.interrupted_;
     waiting_ = waiting_ && before.waiting_;
+    shares_ = before.shares_;
     skipped_ = before.skipped_;
     work_ = before.work();
     last_pose_ = before.last_pose_;

@@ -1,5 +1,7 @@
 #include "runtime/scene/motion.h"
 
+#include "runtime/scene/validation.h"
+
 #include <cmath>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -10,20 +12,8 @@ namespace {
 
 constexpr double two_pi = 6.283185307179586;
 
-// Rotations made by others are rounded; what is farther from one scales or shears.
-constexpr double orthonormal_within = 1e-6;
-
 // Per second. Up to here angles are finite at any time of a run.
 constexpr double fastest = 1e9;
-
-bool is_rotation(const glm::dmat3& m)
-{
-    const glm::dmat3 square = glm::transpose(m) * m;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            if (!(std::fabs(square[i][j] - (i == j)) < orthonormal_within)) return false;
-    return glm::determinant(m) > 0;
-}
 
 } // namespace
 
@@ -64,6 +54,23 @@ double SteadyMotion::speed_max_m_per_s(double radius_m) const noexcept
     return two_pi * figures_.swing_hz * glm::length(figures_.swing_m) + std::fabs(figures_.spin_rad_per_s) * radius_m;
 }
 
+std::string SteadyMotion::fault(double rate_hz) const
+{
+    std::string fault = placement_fault(start_);
+    const Broken told = [&](std::string_view, const std::string& why) {
+        if (fault.empty()) fault = why;
+    };
+    if (figures_.swing_m != glm::dvec3(0)) {
+        swing_fields(figures_, RangeCheck(told));
+        check_rounds("swing_hz", figures_.swing_hz, Rounds::swings, rate_hz, told);
+    }
+    if (figures_.spin_rad_per_s != 0) {
+        if (!std::isnormal(glm::length(figures_.axis))) told("axis", "the axis of a turn has no direction");
+        check_rounds("spin_deg_per_s", glm::degrees(std::fabs(figures_.spin_rad_per_s)), Rounds::turns, rate_hz, told);
+    }
+    return fault;
+}
+
 LivePlacement::LivePlacement(const Placement& start)
 {
     store(start);
@@ -71,11 +78,9 @@ LivePlacement::LivePlacement(const Placement& start)
 
 std::string LivePlacement::publish(const Placement& placement)
 {
-    if (!finite(placement)) return "the placement is not finite";
-    if (!is_rotation(placement.rotation))
-        return "the rotation is not one: its columns must be unit vectors at right angles to each other, right-handed";
-    store(placement);
-    return {};
+    std::string fault = placement_fault(placement);
+    if (fault.empty()) store(placement);
+    return fault;
 }
 
 void LivePlacement::store(const Placement& placement) noexcept

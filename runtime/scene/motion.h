@@ -38,6 +38,8 @@ public:
     // No point of the object that far from its origin goes faster: textures have no finer detail than a tick passes. 0:
     // not known, and not counted.
     virtual double speed_max_m_per_s(double /*radius_m*/) const noexcept { return 0; }
+    // Why a servo of that rate may not follow it, in words; empty: it may. Not asked by a servo thread.
+    virtual std::string fault(double /*rate_hz*/) const { return {}; }
 };
 
 // Turns about an axis through the object's origin while its origin swings along a line: what a scene file can say.
@@ -54,6 +56,7 @@ public:
     std::optional<Placement> at(double time_s) const noexcept override;
     std::optional<MotionBounds> bounds(const glm::dvec3& centre_m, double radius_m) const noexcept override;
     double speed_max_m_per_s(double radius_m) const noexcept override;
+    std::string fault(double rate_hz) const override;
 
 private:
     Placement start_;

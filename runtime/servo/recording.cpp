@@ -12,7 +12,7 @@ namespace haptel::runtime {
 
 namespace {
 
-constexpr std::size_t column_count = 23;
+constexpr std::size_t column_count = 24;
 constexpr std::size_t columns_required = 16; // the rest came later: traces without it are read
 
 using Field = std::variant<uint64_t*, uint32_t*, double*>;
@@ -20,10 +20,10 @@ using Field = std::variant<uint64_t*, uint32_t*, double*>;
 // Where the columns of trace_columns live in a record: the one list that reading and writing share.
 std::array<Field, column_count> fields(TickRecord& r)
 {
-    return {&r.tick,     &r.time_s,       &r.tip_m.x,      &r.tip_m.y,      &r.tip_m.z,     &r.tail_m.x,
-            &r.tail_m.y, &r.tail_m.z,     &r.force_n.x,    &r.force_n.y,    &r.force_n.z,   &r.contact,
-            &r.depth_m,  &r.height_m,     &r.compute_ns,   &r.binding,      &r.interrupted, &r.device_force_max_n,
-            &r.waiting,  &r.torque_n_m.x, &r.torque_n_m.y, &r.torque_n_m.z, &r.grip_force_n};
+    return {&r.tick,     &r.time_s,       &r.tip_m.x,      &r.tip_m.y,      &r.tip_m.z,      &r.tail_m.x,
+            &r.tail_m.y, &r.tail_m.z,     &r.force_n.x,    &r.force_n.y,    &r.force_n.z,    &r.contact,
+            &r.depth_m,  &r.height_m,     &r.compute_ns,   &r.binding,      &r.interrupted,  &r.device_force_max_n,
+            &r.waiting,  &r.torque_n_m.x, &r.torque_n_m.y, &r.torque_n_m.z, &r.grip_force_n, &r.degradation};
 }
 
 std::vector<std::string_view> split(std::string_view line)

@@ -16,7 +16,7 @@ namespace haptel::runtime {
 inline constexpr std::string_view trace_columns =
     "tick,time_s,x_m,y_m,z_m,tail_x_m,tail_y_m,tail_z_m,fx_n,fy_n,fz_n,"
     "contact,depth_m,height_m,compute_ns,binding,interrupted,device_force_max_n,waiting,tqx_n_m,tqy_n_m,tqz_n_m,"
-    "grip_force_n";
+    "grip_force_n,degraded";
 
 void write_trace_header(std::ostream& out);
 void write_trace_row(std::ostream& out, const TickRecord& record);

@@ -15,7 +15,12 @@ enum class ServoState : uint8_t {
     running,
     finished, // its time or its device's stroke is over
     stopped,  // on request
-    faulted,  // the device failed: force is zero, see stop_reason
+    faulted,  // the device failed, the scene is refused, or deadlines cannot be kept: no force, see stop_reason
+};
+
+// Ticks in which that was left out because deadlines were missed (overload.h), those in which it faded included.
+struct DegradedTicks {
+    uint64_t without_effects = 0, without_textures = 0, without_force = 0;
 };
 
 struct ServoReport {
@@ -28,6 +33,7 @@ struct ServoReport {
     double rate_hz = 0;
     uint64_t ticks = 0;
     uint64_t missed_deadlines = 0; // periods in which no force was sent because the tick before was late
+    DegradedTicks degraded;
     uint64_t contact_ticks = 0;
     uint64_t waiting_ticks = 0;                        // without a force because the one computed was not small yet
     Histogram tick_ns;                                 // pose in hand to force computed

@@ -1,5 +1,6 @@
 #include "runtime/servo/servo_thread.h"
 
+#include "runtime/scene/validation.h"
 #include "runtime/servo/real_time.h"
 
 #include <algorithm>
@@ -34,13 +35,14 @@ ServoThread::ServoThread(std::shared_ptr<const Scene> scene, std::unique_ptr<Hap
                          const ServoOptions& options)
     : device_(std::move(device))
     , options_(with_limits_of(*device_, options))
-    , periods_wanted_(std::ceil(options.seconds * scene->servo.rate_hz - 1e-6))
-    , rate_hz_(scene->servo.rate_hz)
-    , scenes_(scene, options_.hand)
     , renderer_(std::make_unique<Renderer>(scene, options_.hand))
+    , rate_hz_(renderer_->rate_hz())
+    , periods_wanted_(std::ceil(options.seconds * rate_hz_ - 1e-6))
+    , scenes_(std::move(scene), options_.hand)
+    , overload_(rate_hz_)
     , telemetry_(options.telemetry_capacity)
 {
-    report_.rate_hz = scene->servo.rate_hz;
+    report_.rate_hz = rate_hz_;
 }
 
 ServoThread::~ServoThread()
@@ -58,10 +60,10 @@ void ServoThread::start()
 
 std::string ServoThread::publish(std::shared_ptr<const Scene> scene)
 {
+    if (std::string faults = validate(scene.get(), options_.hand); !faults.empty()) return faults;
     if (scene->servo.rate_hz != rate_hz_)
         return "the rate of a servo cannot change while it runs: stop it and start anew";
-    scenes_.publish(std::move(scene));
-    return {};
+    return scenes_.publish(std::move(scene));
 }
 
 const ServoReport& ServoThread::wait()
@@ -91,6 +93,7 @@ void ServoThread::begin()
     }
     report_.state = ServoState::running;
     if (options_.allocation_count) report_.allocations_in_tick = 0;
+    if (!renderer_->refused().empty()) end(ServoState::faulted, "the scene is refused:\n" + renderer_->refused());
 }
 
 void ServoThread::finish()
@@ -146,8 +149,8 @@ void ServoThread::keep_deadlines()
         ++periods_;
         deadline_ns += period_ns;
         const int64_t late_ns = monotonic_ns() - deadline_ns;
-        if (late_ns < 0) continue;
-        const int64_t missed = late_ns / period_ns + 1;
+        const int64_t missed = late_ns < 0 ? 0 : late_ns / period_ns + 1;
+        overload_.tick(static_cast<uint64_t>(missed));
         report_.missed_deadlines += static_cast<uint64_t>(missed);
         periods_ += static_cast<uint64_t>(missed);
         periods_since_pose_ += static_cast<uint64_t>(missed);
@@ -174,6 +177,7 @@ bool ServoThread::tick()
     }
     if (pose.periods == 0) pose.periods = periods_since_pose_;
     pose.interrupted = pose.interrupted || interrupted_;
+    pose.degradation = std::max(pose.degradation, overload_.step());
     periods_since_pose_ = 0;
     interrupted_ = false;
 
@@ -186,6 +190,10 @@ bool ServoThread::tick()
     record(pose, result, static_cast<uint64_t>(compute_ns));
     renderer_->between_ticks();
     if (options_.allocation_count) *report_.allocations_in_tick += options_.allocation_count() - allocations_before;
+    if (overload_.step() == Degradation::no_force && renderer_->faded_away())
+        end(ServoState::faulted,
+            "the servo missed more than half of its deadlines for a second, even without effects and textures: it took "
+            "the force away and stopped. Give it the processor (docs/realtime.md), or lower `rate_hz`");
     if (written != DeviceStatus::ok && written != DeviceStatus::not_ready)
         end(written == DeviceStatus::finished ? ServoState::finished : ServoState::faulted, reason_of(written));
     return true;
@@ -222,6 +230,9 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
     report_.grip_force_max_n = std::max(report_.grip_force_max_n, std::abs(result.grip_force_n));
     report_.contact_ticks += result.contacts > 0;
     report_.waiting_ticks += result.waiting;
+    report_.degraded.without_effects += pose.degradation >= Degradation::no_effects;
+    report_.degraded.without_textures += pose.degradation >= Degradation::no_textures;
+    report_.degraded.without_force += pose.degradation >= Degradation::no_force;
     report_.faults += result.faults != 0;
     report_.fault_bits |= result.faults;
     report_.tick_ns.add(compute_ns);
@@ -232,6 +243,7 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
     row.device_force_max_n = device_->info().force_max_n;
     row.interrupted = result.interrupted;
     row.waiting = result.waiting;
+    row.degradation = static_cast<uint32_t>(pose.degradation);
     row.tip_m = pose.tip_m;
     row.tail_m = pose.tail_m;
     row.force_n = result.force_n;
@@ -246,7 +258,7 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
     telemetry_.push(row);
 }
 
-void ServoThread::end(ServoState state, const char* reason)
+void ServoThread::end(ServoState state, const std::string& reason)
 {
     device_->write_grip(0);
     device_->write(glm::dvec3(0), glm::dvec3(0));

@@ -4,6 +4,7 @@
 // count them and go on, never catch up in a burst. Where the system lets it, it runs under SCHED_FIFO with locked
 // memory and spins over the last part of each wait (a fifth of a CPU); where not, it sleeps and says so in the report.
 // On the virtual clock it runs as fast as it can, and the same scene and device give the same forces bit for bit.
+// A scene that does not validate (validation.h) is never felt: the run ends before its first tick.
 // Whatever ends the loop - its time, a request, the device - ends it with zero force and a stopped device.
 #pragma once
 
@@ -11,6 +12,7 @@
 #include "runtime/render/renderer.h"
 #include "runtime/render/renderer_slot.h"
 #include "runtime/scene/scene.h"
+#include "runtime/servo/overload.h"
 #include "runtime/servo/servo_report.h"
 #include "runtime/servo/telemetry.h"
 
@@ -71,14 +73,15 @@ private:
     bool over(); // its time is, or it was asked to stop
     bool tick(); // false: there was nothing left to live through, as after the end of a recording
     void record(const DevicePose& pose, const TickResult& result, uint64_t compute_ns);
-    void end(ServoState state, const char* reason);
+    void end(ServoState state, const std::string& reason);
 
     std::unique_ptr<HapticDevice> device_;
     ServoOptions options_;
-    double periods_wanted_;
-    double rate_hz_;
-    RendererSlot scenes_;
     std::unique_ptr<Renderer> renderer_; // of the servo thread once it runs
+    double rate_hz_;
+    double periods_wanted_;
+    RendererSlot scenes_;
+    OverloadPolicy overload_; // of the servo thread
     Telemetry telemetry_;
     ServoReport report_;
     std::atomic<bool> stop_requested_{false};

@@ -28,6 +28,7 @@ struct TickRecord {
     uint64_t binding = 0;          // serial of the texture that is felt, or that is being faded in
     uint32_t faults = 0;           // bits of TickResult::faults
     double device_force_max_n = 0; // what the motors can do: a limit of force_n; 0: unknown
+    uint32_t degradation = 0;      // what was left out because deadlines were missed (Degradation)
     uint32_t waiting = 0;          // 1: no force yet, the one computed is not small
     uint32_t interrupted = 0;      // 1: no force was on the hand since the tick before, and it rises anew
 };

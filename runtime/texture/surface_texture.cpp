@@ -82,19 +82,20 @@ TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& 
 
 TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at) noexcept
 {
-    TextureSample to = sample_texture(reader.to().binding, at);
-    if (!reader.fading()) return to;
-    const TextureSample from = sample_texture(reader.from().binding, at);
-    const double w = reader.weight();
-    const auto mix = [w](const auto& a, const auto& b) { return a + w * (b - a); };
-    to.height_m = mix(from.height_m, to.height_m);
-    to.envelope_m = mix(from.envelope_m, to.envelope_m);
-    to.raised_m = mix(from.raised_m, to.raised_m);
-    to.surface_gradient = mix(from.surface_gradient, to.surface_gradient);
-    to.stiffness_scale = mix(from.stiffness_scale, to.stiffness_scale);
-    to.friction_scale = mix(from.friction_scale, to.friction_scale);
-    to.faults |= from.faults;
-    return to;
+    const TextureSample to = sample_texture(reader.to().binding, at);
+    return reader.fading() ? mixed(sample_texture(reader.from().binding, at), to, reader.weight()) : to;
+}
+
+TextureSample mixed(const TextureSample& from, const TextureSample& to, double share) noexcept
+{
+    const auto mix = [share](const auto& a, const auto& b) { return a + share * (b - a); };
+    return {.height_m = mix(from.height_m, to.height_m),
+            .envelope_m = mix(from.envelope_m, to.envelope_m),
+            .raised_m = mix(from.raised_m, to.raised_m),
+            .surface_gradient = mix(from.surface_gradient, to.surface_gradient),
+            .stiffness_scale = mix(from.stiffness_scale, to.stiffness_scale),
+            .friction_scale = mix(from.friction_scale, to.friction_scale),
+            .faults = from.faults | to.faults};
 }
 
 uint32_t texture_reads(const TextureReader& reader) noexcept

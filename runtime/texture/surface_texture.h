@@ -42,6 +42,9 @@ TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& 
 // What the reader feels at that point: its binding, or the linear mixture of two during a fade.
 TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& point) noexcept;
 
+// The linear mixture of two, `share` of the second; TextureSample() is a flat surface.
+TextureSample mixed(const TextureSample& from, const TextureSample& to, double share) noexcept;
+
 // Bits of haptel_texture::reads of what is felt now: Jacobians that nobody reads need not be computed.
 uint32_t texture_reads(const TextureReader& reader) noexcept;
 

@@ -62,6 +62,7 @@ std::string faults_text(uint32_t bits)
         {runtime::fault_height_above_bound, "a height was above its proven bound (cut off there)"},
         {runtime::fault_pose_not_finite, "the device gave a pose that is not finite (no force)"},
         {runtime::fault_force_not_finite, "the force was not finite (none was sent)"},
+        {runtime::fault_scene_refused, "the scene was refused (no force)"},
     };
     std::string text;
     for (const auto& [bit, meaning] : meanings) {
@@ -90,6 +91,9 @@ void add(Json& json, const HandOutcome& hand)
     json["rate_hz"] = servo.rate_hz;
     json["ticks"] = servo.ticks;
     json["missed_deadlines"] = servo.missed_deadlines;
+    json["degraded"]["without_effects"] = servo.degraded.without_effects;
+    json["degraded"]["without_textures"] = servo.degraded.without_textures;
+    json["degraded"]["without_force"] = servo.degraded.without_force;
     json["contact_ticks"] = servo.contact_ticks;
     json["waiting_ticks"] = servo.waiting_ticks;
     json["tick_ns"]["median"] = percentile(servo.tick_ns, 0.5, 1);
@@ -134,6 +138,11 @@ std::string lines_of(const HandOutcome& hand, const ExploreOutcome& outcome)
     line("time", fmt::format("{:.3f} s, {} ticks at {:g} Hz, {} missed deadlines", servo.seconds, servo.ticks,
                              servo.rate_hz, servo.missed_deadlines));
     line("contact", fmt::format("{} ticks ({:.1f} %)", servo.contact_ticks, percent(servo.contact_ticks, servo.ticks)));
+    if (servo.degraded.without_effects > 0)
+        line("overload", fmt::format("effects were left out in {} ticks, textures in {}, all force in {}: too many "
+                                     "deadlines were missed",
+                                     servo.degraded.without_effects, servo.degraded.without_textures,
+                                     servo.degraded.without_force));
     if (servo.waiting_ticks > 0)
         line("waited", fmt::format("{} ticks for a small force, with none on the hand", servo.waiting_ticks));
     line("force", fmt::format("rms {:.3f} N, largest {:.3f} N", servo.force_rms_n, servo.force_max_n));

@@ -1,5 +1,7 @@
 #include "tools/report/explore_status.h"
 
+#include "runtime/hand/degradation.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -26,6 +28,12 @@ std::string force_bar(double force_n)
 
 const char* state_of(const runtime::TickRecord& tick)
 {
+    switch (static_cast<runtime::Degradation>(tick.degradation)) {
+    case runtime::Degradation::none: break;
+    case runtime::Degradation::no_effects: return "late: no effects";
+    case runtime::Degradation::no_textures: return "late: no effects, no textures";
+    case runtime::Degradation::no_force: return "late: no force, stops";
+    }
     return tick.waiting ? "waits for a small force" : tick.contact ? "touch" : "free ";
 }
 

@@ -55,9 +55,9 @@ inline runtime::Scene moving_field(unsigned seed)
         object.surface = surfaces[i % 3];
         object.texture = std::make_shared<TextureSlot>();
         object.placement = {turn_about(vector(1), uniform(random)), glm::dvec3(0.1 * (i % 6), 0.1 * (i / 6), 0)};
-        if (i % 7 == 1) object.effects.magnet = {0.5, 0.04};
-        if (i % 7 == 2) object.effects.damping_n_s_per_m = 1, object.effects.damping_reach_m = 0.03;
-        if (i % 7 == 3) object.effects.vibration = {0.3, 40, {0, 0, 1}}, object.effects.vibration_reach_m = 0.04;
+        if (i % 7 == 1) object.effects.magnet = {0.5, 0.02};
+        if (i % 7 == 2) object.effects.damping_n_s_per_m = 1, object.effects.damping_reach_m = 0.02;
+        if (i % 7 == 3) object.effects.vibration = {0.3, 40, {0, 0, 1}}, object.effects.vibration_reach_m = 0.02;
         const double fast = std::pow(10.0, 1.5 * uniform(random));
         const Placement start = object.placement;
         const glm::dvec3 axis = vector(1), swing_m = vector(0.02);

@@ -55,7 +55,8 @@ TEST_CASE("explore pinches with a gripper, says how hard, and feels the same whe
     // Replayed, and from a trace that has no column for it, as older ones.
     std::istringstream in(read_file(folder.file("run/trace.csv")));
     std::string older;
-    for (std::string line; std::getline(in, line);) older += line.substr(0, line.rfind(',')) + "\n";
+    for (std::string line; std::getline(in, line);) // nor the one behind it
+        older += line.substr(0, line.rfind(',', line.rfind(',') - 1)) + "\n";
     REQUIRE(older.find("grip") == std::string::npos);
     folder.write("older.csv", older);
     for (const std::string trace : {"run/trace.csv", "older.csv"}) {

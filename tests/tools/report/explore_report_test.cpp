@@ -39,6 +39,19 @@ TEST_CASE("the report holds every promised field, null where nothing was measure
     CHECK(!to_lines(outcome).empty());
 }
 
+TEST_CASE("what was left out because deadlines were missed is told, and nothing where none was")
+{
+    ExploreOutcome outcome;
+    outcome.hands.resize(1);
+    CHECK(to_json(outcome)["degraded"] == Json{{"without_effects", 0}, {"without_textures", 0}, {"without_force", 0}});
+    CHECK(to_lines(outcome).find("overload") == std::string::npos);
+    outcome.hands[0].servo.degraded = {70, 30, 5};
+    CHECK(to_json(outcome)["degraded"] ==
+          Json{{"without_effects", 70}, {"without_textures", 30}, {"without_force", 5}});
+    CHECK(to_lines(outcome).find("effects were left out in 70 ticks, textures in 30, all force in 5") !=
+          std::string::npos);
+}
+
 TEST_CASE("a fault is told by its own name")
 {
     ExploreOutcome outcome;
