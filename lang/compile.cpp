@@ -5,11 +5,14 @@
 #include "lang/check/library.h"
 #include "lang/ir/verify.h"
 #include "lang/lower/lower.h"
+#include "lang/program/limits.h"
 #include "lang/syntax/parser.h"
-
 #include "lang/text/near_name.h"
+
 #include <algorithm>
+#include <bitset>
 #include <map>
+#include <set>
 
 namespace haptel::lang {
 namespace {
@@ -53,6 +56,17 @@ private:
     {
         const uint32_t index = sources.add(std::move(file));
         TokenList tokens = lex(sources, index, diagnostics);
+        const size_t room = tokens_max - std::min(tokens_max, token_count);
+        if (tokens.tokens.size() > room) {
+            const PlacedToken& first = tokens.tokens[room];
+            diagnostics
+                .error({index, first.begin, first.end}, "too-large",
+                       "expected at most " + std::to_string(tokens_max) +
+                           " words, numbers and signs in a program with its imports")
+                .hint = "large tables belong into pictures: texture t(image picture)";
+            tokens = {{tokens.tokens.back()}, {}};
+        }
+        token_count += tokens.tokens.size();
         for (const PlacedToken& token : tokens.tokens)
             if (token.kind == Token::name) named.insert(sources.text({index, token.begin, token.end}));
         files.push_back({parse(sources, index, std::move(tokens), diagnostics), {}});
@@ -79,14 +93,22 @@ private:
         const auto known = by_name.find(text->name);
         const uint32_t target = known != by_name.end() ? known->second : add(std::move(*text));
         auto& imported = files[file].imported;
-        if (std::find(imported.begin(), imported.end(), target) == imported.end()) imported.push_back(target);
+        if (std::find(imported.begin(), imported.end(), target) != imported.end()) return;
+        imported.push_back(target);
         edges.push_back({file, target, import.span});
     }
 
     // An import that leads back to its own file, by the shortest way there is.
     void report_cycles()
     {
+        // Who leads to whom, over any number of imports.
+        std::vector<std::bitset<import_max>> leads(files.size());
+        for (const Edge& edge : edges) leads[edge.from].set(edge.to);
+        for (size_t over = 0; over < files.size(); ++over)
+            for (std::bitset<import_max>& from : leads)
+                if (from.test(over)) from |= leads[over];
         for (const Edge& edge : edges) {
+            if (edge.to != edge.from && !leads[edge.to].test(edge.from)) continue;
             std::vector<uint32_t> reached{edge.to}, reached_from(files.size(), UINT32_MAX);
             for (size_t i = 0; i < reached.size() && reached_from[edge.from] == UINT32_MAX && reached[0] != edge.from;
                  ++i)
@@ -95,7 +117,6 @@ private:
                         reached_from[next] = reached[i];
                         reached.push_back(next);
                     }
-            if (edge.to != edge.from && reached_from[edge.from] == UINT32_MAX) continue;
             std::string cycle = printable(sources.file(edge.from).name);
             for (uint32_t at = edge.from; at != edge.to; at = reached_from[at])
                 cycle = printable(sources.file(reached_from[at]).name) + " -> " + cycle;
@@ -112,6 +133,8 @@ private:
     SourceSet& sources;
     Diagnostics& diagnostics;
     std::map<std::string, uint32_t, std::less<>> by_name;
+    std::set<std::pair<uint32_t, std::string>> asked; // by file and path: what is imported again is not read again
+    size_t token_count = 0;                           // of all files
     std::vector<Edge> edges;
 };
 

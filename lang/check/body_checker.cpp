@@ -1,6 +1,6 @@
 // Scopes and whole bodies.
 #include "lang/check/body_checker.h"
-#include "lang/check/constant.h"
+#include "lang/program/limits.h"
 #include "lang/syntax/foreign.h"
 #include "lang/text/near_name.h"
 
@@ -57,6 +57,11 @@ Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
     symbol.is_read = type_named(name.text).has_value();
     if (kind == SymbolKind::local) {
         symbol.slot = static_cast<uint32_t>(flow.variables.size());
+        if (symbol.slot == variables_max)
+            diagnostics
+                .error(name.span, "too-large",
+                       "expected at most " + std::to_string(variables_max) + " variables in a function or texture")
+                .hint = "an array is one; what repeats is a loop";
         Variable& variable = flow.variables.emplace_back();
         if (type == uint_type) variable.range = ir::full_range(ir::Type::u32);
     }
@@ -92,7 +97,8 @@ bool BodyChecker::may_be_unread(const std::string& name) const
 
 void BodyChecker::report_unknown_name(Span span, const std::string& name)
 {
-    if (may_be_unread(name) || !unknown_names.insert(name).second) return diagnostics.count_consequence();
+    if (may_be_unread(name) || !unknown_names.insert(name).second || diagnostics.full())
+        return diagnostics.count_consequence();
     const auto report = [&]() -> Diagnostic& {
         return diagnostics.error(span, "unknown-name", "unknown name " + quoted(name));
     };
@@ -106,6 +112,8 @@ void BodyChecker::report_unknown_name(Span span, const std::string& name)
         if (!foreign->replacement.empty()) reported.fix = FixIt{span, std::string(foreign->replacement)};
         return;
     }
+    if (context.near_searches == 0) return in_damaged_body ? diagnostics.count_consequence() : void(report());
+    --context.near_searches;
     std::vector<std::string_view> names;
     for (const auto& [local, bindings] : by_name)
         if (!bindings.empty()) names.push_back(local);

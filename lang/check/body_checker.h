@@ -5,6 +5,7 @@
 // and check_range.cpp hold the parts.
 #pragma once
 
+#include "lang/check/constant.h"
 #include "lang/program/checked_program.h"
 #include "lang/program/scope.h"
 #include "lang/text/diagnostic.h"
@@ -22,8 +23,10 @@ struct CheckContext {
     const SourceSet& sources;
     Diagnostics& diagnostics;
     CheckedProgram& program;
+    ConstantEvaluator& constants;
     std::vector<const Symbol*> inputs;                    // by InputName
     std::set<std::string, std::less<>> unknown_functions; // those without a guess: each is reported once
+    uint32_t near_searches = 200; // that are left: beyond, names that are unknown have no proposal
 };
 
 // 'text', as names stand in messages.

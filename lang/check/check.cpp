@@ -3,8 +3,9 @@
 
 #include "lang/check/body_checker.h"
 #include "lang/check/call_graph.h"
-#include "lang/check/constant.h"
 #include "lang/check/library.h"
+#include "lang/program/limits.h"
+#include "lang/text/near_name.h"
 
 #include <algorithm>
 #include <map>
@@ -76,7 +77,7 @@ public:
     ProgramChecker(const SourceSet& sources, CheckedProgram& checked, Declarations* own_library,
                    const Declarations& seen_library, Diagnostics& diagnostics)
         : program(checked)
-        , context{sources, diagnostics, checked, {}, {}}
+        , context{sources, diagnostics, checked, constants, {}, {}}
         , declarations(checked.files.size())
         , made_library(own_library)
         , library(seen_library)
@@ -136,6 +137,7 @@ private:
         for (Function& tree : program.files[file].tree.functions) {
             const auto is_array = [](const auto& parameter) { return parameter.type.is_array; };
             if ((tree.result.is_array || std::ranges::any_of(tree.parameters, is_array)) != with_arrays) continue;
+            if (context.diagnostics.full()) return;
             FunctionInfo& info = program.functions.emplace_back();
             info.name = tree.name.text;
             info.tree = &tree;
@@ -146,6 +148,7 @@ private:
                 context.diagnostics.error(tree.name.span, "reserved-name",
                                           quoted(info.name) + " is a type, expected a name of your own");
             info.is_valid = !info.result.is_error() && !tree.damage.in_head;
+            size_t numbers = 0;
             for (const FunctionParameter& parameter : tree.parameters) {
                 ParameterInfo made{value_type(parameter.type, "a parameter holds a value", scope), parameter.name.text,
                                    parameter.is_function};
@@ -154,7 +157,15 @@ private:
                     made.signature.push_back(value_type(type, "a function takes values", scope));
                     info.is_valid = info.is_valid && !made.signature.back().is_error();
                 }
+                if ((numbers += std::max(made.type.components(), 1u)) > parameters_max) {
+                    context.diagnostics.error(parameter.name.span, "too-large",
+                                              "expected at most " + std::to_string(parameters_max) +
+                                                  " numbers as parameters of a function");
+                    info.is_valid = false;
+                    tree.body = nullptr;
+                }
                 info.parameters.push_back(std::move(made));
+                if (numbers > parameters_max) break;
             }
             declare(info, tree);
         }
@@ -163,6 +174,12 @@ private:
     void declare(FunctionInfo& info, const Function& tree)
     {
         auto& overloads = declarations_of(info.file).functions[info.name];
+        if (overloads.size() >= overloads_max) {
+            context.diagnostics.error(tree.name.span, "too-large",
+                                      "expected at most " + std::to_string(overloads_max) + " functions called " +
+                                          quoted(info.name) + " in a file");
+            return;
+        }
         const auto same = [&](auto* other) { return std::ranges::equal(other->parameters, info.parameters); };
         const auto same_and_valid = [&](auto* other) { return other->is_valid && same(other); };
         if (auto twin = std::find_if(overloads.begin(), overloads.end(), same_and_valid);
@@ -217,17 +234,29 @@ private:
 
     void check_textures(uint32_t file, const FileScope& scope)
     {
-        std::vector<const Texture*> seen;
+        std::map<std::string_view, const Texture*> seen;
+        size_t count = 0;
         for (Texture& tree : program.files[file].tree.textures) {
             if (context.diagnostics.full()) return;
-            const auto twin =
-                std::find_if(seen.begin(), seen.end(), [&](auto* other) { return other->name.text == tree.name.text; });
-            if (twin != seen.end())
+            if (++count > textures_max) {
+                context.diagnostics
+                    .error(tree.name.span, "too-large",
+                           "expected at most " + std::to_string(textures_max) + " textures in a file")
+                    .hint = "put the others into another file";
+                return;
+            }
+            const auto [twin, is_new] = seen.try_emplace(tree.name.text, &tree);
+            if (!is_new)
                 context.diagnostics
                     .error(tree.name.span, "duplicate-texture",
                            "two textures of this file are called " + quoted(tree.name.text))
-                    .related.push_back({(*twin)->name.span, "the first is here"});
-            seen.push_back(&tree);
+                    .related.push_back({twin->second->name.span, "the first is here"});
+            if (tree.parameters.size() > parameters_max) {
+                context.diagnostics.error(tree.parameters[parameters_max].name.span, "too-large",
+                                          "expected at most " + std::to_string(parameters_max) +
+                                              " parameters of a texture");
+                continue;
+            }
             CheckedTexture texture;
             texture.tree = &tree;
             for (TextureParameter& parameter : tree.parameters)
@@ -239,6 +268,7 @@ private:
     }
 
     CheckedProgram& program;
+    ConstantEvaluator constants;
     CheckContext context;
     std::vector<Declarations> declarations; // by file
     Declarations* const made_library;       // null: this is a program

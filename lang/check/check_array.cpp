@@ -1,6 +1,5 @@
 // Arrays: constant tables, arrays of a body, and what is assigned of a variable with parts.
 #include "lang/check/body_checker.h"
-#include "lang/check/constant.h"
 #include "lang/syntax/swizzle.h"
 
 namespace haptel::lang {
@@ -45,7 +44,10 @@ uint64_t parts_at(Type type, int64_t index)
 std::optional<uint32_t> BodyChecker::size_of_array(const TypeName& type)
 {
     if (!type.array_size) return 0;
-    Expression& size = *type.array_size;
+    ArraySize& shared = *type.array_size;
+    if (shared.is_checked) return shared.number;
+    shared.is_checked = true;
+    Expression& size = *shared.written;
     const Type found = expression(size);
     if (found.is_error()) return std::nullopt;
     const bool is_int = found == int_type || found == uint_type;
@@ -62,7 +64,7 @@ std::optional<uint32_t> BodyChecker::size_of_array(const TypeName& type)
                               std::to_string(wanted.minimum));
         return std::nullopt;
     }
-    return static_cast<uint32_t>(wanted.minimum);
+    return shared.number = static_cast<uint32_t>(wanted.minimum);
 }
 
 Type BodyChecker::array_type(const TypeName& name, Type element)
@@ -141,7 +143,7 @@ Symbol* BodyChecker::array(Declaration& node, Type element)
         const auto count = static_cast<uint32_t>(list->elements.size());
         if (size > 0 && size != count) {
             // the size stands in the declaration, or in front of the list: float[2](...)
-            const Expression& written = node.type.array_size ? *node.type.array_size : *list->type->array_size;
+            const Expression& written = *(node.type.array_size ? node.type : *list->type).array_size->written;
             diagnostics
                 .error(written.span, "table-size",
                        name + " is declared with " + std::to_string(size) + " elements and has " +
@@ -174,7 +176,7 @@ Symbol* BodyChecker::array(Declaration& node, Type element)
             }
             culprit = culprit ? culprit : varies;
             if (culprit || !node.is_const) continue;
-            const auto parts = evaluate_constant(cell, element);
+            const auto parts = context.constants.value(cell, element);
             cells->insert(cells->end(), parts.begin(), parts.end());
         }
         if (culprit || !node.is_const) cells.reset();

@@ -1,6 +1,6 @@
 // Statements: declarations, assignments, branches, and whether every path returns.
 #include "lang/check/body_checker.h"
-#include "lang/check/constant.h"
+#include "lang/program/limits.h"
 #include "lang/syntax/operators.h"
 
 #include <algorithm>
@@ -14,6 +14,10 @@ void BodyChecker::statements(std::vector<StatementPtr>& list)
     bool reported = false;
     for (StatementPtr& s : list) {
         if (!s) continue;
+        if (diagnostics.full() || flow.variables.size() > variables_max) { // enough is said
+            in_damaged_body = true;
+            return;
+        }
         if (!flow.reachable && !reported && !is_library && !in_damaged_body) {
             diagnostics.warning(s->span, "unreachable-code", "this is never reached");
             reported = true;
@@ -78,7 +82,7 @@ void BodyChecker::check(Statement&, Declaration& node)
     symbol.is_read = !is_sound; // that it is not used is then not worth saying
     if (node.is_const) symbol.read_only = "it is constant";
     if (is_constant) {
-        symbol.value = evaluate_constant(value, type);
+        symbol.value = context.constants.value(value, type);
         if (type == int_type || type == uint_type) {
             const auto number = static_cast<int64_t>(as_number(symbol.value.front(), type));
             symbol.range = ir::IntRange{number, number};

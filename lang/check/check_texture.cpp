@@ -54,7 +54,7 @@ std::optional<double> BodyChecker::check_constant(Expression& e, Type type, cons
             .hint = "literals, global constants and built-in functions of them are";
         return std::nullopt;
     }
-    return as_number(evaluate_constant(e, type).front(), type);
+    return as_number(context.constants.value(e, type).front(), type);
 }
 
 uint32_t BodyChecker::check_output(TextureParameter& tree)

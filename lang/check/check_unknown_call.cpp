@@ -67,7 +67,8 @@ void BodyChecker::report_unknown_function(const Expression& e, const Name& calle
             "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)";
         return;
     }
-    if (scope.lacks_functions() || may_be_unread(callee.text)) return diagnostics.count_consequence();
+    if (scope.lacks_functions() || may_be_unread(callee.text) || diagnostics.full())
+        return diagnostics.count_consequence();
     const auto report = [&]() -> Diagnostic& {
         return diagnostics.error(callee.span, "unknown-function", "unknown function " + quoted(callee.text));
     };
@@ -86,9 +87,14 @@ void BodyChecker::report_unknown_function(const Expression& e, const Name& calle
     if (callee.text.ends_with('f') && !builtin_overloads(stem).empty()) { // sinf of C
         Diagnostic& reported = report();
         reported.hint = "write " + std::string(stem);
-        reported.fix = FixIt{callee.span, std::string(stem)};
+        if (takes(stem, arguments, classes)) reported.fix = FixIt{callee.span, std::string(stem)};
         return;
     }
+    if (context.near_searches == 0) {
+        report();
+        return;
+    }
+    --context.near_searches;
     std::vector<std::string_view> names{"float", "int",  "uint", "bool", "vec2", "vec3",
                                         "vec4",  "mat2", "mat3", "mat4", "grad"};
     scope.collect_function_names(names);

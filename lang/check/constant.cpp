@@ -40,17 +40,26 @@ const Expression* first_not_constant(const Expression& e)
     return nullptr;
 }
 
-std::vector<ConstantPart> evaluate_constant(const Expression& e, Type type)
-{
-    if (type == float_type)
-        if (const auto value = literal_real(e)) return {*value};
+struct ConstantEvaluator::Work {
     ir::Module module;
     Diagnostics unused; // the parser has bounded the depth of every expression
-    ModuleLowering lowering(module, unused);
-    BodyLowering body(lowering, "constant", 0);
+    ModuleLowering lowering{module, unused};
+};
+
+ConstantEvaluator::ConstantEvaluator() : work(std::make_unique<Work>()) {}
+
+ConstantEvaluator::~ConstantEvaluator() = default;
+
+std::vector<ConstantPart> ConstantEvaluator::value(const Expression& e, Type type)
+{
+    if (type == float_type)
+        if (const auto literal = literal_real(e)) return {*literal};
+    BodyLowering body(work->lowering, "constant", 0);
     const Values parts = body.converted(e, type);
     const uint32_t function = body.builder.finish(parts);
-    return ir::interpret<double>(module, function, {}, nullptr);
+    const std::vector<ConstantPart> found = ir::interpret<double>(work->module, function, {}, nullptr);
+    work->module.functions.pop_back(); // nothing calls it
+    return found;
 }
 
 double as_number(const ConstantPart& part, Type type)

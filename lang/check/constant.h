@@ -4,6 +4,7 @@
 
 #include "lang/syntax/ast.h"
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -13,8 +14,18 @@ namespace haptel::lang {
 // operators, constructors and built-in functions of them.
 const ast::Expression* first_not_constant(const ast::Expression& expression);
 
-// The components of a checked constant expression, converted to `type` (a scalar or vector).
-std::vector<ConstantPart> evaluate_constant(const ast::Expression& expression, Type type);
+// Of one program: what its constants read and call is made once for all of them.
+class ConstantEvaluator {
+public:
+    ConstantEvaluator();
+    ~ConstantEvaluator();
+    // The components of a checked constant expression, converted to `type` (a scalar or vector).
+    std::vector<ConstantPart> value(const ast::Expression& expression, Type type);
+
+private:
+    struct Work;
+    const std::unique_ptr<Work> work;
+};
 
 // As a number: reals as they are, integers by the sign of `type`, false 0 and true 1.
 double as_number(const ConstantPart& part, Type type);

@@ -31,12 +31,6 @@ InstructionKey key_of(KeyKind kind, uint64_t payload, std::span<const Value> ope
     return key;
 }
 
-IntRange constant_range(Type type, uint32_t bits)
-{
-    int64_t value = type == Type::i32 ? int64_t{static_cast<int32_t>(bits)} : int64_t{bits};
-    return {value, value};
-}
-
 } // namespace
 
 size_t InstructionKeyHash::operator()(const InstructionKey& key) const
@@ -182,14 +176,11 @@ Value Builder::texture_parameter(uint32_t index, Type type)
 
 Value Builder::table(uint32_t table, Value index)
 {
-    const Table& cells = state->module.tables[table];
+    Table& cells = state->module.tables[table];
     const Type type = cells.element;
+    if (!cells.range) cells.range = range_of_cells(cells);
     Definition made;
-    made.range = full_range(type);
-    if (type != Type::real && !cells.words.empty()) {
-        made.range = constant_range(type, cells.words[0]);
-        for (uint32_t word : cells.words) made.range = join(made.range, constant_range(type, word));
-    }
+    made.range = *cells.range;
     return state->emit(key_of(KeyKind::table_, table, {&index, 1}), {ReadTable{table}, {index}, {}, span}, {&type, 1},
                        &made);
 }

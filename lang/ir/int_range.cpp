@@ -55,6 +55,20 @@ IntRange join(IntRange a, IntRange b)
     return {std::min(a.minimum, b.minimum), std::max(a.maximum, b.maximum)};
 }
 
+IntRange constant_range(Type type, uint32_t bits)
+{
+    const int64_t value = type == Type::i32 ? int64_t{static_cast<int32_t>(bits)} : int64_t{bits};
+    return {value, value};
+}
+
+IntRange range_of_cells(const Table& table)
+{
+    if (table.words.empty()) return full_range(table.element);
+    IntRange range = constant_range(table.element, table.words[0]);
+    for (uint32_t word : table.words) range = join(range, constant_range(table.element, word));
+    return range;
+}
+
 IntRange range_of(Op op, Type type, std::span<const IntRange> operands)
 {
     const IntRange full = full_range(type);

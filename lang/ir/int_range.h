@@ -9,16 +9,10 @@
 
 namespace haptel::ir {
 
-// Inclusive. i32 values as signed, u32 values as unsigned, booleans as 0 and 1.
-struct IntRange {
-    int64_t minimum, maximum;
-    bool is_constant() const { return minimum == maximum; }
-    bool within(int64_t low, int64_t high) const { return low <= minimum && maximum <= high; }
-    bool operator==(const IntRange&) const = default;
-};
-
 IntRange full_range(Type type); // of reals: meaningless, [0, 0]
 IntRange join(IntRange a, IntRange b);
+IntRange constant_range(Type type, uint32_t bits);
+IntRange range_of_cells(const Table& table); // looks at each; of reals: as full_range
 
 // Range of the result of `op`, whose type is `type`, from those of its operands.
 IntRange range_of(Op op, Type type, std::span<const IntRange> operands);

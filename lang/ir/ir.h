@@ -155,12 +155,22 @@ struct Function {
     Type type(Value value) const { return value_types[value.index]; }
 };
 
+// Of integers, inclusive: i32 as signed, u32 as unsigned, booleans as 0 and 1.
+struct IntRange {
+    int64_t minimum, maximum;
+    bool is_constant() const { return minimum == maximum; }
+    bool within(int64_t low, int64_t high) const { return low <= minimum && maximum <= high; }
+    bool operator==(const IntRange&) const = default;
+};
+
 // Constant table. Cells of int and uint tables are stored as their bits.
 struct Table {
     std::string name;
     Type element = Type::real;
     std::vector<double> reals;
     std::vector<uint32_t> words;
+    std::optional<IntRange> range =
+        {}; // of the words: found by the builder at the first read, known to it at all others
     uint32_t size() const { return static_cast<uint32_t>(element == Type::real ? reals.size() : words.size()); }
 };
 

@@ -1,6 +1,7 @@
 #include "lang/ir/verify.h"
 
 #include "lang/abi/abi.h"
+#include "lang/ir/extent.h"
 #include "lang/ir/int_range.h"
 #include "lang/ir/op_cost.h"
 #include "lang/ir/op_info.h"
@@ -24,8 +25,10 @@ uint64_t multiply(uint64_t a, uint64_t b)
 // Walks one function in execution order; stops at the first problem.
 class FunctionCheck {
 public:
-    FunctionCheck(const Module& whole, uint32_t which, const Texture* owner, const std::vector<bool>& entries)
+    FunctionCheck(const Module& whole, const std::vector<IntRange>& of_tables, uint32_t which, const Texture* owner,
+                  const std::vector<bool>& entries)
         : module(whole)
+        , cells(of_tables)
         , index(which)
         , texture(owner)
         , is_entry(entries)
@@ -48,6 +51,7 @@ public:
 
 private:
     const Module& module;
+    const std::vector<IntRange>& cells; // by table
     const uint32_t index;
     const Texture* texture; // whose entry this is; null: of none
     const std::vector<bool>& is_entry;
@@ -177,15 +181,7 @@ private:
         if (function.type(made.operands[0]) != Type::i32) return fail("a table index is not i32");
         if (!range(made.operands[0]).within(0, int64_t{table.size()} - 1))
             return fail("an index of table \"" + table.name + "\" is neither constant nor clamped");
-        IntRange cells = full_range(table.element);
-        if (table.element != Type::real) {
-            auto value = [&](uint32_t word) {
-                return table.element == Type::i32 ? int64_t{static_cast<int32_t>(word)} : int64_t{word};
-            };
-            cells = {value(table.words[0]), value(table.words[0])};
-            for (uint32_t word : table.words) cells = join(cells, {value(word), value(word)});
-        }
-        result_of_type(made, table.element, "a table cell", cells);
+        result_of_type(made, table.element, "a table cell", cells[read.table]);
     }
     void check(const Instruction& made, const Call& call, uint32_t)
     {
@@ -330,8 +326,11 @@ std::string check_entry(const Module& module, const Texture& texture, uint32_t i
 
 std::string verify(const Module& module)
 {
-    for (const Table& table : module.tables)
+    std::vector<IntRange> cells;
+    for (const Table& table : module.tables) {
         if (std::string problem = check(table); !problem.empty()) return problem;
+        cells.push_back(range_of_cells(table));
+    }
 
     const size_t count = module.functions.size();
     std::vector<const Texture*> owners(count, nullptr);
@@ -360,7 +359,7 @@ std::string verify(const Module& module)
 
     std::vector<uint32_t> call_depth;
     for (uint32_t i = 0; i < count; ++i) {
-        std::string problem = FunctionCheck(module, i, owners[i], is_entry).run();
+        std::string problem = FunctionCheck(module, cells, i, owners[i], is_entry).run();
         if (!problem.empty()) return problem;
         call_depth.push_back(deepest_call(module.functions[i].body, call_depth));
         if (call_depth.back() > call_depth_max) return "calls nest deeper than " + std::to_string(call_depth_max);
@@ -375,7 +374,11 @@ std::string verify(const Module& module)
 
 uint64_t operations_max(const Module& module, uint32_t function)
 {
-    return costs(module, function + size_t{1})[function];
+    const std::vector<bool> is_reached = reached_from(module, function);
+    std::vector<uint64_t> known(is_reached.size(), 0);
+    for (size_t i = 0; i < known.size(); ++i)
+        if (is_reached[i]) known[i] = cost(module.functions[i].body, known);
+    return known.back();
 }
 
 } // namespace haptel::ir

@@ -3,8 +3,10 @@
 
 #include "lang/abi/abi.h"
 #include "lang/ir/derive/point_derivative.h"
+#include "lang/ir/extent.h"
 #include "lang/ir/verify.h"
 #include "lang/lower/lowering.h"
+#include "lang/program/limits.h"
 
 namespace haptel::lang {
 namespace {
@@ -96,6 +98,17 @@ void ModuleLowering::texture(const CheckedTexture& texture)
     if (diagnostics.has_errors()) return;
     made.reads = reads_of(module.functions[made.body].body);
 
+    const auto refuse_long = [&](std::initializer_list<uint32_t> entries, size_t most) {
+        size_t count = 0;
+        for (uint32_t entry : entries) count += ir::instructions_reached(module, entry);
+        if (count > most)
+            diagnostics
+                .error(texture.tree->name.span, "too-large",
+                       "'" + made.name + "' and what it calls take " + std::to_string(count) +
+                           " instructions, expected at most " + std::to_string(most))
+                .hint = "what repeats is a loop; a function is made anew for each derivative of it";
+        return count > most;
+    };
     const auto refuse_costly = [&](uint32_t entry) {
         const uint64_t count = ir::operations_max(module, entry);
         if (count > ir::operations_limit)
@@ -107,8 +120,10 @@ void ModuleLowering::texture(const CheckedTexture& texture)
         return count > ir::operations_limit;
     };
     if (is_too_large(texture.tree->name.span) || refuse_costly(made.body)) return;
+    if (refuse_long({made.body}, instructions_max)) return;
     differentiator.make_entries(made);
     if (refuse_costly(made.height_gradient)) return;
+    if (refuse_long({made.height, made.height_gradient}, entry_instructions_max)) return;
     module.textures.push_back(std::move(made));
 }
 
@@ -117,7 +132,8 @@ ir::Module lower(const CheckedProgram& program, std::string_view only_texture, D
     ir::Module module;
     ModuleLowering lowering(module, diagnostics);
     for (const CheckedTexture& texture : program.textures)
-        if (only_texture.empty() || texture.tree->name.text == only_texture) lowering.texture(texture);
+        if ((only_texture.empty() || texture.tree->name.text == only_texture) && !diagnostics.full())
+            lowering.texture(texture);
     ir::remove_unresolved(module);
     return module;
 }

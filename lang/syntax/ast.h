@@ -29,11 +29,19 @@ struct Name {
     Span span;
 };
 
-// "vec3", "float[3]", "const float A[3]": the base name and, for arrays, the size (absent in `float A[] = {...}`).
+// The number between the brackets of an array's type.
+struct ArraySize {
+    ExpressionPtr written;
+    bool is_checked = false;        // by the checker, which sets
+    std::optional<uint32_t> number; // nothing after an error
+};
+
+// "vec3", "float[3]", "const float A[3]": the base name and, for arrays, the size (absent in `float A[] = {...}`). All
+// names of one declaration have their type's size in common: it is read and checked once, however many they are.
 struct TypeName {
     Name base;
     bool is_array = false;
-    ExpressionPtr array_size;
+    std::shared_ptr<ArraySize> array_size;
 };
 
 enum class UnaryOp { negate, plus, logical_not, bit_not };
@@ -249,14 +257,13 @@ struct Texture {
 };
 
 struct Constant {
-    std::string doc;
     Declaration declaration;
     Span span;
 }; // global const, tables too
 struct Import {
     std::string path; // "wood/oak.haptel"
     Span span;
-}; // "wood/oak.haptel" or wood.oak
+};
 
 struct File {
     std::vector<Import> imports;

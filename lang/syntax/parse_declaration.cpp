@@ -65,7 +65,9 @@ void Grammar::array_suffix(TypeName& type)
         }
         advance();
         type.is_array = true;
-        if (!at(Token::right_bracket)) type.array_size = expression();
+        type.array_size.reset();
+        if (!at(Token::right_bracket))
+            type.array_size = std::make_shared<ArraySize>(ArraySize{expression(), false, {}});
         close(Token::right_bracket, opener);
     }
 }
@@ -96,7 +98,6 @@ void Grammar::import_declaration(File& result)
 // constants = "const" type name [...] "=" initializer {"," ...} ";"
 void Grammar::constants(File& result)
 {
-    std::string doc = doc_before(position, nullptr);
     Statements made;
     declarations(made);
     if (lost) forget(made);
@@ -107,7 +108,7 @@ void Grammar::constants(File& result)
                               "expected '=' and the value of the constant '" + declaration.name.text + "'");
             declaration.initializer = make(declaration.name.span, ErrorExpression{});
         }
-        result.constants.push_back({doc, std::move(declaration), statement->span});
+        result.constants.push_back({std::move(declaration), statement->span});
     }
 }
 

@@ -315,19 +315,14 @@ void Grammar::declaration_list(Statements& into)
 {
     const Span first = span();
     const bool is_const = accept(Token::kw_const);
-    const size_t type_position = position;
+    const TypeName type = type_name();
     do {
-        // Each name has a type of its own: the type is read again for the second and later ones.
-        const size_t name_position = position;
-        position = type_position;
-        TypeName type = type_name();
-        if (name_position > position) position = name_position;
         if (at(Token::star) || at(Token::ampersand)) {
             error(span(), "no-pointers", "there are no pointers or references in Haptel");
             return;
         }
         const Span begin = into.empty() ? first : span();
-        Declaration made = declarator(is_const, std::move(type));
+        Declaration made = declarator(is_const, type);
         if (made.name.text.empty()) return;
         into.push_back(make_statement(since(begin), std::move(made)));
     } while (!lost && accept(Token::comma));

@@ -1,5 +1,4 @@
 // Dimensions of calls: by the rules of what is built in, by looking into what is written.
-#include "lang/check/constant.h"
 #include "lang/check/dimension/dimension_checker.h"
 #include "lang/check/dimension/dimension_rules.h"
 
@@ -18,10 +17,10 @@ Dimension derivative(Dimension of, Dimension by, uint32_t order)
 }
 
 // The number that a constant exponent is; nothing if it varies, or is a vector of different numbers.
-std::optional<double> constant_exponent(const Expression& e)
+std::optional<double> constant_exponent(ConstantEvaluator& values, const Expression& e)
 {
     if (e.type.is_error() || first_not_constant(e)) return std::nullopt;
-    const auto parts = evaluate_constant(e, e.type);
+    const auto parts = values.value(e, e.type);
     const double value = as_number(parts.front(), e.type);
     for (const ConstantPart& part : parts)
         if (as_number(part, e.type) != value) return std::nullopt;
@@ -71,7 +70,7 @@ Dimension DimensionBody::constructor(const Expression& e, const CallExpression& 
 // pow(x, 1.5) of a length is a length to the 1.5; nothing if the exponent is not known or x has no dimension.
 Dimension DimensionBody::power(const CallExpression& node, Dimension base)
 {
-    const auto exponent = constant_exponent(*node.arguments[1]);
+    const auto exponent = constant_exponent(owner.constant_values, *node.arguments[1]);
     const auto fraction = exponent ? exponent_near(*exponent) : std::nullopt;
     if (fraction) return base.power(*fraction);
     if (auto finding =

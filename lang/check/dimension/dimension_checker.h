@@ -3,6 +3,7 @@
 // dimension_call.cpp, dimension_statement.cpp.
 #pragma once
 
+#include "lang/check/constant.h"
 #include "lang/check/dimension/dimension.h"
 #include "lang/program/checked_program.h"
 #include "lang/text/diagnostic.h"
@@ -59,6 +60,7 @@ public:
 
     const SourceSet& sources;
     const CheckedProgram& program;
+    ConstantEvaluator constant_values;
     std::unordered_map<const Symbol*, Dimension> symbols; // constants, tables, parameters of the texture at hand
     Span user_call;                                       // in code of the user's own, the innermost under work
     uint32_t nesting = 0;                                 // of expressions and statements under work, over all bodies

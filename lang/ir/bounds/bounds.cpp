@@ -1,6 +1,7 @@
 #include "lang/ir/bounds/bounds.h"
 
 #include "lang/ir/bounds/interval_evaluator.h"
+#include "lang/ir/extent.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +14,9 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr uint64_t operations_per_evaluation = 1'000'000;
 constexpr uint64_t operations_in_all = 4'000'000; // keeps a reload short, whatever the program
+// Instructions, of the longest programs that are looked at as closely: of longer ones every step costs more, so that
+// fewer are taken.
+constexpr uint64_t usual_extent = 5'000;
 // A height in metres, a slope or a curvature per metre beyond this says as little as none: no piece that holds a pole
 // is small enough yet, and cutting goes on although nothing improves.
 constexpr double useless = 1e9;
@@ -54,6 +58,8 @@ public:
         , goals(std::move(which))
         , queues(goals.size())
     {
+        const uint64_t extent = instructions_reached(module, entry);
+        if (extent > usual_extent) operations_left = operations_in_all * usual_extent / extent;
         std::vector<bool> is_read(input_count, false);
         find_inputs(module.functions[entry].body, is_read);
         for (size_t i = 0; i < input_count; ++i)
@@ -70,7 +76,7 @@ public:
         std::vector<double> before(goals.size(), infinity);
         uint32_t limit = evaluations;
         for (uint32_t target = 16; !sides.empty() && !is_settled; target *= 2) {
-            while (pieces.size() < std::min(target, limit) && used < operations_in_all && !is_settled) cut();
+            while (pieces.size() < std::min(target, limit) && operations_left > 0 && !is_settled) cut();
             bool has_improved = false;
             for (size_t g = 0; g < goals.size(); ++g) {
                 if (!is_wanted(g)) continue;
@@ -81,14 +87,14 @@ public:
                     limit = std::min(4 * evaluations, static_cast<uint32_t>(pieces.size()) + 2 * evaluations);
                 before[g] = now;
             }
-            if (pieces.size() >= limit || used >= operations_in_all || !has_improved) break;
+            if (pieces.size() >= limit || operations_left == 0 || !has_improved) break;
         }
     }
 
     // Cuts what may fault until nothing is left that may; false if something is.
     bool excludes_faults(uint32_t evaluations)
     {
-        while (bound(0) > 0 && !sides.empty() && !is_settled && pieces.size() < evaluations && used < operations_in_all)
+        while (bound(0) > 0 && !sides.empty() && !is_settled && pieces.size() < evaluations && operations_left > 0)
             cut();
         return bound(0) == 0;
     }
@@ -140,7 +146,7 @@ private:
     Variation whole;
     std::vector<Undefined> undefined;
     std::set<uint32_t> believed;
-    uint64_t used = 0;
+    uint64_t operations_left = operations_in_all;
     size_t turn = 0;
     bool is_settled = false;
 
@@ -167,7 +173,7 @@ private:
             may_fault = !std::all_of(results.values.begin(), results.values.end(), is_finite) || variation.may_fault;
             if (pieces.empty()) whole = variation, undefined = evaluator.undefined(), believed = evaluator.believed();
         }
-        used += evaluator.operations_used() + 1;
+        operations_left -= std::min(operations_left, evaluator.operations_used() + 1);
         Piece piece{std::move(where), {}, height.may_be_nan, false};
         for (size_t g = 0; g < goals.size(); ++g) {
             const double found = goals[g] == Goal::highest  ? height.maximum

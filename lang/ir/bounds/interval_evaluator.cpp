@@ -20,15 +20,6 @@ Interval integer(Type type, uint32_t bits)
     return {value, value};
 }
 
-Interval cell(const Table& table, size_t index)
-{
-    if (table.element == Type::real)
-        return std::isnan(table.reals[index]) ? Interval{infinity, -infinity, true}
-                                              : Interval{table.reals[index], table.reals[index]};
-    uint32_t word = table.words[index];
-    return integer(table.element, word);
-}
-
 // Inputs move with p by their Jacobian, of which only bounds are known, and of its own change nothing.
 Variation carried_along(const BoundsBox& box, Input first_partial, Span span)
 {
@@ -69,7 +60,11 @@ Variation variation_of_input(const BoundsBox& box, Input input, Span span)
 } // namespace
 
 IntervalEvaluator::IntervalEvaluator(const Module& whole, uint64_t operations)
-    : module(whole), limit(operations), structures(whole.functions.size()), dependences(whole)
+    : module(whole)
+    , limit(operations)
+    , of_cells(whole.tables.size())
+    , structures(whole.functions.size())
+    , dependences(whole)
 {
 }
 
@@ -248,12 +243,10 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadT
     const Table& table = module.tables[read.table];
     const auto cells = [&](const Interval& index) {
         const double last = table.size() - 1.0;
-        Interval all = nothing;
         const auto first_cell = static_cast<size_t>(std::clamp(index.minimum, 0.0, last));
         const auto last_cell = static_cast<size_t>(std::clamp(index.maximum, 0.0, last));
-        for (size_t i = first_cell; i <= last_cell; ++i) all = join(all, cell(table, i));
-        left -= std::min<uint64_t>(left, (last_cell - first_cell) / 16);
-        return all;
+        if (!of_cells[read.table]) of_cells[read.table].emplace(table);
+        return of_cells[read.table]->over(first_cell, last_cell);
     };
     const Interval& index = frame.values[made.operands[0].index];
     const Interval all = cells(index);

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "lang/ir/bounds/bounds.h"
+#include "lang/ir/bounds/cell_ranges.h"
 #include "lang/ir/bounds/seams.h"
 #include "lang/ir/derive/activity.h"
 
@@ -78,7 +79,8 @@ private:
     std::set<uint32_t> believed_functions;
     std::map<std::pair<uint32_t, FalseFact::What>, FalseFact> false_facts; // by function
     const BoundsBox* box = nullptr;
-    std::vector<Structure> structures; // by function; filled when first needed
+    std::vector<std::optional<CellRanges>> of_cells; // by table; made when first read
+    std::vector<Structure> structures;               // by function; filled when first needed
 
     Dependences dependences;
     // By function and which of its parameters have a tangent: which of its values have.

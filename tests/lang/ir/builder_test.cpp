@@ -46,6 +46,24 @@ TEST_CASE("builder: identities that keep every bit are used")
     CHECK(real("%a = real 2 %b = real 3 %c = pow %a, %b return %c") == "  %2 = real 8\n  return %2\n");
 }
 
+TEST_CASE("builder: the cells of a table are looked at once, however often it is read")
+{
+    Module module;
+    module.tables.push_back({"T", Type::i32, {}, {0, 3, 1, 2}});
+    const auto clamps = [&] {
+        Builder builder(module, "f" + std::to_string(module.functions.size()));
+        const Value cell = builder.table(0, builder.clamp_index(builder.parameter(Type::i32), 4));
+        const size_t before = builder.function().value_types.size();
+        builder.clamp_index(cell, 4);
+        return builder.function().value_types.size() > before;
+    };
+    CHECK(!clamps()); // 0 .. 3 is in range as it is
+    module.tables[0].words[1] = 9;
+    CHECK(!clamps()); // known from the first look
+    module.tables[0].range.reset();
+    CHECK(clamps());
+}
+
 TEST_CASE("builder: identities that would lose NaN or -0 are not")
 {
     auto kept = [](const std::string& body, const char* operation) {

@@ -78,7 +78,7 @@ std::string list(const std::vector<ExpressionPtr>& expressions)
 std::string type_text(const TypeName& type)
 {
     if (!type.is_array) return type.base.text;
-    return type.base.text + "[" + (type.array_size ? tree_text(*type.array_size) : "") + "]";
+    return type.base.text + "[" + (type.array_size ? tree_text(*type.array_size->written) : "") + "]";
 }
 
 struct ExpressionText {

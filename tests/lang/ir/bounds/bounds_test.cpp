@@ -1,8 +1,11 @@
 // Bounds of textures hold every height, and are not needlessly wide.
 #include "lang/ir/bounds/bounds.h"
+#include "lang/ir/bounds/cell_ranges.h"
 #include "tests/lang/ir/ir_support.h"
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 using namespace ir_test;
 
@@ -166,6 +169,54 @@ TEST_CASE("bounds: work is limited, whatever the program asks for")
         return %r)",
                              {-1, 1});
     CHECK((costly.may_be_nan && costly.minimum == -infinity && costly.maximum == infinity));
+}
+
+TEST_CASE("bounds: a read of a table is one step, however many cells it may be of")
+{
+    std::string cells;
+    for (int i = 0; i < 60'000; ++i) cells += (i > 0 ? "," : "") + std::to_string(i % 1000);
+    const Module module = parsed("table \"T\" real [" + cells + R"(]
+        function "f" (%i: i32) {
+          %zero = real 0
+          %n = i32 1000
+          %r = for %n max 1000 (%k, %a) from (%zero) {
+            %least = i32 0
+            %most = i32 59999
+            %b = imax %i, %least
+            %c = imin %b, %most
+            %t = table 0 %c
+            %s = max %a, %t
+            yield %s
+          }
+          return %r
+        })");
+    const Interval any{0, 60'000};
+    const Interval found = function_bounds(module, 0, {&any, 1})[0];
+    CHECK((found.minimum == 0 && found.maximum == 999 && !found.may_be_nan)); // well below a million operations
+}
+
+TEST_CASE("bounds: the cells between two of a table are those that a look at each finds")
+{
+    const double nan = std::nan("");
+    for (size_t size : {1, 2, 15, 16, 17, 31, 32, 33, 100, 255, 256, 257, 1000}) {
+        std::mt19937_64 random(size);
+        Table table{"T", Type::real, {}, {}};
+        for (size_t i = 0; i < size; ++i)
+            table.reals.push_back(random() % 40 == 0 ? nan : std::uniform_real_distribution(-9.0, 9.0)(random));
+        const CellRanges ranges(table);
+        for (int round = 0; round < 300; ++round) {
+            const size_t first = random() % size, last = first + random() % (size - first);
+            Interval all{infinity, -infinity, false};
+            for (size_t i = first; i <= last; ++i) {
+                const double cell = table.reals[i];
+                all.may_be_nan |= std::isnan(cell);
+                if (!std::isnan(cell)) all = {std::min(all.minimum, cell), std::max(all.maximum, cell), all.may_be_nan};
+            }
+            const Interval found = ranges.over(first, last);
+            CAPTURE(size, first, last);
+            CHECK((found.minimum == all.minimum && found.maximum == all.maximum && found.may_be_nan == all.may_be_nan));
+        }
+    }
 }
 
 // sin(x / 10) written so that its body says nothing: only the declared slope does, from the middle of the box.
