@@ -1,5 +1,6 @@
 #include "tools/commands/explore_scene.h"
 
+#include "input/regular_file.h"
 #include "jit/live/file_watch.h"
 
 #include <algorithm>
