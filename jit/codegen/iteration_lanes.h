@@ -4,7 +4,8 @@
 // Best are carried values that no iteration has to wait for: a sum, to which each iteration adds something of its own;
 // a factor or a step that is the same each time, so that the value is known from the iteration's number; or a value
 // that stays. A sum of a sum's derivative is a sum again, and what is the same for all points has no derivative: a
-// derivative hardly ever keeps a loop from being so. The height alone is judged with its gradient (jit/codegen/codegen.h).
+// derivative hardly ever keeps a loop from being so. The height alone is judged with its gradient
+// (jit/codegen/codegen.h).
 //
 // Where others are carried (a product, a maximum, the weights of a hybrid fractal), the loop is split: what does not
 // wait for them runs side by side, then they follow one iteration after the other, in the order of a loop that is not

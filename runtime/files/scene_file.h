@@ -2,12 +2,12 @@
 // or text with a unit; paths are relative to the scene.
 #pragma once
 
-#include "runtime/surface/loading.h"
 #include "lang/abi/texture_binding.h"
 #include "runtime/files/surface_cache.h"
 #include "runtime/hand/hand.h"
 #include "runtime/hand/haptic_device.h"
 #include "runtime/scene/scene.h"
+#include "runtime/surface/loading.h"
 
 #include <cstdint>
 #include <filesystem>

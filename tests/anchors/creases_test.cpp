@@ -50,7 +50,7 @@ std::shared_ptr<const Scene> scene_of(const std::shared_ptr<const Surface>& surf
     object.surface = surface;
     object.material = {stiffness_n_per_m, 0, friction ? static_friction : 0, friction ? dynamic_friction : 0};
     scene.probe = probe;
-    scene.servo.force_limit_n = 1e6; // what is too much must be seen
+    scene.servo.force_limit_n = 100; // the most that a scene may have: what is too much must be seen
     return tests::shared(std::move(scene));
 }
 

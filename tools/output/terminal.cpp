@@ -39,7 +39,7 @@ Progress::~Progress()
 void Steps::show(std::string_view doing)
 {
     const auto now = std::chrono::steady_clock::now();
-    if (now < next || doing == shown) return;
+    if (now < next || doing == shown || !stderr_is_terminal()) return;
     next = now + std::chrono::milliseconds(500);
     shown = doing;
     fmt::print(stderr, "haptel: loading: {}\n", doing);

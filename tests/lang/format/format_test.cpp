@@ -123,7 +123,8 @@ TEST_CASE("format: what is no Haptel is refused")
 TEST_CASE("format: stable, and loses nothing, however the text is spaced")
 {
     const std::vector<std::string> tokens = tokens_of(
-        "import \"b.haptel\"; const float T[3] = {1.0, -2.0, 3.0,}, S = 1e-3; float g(int i, float basis(vec3), vec3 q) { "
+        "import \"b.haptel\"; const float T[3] = {1.0, -2.0, 3.0,}, S = 1e-3; float g(int i, float basis(vec3), vec3 "
+        "q) { "
         "if (i < 3) return basis(q); else if (!(i == 4)) { i += 1; } else for (int k = 0; k < 4; ++k) { break; } "
         "float[2] a = float[2](1.0, - -q.x), b; { ; } return a[i & 1] * T[2] + (i > 0 ? q.xy.x : grad(f)(q).y); } "
         "texture t(float depth = 60um in -1um .. 200um, int n = 3 in 1 .. 8, out float stiffness_scale) "

@@ -178,9 +178,8 @@ TEST_CASE("a trace may have its columns in another order and more of them")
 TEST_CASE("what is wrong with a trace is said with its line")
 {
     const std::string header(trace_columns);
-    CHECK(
-        read_text("").error ==
-        "FILE:1: expected a trace (a CSV file as `haptel explore --out` writes it), but the file is empty");
+    CHECK(read_text("").error ==
+          "FILE:1: expected a trace (a CSV file as `haptel explore --out` writes it), but the file is empty");
     CHECK(read_text("tick,time_s\n").error == "FILE:1: the trace has no column `x_m`");
     CHECK(read_text(header + "\n1,2\n").error == "FILE:2: expected 24 values, found 2");
     CHECK(read_text(header +
