@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace haptel::lang {
+namespace haptel {
 
 // Letters: nobody mistypes a longer name by a few. Bounds the work.
 constexpr size_t near_name_max = 64;
@@ -64,4 +64,4 @@ inline std::string_view nearest_name(std::string_view name, const std::vector<st
     return near_name(name, candidates).name;
 }
 
-} // namespace haptel::lang
+} // namespace haptel

@@ -32,9 +32,9 @@ std::string kind_of(const toml::node& node)
 // "stiffness_n_per_m".
 double distance_to(std::string_view word, std::string_view key)
 {
-    double smallest = lang::edit_distance(word, key);
+    double smallest = edit_distance(word, key);
     for (std::size_t end = key.find('_'); end != key.npos; end = key.find('_', end + 1))
-        smallest = std::min(smallest, lang::edit_distance(word, key.substr(0, end)));
+        smallest = std::min(smallest, edit_distance(word, key.substr(0, end)));
     return smallest;
 }
 

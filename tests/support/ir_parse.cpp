@@ -283,7 +283,7 @@ private:
     {
         std::vector<std::string_view> names;
         for (const OpInfo& info : all_ops()) names.push_back(info.name);
-        const std::string_view nearest = lang::nearest_name(token().text, names);
+        const std::string_view nearest = nearest_name(token().text, names);
         return nearest.empty() ? "" : ", did you mean '" + std::string(nearest) + "'?";
     }
 

@@ -60,7 +60,7 @@ ExitCode explain(const std::string& code, bool json)
     if (!info) {
         std::vector<std::string_view> codes;
         for (const lang::DiagnosticInfo& known : lang::all_diagnostics()) codes.push_back(known.code);
-        const std::string_view nearest = lang::nearest_name(code, codes);
+        const std::string_view nearest = nearest_name(code, codes);
         say_error(fmt::format("there is no code '{}': {}", lang::printable(code),
                               nearest.empty() ? "haptel check --explain lists them all"
                                               : fmt::format("did you mean '{}'?", nearest)));

@@ -157,19 +157,19 @@ TEST_CASE("colour wraps label and underline and changes no text")
 TEST_CASE("the nearest name, if it is near enough")
 {
     const std::vector<std::string_view> names = {"octaves", "depth", "pitch", "fbm", "p"};
-    CHECK(nearest_name("octave", names) == "octaves");
-    CHECK(nearest_name("Depth", names) == "depth");
-    CHECK(nearest_name("dpeth", names) == "depth");
-    CHECK(nearest_name("fmb", names) == "fbm");
-    CHECK(nearest_name("width", names) == "");
-    CHECK(nearest_name("x", names) == "");
-    CHECK(nearest_name("", names) == "");
-    CHECK(nearest_name(std::string(1000, 'a'), names) == "");
-    CHECK(nearest_name("pitch", {}) == "");
+    CHECK(haptel::nearest_name("octave", names) == "octaves");
+    CHECK(haptel::nearest_name("Depth", names) == "depth");
+    CHECK(haptel::nearest_name("dpeth", names) == "depth");
+    CHECK(haptel::nearest_name("fmb", names) == "fbm");
+    CHECK(haptel::nearest_name("width", names) == "");
+    CHECK(haptel::nearest_name("x", names) == "");
+    CHECK(haptel::nearest_name("", names) == "");
+    CHECK(haptel::nearest_name(std::string(1000, 'a'), names) == "");
+    CHECK(haptel::nearest_name("pitch", {}) == "");
     // A letter typed twice, or once where it stands twice, is likelier than another letter.
     const std::vector<std::string_view> functions = {"sign", "sinh", "sin", "cross", "floor"};
-    CHECK(nearest_name("sinn", functions) == "sin");
-    CHECK(nearest_name("sinhh", functions) == "sinh");
-    CHECK(nearest_name("cros", functions) == "cross");
-    CHECK(nearest_name("sinj", functions) == "sinh"); // no doubling: a slip keeps the length
+    CHECK(haptel::nearest_name("sinn", functions) == "sin");
+    CHECK(haptel::nearest_name("sinhh", functions) == "sinh");
+    CHECK(haptel::nearest_name("cros", functions) == "cross");
+    CHECK(haptel::nearest_name("sinj", functions) == "sinh"); // no doubling: a slip keeps the length
 }
