@@ -22,6 +22,7 @@ import random
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import sys
 import time
@@ -270,6 +271,7 @@ def main():
             print(shown(place))
         return 0
 
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # restores what is broken on the way
     work.mkdir(exist_ok=True)
     record, known, results = work / "results.jsonl", {}, []
     if arguments.resume and record.is_file():
