@@ -36,6 +36,7 @@ uint64_t parts_of(Type type)
 uint64_t parts_at(Type type, int64_t index)
 {
     if (index < 0 || index >= type.element_count()) return 0;
+    if (type.element_count() > 64) return all_parts; // a constant table: whole from its declaration
     if (!type.is_matrix()) return uint64_t{1} << index;
     return ((uint64_t{1} << type.size) - 1) << (index * type.size);
 }
