@@ -2,13 +2,13 @@
 
 #include "device/replay_device.h"
 #include "device/simulated_device.h"
+#include "lang/text/near_name.h"
 
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <memory>
-#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -26,38 +26,19 @@ DeviceResult refused(std::string why, DeviceKey about = DeviceKey::name)
     return {nullptr, std::move(why), {}, about};
 }
 
-// Levenshtein distance.
-std::size_t edits(std::string_view a, std::string_view b)
-{
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = std::exchange(row[0], i + 1);
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t changed = diagonal + (a[i] != b[j]);
-            diagonal = row[j + 1];
-            row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
-        }
-    }
-    return row[b.size()];
-}
-
 std::string unknown(std::string_view what, std::string_view name, const std::vector<std::string_view>& known)
 {
     std::string message = fmt::format("unknown {} '{}'", what, name.substr(0, 64));
-    std::string_view nearest;
-    std::size_t distance = 3;
-    for (const std::string_view candidate : known)
-        if (const std::size_t d = edits(name.substr(0, 64), candidate); d < distance) nearest = candidate, distance = d;
+    const std::string_view nearest = nearest_name(name, known);
     if (!nearest.empty()) return message + fmt::format(": did you mean '{}'?", nearest);
     return message + fmt::format(": there are {}", fmt::join(known, ", "));
 }
 
 template <typename Named>
-std::vector<std::string_view> names_of(const Named& all)
+std::vector<std::string_view> names_of(const Named& entries)
 {
     std::vector<std::string_view> names;
-    for (const auto& one : all) names.push_back(one.name);
+    for (const auto& entry : entries) names.push_back(entry.name);
     return names;
 }
 
@@ -66,8 +47,8 @@ template <typename Presets>
 auto find_preset(const Presets& presets, std::string_view name)
 {
     if (name.empty()) return &presets.front();
-    const auto found = std::find_if(presets.begin(), presets.end(), [&](auto& one) { return one.name == name; });
-    return found == presets.end() ? nullptr : &*found;
+    const auto preset = std::find_if(presets.begin(), presets.end(), [&](auto& p) { return p.name == name; });
+    return preset == presets.end() ? nullptr : &*preset;
 }
 
 // What stands before and after the first colon.
