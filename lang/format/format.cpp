@@ -36,10 +36,8 @@ private:
     {
         size_t depth = 0;
         for (size_t i = from; i < pieces.size(); ++i) {
-            const Token here = pieces[i].kind;
-            if (here == Token::left_paren || here == Token::left_brace || here == Token::left_bracket) ++depth;
-            if (here == Token::right_paren || here == Token::right_brace || here == Token::right_bracket)
-                if (--depth == 0) return i + 1;
+            if (opens(pieces[i].kind)) ++depth;
+            if (closes(pieces[i].kind) && --depth == 0) return i + 1;
         }
         return pieces.size() - 1;
     }
@@ -224,12 +222,15 @@ void Formatter::table(size_t begin, size_t end, size_t indent)
     }
 }
 
-// In the rows of the author if all fit, else as many in a line as fit.
+// In the rows of the author if all fit, else as many in a line as fit. A row begins with an element: a line end between
+// the arguments of a call may be the formatter's own.
 void Formatter::elements(size_t begin, size_t end, size_t indent)
 {
     std::vector<size_t> rows{begin};
-    for (size_t i = begin + 1; i < end; ++i)
-        if (pieces[i].begins_line && pieces[i - 1].kind == Token::comma) rows.push_back(i);
+    for (size_t i = begin; i < end;) {
+        if (i > begin && pieces[i].begins_line && pieces[i - 1].kind == Token::comma) rows.push_back(i);
+        i = opens(pieces[i].kind) ? behind_bracket(i) : i + 1;
+    }
     rows.push_back(end);
     bool all_fit = true;
     for (size_t r = 0; r + 1 < rows.size(); ++r) all_fit = all_fit && fits(part(rows[r], rows[r + 1]), indent);

@@ -50,15 +50,6 @@ bool is_assignment(Token kind)
     return std::find(std::begin(all), std::end(all), kind) != std::end(all);
 }
 
-bool opens(Token kind)
-{
-    return kind == Token::left_paren || kind == Token::left_bracket || kind == Token::left_brace;
-}
-bool closes(Token kind)
-{
-    return kind == Token::right_paren || kind == Token::right_bracket || kind == Token::right_brace;
-}
-
 constexpr int never = std::numeric_limits<int>::max();
 
 // How bad a line end before piece `i` is, brackets aside.

@@ -97,6 +97,16 @@ std::vector<Piece> pieces_of(std::string_view text, const std::vector<PlacedToke
     return pieces;
 }
 
+bool opens(Token kind)
+{
+    return kind == Token::left_paren || kind == Token::left_bracket || kind == Token::left_brace;
+}
+
+bool closes(Token kind)
+{
+    return kind == Token::right_paren || kind == Token::right_bracket || kind == Token::right_brace;
+}
+
 size_t width_of(std::string_view text)
 {
     return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));

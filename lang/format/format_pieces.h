@@ -27,6 +27,10 @@ struct Piece {
 // Ends with Token::end, which may have comments above it.
 std::vector<Piece> pieces_of(std::string_view text, const std::vector<PlacedToken>& tokens);
 
+// Whether a token is a bracket of any kind.
+bool opens(Token kind);
+bool closes(Token kind);
+
 // Columns that a line of UTF-8 takes.
 size_t width_of(std::string_view text);
 

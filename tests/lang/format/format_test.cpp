@@ -91,6 +91,18 @@ TEST_CASE("format: long lines break where it hurts least and go on below what th
     CHECK(formatted("const int T[3] = {\n1,\n2,  3 };") == "const int T[3] = {\n    1,\n    2, 3\n};\n");
 }
 
+TEST_CASE("format: a line end between the arguments of an element begins no row of a table")
+{
+    const std::string text =
+        "const float T[2] = {\n"
+        "    the_first_of_all_the_elements_is_a_call(second_of_all_the_functions(1.0, 2.0, 3.0, 4.0),\n"
+        "                                            third_of_all_the_functions(5.0)), 6.0\n"
+        "};\n";
+    CHECK(formatted("const float T[2]={the_first_of_all_the_elements_is_a_call(second_of_all_the_functions(1.0,2.0,3.0,"
+                    "4.0),third_of_all_the_functions(5.0)),6.0};") == text);
+    CHECK(formatted(text) == text);
+}
+
 TEST_CASE("format: comments stay with what they are at")
 {
     CHECK(formatted("float f(float x /* in m */, // first\n float y)\n// below\n{ // opens\n return x  // sum\n + y; "
