@@ -12,17 +12,6 @@ namespace {
 
 using bench::AccuracyRow;
 
-std::string step_of(const AccuracyRow& row)
-{
-    if (row.step == 0) return "";
-    return fmt::format("{:.0e}{}", row.step, row.is_best_step ? " (best)" : "");
-}
-
-const char* mode_of(const AccuracyRow& row)
-{
-    return row.is_batch ? "batch" : "point";
-}
-
 // The rows of one texture and mode follow each other, fastest first.
 std::vector<AccuracyRow> sorted(std::vector<AccuracyRow> rows)
 {

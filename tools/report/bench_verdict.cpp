@@ -7,7 +7,6 @@
 #include <map>
 
 namespace haptel::tools {
-namespace {
 
 using bench::AccuracyRow;
 
@@ -16,16 +15,19 @@ const char* mode_of(const AccuracyRow& row)
     return row.is_batch ? "batch" : "point";
 }
 
+std::string step_of(const AccuracyRow& row)
+{
+    if (row.step == 0) return "";
+    return fmt::format("{:.0e}{}", row.step, row.is_best_step ? " (best)" : "");
+}
+
+namespace {
+
 // "mixed" or "mixed, iterations": which variant of ours.
 std::string variant_of(const AccuracyRow* ours)
 {
     if (!ours) return "none";
     return ours->precision + (ours->lane_form == "iterations" ? ", iterations" : "");
-}
-
-std::string step_of(const AccuracyRow& row)
-{
-    return row.step == 0 ? "" : fmt::format(" step {:.0e}{}", row.step, row.is_best_step ? " (best)" : "");
 }
 
 Json name_of(const AccuracyRow& row)
@@ -53,9 +55,10 @@ std::string verdict_text(const std::vector<AccuracyRow>& rows)
             ++counts[one.wavelengths].first;
             continue;
         }
-        misses += fmt::format("  {} {} {} {} for {}{} within {:g} wavelengths ({:.1f} ns, error {:.1e}): ",
+        misses += fmt::format("  {} {} {} {} for {}{}{} within {:g} wavelengths ({:.1f} ns, error {:.1e}): ",
                               one.plain->texture, mode_of(*one.plain), one.plain->method, one.plain->precision,
-                              one.plain->level, step_of(*one.plain), one.wavelengths, one.plain->median_ns, one.error);
+                              one.plain->level, one.plain->step == 0 ? "" : " step ", step_of(*one.plain),
+                              one.wavelengths, one.plain->median_ns, one.error);
         misses += one.close_enough ? fmt::format("{} takes {:.2f} times as long\n", variant_of(one.close_enough),
                                                  one.close_enough->median_ns / one.plain->median_ns)
                                    : "none of ours is as close\n";
