@@ -1,25 +1,5 @@
-// Text to IR. Grammar (line breaks and blanks only separate; "#" starts a comment):
-//
-//   module      { table | function | texture }
-//   table       "table" string type "[" [ number { "," number } ] "]"      referred to by its position, from 0
-//   function    "function" string "(" [ value ":" type { "," value ":" type } ] ")" [ "first" count ] facts
-//               "{" { instruction } "return" [ values ] "}"
-//   facts       { "minimum" number | "maximum" number | "slope" number | "curvature" number | "continuity" count
-//               | "proven" }
-//   instruction values "=" ( operation values | "real" number | "i32" number | "u32" number | "bool" ( "true" | "false"
-//   )
-//               | "input" name | "parameter" count type | "table" count value | "call" string "(" [ values ] ")"
-//               | "if" value "{" arm "}" "else" "{" arm "}"
-//               | "for" value "max" count "(" values ")" "from" "(" [ values ] ")" "{" arm "}" )
-//   arm         { instruction } "yield" [ values ]
-//   values      value { "," value }              value  "%" name
-//   texture     "texture" string "{" [ "doc" string ]
-//               { "parameter" string type number "in" number ".." number "unit" string "offset" count [ "doc" string ]
-//               } "block" count "reads" count "writes" count [ "body" string ] [ "height" string ] [ "height_gradient"
-//               string ] "}"
-//
-// Reading checks names, types and the number of operands; everything else is verify's.
 #include "tests/support/ir_parse.h"
+
 #include "lang/ir/op_info.h"
 #include "lang/ir/verify.h"
 #include "lang/text/diagnostic.h"
@@ -76,22 +56,22 @@ private:
         return type == Type::i32 ? static_cast<uint32_t>(number<int32_t>("a 32-bit number"))
                                  : number<uint32_t>("a 32-bit number");
     }
+    // The word that stands here, where it is one that is known.
+    template <typename Meaning>
+    Meaning known_word(const std::optional<Meaning>& meaning, const std::string& expected)
+    {
+        if (token().kind != Token::Kind::word || !meaning) fail("expected " + expected + ", found " + found());
+        ++next;
+        return *meaning;
+    }
     Type type()
     {
-        const auto named = enumerator_named<Type>(token().text, static_cast<uint32_t>(Type::image) + 1);
-        if (token().kind != Token::Kind::word || !named)
-            fail("expected a type (real, i32, u32, bool), found " + found());
-        ++next;
-        return *named;
+        return known_word(enumerator_named<Type>(token().text, static_cast<uint32_t>(Type::image) + 1),
+                          "a type (real, i32, u32, bool)");
     }
-
     Smoothness smoothness()
     {
-        std::optional<Smoothness> named = smoothness_named(token().text);
-        if (token().kind != Token::Kind::word || !named)
-            fail("expected a class (unknown, jump, C0, C1, C2, smooth), found " + found());
-        ++next;
-        return *named;
+        return known_word(smoothness_named(token().text), "a class (unknown, jump, C0, C1, C2, smooth)");
     }
 
     Value use()
@@ -287,14 +267,20 @@ private:
         return nearest.empty() ? "" : ", did you mean '" + std::string(nearest) + "'?";
     }
 
-    std::vector<Type> call(Instruction& made)
+    uint32_t known_function()
     {
-        auto callee = functions.find(token().text);
-        if (token().kind != Token::Kind::string || callee == functions.end())
+        const auto known = functions.find(token().text);
+        if (token().kind != Token::Kind::string || known == functions.end())
             fail("no function " + found() + " before this one");
         ++next;
-        const Function& called = module.functions[callee->second];
-        made.kind = Call{callee->second};
+        return known->second;
+    }
+
+    std::vector<Type> call(Instruction& made)
+    {
+        const uint32_t callee = known_function();
+        const Function& called = module.functions[callee];
+        made.kind = Call{callee};
         expect("(");
         made.operands = uses(")");
         expect(")");
@@ -377,11 +363,7 @@ private:
         expect("writes");
         made.writes = count();
         auto entry = [&](std::string_view role, uint32_t& index) {
-            if (!accept(role)) return;
-            auto known = functions.find(token().text);
-            if (known == functions.end()) fail("no function " + found());
-            ++next;
-            index = known->second;
+            if (accept(role)) index = known_function();
         };
         entry("body", made.body);
         entry("height", made.height);
