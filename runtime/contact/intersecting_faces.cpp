@@ -11,10 +11,10 @@ namespace haptel::runtime {
 
 namespace {
 
-constexpr double distance = 16; // of the proxy from a wall's plane; rounding is below 1
-constexpr double least = 4;     // that is left of it after a step aside
-constexpr double beside = 64;   // nearer than this is beside it: less is not worth going
-constexpr double equal = 1;     // lengths of ways that differ by less are
+constexpr double distance = 16;    // of the proxy from a wall's plane; rounding is below 1
+constexpr double least = 4;        // that is left of it after a step aside
+constexpr double beside_wall = 64; // nearer than this is beside it: less is not worth going
+constexpr double equal = 1;        // lengths of ways that differ by less are
 constexpr uint32_t none = ~0u;
 constexpr double margin = 8; // so far a wall reaches beyond its outline; less than where the wall behind a ridge begins
 constexpr double notice = 2; // and is known so much farther, before it is in the way
@@ -81,7 +81,7 @@ bool leaves_over_ridge(const Surface& surface, uint32_t face, uint32_t wall, uin
 {
     for (uint32_t i = 0; i < 3; ++i) {
         const glm::dvec3 in = inward(surface, wall, i);
-        if (glm::dot(in, from - corner(surface, wall, i)) < beside && glm::dot(in, to - from) < 0 &&
+        if (glm::dot(in, from - corner(surface, wall, i)) < beside_wall && glm::dot(in, to - from) < 0 &&
             is_ridge(surface, face, wall, side, i))
             return true;
     }
@@ -189,7 +189,7 @@ void add_walls(const Surface& surface, uint32_t face, const glm::dvec3& at, Cell
     for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {
         const uint32_t wall = surface.pierced_by[k];
         const double height = glm::dot(at - corner(surface, wall, 0), surface.faces[wall].normal);
-        if (std::abs(height) > beside || within_outline(surface, wall, at) < -margin - notice) continue;
+        if (std::abs(height) > beside_wall || within_outline(surface, wall, at) < -margin - notice) continue;
         const uint32_t side = height >= 0 ? 0 : 1;
         if (is_past_ridge(surface, face, wall, 1 - side, at)) continue; // it only seems to be behind the wall
         cell.add({wall, side, surface.facet_normal(wall, side), false});
@@ -256,7 +256,7 @@ double share_before_walls(const Surface& surface, uint32_t face, const glm::dvec
         const uint32_t side = begin >= 0 ? 0 : 1;
         if (begin < 0) begin = -begin, end = -end;
         if (end >= std::min(distance, begin - slack)) continue;
-        if (begin < beside && leaves_over_ridge(surface, face, wall, side, from, to)) continue;
+        if (begin < beside_wall && leaves_over_ridge(surface, face, wall, side, from, to)) continue;
         // The part of the way that is near the plane, and of that the part that is near the triangle.
         double enter = begin <= distance ? 0 : (begin - distance) / (begin - end);
         double leave = end >= -distance ? 1 : (begin + distance) / (begin - end);

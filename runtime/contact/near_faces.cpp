@@ -10,9 +10,6 @@ namespace haptel::runtime {
 
 namespace {
 
-// Lattice units: what rounding may take from a distance.
-constexpr double rounding = 1;
-
 // Faces that follow each other here are far apart in memory: each is asked for so many ahead.
 constexpr std::size_t lookahead = 8;
 
@@ -58,7 +55,7 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
         faces_[found] = faces_[i];
         planes_[found] = plane;
         corners_[found] = {a, b, c};
-        found += !(ahead(plane) > radius + rounding);
+        found += !(ahead(plane) > radius + distance_rounding);
     }
     faces_.resize(found);
     planes_.resize(found);
@@ -72,7 +69,7 @@ void NearFaces::pick(const glm::dvec3& centre, double radius, double reach) noex
     picked_.clear();
     see_from(centre);
     radius_ = radius;
-    const double near = radius + reach + rounding;
+    const double near = radius + reach + distance_rounding;
     place_of_.resize(planes_.size());
     std::size_t close = 0;
     for (std::size_t place = 0; place < planes_.size(); ++place) {

@@ -17,6 +17,9 @@
 
 namespace haptel::runtime {
 
+// What rounding may take from a distance: below 2e-12 of the object.
+inline constexpr double distance_rounding = 1;
+
 class NearFaces {
 public:
     explicit NearFaces(const Surface& surface);

@@ -25,7 +25,7 @@ constexpr double lost = 1e-3;
 
 // Of the way from the hand to the proxy: walls of a narrow groove that push more than this in sum, each by a stiffness
 // and a texture of its own, share the way itself beyond it.
-constexpr double against_each_other = 4;
+constexpr double opposed_way = 4;
 
 // The sheets around a place that may hold a proxy there, those of one part and plane as one.
 struct Sheets {
@@ -185,7 +185,7 @@ void PartShares::settle(double along) noexcept
             way_m += contact.depth_m * contact.normal;
             sum_m += contact.depth_m;
         }
-    const double most_m = against_each_other * glm::length(way_m);
+    const double most_m = opposed_way * glm::length(way_m);
     if (!(sum_m > most_m)) return;
     const double kept = most_m / sum_m;
     for (std::size_t i = 0; i < count_; ++i) {

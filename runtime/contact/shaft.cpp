@@ -29,7 +29,7 @@ Passing passing(const Shaft& shaft, const glm::dvec3& edge0, const glm::dvec3& e
 namespace {
 
 // A product of three vectors is off by less than this, times their lengths.
-constexpr double rounding = 0x1p-50;
+constexpr double crossing_rounding = 0x1p-50;
 
 // Rising roots in [0, 1) of c0 + c1 t + c2 t^2 at which it changes its sign.
 int roots(double c0, double c1, double c2, double (&t)[2])
@@ -58,7 +58,7 @@ bool meets(const Shaft& from, const Shaft& to, const glm::dvec3& edge0, const gl
     const glm::dvec3 across = glm::cross(along, edge), across_turn = glm::cross(turn, edge);
     double c0 = glm::dot(across, offset);
     // Where rounding may have decided on which side it begins, exact arithmetic does.
-    const double doubt = rounding * glm::length(along) * glm::length(edge) * glm::length(offset);
+    const double doubt = crossing_rounding * glm::length(along) * glm::length(edge) * glm::length(offset);
     if (std::fabs(c0) <= doubt) c0 = -side_of_line(from.tip, from.tail, edge0, edge1) * doubt;
     const double c1 = glm::dot(across_turn, offset) + glm::dot(across, way), c2 = glm::dot(across_turn, way);
     double t[2];

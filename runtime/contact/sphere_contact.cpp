@@ -11,13 +11,11 @@ namespace haptel::runtime {
 
 namespace {
 
-// Lattice units (below 2e-12 of the object): what rounding may take from a distance.
-constexpr double rounding = 1;
 // A ball smaller than this is a point that rounding can move through a face.
 constexpr double least_radius = 0x1p20;
 
 // Of the radius: how far around is looked at once at least, and when anew; and what is left of a way counts as none.
-constexpr double margin_most = 1.0 / 16, margin_least = 1.0 / 64, settled = 1e-8;
+constexpr double margin_most = 1.0 / 16, margin_least = 1.0 / 64, centre_settled = 1e-8;
 
 // Where there are fewer faces the ball looks farther around, where there are more less far.
 constexpr std::size_t few_faces = 16, many_faces = 64;
@@ -106,23 +104,23 @@ bool SphereContact::move_out(double most_m) noexcept
     const uint64_t seen = counters_.triangles_tested;
     double share = 1;
     bool looked = false; // from here
-    for (int tries = 0; tries < ways_out_most && radius_ - grown_ > settled * radius_; ++tries) {
+    for (int tries = 0; tries < ways_out_most && radius_ - grown_ > centre_settled * radius_; ++tries) {
         const double lacks = radius_ - grown_;
         if (!looked && around_.room(centre_) < 0.5 * lacks) {
             if (counters_.triangles_tested - seen > faces_out_most || !look_around(out_most * lacks)) break;
             looked = true;
         }
         const double room = around_.room(centre_), more = share * std::min(lacks, out_of_room * room);
-        faces_.pick(centre_, grown_ + more + 2 * rounding, room);
-        const glm::dvec3 out = nearest_in(faces_.picked(), centre_, centre_, rounding).at;
+        faces_.pick(centre_, grown_ + more + 2 * distance_rounding, room);
+        const glm::dvec3 out = nearest_in(faces_.picked(), centre_, centre_, distance_rounding).at;
         bool free = glm::distance(centre_, out) <= room;
         for (const HalfSpace& space : faces_.picked())
-            free = free && glm::dot(space.normal, out) - space.offset >= -2 * rounding;
+            free = free && glm::dot(space.normal, out) - space.offset >= -2 * distance_rounding;
         share = free ? std::min(1.0, 2 * share) : 0.5 * share;
         if (!free) continue;
         centre_ = out;
         looked = false;
-        grown_ = std::max(grown_, faces_.distance(centre_, radius_ + rounding) - rounding);
+        grown_ = std::max(grown_, faces_.distance(centre_, radius_ + distance_rounding) - distance_rounding);
     }
     around_ = close_ = {};
     margin_ = 0;
@@ -136,7 +134,8 @@ bool SphereContact::look_around(double margin) noexcept
     const double near = margin_most * radius_;
     for (int looks = 0; looks < looks_most;) {
         const bool far = margin > near;
-        const bool all = faces_.find(centre_, radius_ + margin + rounding, far ? far_faces : NearFaces::faces_most);
+        const bool all =
+            faces_.find(centre_, radius_ + margin + distance_rounding, far ? far_faces : NearFaces::faces_most);
         ++counters_.sweeps;
         counters_.triangles_tested += faces_.boxes();
         if (all) {
@@ -170,7 +169,7 @@ NearestInHalfSpaces SphereContact::approach(double step_max) noexcept
     }
     NearestInHalfSpaces found;
     for (bool renewed = true; renewed;) {
-        found = nearest_in(faces_.picked(), hand_, centre_, rounding);
+        found = nearest_in(faces_.picked(), hand_, centre_, distance_rounding);
         renewed = false;
         for (std::size_t i = 0; i < found.count; ++i) renewed |= faces_.renew(found.active[i], centre_);
     }
@@ -218,7 +217,7 @@ SphereContact::Way SphereContact::go(bool until_it_touches) noexcept
         if (found.count == 0) path_length_ = 0;
         if (path_length_ > 0 && path_length_ <= rounds_max) path_[path_length_++] = centre_;
         const double step = glm::distance(before, centre_);
-        if (step <= std::max(4 * rounding, settled * radius_)) break;
+        if (step <= std::max(4 * distance_rounding, centre_settled * radius_)) break;
         on_the_way = step > 0.5 * open;
         stride = (step > 0.9 * step_max ? stride_of_end : stride_of_step) * step;
     }
@@ -243,12 +242,12 @@ void SphereContact::move(const Friction& friction) noexcept
         return;
     }
     const auto& [found, round, cut, on_the_way, blind] = way;
-    if (in_air && found.count == 0 && glm::distance(centre_, hand_) <= rounding) centre_ = hand_;
+    if (in_air && found.count == 0 && glm::distance(centre_, hand_) <= distance_rounding) centre_ = hand_;
     counters_.walk_steps += round;
     counters_.walk_steps_max = std::max<uint64_t>(counters_.walk_steps_max, round);
     counters_.walks_cut += cut;
     counters_.skipped += round == 0;
-    if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(centre_, radius_) - rounding);
+    if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(centre_, radius_) - distance_rounding);
     // The planes here do not know how deep the hand is where it is: until the ball is there what was felt is felt, but
     // of what the hand has left.
     if (cut && on_the_way) {
@@ -299,7 +298,7 @@ void SphereContact::hold_by_friction(const Friction& friction) noexcept
         return;
     }
     double back = slide * depth;
-    sliding_ = way - back > rounding;
+    sliding_ = way - back > distance_rounding;
     for (uint32_t i = path_length_ - 1; i > 0 && back > 0; --i) {
         const double length = glm::distance(path_[i - 1], path_[i]);
         centre_ = length <= back ? path_[i - 1] : path_[i] + back / length * (path_[i - 1] - path_[i]);

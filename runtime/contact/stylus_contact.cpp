@@ -26,7 +26,7 @@ constexpr double least_push = 4096, least_push_share = 1e-6;
 
 // Of what the springs are drawn by: sides that push more than that push against each other, as in a fold, by what
 // rounding makes of the angle between them. What they push together is told as what is left.
-constexpr double against_each_other = 4;
+constexpr double opposed_push = 4;
 
 // A clear region is worth looking for if the hand needs several ticks to cross it.
 constexpr double ticks_per_region = 4;
@@ -212,7 +212,7 @@ void StylusContact::report() noexcept
     const double drawn = away(shaft_);
     for (uint32_t i = 0; i < side_count_; ++i) {
         const Side& side = sides_[i];
-        if (!(side.push > 0 && side.push < against_each_other * drawn)) continue;
+        if (!(side.push > 0 && side.push < opposed_push * drawn)) continue;
         const SideEdge other = surface().faces[side.face].link[side.edge][0];
         const auto facing = [&](uint32_t face) {
             return std::fabs(glm::dot(side.normal, surface().facet_normal(face)));

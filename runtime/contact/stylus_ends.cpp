@@ -15,7 +15,7 @@ namespace {
 
 // Within which the ends are where they should be: two units, and this share of how far the hand is away. What friction
 // holds on a short lever is known less well: this share.
-constexpr double settled = 2, settled_share = 1e-10, dragged_share = 1e-4;
+constexpr double end_settled = 2, settled_share = 1e-10, dragged_share = 1e-4;
 // Of its limit. Where both ends drag none is free to make way for an edge: they have to be right within the gap.
 constexpr double friction_settled = 1e-6, both_settled = 1e-9;
 
@@ -94,7 +94,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         }
         const bool drags = grips.tip.drags() || grips.tail.drags();
         if (round > 0 && !stopped && share == 1 &&
-            farther(aim, aim_) <= settled + (drags ? dragged_share : settled_share) * farther(aim, hand_))
+            farther(aim, aim_) <= end_settled + (drags ? dragged_share : settled_share) * farther(aim, hand_))
             break;
         if (astray_) restart_ends();
         aim_ = aim;

@@ -10,8 +10,8 @@ namespace haptel::runtime {
 
 namespace {
 
-constexpr int steps_max = 24;
-constexpr double settled = 1e-12; // of the limit
+constexpr int friction_steps_max = 24;
+constexpr double cone_slack = 1e-12; // of the limit
 
 // Less than any lever leaves: where an end cannot move at all, rounding must not choose its friction.
 constexpr double least_give = 1e-9;
@@ -85,7 +85,7 @@ bool EndGrip::oppose(const glm::dvec3& way, const glm::dmat3& give, double most)
 
     double slip = 0;
     for (int i = 0; i < 2; ++i) slip = std::max(slip, std::fabs(ways[i]) / most - gives[i]);
-    for (int step = 0; step < steps_max; ++step) {
+    for (int step = 0; step < friction_steps_max; ++step) {
         double square = 0, slope = 0;
         lag = glm::dvec3(0);
         for (int i = 0; i < 2; ++i) {
@@ -96,7 +96,7 @@ bool EndGrip::oppose(const glm::dvec3& way, const glm::dmat3& give, double most)
             slope += along * along / (gives[i] + slip);
         }
         const double length = std::sqrt(square);
-        if (!(length > (1 + settled) * most)) break;
+        if (!(length > (1 + cone_slack) * most)) break;
         slip += square / slope * (length / most - 1);
     }
     return slip > 0;

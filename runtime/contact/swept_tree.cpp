@@ -10,7 +10,7 @@ namespace {
 constexpr uint32_t leaf_size = 4;
 
 // Of the workspace: more than single precision and the products of a query can be off.
-constexpr double rounding = 4 * Lattice::extent * 0x1p-21;
+constexpr double box_rounding = 4 * Lattice::extent * 0x1p-21;
 
 // Halves rounded to float lose less than this of a box.
 glm::vec3 widened(const glm::dvec3& half)
@@ -23,7 +23,7 @@ glm::vec3 widened(const glm::dvec3& half)
 SweptRegion::SweptRegion(const glm::dvec3& tip0, const glm::dvec3& tail0, const glm::dvec3& tip1,
                          const glm::dvec3& tail1, double margin) noexcept
 {
-    const double wide = margin + rounding;
+    const double wide = margin + box_rounding;
     minimum_ = glm::min(glm::min(tip0, tail0), glm::min(tip1, tail1)) - wide;
     maximum_ = glm::max(glm::max(tip0, tail0), glm::max(tip1, tail1)) + wide;
     const glm::dvec3 shaft = tail0 - tip0;

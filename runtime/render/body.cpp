@@ -24,7 +24,7 @@ std::vector<BodyObjects> bodies_of(const Scene& scene)
 
 namespace {
 
-constexpr double rounding = 1e-6; // of a radius
+constexpr double radius_slack = 1e-6; // of a radius
 
 Surroundings box_of(const Surface& surface)
 {
@@ -59,14 +59,14 @@ Surroundings surroundings_of(const Scene& scene, const BodyObjects& objects, dou
     const double felt_m = felt_within_m(scene, objects, probe_radius_m);
     if (!objects.motion(scene))
         return {.centre_m = objects.placement(scene).to_world(box.centre_m),
-                .radius_m = (box.radius_m + felt_m) * (1 + rounding)};
+                .radius_m = (box.radius_m + felt_m) * (1 + radius_slack)};
     const auto bounds = bounds_of(scene, objects);
     if (!bounds) return {.radius_m = std::numeric_limits<double>::infinity()};
     const double radius_m = bounds->radius_m + felt_m;
     // r more, so that r = sway + turn * (radius + r + radius): the hand is farther away than it seems to move at the
     // edge of the ball.
     const double seems_m = (bounds->sway_m + 2 * turn_max_rad * radius_m) / (1 - turn_max_rad);
-    return {bounds->centre_m, (radius_m + seems_m) * (1 + rounding), bounds->turn_rad_per_s > 0};
+    return {bounds->centre_m, (radius_m + seems_m) * (1 + radius_slack), bounds->turn_rad_per_s > 0};
 }
 
 Body::Body(const Scene& scene, const BodyObjects& of, const ProbeSettings& probe)
@@ -78,7 +78,7 @@ Body::Body(const Scene& scene, const BodyObjects& of, const ProbeSettings& probe
     , velocity(1 / scene.servo.rate_hz)
     , tail_velocity(1 / scene.servo.rate_hz)
 {
-    around.radius_m = (around.radius_m + felt_within_m(scene, of, probe.radius_m)) * (1 + rounding);
+    around.radius_m = (around.radius_m + felt_within_m(scene, of, probe.radius_m)) * (1 + radius_slack);
     const auto bounds = bounds_of(scene, of);
     bounded = bounds.has_value();
     if (bounded) turn_rad_per_s = bounds->turn_rad_per_s;

@@ -17,7 +17,7 @@ constexpr double early = 1 - 1e-6, early_if_turning = 0.9;
 static_assert(early_if_turning + turn_max_rad < 1);
 
 // The ball around two is rounded up.
-constexpr double rounding = 1e-12;
+constexpr double sphere_rounding = 1e-12;
 
 // A metre before the circle is round, which so happens in every run and not after 1e7 m first.
 constexpr uint64_t way_at_start = uint64_t{0} - (uint64_t{1} << 40);
@@ -32,7 +32,7 @@ Surroundings around_both(const Surroundings& a, const Surroundings& b)
     const double radius = (apart + a.radius_m + b.radius_m) / 2;
     const glm::dvec3 centre = a.centre_m + (radius - a.radius_m) / apart * way;
     const glm::dvec3 farthest = glm::max(glm::abs(a.centre_m), glm::abs(b.centre_m));
-    return {centre, radius + rounding * (radius + farthest.x + farthest.y + farthest.z), turns};
+    return {centre, radius + sphere_rounding * (radius + farthest.x + farthest.y + farthest.z), turns};
 }
 
 } // namespace

@@ -9,7 +9,7 @@ namespace haptel::runtime {
 
 namespace {
 
-constexpr uint32_t unset = ~0u;
+constexpr uint32_t no_fan = ~0u;
 
 // A new fan from one of its corners, which are told its number.
 void add_fan(Surface& surface, const Sector& start)
@@ -26,9 +26,9 @@ void add_fan(Surface& surface, const Sector& start)
 }
 
 // The fans at one vertex. Two that share a face are the two sides of one sheet; sheets meet in the vertex only.
-class Meeting {
+class FansAtVertex {
 public:
-    Meeting(Surface& surface, std::vector<uint32_t> fans)
+    FansAtVertex(Surface& surface, std::vector<uint32_t> fans)
         : surface_(surface), fans_(std::move(fans)), sheet_(fans_.size()), circle_(fans_.size())
     {
         std::iota(sheet_.begin(), sheet_.end(), size_t{0});
@@ -133,12 +133,12 @@ private:
 void make_fans(Surface& surface, BuildWork& work)
 {
     if (!work.begin("which of its sheets meet in a vertex")) return;
-    for (Face& face : surface.faces) face.fan = {{{unset, unset}, {unset, unset}, {unset, unset}}};
+    for (Face& face : surface.faces) face.fan = {{{no_fan, no_fan}, {no_fan, no_fan}, {no_fan, no_fan}}};
     std::vector<std::pair<uint32_t, uint32_t>> at_vertex; // vertex, fan
     for (uint32_t f = 0; f < surface.faces.size(); ++f)
         for (uint32_t corner = 0; corner < 3; ++corner)
             for (uint32_t side = 0; side < 2; ++side) {
-                if (surface.faces[f].fan[corner][side] != unset) continue;
+                if (surface.faces[f].fan[corner][side] != no_fan) continue;
                 at_vertex.emplace_back(surface.faces[f].vertex[corner], uint32_t(surface.fans.size()));
                 add_fan(surface, {f, corner, side});
             }
@@ -148,7 +148,7 @@ void make_fans(Surface& surface, BuildWork& work)
         std::vector<uint32_t> fans;
         for (end = begin; end < at_vertex.size() && at_vertex[end].first == at_vertex[begin].first; ++end)
             fans.push_back(at_vertex[end].second);
-        if (fans.size() > 2 && !Meeting(surface, std::move(fans)).join(work)) return;
+        if (fans.size() > 2 && !FansAtVertex(surface, std::move(fans)).join(work)) return;
     }
 }
 

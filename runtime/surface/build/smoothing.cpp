@@ -10,7 +10,7 @@ namespace haptel::runtime {
 
 namespace {
 
-constexpr uint32_t unset = ~0u;
+constexpr uint32_t no_normal = ~0u;
 
 // The sectors of a fan in the order in which they lie around the vertex.
 struct Ring {
@@ -124,12 +124,12 @@ double turn_max(const Surface& surface, uint32_t face, uint32_t side)
 
 void make_shading_normals(Surface& surface, double crease_deg)
 {
-    surface.shading_normal_of.assign(surface.faces.size(), {{{unset, unset}, {unset, unset}, {unset, unset}}});
+    surface.shading_normal_of.assign(surface.faces.size(), {{{no_normal, no_normal}, {no_normal, no_normal}, {no_normal, no_normal}}});
     Smoothing smoothing(surface, crease_deg);
     for (uint32_t f = 0; f < surface.faces.size(); ++f)
         for (uint32_t corner = 0; corner < 3; ++corner)
             for (uint32_t side = 0; side < 2; ++side)
-                if (surface.shading_normal_of[f][corner][side] == unset) smoothing.make({f, corner, side});
+                if (surface.shading_normal_of[f][corner][side] == no_normal) smoothing.make({f, corner, side});
 
     surface.normal_turn_max_per_m = 0;
     for (uint32_t f = 0; f < surface.faces.size(); ++f)
