@@ -10,8 +10,6 @@ namespace haptel::jit {
 
 namespace {
 
-constexpr double kinks_share_max = 0.01;
-
 haptel_sample sample_at(const TextureBinding& binding, const haptel_point& point)
 {
     haptel_sample sample{};

@@ -8,6 +8,9 @@
 
 namespace haptel::jit {
 
+// Share of the points at which a derivative may disagree: those that met a kink.
+inline constexpr double kinks_share_max = 0.01;
+
 // Adds a failure "what: found, allowed" unless `found` is at most `allowed`.
 void expect_at_most(GradientCheck& check, std::string_view what, double found, double allowed);
 

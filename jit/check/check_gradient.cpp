@@ -17,7 +17,6 @@ namespace {
 using ir::Quad;
 
 constexpr double tolerance = 1e-12, conditioning_factor = 8; // of the errors against the oracle
-constexpr double kinks_share_max = 0.01;
 constexpr double step_of_box = 0x1p-40;
 
 template <typename T>
