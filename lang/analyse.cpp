@@ -6,16 +6,14 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <limits>
 #include <set>
 
 namespace haptel::lang {
 namespace {
 
+using ir::infinity;
 using ir::Input;
 using ir::Op;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 ir::BoundsBox box_of(const AnalysedCube& where)
 {

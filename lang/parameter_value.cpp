@@ -25,7 +25,7 @@ std::string expected_number(std::string_view si)
     return "a plain number";
 }
 
-std::string shown(double value)
+std::string shortest(double value)
 {
     char text[32];
     return {text, std::to_chars(text, text + sizeof text, value).ptr};
@@ -48,7 +48,7 @@ ParameterValue read_whole(std::string_view text, bool negative, const Number& nu
     const bool is_signed = parameter.type == ir::Type::i32;
     const double low = std::fmax(parameter.minimum, is_signed ? -2147483648.0 : 0.0);
     const double high = std::fmin(parameter.maximum, is_signed ? 2147483647.0 : 4294967295.0);
-    const std::string range = "a whole number in " + shown(low) + " .. " + shown(high);
+    const std::string range = "a whole number in " + shortest(low) + " .. " + shortest(high);
     if (number.kind == Number::Kind::real || !number.unit.empty())
         return fail("expected " + range + ", found '" + printable(text) + "'");
     const double value = negative ? -number.value : number.value;
@@ -62,8 +62,8 @@ ParameterValue read_real(std::string_view text, bool negative, const Number& num
         return fail("expected " + expected_number(parameter.unit) + ", found '" + printable(text) + "'");
     ParameterValue read{negative ? -number.value : number.value};
     if (read.value < parameter.minimum || read.value > parameter.maximum)
-        read.warning = printable(text) + " is outside of its range " + shown(parameter.minimum) + " .. " +
-                       shown(parameter.maximum) + (parameter.unit.empty() ? "" : " " + parameter.unit);
+        read.warning = printable(text) + " is outside of its range " + shortest(parameter.minimum) + " .. " +
+                       shortest(parameter.maximum) + (parameter.unit.empty() ? "" : " " + parameter.unit);
     return read;
 }
 

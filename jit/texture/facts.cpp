@@ -11,10 +11,9 @@ namespace haptel::jit {
 
 namespace {
 
+using ir::infinity;
 using ir::Input;
 using ir::Interval;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Evaluations of the interval machine: bounds over a box decide what a hand feels, bounds over ranges are for
 // information.

@@ -13,11 +13,6 @@ using namespace ast;
 
 namespace {
 
-bool is_integer(Type type)
-{
-    return type == int_type || type == uint_type;
-}
-
 // How to get from one type to the other by hand; `text` is the expression as written, `operand` the same in parentheses
 // if it needs them.
 std::string conversion_hint(Type from, Type to, const std::string& text, const std::string& operand)

@@ -26,13 +26,6 @@ uint32_t reads_of(const FunctionReference& reference)
     return source ? (*source)->reads : 0;
 }
 
-const void* identity(const FunctionReference& reference)
-{
-    if (auto source = std::get_if<const FunctionInfo*>(&reference)) return *source;
-    if (auto builtin = std::get_if<const BuiltinOverload*>(&reference)) return *builtin;
-    return nullptr;
-}
-
 ir::Facts facts_of(const FactsComment& comment, bool is_library)
 {
     ir::Facts facts;

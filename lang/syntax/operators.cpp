@@ -3,11 +3,6 @@
 namespace haptel::lang {
 namespace {
 
-bool is_integer(Type type)
-{
-    return type == int_type || type == uint_type;
-}
-
 bool is_scalar_number(Type type)
 {
     return type.is_numeric() && type.is_scalar();

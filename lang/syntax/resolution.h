@@ -72,6 +72,14 @@ struct Symbol {
 // A function that is called or passed: from source, built in, or a parameter of the function around the call.
 using FunctionReference = std::variant<std::monostate, const FunctionInfo*, const BuiltinOverload*, const Symbol*>;
 
+// What tells functions of the source and built-in ones apart; null: a parameter.
+inline const void* identity(const FunctionReference& reference)
+{
+    if (auto source = std::get_if<const FunctionInfo*>(&reference)) return *source;
+    if (auto builtin = std::get_if<const BuiltinOverload*>(&reference)) return *builtin;
+    return nullptr;
+}
+
 struct CallTarget {
     bool is_constructor = false; // then the expression's type says of what
     FunctionReference function;

@@ -35,6 +35,10 @@ struct Type {
 inline constexpr Type float_type{Scalar::float_, 1, 0, 1}, int_type{Scalar::int_, 1, 0, 1},
     uint_type{Scalar::uint_, 1, 0, 1}, bool_type{Scalar::bool_, 1, 0, 1}, void_type{Scalar::void_, 1, 0, 1},
     image_type{Scalar::image_, 1, 0, 1};
+constexpr bool is_integer(Type type)
+{
+    return type == int_type || type == uint_type;
+}
 inline constexpr Type vec(uint8_t size)
 {
     return {Scalar::float_, size, 0, 1};

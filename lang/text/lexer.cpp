@@ -1,5 +1,7 @@
 #include "lang/text/lexer.h"
 
+#include "lang/text/number.h"
+
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -46,10 +48,6 @@ constexpr uint8_t index_of(char c)
     return static_cast<uint8_t>(c);
 }
 
-bool is_digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
 bool is_name_start(char c)
 {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';

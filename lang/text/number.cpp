@@ -29,11 +29,6 @@ constexpr std::string_view unit_list = "units are m, cm, mm, um, nm, deg, rad, s
 constexpr std::string_view degree_digits = "17453292519943295769236907684886127134428718885417";
 constexpr int degree_power_of_ten = -51;
 
-bool is_digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
-
 // digits * 10^power
 struct Decimal {
     std::string digits;

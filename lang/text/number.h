@@ -10,6 +10,11 @@
 
 namespace haptel::lang {
 
+constexpr bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
 struct Number {
     enum class Kind { real, integer, unsigned_integer } kind = Kind::real;
     double value = 0;          // SI; integers too

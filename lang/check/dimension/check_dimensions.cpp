@@ -13,13 +13,6 @@ namespace {
 
 constexpr size_t work_max = 1'000'000; // expressions looked at; well below a second
 
-const void* identity(const FunctionReference& reference)
-{
-    if (auto source = std::get_if<const FunctionInfo*>(&reference)) return *source;
-    if (auto builtin = std::get_if<const BuiltinOverload*>(&reference)) return *builtin;
-    return nullptr;
-}
-
 // Findings of an instance and of what it calls, each instance once.
 class Reporter {
 public:

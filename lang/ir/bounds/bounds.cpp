@@ -5,13 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <queue>
 
 namespace haptel::ir {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr uint64_t operations_per_evaluation = 1'000'000;
 constexpr uint64_t operations_in_all = 4'000'000; // keeps a reload short, whatever the program
 // Instructions, of the longest programs that are looked at as closely: of longer ones every step costs more, so that

@@ -3,14 +3,11 @@
 #include "lang/ir/int_range.h"
 
 #include <cmath>
-#include <limits>
 
 namespace haptel::ir {
 namespace {
 
 constexpr size_t block_size = 16; // cells of a leaf: the tree is an eighth of the table, and a look takes some 50 steps
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr Interval nothing{infinity, -infinity, false};
 
 Interval cell(const Table& table, size_t index)
 {
@@ -26,7 +23,7 @@ Interval cell(const Table& table, size_t index)
 CellRanges::CellRanges(const Table& whole) : table(whole)
 {
     const size_t blocks = (table.size() + block_size - 1) / block_size;
-    tree.assign(2 * blocks, nothing);
+    tree.assign(2 * blocks, no_value);
     for (size_t i = 0; i < table.size(); ++i) {
         Interval& block = tree[blocks + i / block_size];
         block = join(block, cell(table, i));
@@ -36,7 +33,7 @@ CellRanges::CellRanges(const Table& whole) : table(whole)
 
 Interval CellRanges::over(size_t first, size_t last) const
 {
-    Interval all = nothing;
+    Interval all = no_value;
     for (; first <= last && first % block_size != 0; ++first) all = join(all, cell(table, first));
     for (; first <= last && (last + 1) % block_size != 0; --last) all = join(all, cell(table, last));
     if (first > last) return all;

@@ -13,7 +13,6 @@
 namespace haptel::ir {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr Interval empty{infinity, -infinity, true};
 using std::numbers::pi;
 
@@ -157,7 +156,7 @@ template <typename F>
 Interval wave(const Interval& a, double period, double crest, const F& f)
 {
     const bool nan = may_be_infinite(a);
-    const double size = std::max(std::fabs(a.minimum), std::fabs(a.maximum));
+    const double size = size_of(a);
     if (!(size < 1e9) || a.maximum - a.minimum >= period) return {-1, 1, nan};
     const double slack = 1e-15 * (size + period); // crests are placed with rounding
     auto meets = [&](double at) {
@@ -421,6 +420,17 @@ bool holds_pole(Op op, std::span<const Interval> operands)
 bool Interval::is_finite() const
 {
     return !may_be_nan && minimum > -infinity && maximum < infinity && !is_empty();
+}
+
+double size_of(const Interval& a)
+{
+    return std::max(std::fabs(a.minimum), std::fabs(a.maximum));
+}
+
+bool are_close(const Interval& a, const Interval& b, double greatest)
+{
+    const double apart = std::max(std::fabs(a.maximum - b.minimum), std::fabs(b.maximum - a.minimum));
+    return !a.may_be_nan && !b.may_be_nan && apart <= rounding_share * greatest;
 }
 
 Interval everything(Type type)

@@ -6,9 +6,12 @@
 
 #include "lang/ir/ir.h"
 
+#include <limits>
 #include <span>
 
 namespace haptel::ir {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // Closed; no value at all where minimum > maximum. Integers and booleans as numbers.
 struct Interval {
@@ -21,10 +24,17 @@ struct Interval {
     bool is_finite() const; // and never NaN
 };
 
+inline constexpr Interval no_value{infinity, -infinity};
+
 // Of an image: the index of the texture parameter that it is.
 inline constexpr Interval any_image{-1, -1};
 
 Interval everything(Type type);
+double size_of(const Interval& a); // of what is farthest from 0
+
+// Whether the two are equal but for rounding: by no more than that part of the greatest value that there is.
+inline constexpr double rounding_share = 1e-9;
+bool are_close(const Interval& a, const Interval& b, double greatest);
 Interval join(const Interval& a, const Interval& b);
 Interval intersect(const Interval& a, const Interval& b); // of what is known by two ways: NaN only if both allow it
 

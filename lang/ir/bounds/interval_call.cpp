@@ -3,14 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace haptel::ir {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr Interval nothing{infinity, -infinity, false};
 
 Interval declared_value(const Facts& facts, bool may_be_nan)
 {
@@ -94,7 +90,7 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     if (depth >= depth_max || left == 0) return unknown(function, function.body.yields, span);
     ++depth;
     const size_t count = function.value_types.size();
-    Frame frame{function, std::vector<Interval>(count, nothing), std::vector<Variation>(varying ? count : 0),
+    Frame frame{function, std::vector<Interval>(count, no_value), std::vector<Variation>(varying ? count : 0),
                 structure_of(index), tangents_of(index, arguments.variations)};
     store(frame, function.parameters, arguments);
     const std::optional<Span> outside = user;

@@ -5,14 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace haptel::ir {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr Interval nothing{infinity, -infinity, false};
 
 Interval integer(Type type, uint32_t bits)
 {
@@ -30,7 +26,7 @@ Variation carried_along(const BoundsBox& box, Input first_partial, Span span)
     for (size_t j = 0; j < Variation::directions; ++j) {
         const Interval& partial = box.input[static_cast<size_t>(first_partial) + j];
         variation.gradient[j] = partial;
-        const double size = std::max(std::fabs(partial.minimum), std::fabs(partial.maximum));
+        const double size = size_of(partial);
         squares += size * size;
     }
     variation.slope = std::sqrt(squares) * (1 + 1e-14);
@@ -129,7 +125,7 @@ void IntervalEvaluator::store(Frame& frame, std::span<const Value> values, const
 
 IntervalEvaluator::Results IntervalEvaluator::nothing_yet(size_t count) const
 {
-    return {std::vector<Interval>(count, nothing), {}};
+    return {std::vector<Interval>(count, no_value), {}};
 }
 
 // Without variations `all` has nothing joined to it yet.

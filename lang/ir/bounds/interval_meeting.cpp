@@ -12,19 +12,6 @@
 namespace haptel::ir {
 namespace {
 
-constexpr double rounding = 1e-9; // of the greatest value that the arms have: what equal arms differ by
-
-bool are_equal(const Interval& a, const Interval& b, double size)
-{
-    const double apart = std::max(std::fabs(a.maximum - b.minimum), std::fabs(b.maximum - a.minimum));
-    return !a.may_be_nan && !b.may_be_nan && apart <= rounding * size;
-}
-
-double size_of(const Interval& a)
-{
-    return std::max(std::fabs(a.minimum), std::fabs(a.maximum));
-}
-
 // What is added to `unchanged` where it became `changed`; null: it became something else.
 const Value* added_to(Value unchanged, const Instruction* changed)
 {
@@ -78,10 +65,10 @@ std::vector<Smoothness> IntervalEvaluator::meeting(Frame& frame, const Instructi
     for (size_t i = 0; i < meets.size(); ++i) {
         const Variation first = settled(sides[0].variations[i]), second = settled(sides[1].variations[i]);
         const double size = size_of(joined.values[i]);
-        if (!std::isfinite(size) || !are_equal(sides[0].values[i], sides[1].values[i], size)) continue;
+        if (!std::isfinite(size) || !are_close(sides[0].values[i], sides[1].values[i], size)) continue;
         meets[i] = Smoothness::c0;
         const double steepest = std::max({first.slope, second.slope, 1e-300});
-        const bool bends = !are_equal(first.gradient[0], second.gradient[0], steepest);
+        const bool bends = !are_close(first.gradient[0], second.gradient[0], steepest);
         if (!bends && std::min(first.smoothness, second.smoothness) >= Smoothness::c1 &&
             of_moving.smoothness >= Smoothness::c1)
             meets[i] = Smoothness::c1;

@@ -10,11 +10,6 @@ namespace {
 
 constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
-double size_of(const Interval& a)
-{
-    return std::max(std::fabs(a.minimum), std::fabs(a.maximum));
-}
-
 } // namespace
 
 // A difference of terms that share others, as (r + k) - (r - k), is narrower than its parts are far apart: as exact

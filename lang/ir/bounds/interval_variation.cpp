@@ -4,12 +4,9 @@
 #include "lang/ir/op_info.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace haptel::ir {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 // One of the two is 0, always.
 bool is_zero_side(std::span<const Interval> operands)

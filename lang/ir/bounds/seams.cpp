@@ -8,19 +8,7 @@ namespace {
 
 using Number = ValueNumbers::Number;
 
-constexpr double rounding = 1e-9;    // of the greatest value that there is: what equal sides differ by
 constexpr size_t crossings_max = 16; // of one value; of more, those that are continuous are settled first
-
-double size_of(const Interval& a)
-{
-    return std::max(std::fabs(a.minimum), std::fabs(a.maximum));
-}
-
-bool are_close(const Interval& a, const Interval& b, double size)
-{
-    const double apart = std::max(std::fabs(a.maximum - b.minimum), std::fabs(b.maximum - a.minimum));
-    return !a.may_be_nan && !b.may_be_nan && std::isfinite(size) && apart <= rounding * size;
-}
 
 const Crossing* crossing_of(const Seams::Operand& operand, uint32_t seam)
 {
@@ -123,7 +111,7 @@ void Seams::cross(std::span<const Operand> operands, const Interval& result, con
                 there.push_back(side.there);
                 on.push_back(side.value);
                 // A little further than on the seam, in what is not known to stay as it is.
-                const double further = rounding * size_of(operand.value);
+                const double further = rounding_share * size_of(operand.value);
                 const bool stays = !crossing || numbers.constant_of(side.near);
                 beside.push_back(stays             ? side.value
                                  : operand.is_real ? Interval{side.value.minimum - further,
@@ -144,8 +132,9 @@ void Seams::cross(std::span<const Operand> operands, const Interval& result, con
             made_side.there = named(made_side.value, on, true, there);
         }
         if (sides[0].near == sides[1].near) continue;
-        const bool is_continuous =
-            sides[0].there == sides[1].there || are_close(sides[0].value, sides[1].value, size_of(result));
+        const double size = size_of(result);
+        const bool is_continuous = sides[0].there == sides[1].there ||
+                                   (std::isfinite(size) && are_close(sides[0].value, sides[1].value, size));
         crossings.push_back({index, sides[0], sides[1], is_continuous, cause});
     }
     for (const bool only_continuous : {true, false})

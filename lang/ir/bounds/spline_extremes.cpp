@@ -15,12 +15,11 @@
 namespace haptel::ir {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int halvings_max = 4;
 constexpr double near = 1.0 / 64; // of what is reached: not worth halving
 // Of the few operations here and of those of spline(), whose weights sum up to at most 8 along each axis, by the
 // largest coefficient.
-constexpr double rounding = 4e-13;
+constexpr double spline_rounding = 4e-13;
 
 // Cells along one axis and the coefficients that they are made of: cell c of c - 1 .. c + 2.
 struct Axis {
@@ -102,7 +101,7 @@ public:
                 look(patch, halvings_max);
             }
         }
-        const double error = size == 0 ? 0 : size * rounding + std::numeric_limits<double>::min();
+        const double error = size == 0 ? 0 : size * spline_rounding + std::numeric_limits<double>::min();
         return {low - error, high + error};
     }
 
@@ -139,7 +138,7 @@ private:
             reached_low = std::min({reached_low, points->front(), points->back()});
             reached_high = std::max({reached_high, points->front(), points->back()});
         }
-        const double more = std::max((reached_high - reached_low) * near, size * rounding);
+        const double more = std::max((reached_high - reached_low) * near, size * spline_rounding);
         if (halvings == 0 || halvings_left == 0 || (least >= reached_low - more && greatest <= reached_high + more)) {
             low = std::min(low, least);
             high = std::max(high, greatest);

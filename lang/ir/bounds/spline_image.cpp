@@ -5,12 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace haptel::ir {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr int64_t scan_max = 1024; // cells: wider places have the bounds of the whole image
 
 // Many lines of numbers side by side, solved together: number i of line k is at first[i * step + k].
@@ -156,7 +154,7 @@ const Interval& SplineImage::over_all(uint32_t orders) const
         const auto range = [](int32_t count) { return PlaceRange{-3.0, count + 2.0}; };
         all.found = spline_extremes(image, range(image.width), range(image.height), orders);
         if (edge != HAPTEL_EDGE_MIRRORED || (by_x % 2 == 0 && by_y % 2 == 0)) return;
-        const double size = std::max(std::fabs(all.found.minimum), std::fabs(all.found.maximum));
+        const double size = size_of(all.found);
         all.found = {-size, size}; // in the copies that are turned round
     });
     return all.found;

@@ -5,21 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace haptel::ir {
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double rounding_up = 1 + 1e-14; // norms are computed to nearest
 constexpr size_t axes = Variation::directions;
 constexpr size_t pair_of[axes][axes] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}; // in `hessian`
-
-double size_of(const Interval& a)
-{
-    return std::max(std::fabs(a.minimum), std::fabs(a.maximum));
-}
 
 // An infinite bound times an exact zero is zero: what is bounded is a finite number.
 double times(double a, double b)

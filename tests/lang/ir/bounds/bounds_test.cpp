@@ -11,8 +11,6 @@ using namespace ir_test;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // A texture of p and k, with these bits of outputs beside its height.
 struct Bounded {
     Module module;

@@ -12,8 +12,6 @@ using namespace ir_test;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 // A slot's value as intervals see it.
 double number(Type type, const Slot<double>& slot)
 {

@@ -4,7 +4,6 @@
 #include "tests/support/catch.h"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 
@@ -12,7 +11,6 @@ using namespace haptel::ir;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::pair<uint32_t, uint32_t> all_orders[] = {{0, 0}, {1, 0}, {0, 1}, {2, 0}, {1, 1}, {0, 2}};
 
 struct Drawing {

@@ -14,7 +14,6 @@ using namespace ir_test;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
 using Point = std::array<double, 3>;
 
 // A texture of p whose body is the last function of `text`.

@@ -18,8 +18,6 @@ using namespace haptel::ir;
 
 namespace {
 
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
 std::shared_ptr<const SplineImage> image_of(std::vector<double> texels, int64_t width, int64_t height)
 {
     std::string error;
