@@ -5,6 +5,7 @@
 #include "lang/check/call_graph.h"
 #include "lang/check/library.h"
 #include "lang/program/limits.h"
+#include "lang/syntax/grammar.h"
 #include "lang/text/near_name.h"
 
 #include <algorithm>
@@ -34,6 +35,10 @@ Type resolve_type(CheckContext& context, const TypeName& name)
     if (const auto type = type_named(name.base.text)) return *type;
     Diagnostic& reported =
         context.diagnostics.error(name.base.span, "unknown-type", "unknown type " + quoted(name.base.text));
+    if (name.base.text == any_size) {
+        reported.hint = "vecN is vec2 and vec3 in a function that has a parameter of it: float f(vecN q)";
+        return Type::error();
+    }
     const auto [nearest, is_only] = near_name(
         name.base.text, {"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "image"});
     if (name.base.text.starts_with("mat") && name.base.text.find('x') != std::string::npos) {

@@ -1,6 +1,7 @@
 // Calls: constructors, overloads, functions as arguments, derivatives of functions.
 #include "lang/check/body_checker.h"
 #include "lang/syntax/foreign.h"
+#include "lang/syntax/grammar.h"
 #include "lang/syntax/operators.h"
 
 #include <algorithm>
@@ -78,6 +79,10 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
         if (const auto type = type_named(foreign->replacement)) return constructor(e, call, *type);
         for (ExpressionPtr& argument : call.arguments) expression(*argument);
         return Type::error();
+    }
+    if (call.callee.text == any_size) { // where it stands for no size
+        for (ExpressionPtr& argument : call.arguments) expression(*argument);
+        return resolve_type(context, TypeName{.base = call.callee, .is_array = false, .array_size = nullptr});
     }
     Type if_unsure;
     const auto chosen = resolve(e, call.callee, call.arguments, 0, call.target, if_unsure);

@@ -11,6 +11,9 @@
 
 namespace haptel::lang {
 
+// A type that stands for each of some: a function whose parameters name it is read once for each.
+inline constexpr std::string_view any_size = "vecN", sizes_of_any[] = {"vec2", "vec3"};
+
 class Grammar : private TokenCursor {
 public:
     Grammar(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink);
@@ -20,6 +23,7 @@ public:
 
 private:
     // parser.cpp
+    void begin_declaration();
     bool top_level_name(ast::File& result);
     void report_stray(ast::File& result);
     void find_top_level(bool strayed);
@@ -32,6 +36,8 @@ private:
     ast::TextureParameter texture_parameter();
     void constants(ast::File& result);
     void function_or_variable(ast::File& result);
+    bool takes_any_size() const;
+    void function_of_each_size(ast::File& result);
     void function(ast::File& result, ast::TypeName result_type, ast::Name name, size_t doc_token);
     ast::FunctionParameter function_parameter();
     void function_signature(ast::FunctionParameter& parameter);
@@ -100,6 +106,13 @@ private:
     ast::ExpressionPtr cast();
     ast::ExpressionPtr method_call(ast::ExpressionPtr object);
 
+    // In a function that is written for vectors of any size, that of the size being read.
+    std::string_view text(size_t ahead = 0) const
+    {
+        const std::string_view word = TokenCursor::text(ahead);
+        return word == any_size && !one_size.empty() ? one_size : word;
+    }
+
     // Small rules that all share, parse_declaration.cpp and parse_facts.cpp
     ast::TypeName type_name();
     void array_suffix(ast::TypeName& type);
@@ -111,6 +124,7 @@ private:
     ast::StatementPtr make_statement(Span where, Node node);
 
     // Of the function or texture that is being read:
+    std::string_view one_size;                 // what `any_size` stands for; empty: nothing
     std::set<std::string, std::less<>> unread; // as in Damage
     bool is_head_damaged = false;              // likewise
     bool is_misshapen = false;                 // its braces do not fit

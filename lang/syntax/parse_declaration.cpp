@@ -11,7 +11,7 @@ bool is_own_type(std::string_view word)
 {
     constexpr std::string_view words[] = {"float", "int",  "uint", "bool", "vec2",  "vec3",
                                           "vec4",  "mat2", "mat3", "mat4", "image", "void"};
-    return std::find(std::begin(words), std::end(words), word) != std::end(words);
+    return word == any_size || std::find(std::begin(words), std::end(words), word) != std::end(words);
 }
 
 bool is_type_word(std::string_view word)
@@ -126,10 +126,41 @@ void Grammar::function_or_variable(File& result)
         if (!result.constants.empty()) result.constants.back().declaration.is_const = true;
         return;
     }
+    if (one_size.empty() && takes_any_size()) return function_of_each_size(result);
     TypeName type = type_name();
     if (type.base.text.empty()) stand_again();
     std::optional<Name> function_name = lost ? std::nullopt : name("after '" + type.base.text + "'");
     if (function_name) function(result, std::move(type), std::move(*function_name), first_token);
+}
+
+// At a function: whether a type of its parameters is `any_size`.
+bool Grammar::takes_any_size() const
+{
+    size_t ahead = 0;
+    while (kind(ahead) == Token::name || kind(ahead) == Token::left_bracket || kind(ahead) == Token::right_bracket)
+        ++ahead; // its result and name
+    if (kind(ahead) != Token::left_paren) return false;
+    for (uint32_t open = 0;; ++ahead) {
+        const Token here = kind(ahead);
+        if (here == Token::left_paren) ++open;
+        if (here == Token::right_paren && --open == 0) return false;
+        if (here == Token::left_brace || here == Token::semicolon || here == Token::end) return false;
+        if (here == Token::name && text(ahead) == any_size && kind(ahead - 1) != Token::name) return true;
+    }
+}
+
+// Each is a function of its own from here on. A mistake is found in each, and told once, since it is at one place.
+void Grammar::function_of_each_size(File& result)
+{
+    const size_t first_token = position;
+    for (const std::string_view size : sizes_of_any) {
+        position = first_token;
+        begin_declaration();
+        if (size != sizes_of_any[0]) stand_again();
+        one_size = size;
+        function_or_variable(result);
+    }
+    one_size = {};
 }
 
 void Grammar::function(File& result, TypeName result_type, Name function_name, size_t doc_token)

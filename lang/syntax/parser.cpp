@@ -29,10 +29,7 @@ File Grammar::parse_file()
 {
     File result;
     while (!at(Token::end)) {
-        lost = false;
-        unread.clear();
-        is_head_damaged = is_misshapen = has_stray_brace = false;
-        depth = Nesting::bracket;
+        begin_declaration();
         const size_t first_position = position;
         if (accept(Token::semicolon)) continue;
         bool strayed = false;
@@ -63,6 +60,15 @@ File Grammar::parse_file()
     return result;
 }
 
+// Forgets what was found out about the one before.
+void Grammar::begin_declaration()
+{
+    lost = false;
+    unread.clear();
+    is_head_damaged = is_misshapen = has_stray_brace = false;
+    depth = Nesting::bracket;
+}
+
 // Statements outside of any body: a '}' too many above, or a slip.
 void Grammar::report_stray(File& result)
 {
@@ -81,7 +87,8 @@ void Grammar::report_stray(File& result)
     if (is_texture)
         spoil(result.textures.back());
     else if (has_function)
-        spoil(result.functions.back());
+        for (Function& function : result.functions) // of every size
+            if (function.span.begin == result.functions.back().span.begin) spoil(function);
 }
 
 // A name at the top: a function's type; or a slip. False if nothing at all can begin like this.

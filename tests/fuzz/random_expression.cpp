@@ -173,7 +173,12 @@ std::string ExpressionWriter::real_of_calls(int depth)
     }
     if (const Callable* const field = any_callable(Shape::field)) {
         const std::string v = vector(3, depth - 1);
-        return below(4) ? field->name + "(" + v + ")" : "over(" + field->name + ", " + v + ")";
+        switch (below(8)) {
+        case 0: return "over(" + field->name + ", " + v + ")";
+        case 1: return "across(" + field->name + ", " + v + ")";
+        case 2: return "across(length, " + vector(2, depth - 1) + ")";
+        default: return field->name + "(" + v + ")";
+        }
     }
     if (const Callable* const list = any_callable(Shape::of_array))
         return list->name + "(float[3](" + reals(3, depth - 1) + "), " + truth(depth - 1) + ")";

@@ -20,6 +20,7 @@ public:
         line("const int FEW = 1 + 2;");
         line("float by_two(float f(float, float), float x) { return f(x, 0.5) - f(0.25, x); }");
         line("float over(float f(vec3), const vec3 v) { return f(v.zxy) - 0.5 * f(v); }");
+        line("float across(float f(vecN), const vecN v) { vecN w = vecN(0.5) - v; return f(w) - 0.5 * f(v); }");
         for (int i = static_cast<int>(below(4)); i > 0; --i) function();
         has_output = below(3) == 0;
         line("texture t(float a = 0.7 in 0.1 .. 2.0, int k = 3 in 1 .. 5, bool b = true, uint m = 2 in 0 .. 4" +

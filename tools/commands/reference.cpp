@@ -82,8 +82,10 @@ void add_library_file(const stdlib::LibraryFile& file, std::vector<Entry>& entri
     const uint32_t index = sources.add({std::string(file.name), std::string(file.text)});
     lang::Diagnostics diagnostics;
     const lang::ast::File tree = lang::parse(sources, index, diagnostics);
+    std::optional<uint32_t> last; // of one that is read for several sizes, the first
     for (const lang::ast::Function& function : tree.functions) {
-        if (function.doc.empty() || !function.body) continue;
+        if (function.doc.empty() || !function.body || last == function.span.begin) continue;
+        last = function.span.begin;
         Overload overload;
         overload.signature = in_one_line(sources.text({index, function.span.begin, function.body->span.begin}));
         overload.doc = function.doc;
