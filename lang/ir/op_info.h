@@ -31,7 +31,7 @@ enum class Shape : uint8_t { own, rising, falling, even, wave, angle, tangent, p
 struct Traits {
     std::string_view called = {}; // by authors, where not by its name; an expression that is no call has a space
     std::string_view instead = "blend with smoothstep(), smoothabs(), smoothmin() or smoothmax()"; // if it is too rough
-    std::string_view dimensions = "1(1,1)"; // rule of an elementary function of two, as in dimension_rules.def
+    std::string_view dimensions = "1(1,1)"; // rule of an elementary function of two, as in builtins.def
     bool commutes = false;
     bool reduces = false;          // folds its argument into one period or cell, or must not round a whole number
     bool is_guarded = false;       // its derivative is 0 where it were infinite

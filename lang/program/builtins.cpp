@@ -7,8 +7,8 @@ namespace haptel::lang {
 namespace {
 
 constexpr Builtin builtins[] = {
-#define OPERATION(id, name, signatures, op, doc) {BuiltinId::id, name, ir::Op::op, doc},
-#define COMPOSED(id, name, signatures, doc) {BuiltinId::id, name, std::nullopt, doc},
+#define OPERATION(id, name, signatures, dimensions, op, doc) {BuiltinId::id, name, dimensions, ir::Op::op, doc},
+#define COMPOSED(id, name, signatures, dimensions, doc) {BuiltinId::id, name, dimensions, std::nullopt, doc},
 #include "lang/program/builtins.def"
 #undef OPERATION
 #undef COMPOSED

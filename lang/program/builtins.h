@@ -23,7 +23,8 @@ enum class BuiltinId : uint8_t {
 struct Builtin {
     BuiltinId id;
     std::string_view name;
-    std::optional<ir::Op> op; // applied component by component; nothing: composed of several
+    std::string_view dimensions; // what it makes of those of its arguments: "a^1/2(a)"
+    std::optional<ir::Op> op;    // applied component by component; nothing: composed of several
     std::string_view doc;
 };
 

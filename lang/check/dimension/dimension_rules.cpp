@@ -7,32 +7,6 @@
 namespace haptel::lang {
 namespace {
 
-constexpr size_t builtin_count = 0
-#define OPERATION(...) +1
-#define COMPOSED(...) +1
-#include "lang/program/builtins.def"
-#undef OPERATION
-#undef COMPOSED
-    ;
-
-constexpr std::array<std::string_view, builtin_count> make_rules()
-{
-    std::array<std::string_view, builtin_count> rules{};
-#define DIMENSIONS(id, rule) rules[static_cast<size_t>(BuiltinId::id)] = rule;
-#include "lang/check/dimension/dimension_rules.def"
-#undef DIMENSIONS
-    return rules;
-}
-constexpr auto rules = make_rules();
-
-constexpr bool all_have_rules()
-{
-    for (std::string_view rule : rules)
-        if (rule.empty()) return false;
-    return true;
-}
-static_assert(all_have_rules(), "a function of builtins.def has no rule in dimension_rules.def");
-
 // The dimensions that the letters a, b, c stand for, as far as arguments have said.
 using Letters = std::array<Dimension, 3>;
 
@@ -71,7 +45,7 @@ Dimension evaluate(std::string_view term, const Letters& letters)
 
 DimensionResult apply_rule(BuiltinId id, std::span<const Dimension> arguments)
 {
-    const std::string_view rule = rules[static_cast<size_t>(id)];
+    const std::string_view rule = all_builtins()[static_cast<size_t>(id)].dimensions;
     const size_t open = rule.find('(');
     std::string_view rest = rule.substr(open + 1, rule.size() - open - 2);
     Letters letters{Dimension::any(), Dimension::any(), Dimension::any()};
@@ -82,12 +56,7 @@ DimensionResult apply_rule(BuiltinId id, std::span<const Dimension> arguments)
         const Dimension expected = evaluate(term, letters);
         const auto both = join(expected, arguments[i]);
         const bool is_letter = term.size() == 1 && term != "1";
-        if (!both && made.fits) {
-            made.fits = false;
-            made.argument = i;
-            made.expected = expected;
-            made.by_letter = is_letter;
-        }
+        if (!both && made.fits) made = {Dimension::any(), false, i, expected, is_letter};
         if (is_letter) letters[static_cast<size_t>(term.front() - 'a')] = both.value_or(Dimension::any());
     }
     made.result = evaluate(rule.substr(0, open), letters);

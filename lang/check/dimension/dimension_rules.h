@@ -1,4 +1,4 @@
-// What the built-in functions do with dimensions. The list is dimension_rules.def.
+// What the built-in functions do with dimensions: the rules of builtins.def, applied.
 #pragma once
 
 #include "lang/check/dimension/dimension.h"
