@@ -123,6 +123,14 @@ std::string description(Dimension dimension)
     return "a quantity in " + units_of(dimension);
 }
 
+std::string description(std::span<const Dimension> dimensions)
+{
+    std::string text;
+    for (size_t i = 0; i < dimensions.size(); ++i)
+        text += (i == 0 ? "" : i + 1 < dimensions.size() ? ", " : " and ") + description(dimensions[i]);
+    return text;
+}
+
 std::string advice_to_plain(Dimension dimension)
 {
     if (const Known* entry = known(dimension)) return entry->advice;

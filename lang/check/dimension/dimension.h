@@ -4,6 +4,7 @@
 #include <compare>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -54,6 +55,8 @@ Dimension dimension_of_unit(std::string_view unit);
 
 // "a length", "a plain number", "a quantity in m^2 s^-1".
 std::string description(Dimension dimension);
+// "a length, a length and a plain number"
+std::string description(std::span<const Dimension> dimensions);
 // What makes a plain number of it: "divide by a wavelength".
 std::string advice_to_plain(Dimension dimension);
 // The same without changing the value, behind an expression: " / 1m"; empty where that is not simple.

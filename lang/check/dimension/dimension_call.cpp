@@ -10,12 +10,6 @@ using namespace ast;
 
 namespace {
 
-Dimension derivative(Dimension of, Dimension by, uint32_t order)
-{
-    for (uint32_t i = 0; i < order; ++i) of = of / by;
-    return of;
-}
-
 // The number that a constant exponent is; nothing if it varies, or is a vector of different numbers.
 std::optional<double> constant_exponent(ConstantEvaluator& values, const Expression& e)
 {
@@ -29,14 +23,6 @@ std::optional<double> constant_exponent(ConstantEvaluator& values, const Express
 
 } // namespace
 
-std::string description(std::span<const Dimension> dimensions)
-{
-    std::string text;
-    for (size_t i = 0; i < dimensions.size(); ++i)
-        text += (i == 0 ? "" : i + 1 < dimensions.size() ? ", " : " and ") + description(dimensions[i]);
-    return text;
-}
-
 FunctionReference DimensionBody::resolved(const FunctionReference& reference) const
 {
     auto parameter = std::get_if<const Symbol*>(&reference);
@@ -44,21 +30,9 @@ FunctionReference DimensionBody::resolved(const FunctionReference& reference) co
     return (*parameter)->slot < functions.size() ? functions[(*parameter)->slot] : FunctionReference{};
 }
 
-Dimension DimensionBody::find(const Expression& e, const CallExpression& node)
-{
-    if (node.target.is_constructor) return constructor(e, node);
-    return call(e, node.callee.text, node.target, node.arguments, 0);
-}
-
-Dimension DimensionBody::find(const Expression& e, const GradCall& node)
-{
-    return call(e, node.function.text, node.target, node.arguments, node.order);
-}
-
 Dimension DimensionBody::constructor(const Expression& e, const CallExpression& node)
 {
-    if (e.type.scalar == Scalar::float_)
-        return common(node.arguments, e.type.is_matrix() ? "a matrix" : e.type.is_vector() ? "a vector" : "a number");
+    if (e.type.scalar == Scalar::float_) return common(node.arguments, described(e.type));
     for (const ExpressionPtr& argument : node.arguments) {
         const Dimension found = expression(*argument);
         if (e.type.scalar != Scalar::bool_ && !join(found, Dimension::plain()))
@@ -67,85 +41,79 @@ Dimension DimensionBody::constructor(const Expression& e, const CallExpression& 
     return Dimension::plain();
 }
 
-// pow(x, 1.5) of a length is a length to the 1.5; nothing if the exponent is not known or x has no dimension.
-Dimension DimensionBody::power(const CallExpression& node, Dimension base)
-{
-    const auto exponent = constant_exponent(owner.constant_values, *node.arguments[1]);
-    const auto fraction = exponent ? exponent_near(*exponent) : std::nullopt;
-    if (fraction) return base.power(*fraction);
-    if (auto finding =
-            report(node.arguments[0]->span, "pow() expects a plain number where its exponent is not constant, got " +
-                                                description(base) + ": " + advice_to_plain(base)))
-        propose(*finding, *node.arguments[0], Dimension::plain(), base);
-    return Dimension::any();
-}
-
 Dimension DimensionBody::call(const Expression& e, const std::string& name, const CallTarget& target,
                               const std::vector<ExpressionPtr>& arguments, uint32_t order)
 {
     const FunctionReference callee = resolved(target.function);
+    auto source = std::get_if<const FunctionInfo*>(&callee);
     FunctionReferences passed;
     Dimensions dimensions;
     std::vector<const Expression*> values;
     for (size_t i = 0; i < arguments.size(); ++i) {
-        const bool is_function = !std::holds_alternative<std::monostate>(target.function_arguments[i]);
-        if (is_function) {
+        if (!std::holds_alternative<std::monostate>(target.function_arguments[i])) {
             passed.push_back(resolved(target.function_arguments[i]));
             continue;
         }
+        const bool counts = source && (*source)->parameters[i].type.scalar != Scalar::float_;
+        const Dimension found = expression(*arguments[i]);
         values.push_back(arguments[i].get());
-        dimensions.push_back(expression(*arguments[i]));
+        dimensions.push_back(counts ? Dimension::plain() : found);
     }
-    const Dimension by = dimensions.empty() ? Dimension::any() : dimensions.front();
 
+    Dimension result = Dimension::any();
     if (auto overload = std::get_if<const BuiltinOverload*>(&callee)) {
-        const BuiltinId id = (*overload)->builtin->id;
         auto written = std::get_if<CallExpression>(&e.node);
-        if (id == BuiltinId::pow && written && !by.is_any() && !by.is_plain()) {
-            if (!join(dimensions[1], Dimension::plain()))
-                report_expected("pow() expects", *values[1], Dimension::plain(), dimensions[1], " as its exponent");
-            return power(*written, by);
-        }
-        DimensionResult made = apply_rule(id, dimensions);
-        if (id == BuiltinId::determinant) made.result = by.power({(*overload)->parameters.front().type.size, 1});
-        if (!made.fits && made.by_letter) {
-            const Dimension found = dimensions[made.argument];
-            auto finding =
-                report(values[made.argument]->span, name + "() expects numbers of one dimension, got " +
-                                                        description(made.expected) + " and " + description(found));
-            const auto bare = std::find_if(values.begin(), values.begin() + made.argument,
-                                           [](const Expression* value) { return bare_number(*value) != nullptr; });
-            const bool mends_earlier = bare != values.begin() + made.argument && made.expected.is_plain();
-            if (finding && mends_earlier)
-                propose(*finding, **bare, found, made.expected);
-            else if (finding)
-                propose(*finding, *values[made.argument], made.expected, found);
-        } else if (!made.fits) {
-            report_expected(name + "() expects", *values[made.argument], made.expected, dimensions[made.argument]);
-        }
-        return derivative(made.result, by, order);
-    }
-
-    auto source = std::get_if<const FunctionInfo*>(&callee);
-    if (!source) return Dimension::any();
-    size_t value = 0;
-    for (const ParameterInfo& parameter : (*source)->parameters) {
-        if (parameter.is_function) continue;
-        if (parameter.type.scalar != Scalar::float_) dimensions[value] = Dimension::plain();
-        ++value;
-    }
-    const Span outer = owner.user_call;
-    if (!is_library) owner.user_call = e.span;
-    const DimensionInstance& made = owner.function(**source, passed, dimensions);
-    instance.callees.push_back(&made);
-    if (made.is_at_fault) {
-        if (is_library)
+        const bool is_power = (*overload)->builtin->id == BuiltinId::pow && written;
+        if (is_power && !dimensions[0].is_any() && !dimensions[0].is_plain()) return power(*written, dimensions);
+        result = built_in(name, **overload, dimensions, values);
+    } else if (source) {
+        const Span outer = owner.user_call;
+        if (!is_library) owner.user_call = e.span;
+        DimensionInstance& made = owner.function(**source, passed, dimensions);
+        instance.callees.push_back(&made);
+        if (made.is_at_fault && is_library)
             instance.is_at_fault = true;
-        else
+        else if (made.is_at_fault)
             blame_call(e, name, **source, passed, dimensions, values);
+        owner.user_call = outer;
+        result = made.result;
     }
-    owner.user_call = outer;
-    return derivative(made.result, by, order);
+    for (uint32_t i = 0; i < order; ++i) result = result / dimensions.front(); // a derivative
+    return result;
+}
+
+// pow(x, 1.5) of a length is a length to the 1.5; nothing if the exponent is not known.
+Dimension DimensionBody::power(const CallExpression& node, const Dimensions& dimensions)
+{
+    const Expression &base = *node.arguments[0], &exponent = *node.arguments[1];
+    if (!join(dimensions[1], Dimension::plain()))
+        report_expected("pow() expects", exponent, Dimension::plain(), dimensions[1], " as its exponent");
+    const auto number = constant_exponent(owner.constant_values, exponent);
+    const auto fraction = number ? exponent_near(*number) : std::nullopt;
+    if (fraction) return dimensions[0].power(*fraction);
+    report_expected("pow() expects", base, Dimension::plain(), dimensions[0], " where its exponent is not constant");
+    return Dimension::any();
+}
+
+Dimension DimensionBody::built_in(const std::string& name, const BuiltinOverload& overload,
+                                  const Dimensions& dimensions, const std::vector<const Expression*>& values)
+{
+    const BuiltinId id = overload.builtin->id;
+    const DimensionResult made = apply_rule(id, dimensions);
+    const Dimension found = made.fits ? Dimension::any() : dimensions[made.argument];
+    if (!made.fits && made.by_letter) {
+        const auto wrong = values.begin() + made.argument;
+        const auto bare = std::find_if(values.begin(), wrong, [](auto* value) { return bare_number(*value); });
+        const bool mends_earlier = bare != wrong && made.expected.is_plain();
+        report((*wrong)->span,
+               name + "() expects numbers of one dimension, got " + description(made.expected) + " and " +
+                   description(found),
+               mends_earlier ? proposal(**bare, found, made.expected) : proposal(**wrong, made.expected, found));
+    } else if (!made.fits) {
+        report_expected(name + "() expects", *values[made.argument], made.expected, found);
+    }
+    if (id == BuiltinId::determinant) return dimensions[0].power({overload.parameters.front().type.size, 1});
+    return made.result;
 }
 
 // Library code does not go with these arguments. The argument at fault is the one without whose dimension it does, and
@@ -175,9 +143,9 @@ void DimensionBody::blame_call(const Expression& e, const std::string& name, con
     for (Dimension& dimension : plain)
         if (!dimension.is_any()) dimension = Dimension::plain();
     const bool wants_plain = plain != dimensions && goes_with(plain);
-    if (auto finding = report(e.span, name + (wants_plain ? "() expects plain numbers, got " : "() does not go with ") +
-                                          description(dimensions)))
-        finding->hint = "divide lengths by a wavelength";
+    report(e.span,
+           name + (wants_plain ? "() expects plain numbers, got " : "() does not go with ") + description(dimensions),
+           {"divide lengths by a wavelength"});
 }
 
 } // namespace haptel::lang

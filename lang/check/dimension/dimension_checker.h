@@ -1,6 +1,10 @@
 // The two classes that the check of dimensions is made of: DimensionChecker remembers what functions make of the
 // dimensions they are called with, DimensionBody walks one body. Parts of the latter: dimension_expression.cpp,
 // dimension_call.cpp, dimension_statement.cpp.
+//
+// It is a walk of its own, behind that of types: a body has one type for everything in it and is checked for types
+// once, the library's once for all programs; its dimensions are others for each call, are tried on to find the argument
+// at fault, and in loops are found in several passes.
 #pragma once
 
 #include "lang/check/constant.h"
@@ -8,9 +12,8 @@
 #include "lang/program/checked_program.h"
 #include "lang/text/diagnostic.h"
 
-#include <deque>
 #include <map>
-#include <span>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -20,23 +23,30 @@ namespace haptel::lang {
 using Dimensions = std::vector<Dimension>;
 using FunctionReferences = std::vector<FunctionReference>;
 
+// How to mend something.
+struct DimensionHint {
+    std::string text = {};
+    bool changes_body = false; // it says what to write in the place of what stands there
+};
+
 struct DimensionFinding {
     Span span;
-    std::string message, hint;
+    std::string message;
+    DimensionHint hint;
     std::vector<Related> related;
-    bool changes_body = false; // the hint says what to write in the place of what stands there
 };
 
 // A body for one choice of dimensions, or the result of looking at it.
 struct DimensionInstance {
     std::string name;
     Dimension result = Dimension::any();
-    std::vector<DimensionFinding> findings;        // in code of the user's own
-    std::vector<const DimensionInstance*> callees; // whose findings are findings of the program too
-    bool is_at_fault = false;                      // library code that these dimensions do not go with
-    Span called_at;                                // the first call in code of the user's own
-    std::string called_with;                       // "a length and a plain number"; empty: nothing is known
-    const uint32_t* choices = nullptr;             // that the same body is looked at for; null: it has no parameters
+    std::vector<DimensionFinding> findings;  // in code of the user's own
+    std::vector<DimensionInstance*> callees; // whose findings are findings of the program too
+    bool is_at_fault = false;                // library code that these dimensions do not go with
+    bool is_reported = false;
+    Span called_at;                    // the first call in code of the user's own
+    std::string called_with;           // "a length and a plain number"; empty: nothing is known
+    const uint32_t* choices = nullptr; // that the same body is looked at for; null: it has no parameters
 };
 
 constexpr uint32_t dimension_nesting_limit = 500; // as in lowering, which reports it: bounds the stack
@@ -48,12 +58,12 @@ public:
     {
     }
 
-    const std::vector<const DimensionInstance*>& constants();
-    const DimensionInstance& texture(const CheckedTexture& texture);
+    std::vector<DimensionInstance> constants();
+    DimensionInstance texture(const CheckedTexture& texture);
     // `arguments` by the parameters that are values, `passed` by those that are functions; no function is a parameter
     // any more, but it may be unknown.
-    const DimensionInstance& function(const FunctionInfo& info, const FunctionReferences& passed,
-                                      const Dimensions& arguments);
+    DimensionInstance& function(const FunctionInfo& info, const FunctionReferences& passed,
+                                const Dimensions& arguments);
     bool has_seen(const FunctionInfo& function) const { return choices.contains(&function); }
     // False once the work is more than a program of sensible size can need: then everything fits.
     bool spend(size_t steps);
@@ -67,17 +77,13 @@ public:
     bool is_exhausted = false;
 
 private:
-    void add_constants(const std::vector<CheckFile>& files, bool is_library);
-
     struct Key {
         const FunctionInfo* function;
-        std::vector<const void*> passed;
+        FunctionReferences passed;
         Dimensions arguments;
         auto operator<=>(const Key&) const = default;
     };
-    std::map<Key, DimensionInstance> instances; // nodes stay where they are
-    std::deque<DimensionInstance> roots;        // of textures and constants
-    std::vector<const DimensionInstance*> constant_roots;
+    std::map<Key, DimensionInstance> instances;                // nodes stay where they are
     std::unordered_map<const FunctionInfo*, uint32_t> choices; // of dimensions, per function
     size_t work = 0;
 };
@@ -88,49 +94,39 @@ public:
 
     void function(const FunctionInfo& info, const FunctionReferences& passed, const Dimensions& arguments);
     void texture(const CheckedTexture& texture);
-    Dimension constant(const ast::Declaration& declaration);
-    Dimension parameter(const CheckedParameter& parameter);
+    void declaration(const ast::Declaration& node);
 
 private:
-    struct Variable {
+    struct Origin {
         Dimension dimension = Dimension::any();
-        Span set; // where it got it
-        // What it is instead after another path that has come together with this one.
-        Dimension other = Dimension::any();
-        Span other_set;
-        bool is_mixed() const { return !other.is_any(); }
+        Span span; // where a variable got it
+    };
+    struct Variable {
+        Origin first;
+        Origin other = {}; // what it is instead after another path that has come together with this one
+        bool is_mixed() const { return !other.dimension.is_any(); }
     };
     using Variables = std::vector<Variable>; // by Symbol::slot
-    struct Flow {
-        Variables variables;
-        bool reachable = true;
-    };
+    using Flow = std::optional<Variables>;   // nothing: not reached
 
     // ---- expressions
     Dimension expression(const ast::Expression& e);
-    Dimension find(const ast::Expression& e, const ast::ErrorExpression& node);
-    Dimension find(const ast::Expression& e, const ast::NumberLiteral& node);
-    Dimension find(const ast::Expression& e, const ast::BoolLiteral& node);
-    Dimension find(const ast::Expression& e, const ast::NameExpression& node);
-    Dimension find(const ast::Expression& e, const ast::Unary& node);
-    Dimension find(const ast::Expression& e, const ast::Chain& node);
-    Dimension find(const ast::Expression& e, const ast::Conditional& node);
-    Dimension find(const ast::Expression& e, const ast::CallExpression& node);
-    Dimension find(const ast::Expression& e, const ast::GradCall& node);
-    Dimension find(const ast::Expression& e, const ast::Member& node);
-    Dimension find(const ast::Expression& e, const ast::Index& node);
-    Dimension find(const ast::Expression& e, const ast::BraceList& node);
+    Dimension find(const ast::Expression& e);
+    Dimension read(const Symbol& symbol, Span span);
     // What the operator makes of both; `whole` and `right_side` for messages.
     Dimension binary(ast::BinaryOp op, Dimension left, Dimension right, Span whole, const ast::Expression* left_side,
                      const ast::Expression& right_side);
     // The one dimension of all parts; `what` they make: "a vector".
     Dimension common(const std::vector<ast::ExpressionPtr>& parts, const std::string& what);
+    Dimension parameter(const CheckedParameter& parameter);
 
     // ---- calls
     Dimension constructor(const ast::Expression& e, const ast::CallExpression& node);
     Dimension call(const ast::Expression& e, const std::string& name, const CallTarget& target,
                    const std::vector<ast::ExpressionPtr>& arguments, uint32_t order);
-    Dimension power(const ast::CallExpression& node, Dimension base);
+    Dimension built_in(const std::string& name, const BuiltinOverload& overload, const Dimensions& dimensions,
+                       const std::vector<const ast::Expression*>& values);
+    Dimension power(const ast::CallExpression& node, const Dimensions& dimensions);
     void blame_call(const ast::Expression& e, const std::string& name, const FunctionInfo& callee,
                     const FunctionReferences& passed, const Dimensions& dimensions,
                     const std::vector<const ast::Expression*>& values);
@@ -138,26 +134,22 @@ private:
 
     // ---- statements
     void statement(const ast::Statement& s);
-    void walk(const ast::Statement& s, const ast::Declaration& node);
-    void walk(const ast::Statement& s, const ast::Assignment& node);
-    void walk(const ast::Statement& s, const ast::ExpressionStatement& node);
-    void walk(const ast::Statement& s, const ast::Scope& node);
-    void walk(const ast::Statement& s, const ast::If& node);
-    void walk(const ast::Statement& s, const ast::For& node);
-    void walk(const ast::Statement& s, const ast::Break& node);
-    void walk(const ast::Statement& s, const ast::Return& node);
-    void body(const ast::Statement& tree, uint32_t slot_count, const Variables& parameters);
-    void merge(Flow& into, const Flow& other) const;
+    void assign(const ast::Statement& s, const ast::Assignment& node);
+    void branch(const ast::If& node);
+    void loop(const ast::For& node);
+    void leave(const ast::Return& node);
+    void body(const ast::Statement& tree, const Variables& start);
+    static void merge(Flow& into, const Flow& other);
     void check_outputs();
-    void settle(const ast::For& loop, Variables& at_head);
+    void settle(Variables& learnt, Variables& at_head);
 
-    // ---- findings; null in library code, which is only marked as at fault
-    DimensionFinding* report(Span span, std::string message);
+    // ---- findings; library code is only marked as at fault
+    void report(Span span, std::string message, DimensionHint hint = {}, std::vector<Related> related = {});
     // An argument or operand that should be something else, with how to mend it.
     // `who` expects it, `where` as a clause: " as argument 2".
     void report_expected(const std::string& who, const ast::Expression& e, Dimension expected, Dimension found,
                          const std::string& where = {});
-    void propose(DimensionFinding& finding, const ast::Expression& e, Dimension expected, Dimension found);
+    DimensionHint proposal(const ast::Expression& e, Dimension expected, Dimension found) const;
 
     DimensionChecker& owner;
     DimensionInstance& instance;
@@ -168,14 +160,13 @@ private:
     std::unordered_map<const ast::For*, Variables> heads;
     bool heads_changed = false;
     const std::vector<CheckedOutput>* outputs = nullptr; // of a texture; null: this is a function
-    bool has_returned = false;
-    Span returned_at; // a value of the result's dimension
+    Span returned_at;                                    // a value of the result's dimension
 };
 
 // The literal that `e` is, without a unit and perhaps with a sign: it may have been meant in any. Null: it is none.
 const ast::Expression* bare_number(const ast::Expression& e);
 
-// "a length, a length and a plain number"
-std::string description(std::span<const Dimension> dimensions);
+// "a vector"
+std::string described(Type type);
 
 } // namespace haptel::lang

@@ -29,6 +29,20 @@ std::string mismatch(BinaryOp op, Dimension left, Dimension right)
     return "cannot compare " + a + " with " + b;
 }
 
+Dimension dimension_of_input(InputName input)
+{
+    switch (input) {
+    case InputName::p:
+    case InputName::center:
+    case InputName::extent:
+    case InputName::footprint: return Dimension::length();
+    case InputName::time: return Dimension::time();
+    case InputName::n:
+    case InputName::uv: return Dimension::plain();
+    }
+    return Dimension::any();
+}
+
 } // namespace
 
 const Expression* bare_number(const Expression& e)
@@ -38,89 +52,80 @@ const Expression* bare_number(const Expression& e)
     return literal && literal->unit.empty() ? &e : nullptr;
 }
 
+std::string described(Type type)
+{
+    return type.is_array() ? "an array" : type.is_matrix() ? "a matrix" : type.is_vector() ? "a vector" : "a number";
+}
+
 Dimension DimensionBody::expression(const Expression& e)
 {
     if (owner.nesting >= dimension_nesting_limit || !owner.spend(1)) return Dimension::any();
     ++owner.nesting;
-    const Dimension found = std::visit([&](const auto& node) { return find(e, node); }, e.node);
+    const Dimension found = find(e);
     --owner.nesting;
     // Whole numbers and truth values count: only the literal 0 may stand for a length too.
     const bool counts = e.type == int_type || e.type == uint_type || e.type == bool_type;
     return counts && !bare_number(e) ? Dimension::plain() : found;
 }
 
-Dimension DimensionBody::find(const Expression&, const ErrorExpression&)
+Dimension DimensionBody::find(const Expression& e)
 {
-    return Dimension::any();
-}
-
-Dimension DimensionBody::find(const Expression&, const NumberLiteral& node)
-{
-    const bool is_zero = node.kind == NumberLiteral::Kind::real ? node.value == 0 : node.integer == 0;
-    return is_zero && node.unit.empty() ? Dimension::any() : dimension_of_unit(node.unit);
-}
-
-Dimension DimensionBody::find(const Expression&, const BoolLiteral&)
-{
-    return Dimension::plain();
-}
-
-Dimension DimensionBody::find(const Expression& e, const NameExpression& node)
-{
-    if (!node.symbol) return Dimension::any();
-    const Symbol& symbol = *node.symbol;
-    switch (symbol.kind) {
-    case SymbolKind::input:
-        switch (symbol.input) {
-        case InputName::p:
-        case InputName::center:
-        case InputName::extent:
-        case InputName::footprint: return Dimension::length();
-        case InputName::time: return Dimension::time();
-        case InputName::n:
-        case InputName::uv: return Dimension::plain();
-        }
-        return Dimension::any();
-    case SymbolKind::local: {
-        Variable& variable = flow.variables[symbol.slot];
-        if (!variable.is_mixed()) return variable.dimension;
-        if (auto finding =
-                report(e.span, "'" + node.name + "' is " + description(variable.dimension) +
-                                   " on one path to here and " + description(variable.other) + " on another")) {
-            finding->hint = "give it one dimension on every path, or another name to what differs";
-            finding->related.push_back({variable.set, "here it is " + description(variable.dimension)});
-            finding->related.push_back({variable.other_set, "here it is " + description(variable.other)});
-        }
-        variable = {};
-        return Dimension::any();
+    if (auto name = std::get_if<NameExpression>(&e.node)) return read(*name->symbol, e.span);
+    if (auto list = std::get_if<BraceList>(&e.node)) return common(list->elements, "a table");
+    if (auto unary = std::get_if<Unary>(&e.node)) return expression(*unary->operand);
+    if (auto member = std::get_if<Member>(&e.node)) return expression(*member->object);
+    if (auto grad = std::get_if<GradCall>(&e.node))
+        return call(e, grad->function.text, grad->target, grad->arguments, grad->order);
+    if (auto made = std::get_if<CallExpression>(&e.node))
+        return made->target.is_constructor ? constructor(e, *made)
+                                           : call(e, made->callee.text, made->target, made->arguments, 0);
+    if (auto index = std::get_if<Index>(&e.node)) {
+        expression(*index->index);
+        return expression(*index->object);
     }
-    case SymbolKind::constant:
-    case SymbolKind::table:
-    case SymbolKind::texture_parameter: {
+    if (auto literal = std::get_if<NumberLiteral>(&e.node)) {
+        const bool is_zero = literal->kind == NumberLiteral::Kind::real ? literal->value == 0 : literal->integer == 0;
+        return is_zero && literal->unit.empty() ? Dimension::any() : dimension_of_unit(literal->unit);
+    }
+    if (auto chain = std::get_if<Chain>(&e.node)) {
+        Dimension left = expression(*chain->first);
+        const Expression* first = chain->first.get();
+        for (const Chain::Link& link : chain->rest) {
+            const Span whole = join(chain->first->span, link.operand->span);
+            left = binary(link.op, left, expression(*link.operand), whole, first, *link.operand);
+            first = nullptr;
+        }
+        return left;
+    }
+    if (auto choice = std::get_if<Conditional>(&e.node)) {
+        expression(*choice->condition);
+        const Dimension a = expression(*choice->when_true), b = expression(*choice->when_false);
+        const auto both = join(a, b);
+        if (!both)
+            report(e.span,
+                   "both sides of ':' must have one dimension, found " + description(a) + " and " + description(b),
+                   bare_number(*choice->when_true) ? proposal(*choice->when_true, b, a)
+                                                   : proposal(*choice->when_false, a, b));
+        return both.value_or(Dimension::any());
+    }
+    return Dimension::plain(); // a truth value
+}
+
+Dimension DimensionBody::read(const Symbol& symbol, Span span)
+{
+    if (symbol.kind == SymbolKind::input) return dimension_of_input(symbol.input);
+    if (symbol.kind != SymbolKind::local) {
         const auto known = owner.symbols.find(&symbol);
         return known == owner.symbols.end() ? Dimension::any() : known->second;
     }
-    case SymbolKind::function: break;
-    }
+    Variable& variable = (*flow)[symbol.slot];
+    if (!variable.is_mixed()) return variable.first.dimension;
+    const std::string one = description(variable.first.dimension), other = description(variable.other.dimension);
+    report(span, "'" + symbol.name + "' is " + one + " on one path to here and " + other + " on another",
+           {"give it one dimension on every path, or another name to what differs"},
+           {{variable.first.span, "here it is " + one}, {variable.other.span, "here it is " + other}});
+    variable = {};
     return Dimension::any();
-}
-
-Dimension DimensionBody::find(const Expression&, const Unary& node)
-{
-    return expression(*node.operand);
-}
-
-Dimension DimensionBody::find(const Expression& e, const Chain& node)
-{
-    Dimension left = expression(*node.first);
-    const Expression* first = node.first.get();
-    for (const Chain::Link& link : node.rest) {
-        const Dimension right = expression(*link.operand);
-        const Span whole{e.span.file, node.first->span.begin, link.operand->span.end};
-        left = binary(link.op, left, right, whole, first, *link.operand);
-        first = nullptr;
-    }
-    return left;
 }
 
 Dimension DimensionBody::binary(BinaryOp op, Dimension left, Dimension right, Span whole, const Expression* left_side,
@@ -135,44 +140,10 @@ Dimension DimensionBody::binary(BinaryOp op, Dimension left, Dimension right, Sp
     if (!adds && !compares) return Dimension::plain(); // of whole numbers and truth values
     const auto both = join(left, right);
     if (!both)
-        if (auto finding = report(whole, mismatch(op, left, right))) {
-            if (left_side && bare_number(*left_side))
-                propose(*finding, *left_side, right, left);
-            else
-                propose(*finding, right_side, left, right);
-        }
-    if (compares) return Dimension::plain();
-    return both.value_or(Dimension::any());
-}
-
-Dimension DimensionBody::find(const Expression& e, const Conditional& node)
-{
-    expression(*node.condition);
-    const Dimension a = expression(*node.when_true), b = expression(*node.when_false);
-    const auto both = join(a, b);
-    if (!both)
-        if (auto finding = report(e.span, "both sides of ':' must have one dimension, found " + description(a) +
-                                              " and " + description(b))) {
-            const bool mend_first = bare_number(*node.when_true) != nullptr;
-            propose(*finding, mend_first ? *node.when_true : *node.when_false, mend_first ? b : a, mend_first ? a : b);
-        }
-    return both.value_or(Dimension::any());
-}
-
-Dimension DimensionBody::find(const Expression&, const Member& node)
-{
-    return expression(*node.object);
-}
-
-Dimension DimensionBody::find(const Expression&, const Index& node)
-{
-    expression(*node.index);
-    return expression(*node.object);
-}
-
-Dimension DimensionBody::find(const Expression&, const BraceList& node)
-{
-    return common(node.elements, "a table");
+        report(whole, mismatch(op, left, right),
+               left_side && bare_number(*left_side) ? proposal(*left_side, right, left)
+                                                    : proposal(right_side, left, right));
+    return compares ? Dimension::plain() : both.value_or(Dimension::any());
 }
 
 Dimension DimensionBody::common(const std::vector<ExpressionPtr>& parts, const std::string& what)
@@ -182,24 +153,38 @@ Dimension DimensionBody::common(const std::vector<ExpressionPtr>& parts, const s
         const Dimension found = expression(*part);
         const auto both = join(all, found);
         if (!both)
-            if (auto finding = report(part->span, what + " has one dimension, found " + description(all) + " and " +
-                                                      description(found)))
-                propose(*finding, *part, all, found);
+            report(part->span, what + " has one dimension, found " + description(all) + " and " + description(found),
+                   proposal(*part, all, found));
         all = both.value_or(all);
     }
     return all;
 }
 
+// That of its default; a default of 0 says nothing, then its range does.
+Dimension DimensionBody::parameter(const CheckedParameter& parameter)
+{
+    const TextureParameter& tree = *parameter.tree;
+    Dimension dimension = Dimension::any();
+    for (const Expression* e : {tree.value.get(), tree.minimum.get(), tree.maximum.get()}) {
+        if (!e) continue;
+        const Dimension found = expression(*e);
+        const auto both = join(dimension, found);
+        if (!both)
+            report_expected("the range of '" + tree.name.text + "' must be", *e, dimension, found,
+                            " as its default is");
+        dimension = both.value_or(dimension);
+    }
+    return dimension.is_any() ? Dimension::plain() : dimension;
+}
+
 // ---- findings
 
-DimensionFinding* DimensionBody::report(Span span, std::string message)
+void DimensionBody::report(Span span, std::string message, DimensionHint hint, std::vector<Related> related)
 {
-    if (is_library) {
+    if (is_library)
         instance.is_at_fault = true;
-        return nullptr;
-    }
-    instance.findings.push_back({span, std::move(message), {}, {}});
-    return &instance.findings.back();
+    else
+        instance.findings.push_back({span, std::move(message), std::move(hint), std::move(related)});
 }
 
 void DimensionBody::report_expected(const std::string& who, const Expression& e, Dimension expected, Dimension found,
@@ -207,36 +192,29 @@ void DimensionBody::report_expected(const std::string& who, const Expression& e,
 {
     std::string message = who + " " + description(expected) + where + ", got " + description(found);
     const std::string advice = expected.is_plain() ? advice_to_plain(found) : std::string{};
-    if (!advice.empty()) message += ": " + advice;
-    if (auto finding = report(e.span, std::move(message))) propose(*finding, e, expected, found);
+    report(e.span, message + (advice.empty() ? "" : ": " + advice), proposal(e, expected, found));
 }
 
 // Which wavelength or unit is meant is for the author to say.
-void DimensionBody::propose(DimensionFinding& finding, const Expression& e, Dimension expected, Dimension found)
+DimensionHint DimensionBody::proposal(const Expression& e, Dimension expected, Dimension found) const
 {
-    const std::string text(owner.sources.text(e.span));
+    const auto text_of = [&](const Expression& part) { return std::string(owner.sources.text(part.span)); };
     if (expected.is_plain()) {
         const std::string factor = factor_to_plain(found);
-        if (factor.empty()) return;
-        const std::string fixed = (binds_tightly(e) ? text : "(" + text + ")") + factor;
-        finding.changes_body = true;
-        finding.hint = "write " + printable(fixed) + ", with the quantity you mean instead of " + factor.substr(3);
-        return;
+        if (factor.empty()) return {};
+        const std::string fixed = (binds_tightly(e) ? text_of(e) : "(" + text_of(e) + ")") + factor;
+        return {"write " + printable(fixed) + ", with the quantity you mean instead of " + factor.substr(3), true};
     }
-    if (!found.is_plain()) return;
+    if (!found.is_plain()) return {};
     const std::string unit(literal_unit(expected));
-    const Expression* literal = bare_number(e);
-    if (literal && !unit.empty()) {
-        const std::string number(owner.sources.text(literal->span));
-        finding.hint = "give the number a unit";
-        if (!takes_unit(number)) return;
-        finding.changes_body = true;
-        finding.hint += ": " + number + unit + ", if that is what it means";
-    } else if (expected == Dimension::length()) {
-        finding.hint = "multiply it by a length, for example 50um";
-    } else if (expected == Dimension::time()) {
-        finding.hint = "multiply it by a time, for example 1s";
+    if (const Expression* literal = bare_number(e); literal && !unit.empty()) {
+        const std::string number = text_of(*literal), hint = "give the number a unit";
+        if (!takes_unit(number)) return {hint};
+        return {hint + ": " + number + unit + ", if that is what it means", true};
     }
+    if (expected == Dimension::length()) return {"multiply it by a length, for example 50um"};
+    if (expected == Dimension::time()) return {"multiply it by a time, for example 1s"};
+    return {};
 }
 
 } // namespace haptel::lang
