@@ -72,11 +72,9 @@ Type BodyChecker::array_type(const TypeName& name, Type element)
 {
     const auto size = size_of_array(name);
     if (!size || element.is_error()) return Type::error();
-    if (*size == 0) {
-        diagnostics.error(name.base.span, "table-size", "expected the number of elements between '[' and ']'").hint =
-            "arrays are passed as they are: " + to_string(element) + "[4]";
-        return Type::error();
-    }
+    if (*size == 0)
+        return fail(name.base.span, "table-size", "expected the number of elements between '[' and ']'",
+                    "arrays are passed as they are: " + to_string(element) + "[4]");
     Type made = element;
     made.array_size = *size;
     return fits_body(made, name.base.span) ? made : Type::error();
@@ -221,12 +219,10 @@ Type BodyChecker::array_constructor(Expression& e, BraceList& node)
         is_sound = require(*cell, element, " for an element of the array") && is_sound;
     }
     if (!is_sound) return Type::error();
-    if (count == 0 || (*size > 0 && *size != count)) {
-        diagnostics.error(e.span, "table-size",
-                          "expected " + (*size > 0 ? std::to_string(*size) : "1 or more") + " elements, found " +
-                              std::to_string(count));
-        return Type::error();
-    }
+    if (count == 0 || (*size > 0 && *size != count))
+        return fail(e.span, "table-size",
+                    "expected " + (*size > 0 ? std::to_string(*size) : "1 or more") + " elements, found " +
+                        std::to_string(count));
     Type made = element;
     made.array_size = count;
     return fits_body(made, e.span) ? made : Type::error();
@@ -236,9 +232,8 @@ Type BodyChecker::check(Expression& e, BraceList& node)
 {
     if (node.type) return array_constructor(e, node);
     for (ExpressionPtr& element : node.elements) expression(*element);
-    diagnostics.error(e.span, "type-mismatch", "a list in braces makes an array, expected a value").hint =
-        "write float a[2] = {1.0, 2.0}; or a constructor, vec2(1.0, 2.0)";
-    return Type::error();
+    return fail(e.span, "type-mismatch", "a list in braces makes an array, expected a value",
+                "write float a[2] = {1.0, 2.0}; or a constructor, vec2(1.0, 2.0)");
 }
 
 BodyChecker::Target BodyChecker::target_of(Expression& e)

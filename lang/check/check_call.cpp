@@ -127,15 +127,10 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
     call.target.is_constructor = true;
     call.target.function_arguments.assign(call.arguments.size(), {});
     if (damaged) return type;
-    if (type == void_type) {
-        diagnostics.error(e.span, "type-mismatch", "void has no values");
-        return Type::error();
-    }
-    if (type == image_type) {
-        diagnostics.error(e.span, "image", "an image is not made of values").hint =
-            "it comes with the texture: texture t(image picture) { return 1mm * sample(picture, uv); }";
-        return Type::error();
-    }
+    if (type == void_type) return fail(e.span, "type-mismatch", "void has no values");
+    if (type == image_type)
+        return fail(e.span, "image", "an image is not made of values",
+                    "it comes with the texture: texture t(image picture) { return 1mm * sample(picture, uv); }");
     const bool fills =
         call.arguments.size() == 1 && (components == 1 || (type.is_matrix() && call.arguments[0]->type.is_matrix()));
     if (components == 0 || (components < type.components() && !fills)) {
@@ -157,37 +152,29 @@ Type BodyChecker::check(Expression& e, GradCall& call)
     const auto first = std::find_if(chosen->parameters.begin(), chosen->parameters.end(),
                                     [](const ParameterInfo& p) { return !p.is_function && p.type != image_type; });
     const Type argument = first == chosen->parameters.end() ? void_type : first->type;
-    if (argument.scalar != Scalar::float_ || argument.is_matrix() || argument.is_array()) {
-        diagnostics
-            .error(
-                e.span, "not-differentiable",
-                "grad is with respect to the first argument that is no function: expected float or a vector, found " +
-                    (argument == void_type ? std::string("none") : to_string(argument)))
-            .hint = "the function is " + to_string(*chosen);
-        return Type::error();
-    }
-    if (chosen->result.scalar != Scalar::float_ || chosen->result.is_array()) {
-        diagnostics
-            .error(e.span, "not-differentiable",
-                   "expected a function that returns float, a vector or a matrix, found one that returns " +
-                       to_string(chosen->result))
-            .hint = "the function is " + to_string(*chosen);
-        return Type::error();
-    }
+    if (argument.scalar != Scalar::float_ || argument.is_matrix() || argument.is_array())
+        return fail(
+            e.span, "not-differentiable",
+            "grad is with respect to the first argument that is no function: expected float or a vector, found " +
+                (argument == void_type ? std::string("none") : to_string(argument)),
+            "the function is " + to_string(*chosen));
+    if (chosen->result.scalar != Scalar::float_ || chosen->result.is_array())
+        return fail(e.span, "not-differentiable",
+                    "expected a function that returns float, a vector or a matrix, found one that returns " +
+                        to_string(chosen->result),
+                    "the function is " + to_string(*chosen));
     Type made = chosen->result;
     for (uint32_t order = 0; order < call.order && !made.is_error(); ++order) made = derivative_type(made, argument);
     if (!made.is_error()) return made;
     std::string what = "the derivative";
     if (call.order > 1)
         what = call.order == 2 ? "the second derivative" : "a derivative of order " + std::to_string(call.order);
-    diagnostics
-        .error(e.span, "not-differentiable",
-               what + " of " + to_string(chosen->result) + " with respect to " + to_string(argument) +
-                   " has no type: it is no number, vector or square matrix")
-        .hint =
+    return fail(
+        e.span, "not-differentiable",
+        what + " of " + to_string(chosen->result) + " with respect to " + to_string(argument) +
+            " has no type: it is no number, vector or square matrix",
         "what is possible: a float function of a vector, twice; a vector function of a vector of its size, once; "
-        "any function of a float";
-    return Type::error();
+        "any function of a float");
 }
 
 // The function that the call means. On success arguments have the parameters' types or convert to them, and `target`

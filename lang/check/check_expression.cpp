@@ -99,6 +99,12 @@ Type BodyChecker::expression(Expression& e)
     return e.type;
 }
 
+Type BodyChecker::fail(Span span, ErrorCode code, std::string message, std::string hint)
+{
+    diagnostics.error(span, code, std::move(message)).hint = std::move(hint);
+    return Type::error();
+}
+
 std::string BodyChecker::excerpt(const Expression& e) const
 {
     std::string text = printable(context.sources.text(e.span));
@@ -135,13 +141,10 @@ Type BodyChecker::check(Expression& e, NumberLiteral& node)
     if (node.kind == NumberLiteral::Kind::real) return float_type;
     const bool is_unsigned = node.kind == NumberLiteral::Kind::unsigned_integer;
     const bool is_bits = node.text.starts_with("0x") || node.text.starts_with("0X");
-    if (node.integer > (is_unsigned || is_bits ? uint64_t{UINT32_MAX} : uint64_t{INT32_MAX})) {
-        diagnostics
-            .error(e.span, "number",
-                   quoted(node.text) + " does not fit into " + (is_unsigned ? "uint" : "int") + ", which has 32 bits")
-            .hint = is_unsigned ? "the largest is 4294967295u" : "write " + node.text + ".0 for a float";
-        return Type::error();
-    }
+    if (node.integer > (is_unsigned || is_bits ? uint64_t{UINT32_MAX} : uint64_t{INT32_MAX}))
+        return fail(e.span, "number",
+                    quoted(node.text) + " does not fit into " + (is_unsigned ? "uint" : "int") + ", which has 32 bits",
+                    is_unsigned ? "the largest is 4294967295u" : "write " + node.text + ".0 for a float");
     return is_unsigned ? uint_type : int_type;
 }
 
@@ -164,11 +167,9 @@ Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
         diagnostics.count_consequence();
         return Type::error();
     }
-    if (!symbol && scope.is_function(node.name)) {
-        diagnostics.error(e.span, "not-a-value", quoted(node.name) + " is a function, expected a value").hint =
-            "call it: " + node.name + "(...)";
-        return Type::error();
-    }
+    if (!symbol && scope.is_function(node.name))
+        return fail(e.span, "not-a-value", quoted(node.name) + " is a function, expected a value",
+                    "call it: " + node.name + "(...)");
     if (!symbol) {
         report_unknown_name(e.span, node.name);
         return Type::error();
@@ -178,9 +179,8 @@ Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
     switch (symbol->kind) {
     case SymbolKind::input: reads |= 1u << static_cast<uint32_t>(symbol->input); break;
     case SymbolKind::function:
-        diagnostics.error(e.span, "not-a-value", quoted(node.name) + " is a function, expected a value").hint =
-            "call it: " + node.name + "(...)";
-        return Type::error();
+        return fail(e.span, "not-a-value", quoted(node.name) + " is a function, expected a value",
+                    "call it: " + node.name + "(...)");
     case SymbolKind::local: {
         const uint64_t whole = parts_of(symbol->type), assigned = flow.variables[symbol->slot].assigned;
         const uint64_t missing = whole & parts & ~assigned;
@@ -225,20 +225,18 @@ Type BodyChecker::check(Expression& e, Unary& node)
     case UnaryOp::negate:
     case UnaryOp::plus:
         if (type.is_numeric() && !type.is_array()) return type;
-        diagnostics.error(e.span, "type-mismatch", op + " expects a number, found " + to_string(type)).hint =
-            type.is_array() ? "an array is used by its elements: a[i]" : "write !x for a bool";
-        return Type::error();
+        return fail(e.span, "type-mismatch", op + " expects a number, found " + to_string(type),
+                    type.is_array() ? "an array is used by its elements: a[i]" : "write !x for a bool");
     case UnaryOp::logical_not:
         if (type == bool_type) return type;
-        diagnostics.error(e.span, "type-mismatch", op + " expects bool, found " + to_string(type)).hint =
-            !type.is_scalar() ? "there are no bool vectors: compare the components"
-                              : "compare: " + operand(*node.operand) + (type == float_type ? " == 0.0" : " == 0");
-        return Type::error();
+        return fail(e.span, "type-mismatch", op + " expects bool, found " + to_string(type),
+                    !type.is_scalar()
+                        ? "there are no bool vectors: compare the components"
+                        : "compare: " + operand(*node.operand) + (type == float_type ? " == 0.0" : " == 0"));
     case UnaryOp::bit_not:
         if (is_integer(type)) return type;
-        diagnostics.error(e.span, "type-mismatch", op + " expects int or uint, found " + to_string(type)).hint =
-            type == bool_type ? "write !x for a bool" : "bits are those of int or uint";
-        return Type::error();
+        return fail(e.span, "type-mismatch", op + " expects int or uint, found " + to_string(type),
+                    type == bool_type ? "write !x for a bool" : "bits are those of int or uint");
     }
     return Type::error();
 }
@@ -269,11 +267,9 @@ Type BodyChecker::check(Expression&, Chain& node)
 
 Type BodyChecker::report_operator(BinaryOp op, Span span, Type left, const Expression& right)
 {
-    diagnostics
-        .error(span, "type-mismatch",
-               quoted(spelling(op)) + " does not take " + to_string(left) + " and " + to_string(right.type))
-        .hint = operator_hint(op, left, right.type);
-    return Type::error();
+    return fail(span, "type-mismatch",
+                quoted(spelling(op)) + " does not take " + to_string(left) + " and " + to_string(right.type),
+                operator_hint(op, left, right.type));
 }
 
 Type BodyChecker::check(Expression& e, Conditional& node)
@@ -281,11 +277,9 @@ Type BodyChecker::check(Expression& e, Conditional& node)
     condition(node.condition, "before '?'");
     const Type a = expression(*node.when_true), b = expression(*node.when_false);
     if (a.is_error() || b.is_error()) return Type::error();
-    if (a == image_type && b == image_type) {
-        diagnostics.error(e.span, "image", "an image cannot be chosen by '?:'").hint =
-            "choose between what is read of them: c ? sample(a, q) : sample(b, q)";
-        return Type::error();
-    }
+    if (a == image_type && b == image_type)
+        return fail(e.span, "image", "an image cannot be chosen by '?:'",
+                    "choose between what is read of them: c ? sample(a, q) : sample(b, q)");
     if (a == b) return a;
     if (converts_implicitly(a, b)) return b;
     if (converts_implicitly(b, a)) return a;
@@ -306,17 +300,14 @@ Type BodyChecker::check(Expression& e, Member& node)
                             swizzle->highest() < symbol->type.size;
     object = node.object->type = reads_part ? read(*node.object, *name, swizzle->mask()) : expression(*node.object);
     if (object.is_error()) return object;
-    if (!object.is_vector()) {
-        diagnostics
-            .error(e.span, "bad-swizzle",
-                   quoted(excerpt(*node.object)) + " is a " + to_string(object) + " and has no components")
-            .hint = object == float_type
+    if (!object.is_vector())
+        return fail(e.span, "bad-swizzle",
+                    quoted(excerpt(*node.object)) + " is a " + to_string(object) + " and has no components",
+                    object == float_type
                         ? "leave '." + node.member.text + "' out, or write vec3(" + excerpt(*node.object) + ")"
                     : object.is_matrix() ? "pick a column, which is a vector: " + excerpt(*node.object) + "[0]"
                     : object.is_array()  ? "pick an element: " + excerpt(*node.object) + "[i]"
-                                         : std::string{};
-        return Type::error();
-    }
+                                         : std::string{});
     if (!swizzle || swizzle->highest() >= object.size) {
         Diagnostic& reported = diagnostics.error(node.member.span, "bad-swizzle",
                                                  to_string(object) + " has no component " + quoted(node.member.text));
@@ -340,12 +331,10 @@ Type BodyChecker::check(Expression& e, Index& node)
         parts = parts_at(symbol->type, at.minimum);
     const Type object = node.object->type = name ? read(*node.object, *name, parts) : expression(*node.object);
     if (object.is_error()) return object;
-    if (object.is_scalar()) {
-        diagnostics.error(e.span, "not-indexable",
-                          quoted(excerpt(*node.object)) + " is a " + to_string(object) +
-                              ", expected an array, a matrix or a vector before '['");
-        return Type::error();
-    }
+    if (object.is_scalar())
+        return fail(e.span, "not-indexable",
+                    quoted(excerpt(*node.object)) + " is a " + to_string(object) +
+                        ", expected an array, a matrix or a vector before '['");
     const Type element = object.element();
     if (index.is_error()) return element;
     if (!is_integer(index)) {
