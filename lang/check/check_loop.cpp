@@ -18,23 +18,14 @@ using Compare = LoopPlan::Compare;
 constexpr const char* loop_form = "a loop counts: for (int i = 0; i < 8; ++i)";
 
 // The names that are assigned to anywhere in a statement.
-void collect_assigned(const Statement& s, std::vector<const NameExpression*>& names)
+std::vector<const NameExpression*> assigned_in(const Statement& s)
 {
-    if (auto assignment = std::get_if<Assignment>(&s.node)) {
-        const Expression* object = assignment->target.get();
-        if (auto member = std::get_if<Member>(&object->node)) object = member->object.get();
-        while (auto index = std::get_if<Index>(&object->node)) object = index->object.get();
-        if (auto name = std::get_if<NameExpression>(&object->node)) names.push_back(name);
-    } else if (auto scope = std::get_if<ast::Scope>(&s.node)) {
-        for (const StatementPtr& inner : scope->statements)
-            if (inner) collect_assigned(*inner, names);
-    } else if (auto branch = std::get_if<If>(&s.node)) {
-        for (const If::Arm& arm : branch->arms)
-            if (arm.body) collect_assigned(*arm.body, names);
-    } else if (auto loop = std::get_if<For>(&s.node)) {
-        for (const StatementPtr* inner : {&loop->init, &loop->step, &loop->body})
-            if (*inner) collect_assigned(**inner, names);
-    }
+    std::vector<const NameExpression*> names;
+    for_each_in(s, [&](const Statement& inner) {
+        auto assignment = std::get_if<Assignment>(&inner.node);
+        if (auto name = assignment ? root_of(*assignment) : nullptr) names.push_back(name);
+    });
+    return names;
 }
 
 // The first variable in `e` whose name stands in `names`.
@@ -135,9 +126,7 @@ void BodyChecker::check(Statement& s, For& node)
 // Ranges of what the body assigns are not known at its start, nor behind it.
 void BodyChecker::forget_ranges_assigned_in(const Statement& s)
 {
-    std::vector<const NameExpression*> names;
-    collect_assigned(s, names);
-    for (const NameExpression* name : names)
+    for (const NameExpression* name : assigned_in(s))
         if (const Symbol* local = find_local(name->name); local && local->kind == SymbolKind::local)
             flow.variables[local->slot].range =
                 ir::full_range(local->type == uint_type ? ir::Type::u32 : ir::Type::i32);
@@ -217,9 +206,7 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
             "a bound is computed once, before the loop: leave " + quoted(own->name) + " out of it";
         return;
     }
-    std::vector<const NameExpression*> assigned;
-    if (loop.body) collect_assigned(*loop.body, assigned);
-    if (auto changed = first_read(*made.bound, assigned)) {
+    if (auto changed = loop.body ? first_read(*made.bound, assigned_in(*loop.body)) : nullptr) {
         refuse(made.bound->span,
                "the bound of this loop changes in its body: " + quoted(changed->name) + " is assigned there")
             .hint = "keep the bound in a variable of its own";

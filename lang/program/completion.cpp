@@ -7,37 +7,6 @@ namespace haptel::lang {
 
 using namespace ast;
 
-namespace {
-
-const Symbol* assigned_symbol(const Assignment& assignment)
-{
-    const Expression* object = assignment.target.get();
-    if (auto member = std::get_if<Member>(&object->node)) object = member->object.get();
-    while (auto index = std::get_if<Index>(&object->node)) object = index->object.get();
-    return std::get<NameExpression>(object->node).symbol;
-}
-
-void collect(const Statement& s, std::vector<uint32_t>& assigned, std::vector<uint32_t>& declared)
-{
-    const auto inner = [&](const StatementPtr& statement) {
-        if (statement) collect(*statement, assigned, declared);
-    };
-    if (auto assignment = std::get_if<Assignment>(&s.node)) {
-        assigned.push_back(assigned_symbol(*assignment)->slot);
-    } else if (auto declaration = std::get_if<Declaration>(&s.node)) {
-        if (declaration->symbol->kind == SymbolKind::local) declared.push_back(declaration->symbol->slot);
-    } else if (auto scope = std::get_if<Scope>(&s.node)) {
-        for (const StatementPtr& statement : scope->statements) inner(statement);
-    } else if (auto branch = std::get_if<If>(&s.node)) {
-        for (const If::Arm& arm : branch->arms) inner(arm.body);
-    } else if (auto loop = std::get_if<For>(&s.node)) {
-        inner(loop->init);
-        inner(loop->body);
-    }
-}
-
-} // namespace
-
 Completion completion_of(const Statement& s)
 {
     if (std::holds_alternative<Return>(s.node)) return {false, true, false};
@@ -74,7 +43,13 @@ Completion completion_of(std::span<const StatementPtr> statements)
 std::vector<uint32_t> changed_in(std::span<const Statement* const> statements)
 {
     std::vector<uint32_t> assigned, declared;
-    for (const Statement* s : statements) collect(*s, assigned, declared);
+    for (const Statement* s : statements)
+        for_each_in(*s, [&](const Statement& inner) {
+            if (auto assignment = std::get_if<Assignment>(&inner.node))
+                assigned.push_back(root_of(*assignment)->symbol->slot);
+            else if (auto declaration = std::get_if<Declaration>(&inner.node))
+                if (declaration->symbol->kind == SymbolKind::local) declared.push_back(declaration->symbol->slot);
+        });
     for (std::vector<uint32_t>* slots : {&assigned, &declared}) {
         std::sort(slots->begin(), slots->end());
         slots->erase(std::unique(slots->begin(), slots->end()), slots->end());

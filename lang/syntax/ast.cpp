@@ -30,4 +30,26 @@ std::vector<const Expression*> operands_of(const Expression& e)
     return operands;
 }
 
+void for_each_in(const Statement& s, const std::function<void(const Statement&)>& look)
+{
+    look(s);
+    const auto inner = [&](const StatementPtr& statement) {
+        if (statement) for_each_in(*statement, look);
+    };
+    if (auto scope = std::get_if<Scope>(&s.node))
+        for (const StatementPtr& statement : scope->statements) inner(statement);
+    if (auto branch = std::get_if<If>(&s.node))
+        for (const If::Arm& arm : branch->arms) inner(arm.body);
+    if (auto loop = std::get_if<For>(&s.node))
+        for (const StatementPtr* part : {&loop->init, &loop->step, &loop->body}) inner(*part);
+}
+
+const NameExpression* root_of(const Assignment& assignment)
+{
+    const Expression* object = assignment.target.get();
+    if (auto member = std::get_if<Member>(&object->node)) object = member->object.get();
+    while (auto index = std::get_if<Index>(&object->node)) object = index->object.get();
+    return std::get_if<NameExpression>(&object->node);
+}
+
 } // namespace haptel::lang::ast

@@ -9,6 +9,7 @@
 #include "lang/syntax/type.h"
 #include "lang/text/source.h"
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -203,6 +204,11 @@ struct Statement {
     Span span;
     std::variant<Declaration, Assignment, ExpressionStatement, Scope, If, For, Break, Return> node;
 };
+
+// `look` at `s` and at every statement inside of it, in source order.
+void for_each_in(const Statement& s, const std::function<void(const Statement&)>& look);
+// What is assigned to, or has the part that is: a name; null where it is none, which is a mistake.
+const NameExpression* root_of(const Assignment& assignment);
 
 // Parameter of a function: a value, or a function ("float basis(vec3)") resolved at compile time.
 struct FunctionParameter {
