@@ -2,6 +2,7 @@
 
 #include "lang/text/number.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
@@ -45,25 +46,26 @@ std::string unit_power(const char* unit, Exponent power)
 struct Known {
     Dimension dimension;
     const char* description;
-    const char* advice; // how to make a plain number of it
+    const char* advice;         // how to make a plain number of it
+    std::string_view unit = {}; // SI
+};
+
+constexpr Known all_known[] = {
+    {Dimension::plain(), "a plain number", ""},
+    {Dimension::length(), "a length", "divide by a wavelength", "m"},
+    {Dimension::time(), "a time", "divide by a period", "s"},
+    {Dimension::frequency(), "a frequency", "multiply by a time", "Hz"},
+    {Dimension::of({2, 1}, {}), "an area", "divide by an area"},
+    {Dimension::of({3, 1}, {}), "a volume", "divide by a volume"},
+    {Dimension::of({-1, 1}, {}), "a number per length", "multiply by a length"},
+    {Dimension::of({1, 1}, {-1, 1}), "a speed", "divide by a speed"},
+    {Dimension::of({1, 1}, {-2, 1}), "an acceleration", "divide by an acceleration"},
 };
 
 const Known* known(Dimension dimension)
 {
-    static const Known all[] = {
-        {Dimension::plain(), "a plain number", ""},
-        {Dimension::length(), "a length", "divide by a wavelength"},
-        {Dimension::time(), "a time", "divide by a period"},
-        {Dimension::frequency(), "a frequency", "multiply by a time"},
-        {Dimension::of({2, 1}, {}), "an area", "divide by an area"},
-        {Dimension::of({3, 1}, {}), "a volume", "divide by a volume"},
-        {Dimension::of({-1, 1}, {}), "a number per length", "multiply by a length"},
-        {Dimension::of({1, 1}, {-1, 1}), "a speed", "divide by a speed"},
-        {Dimension::of({1, 1}, {-2, 1}), "an acceleration", "divide by an acceleration"},
-    };
-    for (const Known& entry : all)
-        if (entry.dimension == dimension) return &entry;
-    return nullptr;
+    const auto found = std::ranges::find(all_known, dimension, &Known::dimension);
+    return found == std::end(all_known) ? nullptr : found;
 }
 
 std::string units_of(Dimension dimension)
@@ -109,11 +111,8 @@ std::optional<Dimension> join(Dimension a, Dimension b)
 
 Dimension dimension_of_unit(std::string_view unit)
 {
-    const std::string_view si = si_unit(unit);
-    if (si == "m") return Dimension::length();
-    if (si == "s") return Dimension::time();
-    if (si == "Hz") return Dimension::frequency();
-    return Dimension::plain();
+    const auto found = std::ranges::find(all_known, si_unit(unit), &Known::unit);
+    return unit.empty() || found == std::end(all_known) ? Dimension::plain() : found->dimension;
 }
 
 std::string description(Dimension dimension)
@@ -153,10 +152,8 @@ std::string factor_to_plain(Dimension dimension)
 
 std::string_view literal_unit(Dimension dimension)
 {
-    if (dimension == Dimension::length()) return "m";
-    if (dimension == Dimension::time()) return "s";
-    if (dimension == Dimension::frequency()) return "Hz";
-    return {};
+    const Known* entry = known(dimension);
+    return entry ? entry->unit : std::string_view{};
 }
 
 } // namespace haptel::lang

@@ -22,12 +22,12 @@ std::optional<Exponent> exponent_near(double value);
 class Dimension {
 public:
     // Fits every dimension: that of a literal 0, of what is not known, and of powers too large to mean anything.
-    static Dimension any() { return {}; }
-    static Dimension of(Exponent length, Exponent time) { return Dimension(length, time); }
-    static Dimension plain() { return of({}, {}); }
-    static Dimension length() { return of({1, 1}, {}); }
-    static Dimension time() { return of({}, {1, 1}); }
-    static Dimension frequency() { return of({}, {-1, 1}); }
+    static constexpr Dimension any() { return {}; }
+    static constexpr Dimension of(Exponent length, Exponent time) { return Dimension(length, time); }
+    static constexpr Dimension plain() { return of({}, {}); }
+    static constexpr Dimension length() { return of({1, 1}, {}); }
+    static constexpr Dimension time() { return of({}, {1, 1}); }
+    static constexpr Dimension frequency() { return of({}, {-1, 1}); }
 
     bool is_any() const { return !is_known; }
     bool is_plain() const { return *this == plain(); }
@@ -41,8 +41,8 @@ public:
     friend Dimension operator/(Dimension a, Dimension b) { return a * b.power({-1, 1}); }
 
 private:
-    Dimension() = default;
-    Dimension(Exponent length, Exponent time) : is_known(true), length_power(length), time_power(time) {}
+    constexpr Dimension() = default;
+    constexpr Dimension(Exponent length, Exponent time) : is_known(true), length_power(length), time_power(time) {}
     bool is_known = false;
     Exponent length_power, time_power;
 };
