@@ -4,9 +4,9 @@
 #include "lang/check/library.h"
 
 #include <algorithm>
-#include <ranges>
 #include <set>
 #include <tuple>
+#include <utility>
 
 namespace haptel::lang {
 namespace {
@@ -65,8 +65,8 @@ std::vector<DimensionInstance> DimensionChecker::constants()
 {
     std::vector<DimensionInstance> roots;
     const auto add = [&](const CheckedProgram& from, bool is_library) {
-        for (const CheckFile& file : std::views::reverse(from.files))
-            for (const ast::Constant& constant : file.tree.constants)
+        for (auto file = from.files.rbegin(); file != from.files.rend(); ++file)
+            for (const ast::Constant& constant : file->tree.constants)
                 DimensionBody(*this, roots.emplace_back(), is_library).declaration(constant.declaration);
     };
     if (program.library) add(program.library->program, true);
