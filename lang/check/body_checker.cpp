@@ -56,18 +56,24 @@ Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
     symbol.span = name.span;
     symbol.is_read = type_named(name.text).has_value();
     if (kind == SymbolKind::local) {
-        symbol.slot = static_cast<uint32_t>(flow.variables.size());
+        symbol.slot = slot_count;
         if (symbol.slot == variables_max)
             diagnostics
                 .error(name.span, "too-large",
                        "expected at most " + std::to_string(variables_max) + " variables in a function or texture")
                 .hint = "an array is one; what repeats is a loop";
-        Variable& variable = flow.variables.emplace_back();
+        Variable& variable = new_variable();
         if (type == uint_type) variable.range = ir::full_range(ir::Type::u32);
     }
     by_name[symbol.name].push_back({&symbol, depth}); // the key lives in the symbol
     declared.push_back(&symbol);
     return symbol;
+}
+
+BodyChecker::Variable& BodyChecker::new_variable()
+{
+    flow.variables.resize(++slot_count);
+    return flow.variables.back();
 }
 
 void BodyChecker::close_scope()
@@ -160,7 +166,7 @@ void BodyChecker::check_function(Function& tree, FunctionInfo& info)
         const Name& name = tree.parameters[i].name;
         if (name.text.empty()) {
             if (!parameter.is_function)
-                flow.variables.emplace_back(); // keeps slots of value parameters in a row
+                new_variable(); // keeps slots of value parameters in a row
             else
                 ++functions;
             continue;
@@ -179,7 +185,7 @@ void BodyChecker::check_function(Function& tree, FunctionInfo& info)
     }
     whole_body(tree.body, tree.name, info.result, "function", tree.damage);
     close_scope();
-    info.slot_count = static_cast<uint32_t>(flow.variables.size());
+    info.slot_count = slot_count;
     info.reads = reads;
     info.mentions = std::move(mentions);
 }
@@ -214,7 +220,7 @@ void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
                          "output " + quoted(output.symbol->name) + " is never assigned: it is always 1")
                 .hint = "assign it in the body or leave it out";
     close_scope();
-    texture.slot_count = static_cast<uint32_t>(flow.variables.size());
+    texture.slot_count = slot_count;
     texture.mentions = std::move(mentions);
 }
 

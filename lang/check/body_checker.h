@@ -70,7 +70,7 @@ private:
         ir::IntRange range{INT32_MIN, INT32_MAX};
     };
     struct Flow {
-        std::vector<Variable> variables; // by Symbol::slot
+        std::vector<Variable> variables; // by Symbol::slot; those declared last on a path may be missing on others
         bool reachable = true;
     };
     struct Binding {
@@ -86,6 +86,7 @@ private:
     void open_scope() { scope_marks.push_back(declared.size()); }
     void close_scope();
     Symbol& declare(const ast::Name& name, SymbolKind kind, Type type);
+    Variable& new_variable(); // in a slot of its own
     Symbol* find_local(std::string_view name) const;
     const Symbol* find(std::string_view name) const;
     void mark_read(std::string_view name);
@@ -189,6 +190,7 @@ private:
     std::vector<Symbol*> declared; // in order; scope_marks cut it
     std::vector<size_t> scope_marks;
     Flow flow;
+    uint32_t slot_count = 0; // of variables declared so far: no slot is used twice
     uint32_t loop_depth = 0;
     bool is_global = false; // what is declared stands outside of any body
     Type result_type;

@@ -113,9 +113,7 @@ void BodyChecker::check(Statement& s, For& node)
     ++loop_depth;
     if (node.body) body(*node.body);
     --loop_depth;
-    const size_t slots = flow.variables.size();
     const Flow behind = std::exchange(flow, before);
-    flow.variables.resize(slots);
     // What the body assigns on its way to its end has a value, if it runs at all.
     const bool reaches_end = node.plan.runs && behind.reachable && !completion_of(*node.body).breaks;
     for (size_t slot = 0; reaches_end && slot < before.variables.size(); ++slot)

@@ -14,7 +14,7 @@ void BodyChecker::statements(std::vector<StatementPtr>& list)
     bool reported = false;
     for (StatementPtr& s : list) {
         if (!s) continue;
-        if (diagnostics.full() || flow.variables.size() > variables_max) { // enough is said
+        if (diagnostics.full() || slot_count > variables_max) { // enough is said
             in_damaged_body = true;
             return;
         }
@@ -174,31 +174,19 @@ void BodyChecker::merge(Flow& into, const Flow& other) const
 
 void BodyChecker::check(Statement&, If& node)
 {
-    Flow after;
-    after.reachable = false;
-    size_t slots = flow.variables.size(); // slots are never used twice, so flows may differ in length
-    bool has_else = false;
-    const bool was_reachable = flow.reachable;
+    Flow after{{}, false};
     for (If::Arm& arm : node.arms) {
-        if (arm.condition)
-            condition(arm.condition, "after 'if'");
-        else
-            has_else = true;
-        flow.variables.resize(std::max(slots, flow.variables.size()));
-        Flow before = flow;
+        condition(arm.condition, "after 'if'");
+        const Flow before = flow;
         if (arm.body) body(*arm.body);
-        slots = flow.variables.size();
         merge(after, flow);
-        flow = std::move(before);
-        flow.variables.resize(slots);
+        flow = before;
     }
-    if (!has_else) merge(after, flow);
+    if (node.arms.back().condition) merge(after, flow); // no else
     if (after.reachable)
         flow = std::move(after);
     else
         flow.reachable = false;
-    flow.variables.resize(slots);
-    if (!was_reachable) flow.reachable = false;
 }
 
 void BodyChecker::check(Statement& s, Break&)
