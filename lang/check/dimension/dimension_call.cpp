@@ -78,7 +78,9 @@ Dimension DimensionBody::call(const Expression& e, const std::string& name, cons
         owner.user_call = outer;
         result = made.result;
     }
-    for (uint32_t i = 0; i < order; ++i) result = result / dimensions.front(); // a derivative
+    const auto is_number = [](const Expression* value) { return value->type != image_type; };
+    const auto by = std::find_if(values.begin(), values.end(), is_number) - values.begin(); // a derivative's
+    for (uint32_t i = 0; i < order; ++i) result = result / dimensions[static_cast<size_t>(by)];
     return result;
 }
 
