@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 ImageFile fail(std::string error, std::string hint = {})
 {
-    return {nullptr, std::move(error), std::move(hint)};
+    return {nullptr, std::move(error), std::move(hint), {}};
 }
 
 ImageFile decode(const std::string& bytes, const std::string& shown)
@@ -26,6 +26,7 @@ ImageFile decode(const std::string& bytes, const std::string& shown)
     const Picture picture = read_picture(bytes);
     if (!picture.error.empty()) return fail("'" + shown + "' " + lang::printable(picture.error), picture.hint);
     ImageFile made;
+    made.grain = grain_of(picture);
     made.image = ir::SplineImage::make(picture.gray, picture.width, picture.height, made.error);
     if (!made.image) made.error = "'" + shown + "': " + made.error;
     return made;
@@ -40,7 +41,14 @@ struct Known {
     uintmax_t size = 0;
     ContentHash content = {};
     std::weak_ptr<const ir::SplineImage> image;
+    PictureGrain grain = {};
 };
+
+std::shared_ptr<const ir::SplineImage> image_of(double texel)
+{
+    std::string error;
+    return ir::SplineImage::make({&texel, 1}, 1, 1, error);
+}
 
 } // namespace
 
@@ -81,24 +89,26 @@ ImageFile read_image(const std::string& path, const std::string& folder)
     Known& known = all[file.string()];
     const auto image = known.image.lock();
     if (image && known.size == size && known.written == written && known.read > written + tick_longest)
-        return {image, {}, {}};
+        return {image, {}, {}, known.grain};
     const auto now = fs::file_time_type::clock::now();
     const input::FileBytes read = input::read_regular_file(file, image_bytes_max);
     if (read.refused.refusal != input::Refusal::none) return refuse(read.refused);
     const std::string& bytes = read.bytes;
     const ContentHash content = content_hash(bytes);
-    ImageFile made = image && known.content == content ? ImageFile{image, {}, {}} : decode(bytes, shown);
-    known = {written, now, size, content, made.image};
+    ImageFile made = image && known.content == content ? ImageFile{image, {}, {}, known.grain} : decode(bytes, shown);
+    known = {written, now, size, content, made.image, made.grain};
     return made;
 }
 
 const ir::SplineImage& flat_image()
 {
-    static const auto image = [] {
-        std::string error;
-        const double zero[] = {0};
-        return ir::SplineImage::make(zero, 1, 1, error);
-    }();
+    static const auto image = image_of(0);
+    return *image;
+}
+
+const ir::SplineImage& white_image()
+{
+    static const auto image = image_of(1);
     return *image;
 }
 

@@ -1,6 +1,7 @@
 // Pictures on disk, made ready for textures. lang performs no I/O: this is where texels come from.
 #pragma once
 
+#include "jit/picture/picture_grain.h"
 #include "lang/ir/bounds/spline_image.h"
 
 #include <memory>
@@ -11,6 +12,7 @@ namespace haptel::jit {
 struct ImageFile {
     std::shared_ptr<const ir::SplineImage> image; // null: see error
     std::string error, hint;
+    PictureGrain grain = {};
 };
 
 // Gray values of a PNG, JPEG, BMP, TGA or PGM file of 8 or 16 bits, or a TIFF of up to 32, black 0 to white 1 (numbers
@@ -25,5 +27,7 @@ std::string image_file(const std::string& path, const std::string& folder = {});
 
 // One texel of 0: what a texture has that got no picture.
 const ir::SplineImage& flat_image();
+// One texel of 1.
+const ir::SplineImage& white_image();
 
 } // namespace haptel::jit

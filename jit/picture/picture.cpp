@@ -99,6 +99,8 @@ Picture read_common_picture(std::string_view bytes)
                               std::to_string(height) + " texels",
                           formats);
     if (!gray) return no_picture(std::string("is damaged: ") + stbi_failure_reason(), formats);
+    made.levels = stbi_is_16_bit_from_memory(data, size) ? 65535 : 255;
+    made.has_blocks = bytes.starts_with("\xff\xd8\xff");
     if (width != made.width || height != made.height) return no_picture("is damaged: it has two sizes");
     const stbi_us* from = gray.get();
     for (int64_t row = height; row-- > 0;) // files begin at the top

@@ -13,6 +13,8 @@ struct Picture {
     // are. A colour counts by its brightness, transparency not at all.
     std::vector<double> gray;
     int64_t width = 0, height = 0;
+    double levels = 0;       // steps from 0 to 1 that the file's whole numbers can take, 255 of 8 bits; 0: real numbers
+    bool has_blocks = false; // coded as JPEG codes: in blocks of 8 x 8 texels, not exactly
     std::string error, hint; // why there is none; the former empty: there is one
 };
 

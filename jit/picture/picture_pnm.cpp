@@ -48,6 +48,7 @@ Picture read_pnm(std::string_view bytes)
         return no_picture("is damaged: its greatest value is not one from 1 to 65535");
     Picture made = picture_of(header.width, header.height);
     if (!made.error.empty()) return made;
+    made.levels = static_cast<double>(header.most);
     const size_t colours = bytes[1] == '6' ? 3 : 1, value_bytes = header.most > 255 ? 2 : 1;
     bytes.remove_prefix(header.end);
     if (bytes.size() / (colours * value_bytes) < made.gray.size())

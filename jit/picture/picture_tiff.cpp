@@ -106,6 +106,13 @@ struct Layout {
         has_meaning = TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &meaning) != 0;
         if (format == SAMPLEFORMAT_VOID) format = SAMPLEFORMAT_UINT;
     }
+    // Steps from 0 to 1 of what is read; 0: real numbers.
+    double levels() const
+    {
+        if (!is_plain()) return UINT8_MAX; // read_converted
+        if (is_real()) return 0;
+        return std::exp2(format == SAMPLEFORMAT_INT ? bits - 1 : bits) - 1;
+    }
     bool is_real() const { return format == SAMPLEFORMAT_IEEEFP; }
     bool is_rgb() const { return has_meaning && meaning == PHOTOMETRIC_RGB && samples >= 3; }
     // The file's rows are the picture's columns.
@@ -258,6 +265,10 @@ Picture read_tiff(std::string_view bytes)
     Picture made =
         layout.is_turned() ? picture_of(layout.height, layout.width) : picture_of(layout.width, layout.height);
     if (!made.error.empty()) return made;
+    uint16_t compression = COMPRESSION_NONE;
+    TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_COMPRESSION, &compression);
+    made.levels = layout.levels();
+    made.has_blocks = compression == COMPRESSION_JPEG || compression == COMPRESSION_OJPEG;
     if (layout.is_plain()) return read_plain(tiff.get(), layout, made) ? made : damaged();
     char reason[1024] = "";
     if (!TIFFRGBAImageOK(tiff.get(), reason))

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace haptel::jit {
 
@@ -24,8 +25,9 @@ struct BindingStorage {
 class Complaints {
 public:
     void add(const std::string& error, const std::string& hint = {}) { add(text, "error: " + error, hint); }
-    void warn(const std::string& warning, const std::string& hint) { add(warnings, "warning: " + warning, hint); }
-    std::string text, warnings;
+    void warn(const std::string& warning, const std::string& hint) { add(remarks, "warning: " + warning, hint); }
+    void note(const std::string& note, const std::string& hint) { add(remarks, "note: " + note, hint); }
+    std::string text, remarks; // errors; warnings and notes
 
 private:
     static void add(std::string& to, const std::string& what, const std::string& hint)
@@ -91,15 +93,25 @@ std::vector<double> values_of(const ir::Texture& texture, const TextureRequest& 
     return values;
 }
 
-// By Texture::parameters; null where there is none, which is flat and worth a warning.
-std::vector<std::shared_ptr<const ir::SplineImage>> images_of(const ir::Texture& texture, const TextureRequest& request,
-                                                              Complaints& complaints)
+std::string place_of(const ir::Parameter& parameter, const ir::Texture& texture)
 {
-    std::vector<std::shared_ptr<const ir::SplineImage>> images;
+    return "parameter '" + parameter.name + "' of texture '" + texture.name + "'";
+}
+
+struct NamedImage {
+    std::shared_ptr<const ir::SplineImage> image; // null: the parameter is no image, or has no picture
+    std::string file;                             // as the request names it
+    PictureGrain grain = {};
+};
+
+// By Texture::parameters. An image without a picture is flat, which is worth a warning.
+std::vector<NamedImage> images_of(const ir::Texture& texture, const TextureRequest& request, Complaints& complaints)
+{
+    std::vector<NamedImage> images;
     for (const ir::Parameter& parameter : texture.parameters) {
         images.emplace_back();
         if (parameter.type != ir::Type::image) continue;
-        const std::string of = "parameter '" + parameter.name + "' of texture '" + texture.name + "'";
+        const std::string of = place_of(parameter, texture);
         const auto given = std::find_if(request.parameters.rbegin(), request.parameters.rend(),
                                         [&](const auto& one) { return one.first == parameter.name; });
         if (given == request.parameters.rend()) {
@@ -109,9 +121,28 @@ std::vector<std::shared_ptr<const ir::SplineImage>> images_of(const ir::Texture&
         }
         ImageFile read = read_image(given->second, request.folder);
         if (!read.image) complaints.add(of + ": " + read.error, read.hint);
-        images.back() = std::move(read.image);
+        images.back() = {std::move(read.image), lang::printable(given->second), read.grain};
     }
     return images;
+}
+
+// What a hand may feel of the pictures' files. `facts_with` bounds the texture with images other than its own.
+template <typename FactsWith>
+void note_grain(const ir::Texture& texture, const std::vector<NamedImage>& images,
+                std::vector<const ir::SplineImage*> views, FactsWith&& facts_with, Complaints& complaints)
+{
+    for (size_t i = 0; i < images.size(); ++i) {
+        if (images[i].grain.level == 0 && !images[i].grain.has_blocks) continue;
+        const ir::SplineImage* const own = std::exchange(views[i], &flat_image());
+        const haptel_facts black = facts_with(views);
+        views[i] = &white_image();
+        const haptel_facts white = facts_with(views);
+        views[i] = own;
+        const double white_m = std::max(std::fabs(white.height_max_m - black.height_max_m),
+                                        std::fabs(white.height_min_m - black.height_min_m));
+        for (const GrainNote& said : grain_notes(images[i].grain, images[i].file, white_m))
+            complaints.note(place_of(texture.parameters[i], texture) + ": " + said.message, said.hint);
+    }
 }
 
 haptel_block_head head_of(const TextureRequest& request, Complaints& complaints)
@@ -161,13 +192,16 @@ TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program
     if (!texture) return {std::nullopt, complaints.text};
     const ir::Texture& source = program->source_of(*texture);
     const std::vector<double> values = values_of(source, request, complaints);
-    std::vector<std::shared_ptr<const ir::SplineImage>> images = images_of(source, request, complaints);
+    const std::vector<NamedImage> images = images_of(source, request, complaints);
     const haptel_block_head head = head_of(request, complaints);
     if (!complaints.text.empty()) return {std::nullopt, complaints.text};
 
     std::vector<const ir::SplineImage*> views; // flat where there is none
-    for (const auto& image : images) views.push_back(image ? image.get() : &flat_image());
-    const haptel_facts facts = facts_over_box(program->module(), source, values, views, head, request);
+    for (const NamedImage& named : images) views.push_back(named.image ? named.image.get() : &flat_image());
+    const auto facts_with = [&](const std::vector<const ir::SplineImage*>& seen) {
+        return facts_over_box(program->module(), source, values, seen, head, request);
+    };
+    const haptel_facts facts = facts_with(views);
     const bool is_bounded = std::isfinite(facts.height_min_m) && std::isfinite(facts.height_max_m);
     if (!is_bounded && unbounded == Unbounded::refused) {
         complaints.add("the height of texture '" + source.name +
@@ -183,14 +217,16 @@ TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program
     storage->block.resize((texture->block_size + 7) / 8);
     std::memcpy(storage->block.data(), &head, sizeof head);
     for (size_t i = 0; i < values.size(); ++i) write(storage->block, source.parameters[i], values[i]);
-    for (size_t i = 0; i < images.size(); ++i)
+    for (size_t i = 0; i < images.size(); ++i) {
+        storage->images.push_back(images[i].image);
         if (source.parameters[i].type == ir::Type::image)
-            write_image(storage->block, source.parameters[i], images[i].get());
-    storage->images = std::move(images);
+            write_image(storage->block, source.parameters[i], images[i].image.get());
+    }
+    note_grain(source, images, views, facts_with, complaints);
     const void* block = storage->block.data();
     TextureBinding binding{std::move(storage), texture, block, facts};
     binding.band_limited = is_band_limited(binding, request);
-    return {std::move(binding), std::move(complaints.warnings)};
+    return {std::move(binding), std::move(complaints.remarks)};
 }
 
 } // namespace haptel::jit

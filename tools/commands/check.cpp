@@ -14,9 +14,11 @@
 #include "tools/report/check_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
+#include <span>
 
 namespace haptel::tools {
 
@@ -69,23 +71,35 @@ public:
 private:
     void fix(const std::string& path);
     // Defaults, but for what --set says.
-    std::vector<std::shared_ptr<const ir::SplineImage>> images_of(const std::string& path, const ir::Texture& texture);
+    std::vector<jit::ImageFile> images_of(const std::string& path, const ir::Texture& texture);
+    // What a hand may feel of the pictures' files.
+    void note_grain(const CheckedTexture& checked, std::span<const double> values,
+                    const std::vector<jit::ImageFile>& images);
     std::vector<double> values_of(const std::string& path, const ir::Texture& texture);
     // Measures, and says which precision is the fastest within error_max, or that none is.
     void pick_precision(CheckedTexture& checked);
-    // A finding that belongs to no line.
-    void say(lang::ErrorCode code, std::string message, std::string hint, const std::string& file);
+    // Findings that belong to no line.
+    void say(lang::ErrorCode code, std::string message, std::string hint, const std::string& file)
+    {
+        say({lang::Severity::error, code.string(), std::move(message), std::move(hint), file, {}, {}});
+    }
+    void note(lang::NoteCode code, std::string message, std::string hint, const std::string& file)
+    {
+        say({lang::Severity::note, code.string(), std::move(message), std::move(hint), file, {}, {}});
+    }
+    void say(CheckFinding finding);
 
     const CheckOptions& options;
     std::vector<bool> is_set; // by options.parameters
     std::vector<std::string> parameter_names;
 };
 
-void CheckRun::say(lang::ErrorCode code, std::string message, std::string hint, const std::string& file)
+void CheckRun::say(CheckFinding finding)
 {
-    fmt::print(stderr, "{}: error: {} [{}]\n", file, message, code.string());
-    if (!hint.empty()) fmt::print(stderr, "     = hint: {}\n", hint);
-    report.add({lang::Severity::error, code.string(), std::move(message), std::move(hint), file, {}, {}});
+    fmt::print(stderr, "{}: {}: {} [{}]\n", finding.file, lang::name_of(finding.severity), finding.message,
+               finding.code);
+    if (!finding.hint.empty()) fmt::print(stderr, "     = hint: {}\n", finding.hint);
+    report.add(std::move(finding));
 }
 
 void CheckRun::fix(const std::string& path)
@@ -125,10 +139,9 @@ std::vector<double> CheckRun::values_of(const std::string& path, const ir::Textu
 }
 
 // Null where none is set: then bounds are those of any image.
-std::vector<std::shared_ptr<const ir::SplineImage>> CheckRun::images_of(const std::string& path,
-                                                                        const ir::Texture& texture)
+std::vector<jit::ImageFile> CheckRun::images_of(const std::string& path, const ir::Texture& texture)
 {
-    std::vector<std::shared_ptr<const ir::SplineImage>> images;
+    std::vector<jit::ImageFile> images;
     for (const ir::Parameter& parameter : texture.parameters) {
         images.emplace_back();
         if (parameter.type != ir::Type::image) continue;
@@ -137,10 +150,40 @@ std::vector<std::shared_ptr<const ir::SplineImage>> CheckRun::images_of(const st
             jit::ImageFile read = jit::read_image(text);
             if (!read.image)
                 say("bad-value", "--set " + name + " for " + texture.name + ": " + read.error, read.hint, path);
-            images.back() = std::move(read.image);
+            images.back() = std::move(read);
         }
     }
     return images;
+}
+
+void CheckRun::note_grain(const CheckedTexture& checked, std::span<const double> values,
+                          const std::vector<jit::ImageFile>& images)
+{
+    std::vector<const ir::SplineImage*> views;
+    for (const jit::ImageFile& file : images) views.push_back(file.image.get());
+    const auto height = [&] {
+        lang::Diagnostics heard; // and said of the picture itself
+        return lang::analyse(*checked.program, *checked.texture, values, views,
+                             {options.box_m, options.footprint_m, report.normal_turn_per_m}, heard)
+            .at_values.height;
+    };
+    for (size_t i = 0; i < images.size(); ++i) {
+        if (images[i].grain.level == 0 && !images[i].grain.has_blocks) continue;
+        views[i] = &jit::flat_image();
+        const ir::Interval black = height();
+        views[i] = &jit::white_image();
+        const ir::Interval white = height();
+        views[i] = images[i].image.get();
+        const double white_m =
+            std::max(std::fabs(white.maximum - black.maximum), std::fabs(white.minimum - black.minimum));
+        const std::string& name = checked.texture->parameters[i].name;
+        for (const auto& [set, text] : options.parameters) {
+            if (set != name) continue;
+            for (const jit::GrainNote& said : jit::grain_notes(images[i].grain, lang::printable(text), white_m))
+                note("coarse-picture", "--set " + name + " for " + checked.texture->name + ": " + said.message,
+                     said.hint, checked.file);
+        }
+    }
 }
 
 void CheckRun::pick_precision(CheckedTexture& checked)
@@ -179,15 +222,16 @@ void CheckRun::check(const std::string& path)
             std::vector<const ir::SplineImage*> views;
             std::vector<std::string> any_picture;
             for (size_t i = 0; i < images.size(); ++i) {
-                views.push_back(images[i].get());
+                views.push_back(images[i].image.get());
                 const ir::Parameter& parameter = texture.parameters[i];
-                if (parameter.type == ir::Type::image && !images[i]) any_picture.push_back(parameter.name);
+                if (parameter.type == ir::Type::image && !images[i].image) any_picture.push_back(parameter.name);
             }
             report.textures.push_back(
                 {path, result.program, &texture,
                  lang::analyse(*result.program, texture, values, views,
                                {options.box_m, options.footprint_m, report.normal_turn_per_m}, diagnostics),
                  std::move(any_picture)});
+            note_grain(report.textures.back(), values, images);
             if (options.error_max && !diagnostics.has_errors()) pick_precision(report.textures.back());
         }
         diagnostics.sort_by_place();

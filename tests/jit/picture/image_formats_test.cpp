@@ -155,6 +155,26 @@ TEST_CASE("picture: colours count by their brightness, white may be zero, planes
           1e-6);
 }
 
+TEST_CASE("picture: levels are those of the file's numbers, real ones have none, and a JPEG has blocks")
+{
+    const auto levels = [](const std::string& bytes) { return decoded(bytes).levels; };
+    CHECK(levels(png(width, height, 8, smooth)) == 255);
+    CHECK(levels(png(width, height, 16, smooth)) == 65535);
+    CHECK(levels(jpeg(90)) == 255);
+    CHECK(levels("P5\n1 1\n63\n" + std::string(1, '\x07')) == 63);
+    CHECK(levels(tiff(width, height, {8, Numbers::unsigned_whole}, smooth)) == 255);
+    CHECK(levels(tiff(width, height, {8, Numbers::signed_whole}, smooth)) == 127);
+    CHECK(levels(tiff(width, height, {16, Numbers::unsigned_whole}, smooth)) == 65535);
+    CHECK(levels(tiff(width, height, {32, Numbers::real}, smooth)) == 0);
+    CHECK(levels(exr(width, height, true, {{"Y"}}, smooth)) == 0);
+    CHECK(decoded(jpeg(90)).has_blocks);
+    CHECK(!decoded(png(width, height, 8, smooth)).has_blocks);
+    CHECK(!decoded(tiff(width, height, {8, Numbers::unsigned_whole}, smooth)).has_blocks);
+    const std::vector<jit::GrainNote> notes = jit::grain_notes(jit::grain_of(decoded(jpeg(90))), "a.jpg", 0);
+    REQUIRE(notes.size() == 1); // too shallow for its levels, not for its blocks
+    CHECK(notes[0].message.find("'a.jpg' is coded in blocks of 8 x 8 texels") == 0);
+}
+
 TEST_CASE("picture: EXR of 16 and 32 bits, values as they are")
 {
     const Texels value = [](int column, int row) { return 40 * smooth(column, row) - 20; };

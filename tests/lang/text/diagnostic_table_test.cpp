@@ -59,7 +59,7 @@ TEST_CASE("diagnostics: the table is complete and tidy")
 {
     // What no small text shows: tests of their own have these.
     const std::set<std::string_view> without_example = {
-        "bad-value", "dimension-limit",   "internal-error",  "no-code",         "not-close-enough",
+        "bad-value", "coarse-picture",    "dimension-limit", "internal-error",  "no-code",        "not-close-enough",
         "too-large", "unknown-parameter", "unknown-texture", "unreadable-file", "unwritable-file"};
     std::set<std::string_view> codes, shown_nowhere;
     for (const DiagnosticInfo& info : all_diagnostics()) {

@@ -89,6 +89,25 @@ TEST_CASE("check: jumps, kinks and what may be undefined are found with their pl
     CHECK(run_command("check --strict '" + file + "'").code == 1);
 }
 
+TEST_CASE("check: a picture of 8 bits is noted where its steps may be felt")
+{
+    const Folder folder;
+    const std::string file = folder.write(
+        "deep.haptel", "texture deep(image dents, float depth = 1mm) { return depth * sample(dents, p.xy / 1m); }\n");
+    const std::string picture = folder.write("dents.pgm", std::string("P5\n3 1\n255\n") + "\x10\x50\xff");
+    const std::string set = "check --json --set 'dents=" + picture + "' ";
+    const Ran ran = run_command(set + "'" + file + "'");
+    CHECK(ran.code == 0);
+    const Json findings = Json::parse(ran.out)["diagnostics"];
+    REQUIRE(findings.size() == 1);
+    CHECK(findings[0]["code"] == "coarse-picture");
+    CHECK(findings[0]["severity"] == "note");
+    CHECK(contains(findings[0]["message"], "has 256 levels, so heights go in steps of 3.9 um"));
+    CHECK(contains(ran.err, "note: --set dents for deep: "));
+    CHECK(run_command("check --strict --set 'dents=" + picture + "' '" + file + "'").code == 0); // no warning
+    CHECK(Json::parse(run_command(set + "--set depth=0.1mm '" + file + "'").out)["diagnostics"].empty());
+}
+
 TEST_CASE("check: bounds without a picture are those of any, and say so; one end alone may be unbounded")
 {
     const Folder folder;
