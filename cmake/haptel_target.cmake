@@ -28,9 +28,24 @@ endif()
 set(haptel_precompiled <algorithm> <array> <cmath> <cstdint> <functional> <limits> <map> <memory> <optional> <span>
     <string> <string_view> <unordered_map> <utility> <variant> <vector>)
 
+# With HAPTEL_UNITY the compiler sees the files of a folder as one, and reads their headers once. Names in the anonymous
+# namespaces of a folder must differ then: two that are equal are one thing written twice, or two that deserve better
+# names.
+function(haptel_by_folders name)
+    get_target_property(sources ${name} SOURCES)
+    foreach(source ${sources})
+        cmake_path(GET source PARENT_PATH folder)
+        if(NOT IS_ABSOLUTE "${source}") # those are generated
+            set_source_files_properties(${source} PROPERTIES UNITY_GROUP "folder_${folder}")
+        endif()
+    endforeach()
+    set_target_properties(${name} PROPERTIES UNITY_BUILD ${HAPTEL_UNITY} UNITY_BUILD_MODE GROUP)
+endfunction()
+
 # haptel_library(name SOURCES... ) makes the static library of one folder.
 function(haptel_library name)
     add_library(${name} STATIC ${ARGN})
     target_link_libraries(${name} PUBLIC haptel_flags)
     target_precompile_headers(${name} PRIVATE ${haptel_precompiled})
+    haptel_by_folders(${name})
 endfunction()

@@ -8,7 +8,6 @@ namespace haptel::jit {
 namespace {
 
 using ir::Op;
-using ir::Value;
 
 constexpr uint32_t iterations_least = 3; // fewer are not worth a register
 constexpr int depth_most = 1000;         // of a chain of additions
@@ -22,8 +21,8 @@ public:
     {
         block(function.body);
     }
-    const ir::Instruction* maker(Value value) const { return makers[value.index]; }
-    uint32_t count(Value value) const { return counts[value.index]; }
+    const ir::Instruction* maker(ir::Value value) const { return makers[value.index]; }
+    uint32_t count(ir::Value value) const { return counts[value.index]; }
 
 private:
     std::vector<const ir::Instruction*> makers;
@@ -32,13 +31,13 @@ private:
     void block(const ir::Block& from)
     {
         for (const ir::Instruction& made : from.instructions) {
-            for (Value operand : made.operands) ++counts[operand.index];
-            for (Value result : made.results) makers[result.index] = &made;
+            for (ir::Value operand : made.operands) ++counts[operand.index];
+            for (ir::Value result : made.results) makers[result.index] = &made;
             if (const auto* choice = std::get_if<ir::If>(&made.kind))
                 for (const ir::Block& arm : choice->arms) block(arm);
             if (const auto* loop = std::get_if<ir::For>(&made.kind)) block(loop->body[0]);
         }
-        for (Value yield : from.yields) ++counts[yield.index];
+        for (ir::Value yield : from.yields) ++counts[yield.index];
     }
 };
 
@@ -65,7 +64,7 @@ public:
         mark();
         bool sums_something = false, is_all_known = true;
         for (size_t i = 0; i < made.results.size(); ++i) {
-            const Value parameter = body.parameters[i + 1], yield = body.yields[i];
+            const ir::Value parameter = body.parameters[i + 1], yield = body.yields[i];
             // What follows from the iteration's number is not known after the last.
             std::optional<Carried> found;
             if (uses.count(made.results[i]) == 0) found = known(parameter, yield);
@@ -89,26 +88,26 @@ private:
 
     void mark()
     {
-        for (Value parameter : body.parameters) changes[parameter.index] = true;
+        for (ir::Value parameter : body.parameters) changes[parameter.index] = true;
         for (const ir::Instruction& inside : body.instructions) {
             const bool is_plain =
                 !std::holds_alternative<ir::If>(inside.kind) && !std::holds_alternative<ir::For>(inside.kind);
             const bool is_fixed = is_plain && std::none_of(inside.operands.begin(), inside.operands.end(),
-                                                           [&](Value used) { return changes[used.index]; });
+                                                           [&](ir::Value used) { return changes[used.index]; });
             if (is_fixed) found_loop.fixed.push_back(&inside);
-            for (Value result : inside.results) changes[result.index] = !is_fixed;
+            for (ir::Value result : inside.results) changes[result.index] = !is_fixed;
         }
     }
     // From the iteration's number alone.
-    std::optional<Carried> known(Value parameter, Value yield)
+    std::optional<Carried> known(ir::Value parameter, ir::Value yield)
     {
         using enum Carried::Kind;
         if (yield == parameter) return Carried{kept};
         if (!changes[yield.index]) return Carried{replaced, yield};
         const ir::Instruction* maker = uses.maker(yield);
         if (const std::optional<Op> op = operation(maker); op && maker->operands.size() == 2) {
-            const Value first = maker->operands[0], second = maker->operands[1];
-            const auto is_same_for_all = [&](Value by) { return !changes[by.index] && !varies[by.index]; };
+            const ir::Value first = maker->operands[0], second = maker->operands[1];
+            const auto is_same_for_all = [&](ir::Value by) { return !changes[by.index] && !varies[by.index]; };
             const bool is_add = op == Op::add || op == Op::iadd, is_times = op == Op::mul || op == Op::imul;
             if (first == parameter && is_same_for_all(second)) {
                 if (is_add) return Carried{step, second};
@@ -122,7 +121,7 @@ private:
         }
         return {};
     }
-    bool is_sum(Value parameter, Value yield)
+    bool is_sum(ir::Value parameter, ir::Value yield)
     {
         uint32_t accounted = 0;
         return function.type(parameter) == ir::Type::real && adds_to(parameter, yield, accounted, 0) &&
@@ -143,9 +142,10 @@ private:
         for (const ir::Instruction* apart : found_loop.side_by_side) work += work_of(*apart);
         return work >= work_least ? std::optional(std::move(found_loop)) : std::nullopt;
     }
-    bool does_wait(const std::vector<Value>& values) const
+    bool does_wait(const std::vector<ir::Value>& values) const
     {
-        return std::any_of(values.begin(), values.end(), [&](Value value) { return found_loop.waits[value.index]; });
+        return std::any_of(values.begin(), values.end(),
+                           [&](ir::Value value) { return found_loop.waits[value.index]; });
     }
     // Marks what waits; what does not joins `free`.
     void sort(const ir::Instruction& inside, std::vector<const ir::Instruction*>& free)
@@ -162,7 +162,7 @@ private:
             waits = waits || uses_waiting(loop->body[0]);
             if (waits) mark_all(loop->body[0]);
         }
-        for (Value result : inside.results) found_loop.waits[result.index] = waits;
+        for (ir::Value result : inside.results) found_loop.waits[result.index] = waits;
         if (waits)
             free.insert(free.end(), free_of_arms.begin(), free_of_arms.end());
         else
@@ -181,9 +181,9 @@ private:
     }
     void mark_all(const ir::Block& block)
     {
-        for (Value parameter : block.parameters) found_loop.waits[parameter.index] = true;
+        for (ir::Value parameter : block.parameters) found_loop.waits[parameter.index] = true;
         for (const ir::Instruction& inside : block.instructions) {
-            for (Value result : inside.results) found_loop.waits[result.index] = true;
+            for (ir::Value result : inside.results) found_loop.waits[result.index] = true;
             if (const auto* choice = std::get_if<ir::If>(&inside.kind))
                 for (const ir::Block& arm : choice->arms) mark_all(arm);
             if (const auto* loop = std::get_if<ir::For>(&inside.kind)) mark_all(loop->body[0]);
@@ -200,12 +200,12 @@ private:
         return work;
     }
     // Is `value` the parameter with things added to it? Counts the uses of the parameter on the way.
-    bool adds_to(Value parameter, Value value, uint32_t& accounted, int depth)
+    bool adds_to(ir::Value parameter, ir::Value value, uint32_t& accounted, int depth)
     {
         if (value == parameter) return ++accounted, true;
         const ir::Instruction* maker = uses.maker(value);
         if (!maker || uses.count(value) != 1 || depth > depth_most) return false;
-        const auto try_one = [&](Value of) {
+        const auto try_one = [&](ir::Value of) {
             uint32_t more = accounted;
             if (!adds_to(parameter, of, more, depth + 1)) return false;
             accounted = more;

@@ -74,7 +74,7 @@ Json continuity_of(const ir::TextureBounds& bounds)
     return nullptr;
 }
 
-Json to_json(const CheckFinding& finding)
+Json finding_json(const CheckFinding& finding)
 {
     return {{"severity", name_of(finding.severity)},
             {"code", finding.code},
@@ -104,7 +104,7 @@ Json ranges_of(const CheckedTexture& checked)
     return ranges;
 }
 
-Json to_json(const CheckedTexture& checked)
+Json checked_json(const CheckedTexture& checked)
 {
     Json json = texture_json(checked.file, *checked.texture);
     json.update({{"height_m", to_json(checked.analysis.at_values.height)},
@@ -234,9 +234,9 @@ void CheckReport::add(const lang::CompileResult& result)
 Json CheckReport::to_json() const
 {
     Json diagnostics = Json::array(), all = Json::array();
-    for (const CheckFinding& finding : findings) diagnostics.push_back(tools::to_json(finding));
+    for (const CheckFinding& finding : findings) diagnostics.push_back(finding_json(finding));
     for (const CheckedTexture& checked : textures) {
-        all.push_back(tools::to_json(checked));
+        all.push_back(checked_json(checked));
         const bool reads_normal = (checked.texture->reads & HAPTEL_READS_NORMAL) != 0;
         all.back()["normal_turn_max_per_m"] = reads_normal ? Json(normal_turn_per_m) : Json(nullptr);
         if (with_cost) all.back()["cost"] = cost_json(checked);

@@ -124,7 +124,8 @@ double turn_max(const Surface& surface, uint32_t face, uint32_t side)
 
 void make_shading_normals(Surface& surface, double crease_deg)
 {
-    surface.shading_normal_of.assign(surface.faces.size(), {{{no_normal, no_normal}, {no_normal, no_normal}, {no_normal, no_normal}}});
+    surface.shading_normal_of.assign(surface.faces.size(),
+                                     {{{no_normal, no_normal}, {no_normal, no_normal}, {no_normal, no_normal}}});
     Smoothing smoothing(surface, crease_deg);
     for (uint32_t f = 0; f < surface.faces.size(); ++f)
         for (uint32_t corner = 0; corner < 3; ++corner)
