@@ -1,5 +1,6 @@
 #include "jit/codegen/precision.h"
 
+#include "lang/ir/dataflow.h"
 #include "lang/ir/op_info.h"
 
 #include <algorithm>
@@ -48,12 +49,13 @@ public:
         , sinks(of.value_types.size())
     {
         measure(function.body);
-        for (size_t i = 0; i < function.body.yields.size(); ++i) flow(function.body.yields[i], result_sink(i));
-        trace(function.body);
+        for (size_t i = 0; i < function.body.yields.size(); ++i) sink(function.body.yields[i], result_sink(i));
+        ir::Dataflow(*this).backwards(function.body);
     }
     PrecisionPlan::Summary summary() { return {std::move(sinks), result_bounds()}; }
 
 private:
+    friend ir::Dataflow<SinkAnalysis>;
     const ir::Module& module;
     const std::vector<PrecisionPlan::Summary>& callees;
     const ir::Function& function;
@@ -114,64 +116,34 @@ private:
     void measure(const ir::Instruction&, const ir::For& loop) { measure(loop.body[0]); } // what is carried: unknown
 
     // ---- sinks
-    bool changed = false;
+    static constexpr uint32_t rounds_max = UINT32_MAX;
 
-    void flow(ir::Value value, Sinks to)
+    bool sink(ir::Value value, Sinks to)
     {
-        if (function.type(value) != ir::Type::real || bounds[value.index] <= large) return;
-        changed = changed || (to & ~sinks[value.index]) != 0;
+        if (function.type(value) != ir::Type::real || bounds[value.index] <= large) return false;
+        const bool is_new = (to & ~sinks[value.index]) != 0;
         sinks[value.index] |= to;
+        return is_new;
     }
-    Sinks sinks_of(ir::Value value) const { return sinks[value.index]; }
-
-    void trace(const ir::Block& block)
+    bool flow(ir::Value from, ir::Value to) { return sink(to, sinks[from.index]); }
+    void steer(ir::Value, ir::Value) {}
+    void assume(ir::Value) {}
+    void visit(const ir::Instruction& made)
     {
-        for (auto made = block.instructions.rbegin(); made != block.instructions.rend(); ++made)
-            std::visit([&](const auto& kind) { trace(*made, kind); }, made->kind);
-    }
-    template <typename Kind>
-    void trace(const ir::Instruction&, const Kind&)
-    {
-    }
-    void trace(const ir::Instruction& made, const ir::Operation& operation)
-    {
-        for (ir::Value operand : made.operands) {
-            if (function.type(made.results[0]) == ir::Type::real) flow(operand, sinks_of(made.results[0]));
-            if (ir::traits(operation.op).reduces) flow(operand, 1);
+        if (const auto* operation = std::get_if<ir::Operation>(&made.kind)) {
+            for (ir::Value operand : made.operands) {
+                if (function.type(made.results[0]) == ir::Type::real) flow(made.results[0], operand);
+                if (ir::traits(operation->op).reduces) sink(operand, 1);
+            }
+        } else if (const auto* call = std::get_if<ir::Call>(&made.kind)) {
+            const ir::Function& callee = module.functions[call->function];
+            for (size_t i = 0; i < made.operands.size(); ++i) {
+                const Sinks inside = callees[call->function].sinks[callee.parameters[i].index];
+                sink(made.operands[i], inside & 1);
+                for (size_t j = 0; j < made.results.size(); ++j)
+                    if (inside & result_sink(j)) flow(made.results[j], made.operands[i]);
+            }
         }
-    }
-    void trace(const ir::Instruction& made, const ir::Call& call)
-    {
-        const ir::Function& callee = module.functions[call.function];
-        for (size_t i = 0; i < made.operands.size(); ++i) {
-            const Sinks inside = callees[call.function].sinks[callee.parameters[i].index];
-            flow(made.operands[i], inside & 1);
-            for (size_t j = 0; j < made.results.size(); ++j)
-                if (inside & result_sink(j)) flow(made.operands[i], sinks_of(made.results[j]));
-        }
-    }
-    void trace(const ir::Instruction& made, const ir::If& choice)
-    {
-        for (const ir::Block& arm : choice.arms) {
-            for (size_t i = 0; i < made.results.size(); ++i) flow(arm.yields[i], sinks_of(made.results[i]));
-            trace(arm);
-        }
-    }
-    // Backwards round the loop until nothing changes.
-    void trace(const ir::Instruction& made, const ir::For& loop)
-    {
-        const ir::Block& body = loop.body[0];
-        for (size_t i = 0; i < made.results.size(); ++i) flow(body.parameters[i + 1], sinks_of(made.results[i]));
-        bool changed_ever = changed;
-        do {
-            changed = false;
-            for (size_t i = 0; i < made.results.size(); ++i) flow(body.yields[i], sinks_of(body.parameters[i + 1]));
-            trace(body);
-            for (size_t i = 0; i < made.results.size(); ++i) flow(made.results[i], sinks_of(body.parameters[i + 1]));
-            changed_ever = changed_ever || changed;
-        } while (changed);
-        changed = changed_ever;
-        for (size_t i = 0; i < made.results.size(); ++i) flow(made.operands[i + 1], sinks_of(body.parameters[i + 1]));
     }
 };
 

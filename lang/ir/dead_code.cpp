@@ -1,5 +1,7 @@
 #include "lang/ir/dead_code.h"
 
+#include "lang/ir/dataflow.h"
+
 #include <algorithm>
 
 namespace haptel::ir {
@@ -14,10 +16,13 @@ public:
     }
     std::vector<bool> needed; // by Value::index
 
-    void need(Value value) { needed[value.index] = true; }
-    void need(const std::vector<Value>& values)
+    static constexpr uint32_t rounds_max = 8;
+
+    bool need(Value value)
     {
-        for (Value value : values) need(value);
+        const bool is_new = !needed[value.index];
+        needed[value.index] = true;
+        return is_new;
     }
     bool is_needed(Value value) const { return needed[value.index]; }
     bool is_needed(const Instruction& instruction) const
@@ -26,63 +31,24 @@ public:
                            [&](Value value) { return is_needed(value); });
     }
 
-    // From the last instruction back: a block's uses are all seen before their makers.
-    void mark(const Block& block)
+    bool flow(Value from, Value to) { return is_needed(from) && need(to); }
+    void steer(Value condition, Value result) { flow(result, condition); }
+    void assume(Value carried) { need(carried); }
+    void visit(const Instruction& made)
     {
-        for (auto instruction = block.instructions.rbegin(); instruction != block.instructions.rend(); ++instruction) {
-            if (!is_needed(*instruction)) continue;
-            if (auto* choice = std::get_if<If>(&instruction->kind)) {
-                need(instruction->operands);
-                for (const Block& arm : choice->arms) {
-                    for (size_t i = 0; i < arm.yields.size(); ++i)
-                        if (needed[instruction->results[i].index]) need(arm.yields[i]);
-                    mark(arm);
-                }
-            } else if (auto* loop = std::get_if<For>(&instruction->kind)) {
-                mark_loop(*instruction, loop->body[0]);
-            } else if (auto* call = std::get_if<Call>(&instruction->kind); call && parameters_needed) {
-                mark_call(*instruction, *call);
-            } else {
-                need(instruction->operands);
-            }
+        if (!is_needed(made)) return;
+        std::vector<bool> used(made.operands.size(), true);
+        if (const auto* call = std::get_if<Call>(&made.kind); call && parameters_needed) {
+            std::vector<bool> results;
+            for (Value result : made.results) results.push_back(is_needed(result));
+            used = (*parameters_needed)(call->function, results);
         }
+        for (size_t i = 0; i < made.operands.size(); ++i)
+            if (used[i]) need(made.operands[i]);
     }
 
 private:
     const ParametersNeeded* const parameters_needed;
-
-    void mark_call(const Instruction& made, const Call& call)
-    {
-        std::vector<bool> results;
-        for (Value result : made.results) results.push_back(is_needed(result));
-        const std::vector<bool> parameters = (*parameters_needed)(call.function, results);
-        for (size_t i = 0; i < made.operands.size(); ++i)
-            if (parameters[i]) need(made.operands[i]);
-    }
-
-    // A carried value is needed if its result is, or if the next iteration of a needed one reads it: a round of marking
-    // for each that is found late. After a few rounds everything is kept, so that long chains cost no quadratic time.
-    void mark_loop(const Instruction& made, const Block& body)
-    {
-        need(made.operands[0]);
-        for (int round = 0;; ++round) {
-            bool changed = false;
-            for (size_t i = 0; i < made.results.size(); ++i) {
-                Value result = made.results[i], carried = body.parameters[i + 1];
-                bool wanted = needed[result.index] || needed[carried.index] || round == rounds_max;
-                if (wanted && !(needed[carried.index] && needed[body.yields[i].index] && needed[result.index]))
-                    changed = true;
-                if (!wanted) continue;
-                need(result);
-                need(carried);
-                need(body.yields[i]);
-                need(made.operands[i + 1]);
-            }
-            if (!changed) return;
-            mark(body);
-        }
-    }
-    static constexpr int rounds_max = 8;
 };
 
 class Remover {
@@ -91,8 +57,8 @@ public:
 
     void run()
     {
-        marker.need(function.body.yields);
-        marker.mark(function.body);
+        for (Value result : function.body.yields) marker.need(result);
+        Dataflow(marker).backwards(function.body);
         sweep(function.body);
         number();
     }
@@ -114,15 +80,14 @@ private:
     {
         std::erase_if(block.instructions, [&](const Instruction& made) { return !marker.is_needed(made); });
         for (Instruction& made : block.instructions) {
-            auto* choice = std::get_if<If>(&made.kind);
-            auto* loop = std::get_if<For>(&made.kind);
-            if (!choice && !loop) continue;
+            if (blocks_of(made).empty()) continue;
+            const bool is_loop = std::holds_alternative<For>(made.kind);
             const std::vector<Value> results = made.results;
             auto keep = [&](size_t i) { return marker.is_needed(results[i]); };
             filter(made.results, 0, keep);
-            if (loop) filter(made.operands, 1, keep);
-            for (Block& inner : choice ? choice->arms : loop->body) {
-                if (loop) filter(inner.parameters, 1, keep);
+            if (is_loop) filter(made.operands, 1, keep);
+            for (Block& inner : blocks_of(made)) {
+                if (is_loop) filter(inner.parameters, 1, keep);
                 filter(inner.yields, 0, keep);
                 sweep(inner);
             }
@@ -156,9 +121,7 @@ private:
         for (Instruction& made : block.instructions) {
             use(made.operands);
             define(made.results);
-            if (auto* choice = std::get_if<If>(&made.kind))
-                for (Block& arm : choice->arms) rename(arm, renamed, define);
-            if (auto* loop = std::get_if<For>(&made.kind)) rename(loop->body[0], renamed, define);
+            for (Block& inner : blocks_of(made)) rename(inner, renamed, define);
         }
         use(block.yields);
     }
@@ -172,7 +135,7 @@ std::vector<bool> needed_values(const Function& function, const std::vector<bool
     Marker marker(function, &parameters);
     for (size_t i = 0; i < results.size(); ++i)
         if (results[i]) marker.need(function.body.yields[i]);
-    marker.mark(function.body);
+    Dataflow(marker).backwards(function.body);
     return std::move(marker.needed);
 }
 

@@ -9,6 +9,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -127,6 +128,30 @@ struct Block {
     std::vector<Instruction> instructions;
     std::vector<Value> yields; // of a function body: the function's results
 };
+
+// The two arms of an `if`, the body of a loop, nothing of another instruction.
+inline std::span<const Block> blocks_of(const Instruction& made)
+{
+    if (const auto* choice = std::get_if<If>(&made.kind)) return choice->arms;
+    if (const auto* loop = std::get_if<For>(&made.kind)) return loop->body;
+    return {};
+}
+inline std::span<Block> blocks_of(Instruction& made)
+{
+    if (auto* choice = std::get_if<If>(&made.kind)) return choice->arms;
+    if (auto* loop = std::get_if<For>(&made.kind)) return loop->body;
+    return {};
+}
+
+// Of the block and of all blocks in it, each before what is in it.
+template <typename Visit>
+void for_each_instruction(const Block& block, const Visit& visit)
+{
+    for (const Instruction& made : block.instructions) {
+        visit(made);
+        for (const Block& inner : blocks_of(made)) for_each_instruction(inner, visit);
+    }
+}
 
 // How smooth a value is as a function of what it is made from, the rougher the less; a composition is as smooth as its
 // roughest part. The derivative of a c1 function is c0, and so on.

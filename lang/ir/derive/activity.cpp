@@ -1,26 +1,43 @@
 #include "lang/ir/derive/activity.h"
 
+#include "lang/ir/dataflow.h"
 #include "lang/ir/derive/derivative_rules.h"
 
 namespace haptel::ir {
 namespace {
 
+// Forwards: what is made of something active may be active itself.
 class Propagation {
 public:
     Propagation(const Function& source, Dependences& dependences, InputActivity inputs, Activity& result)
         : function(source), callees(dependences), input_is_active(inputs), activity(result)
     {
+        Dataflow(*this).forwards(function.body);
     }
 
-    // Loops hand activity back to their own start: walk until nothing is new. Long chains of carried values would take
-    // a walk per link, so that after a few every carried real counts as active, which is safe.
-    void run()
+    static constexpr uint32_t rounds_max = 8;
+
+    bool flow(Value from, Value to) { return is_real(from) && is_real(to) && activity.add(to, from); }
+    void steer(Value, Value) {}
+    void assume(Value carried)
     {
-        for (int walk = 0;; ++walk) {
-            changed = false;
-            everything_carried = walk >= 8;
-            block(function.body);
-            if (!changed) return;
+        for (size_t d = 0; is_real(carried) && d < activity.directions(); ++d) activity.set(carried, d);
+    }
+    void visit(const Instruction& made)
+    {
+        if (const auto* operation = std::get_if<Operation>(&made.kind)) {
+            if (has_derivative(operation->op))
+                for (Value operand : made.operands) flow(operand, made.results[0]);
+        } else if (const auto* read = std::get_if<ReadInput>(&made.kind)) {
+            for (size_t d = 0; d < activity.directions(); ++d)
+                if (input_is_active && input_is_active(read->input, d)) activity.set(made.results[0], d);
+        } else if (const auto* call = std::get_if<Call>(&made.kind)) {
+            const Dependence& depends = callees.of(call->function);
+            for (size_t r = 0; r < made.results.size(); ++r)
+                for (size_t p = 0; p < made.operands.size(); ++p)
+                    if (depends[r][p]) flow(made.operands[p], made.results[r]);
+        } else if (std::holds_alternative<PointDerivative>(made.kind)) {
+            if (callees.point_derivatives == PointDerivatives::vary) flow(made.operands[0], made.results[0]);
         }
     }
 
@@ -29,67 +46,8 @@ private:
     Dependences& callees;
     InputActivity input_is_active;
     Activity& activity;
-    bool changed = false, everything_carried = false;
 
     bool is_real(Value value) const { return function.type(value) == Type::real; }
-    void flow(Value from, Value to)
-    {
-        if (is_real(from) && is_real(to)) changed |= activity.add(to, from);
-    }
-
-    void block(const Block& source)
-    {
-        for (const Instruction& made : source.instructions)
-            std::visit([&](const auto& kind) { visit(made, kind); }, made.kind);
-    }
-
-    void visit(const Instruction& made, const Operation& operation)
-    {
-        if (!has_derivative(operation.op)) return;
-        for (Value operand : made.operands) flow(operand, made.results[0]);
-    }
-    void visit(const Instruction&, const RealConstant&) {}
-    void visit(const Instruction&, const IntConstant&) {}
-    void visit(const Instruction&, const BoolConstant&) {}
-    void visit(const Instruction&, const ReadParameter&) {}
-    void visit(const Instruction&, const ReadTable&) {}
-    void visit(const Instruction& made, const ReadInput& read)
-    {
-        for (size_t d = 0; d < activity.directions(); ++d)
-            if (input_is_active && input_is_active(read.input, d)) changed |= activity.set(made.results[0], d);
-    }
-    void visit(const Instruction& made, const Call& call)
-    {
-        const Dependence& depends = callees.of(call.function);
-        for (size_t r = 0; r < made.results.size(); ++r)
-            for (size_t p = 0; p < made.operands.size(); ++p)
-                if (depends[r][p]) flow(made.operands[p], made.results[r]);
-    }
-    void visit(const Instruction& made, const PointDerivative&)
-    {
-        if (callees.point_derivatives == PointDerivatives::vary) flow(made.operands[0], made.results[0]);
-    }
-    void visit(const Instruction& made, const If& choice)
-    {
-        for (const Block& arm : choice.arms) {
-            block(arm);
-            for (size_t i = 0; i < made.results.size(); ++i) flow(arm.yields[i], made.results[i]);
-        }
-    }
-    void visit(const Instruction& made, const For& loop)
-    {
-        const Block& body = loop.body[0];
-        for (size_t i = 0; i < made.results.size(); ++i) {
-            flow(made.operands[i + 1], body.parameters[i + 1]);
-            for (size_t d = 0; everything_carried && is_real(made.results[i]) && d < activity.directions(); ++d)
-                changed |= activity.set(body.parameters[i + 1], d);
-        }
-        block(body);
-        for (size_t i = 0; i < made.results.size(); ++i) {
-            flow(body.yields[i], body.parameters[i + 1]);
-            flow(body.parameters[i + 1], made.results[i]);
-        }
-    }
 };
 
 } // namespace
@@ -144,7 +102,7 @@ const Dependence& Dependences::of(uint32_t function)
 
 void propagate(const Function& function, Dependences& callees, InputActivity input_is_active, Activity& activity)
 {
-    Propagation(function, callees, input_is_active, activity).run();
+    Propagation(function, callees, input_is_active, activity);
 }
 
 } // namespace haptel::ir

@@ -1,32 +1,49 @@
 #include "lang/ir/derive/point_derivative.h"
 
+#include "lang/ir/dataflow.h"
+
 #include <algorithm>
 #include <functional>
 
 namespace haptel::ir {
 namespace {
 
-// Walks a function backwards, from what is asked for to what it is made of.
+// Backwards, from what is asked for to what it is made of.
 class Need {
 public:
     using UseOf = std::function<const PointUse&(uint32_t)>;
 
-    Need(const Function& source, Dependences& dependences, UseOf use_of_callee)
-        : function(source), callees(dependences), use_of(std::move(use_of_callee)), is_needed(source.value_types.size())
+    Need(const Function& source, Dependences& dependences, UseOf use_of_callee, bool results)
+        : is_needed(source.value_types.size()), function(source), callees(dependences), use_of(std::move(use_of_callee))
     {
+        if (results) need(function.body.yields);
+        Dataflow(*this).backwards(function.body);
     }
 
     bool asks = false;
+    std::vector<bool> is_needed; // by Value::index
 
-    std::vector<bool> run(bool results)
+    static constexpr uint32_t rounds_max = 8;
+
+    bool flow(Value from, Value to) { return is_needed[from.index] && need(to); }
+    void steer(Value, Value) {}
+    void assume(Value carried) { need(carried); }
+    void visit(const Instruction& made)
     {
-        if (results) need(function.body.yields);
-        // Loops hand needs on to their own end: walk until nothing is new, and after a few walks need all they carry.
-        for (int walk = 0;; ++walk) {
-            changed = false;
-            everything_carried = walk >= 8;
-            block(function.body);
-            if (!changed) return std::move(is_needed);
+        if (const auto* operation = std::get_if<Operation>(&made.kind)) {
+            if (is_needed[made.results[0].index] && has_derivative(operation->op)) need(made.operands);
+        } else if (const auto* call = std::get_if<Call>(&made.kind)) {
+            const PointUse& use = use_of(call->function);
+            const Dependence& depends = callees.of(call->function);
+            asks |= use.asks;
+            for (size_t p = 0; p < made.operands.size(); ++p) {
+                if (use.parameters[p]) need(made.operands[p]);
+                for (size_t r = 0; r < made.results.size(); ++r)
+                    if (depends[r][p]) flow(made.results[r], made.operands[p]);
+            }
+        } else if (std::holds_alternative<PointDerivative>(made.kind)) {
+            asks = true;
+            need(made.operands);
         }
     }
 
@@ -34,71 +51,15 @@ private:
     const Function& function;
     Dependences& callees;
     const UseOf use_of;
-    std::vector<bool> is_needed; // by Value::index
-    bool changed = false, everything_carried = false;
 
-    void need(Value value)
+    bool need(Value value)
     {
-        if (is_needed[value.index] || function.type(value) != Type::real) return;
-        is_needed[value.index] = changed = true;
+        if (is_needed[value.index] || function.type(value) != Type::real) return false;
+        return is_needed[value.index] = true;
     }
     void need(const std::vector<Value>& values)
     {
         for (Value value : values) need(value);
-    }
-
-    void block(const Block& source)
-    {
-        for (auto made = source.instructions.rbegin(); made != source.instructions.rend(); ++made)
-            std::visit([&](const auto& kind) { visit(*made, kind); }, made->kind);
-    }
-
-    void visit(const Instruction& made, const Operation& operation)
-    {
-        if (is_needed[made.results[0].index] && has_derivative(operation.op)) need(made.operands);
-    }
-    void visit(const Instruction&, const RealConstant&) {}
-    void visit(const Instruction&, const IntConstant&) {}
-    void visit(const Instruction&, const BoolConstant&) {}
-    void visit(const Instruction&, const ReadInput&) {}
-    void visit(const Instruction&, const ReadParameter&) {}
-    void visit(const Instruction&, const ReadTable&) {}
-    void visit(const Instruction& made, const Call& call)
-    {
-        const PointUse& use = use_of(call.function);
-        const Dependence& depends = callees.of(call.function);
-        asks |= use.asks;
-        for (size_t p = 0; p < made.operands.size(); ++p) {
-            bool is_wanted = use.parameters[p];
-            for (size_t r = 0; r < made.results.size(); ++r)
-                is_wanted |= depends[r][p] && is_needed[made.results[r].index];
-            if (is_wanted) need(made.operands[p]);
-        }
-    }
-    void visit(const Instruction& made, const PointDerivative&)
-    {
-        asks = true;
-        need(made.operands);
-    }
-    void visit(const Instruction& made, const If& choice)
-    {
-        for (const Block& arm : choice.arms) {
-            for (size_t i = 0; i < made.results.size(); ++i)
-                if (is_needed[made.results[i].index]) need(arm.yields[i]);
-            block(arm);
-        }
-    }
-    void visit(const Instruction& made, const For& loop)
-    {
-        const Block& body = loop.body[0];
-        for (size_t i = 0; i < made.results.size(); ++i) {
-            const Value carried = body.parameters[i + 1];
-            if (!is_needed[made.results[i].index] && !is_needed[carried.index] && !everything_carried) continue;
-            need(carried);
-            need(body.yields[i]);
-            need(made.operands[i + 1]);
-        }
-        block(body);
     }
 };
 
@@ -114,11 +75,11 @@ const PointUse& PointDerivativeResolver::use_of(uint32_t function)
     // In order of index, so that callees are known: no recursion.
     for (auto next = static_cast<uint32_t>(uses.size()); next <= function; ++next) {
         const Function& source = module.functions[next];
-        Need need(source, dependences, [this](uint32_t callee) -> const PointUse& { return uses[callee]; });
-        const std::vector<bool> values = need.run(false);
+        const Need need(
+            source, dependences, [this](uint32_t callee) -> const PointUse& { return uses[callee]; }, false);
         PointUse use;
         use.asks = need.asks;
-        for (Value parameter : source.parameters) use.parameters.push_back(values[parameter.index]);
+        for (Value parameter : source.parameters) use.parameters.push_back(need.is_needed[parameter.index]);
         uses.push_back(std::move(use));
     }
     return uses[function];
@@ -126,8 +87,8 @@ const PointUse& PointDerivativeResolver::use_of(uint32_t function)
 
 std::vector<bool> PointDerivativeResolver::needed(const Function& function, bool tangents_of_results)
 {
-    Need need(function, dependences, [this](uint32_t callee) -> const PointUse& { return use_of(callee); });
-    return need.run(tangents_of_results);
+    const auto use = [this](uint32_t callee) -> const PointUse& { return use_of(callee); };
+    return Need(function, dependences, use, tangents_of_results).is_needed;
 }
 
 uint32_t PointDerivativeResolver::resolved_entry(uint32_t entry)
@@ -215,10 +176,8 @@ void remove_unresolved(Module& module)
                 call->function = moved[call->function];
                 if (call->function == UINT32_MAX) return true;
             }
-            if (auto* choice = std::get_if<If>(&made.kind))
-                for (Block& arm : choice->arms)
-                    if (self(self, arm)) return true;
-            if (auto* loop = std::get_if<For>(&made.kind); loop && self(self, loop->body[0])) return true;
+            for (Block& inner : blocks_of(made))
+                if (self(self, inner)) return true;
         }
         return false;
     };
