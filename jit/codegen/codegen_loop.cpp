@@ -214,14 +214,9 @@ void FunctionEmitter::take_out_of_lanes(const ir::Block& from, std::map<uint32_t
             if (const ir::Instruction* product = module.fuses() ? products[used.index] : nullptr)
                 for (ir::Value factor : product->operands) take_out_of_lanes(factor, rooms);
         }
-        if (const auto* choice = std::get_if<ir::If>(&made.kind))
-            for (const ir::Block& arm : choice->arms) {
-                take_out_of_lanes(arm, rooms);
-                for (ir::Value yield : arm.yields) take_out_of_lanes(yield, rooms);
-            }
-        if (const auto* loop = std::get_if<ir::For>(&made.kind)) {
-            take_out_of_lanes(loop->body[0], rooms);
-            for (ir::Value yield : loop->body[0].yields) take_out_of_lanes(yield, rooms);
+        for (const ir::Block& inner : ir::blocks_of(made)) {
+            take_out_of_lanes(inner, rooms);
+            for (ir::Value yield : inner.yields) take_out_of_lanes(yield, rooms);
         }
     }
 }

@@ -19,7 +19,15 @@ public:
     explicit Uses(const ir::Function& function)
         : makers(function.value_types.size()), counts(function.value_types.size())
     {
-        block(function.body);
+        const auto count = [&](const std::vector<ir::Value>& used) {
+            for (ir::Value value : used) ++counts[value.index];
+        };
+        ir::for_each_instruction(function.body, [&](const ir::Instruction& made) {
+            count(made.operands);
+            for (ir::Value result : made.results) makers[result.index] = &made;
+            for (const ir::Block& inner : ir::blocks_of(made)) count(inner.yields);
+        });
+        count(function.body.yields);
     }
     const ir::Instruction* maker(ir::Value value) const { return makers[value.index]; }
     uint32_t count(ir::Value value) const { return counts[value.index]; }
@@ -27,18 +35,6 @@ public:
 private:
     std::vector<const ir::Instruction*> makers;
     std::vector<uint32_t> counts;
-
-    void block(const ir::Block& from)
-    {
-        for (const ir::Instruction& made : from.instructions) {
-            for (ir::Value operand : made.operands) ++counts[operand.index];
-            for (ir::Value result : made.results) makers[result.index] = &made;
-            if (const auto* choice = std::get_if<ir::If>(&made.kind))
-                for (const ir::Block& arm : choice->arms) block(arm);
-            if (const auto* loop = std::get_if<ir::For>(&made.kind)) block(loop->body[0]);
-        }
-        for (ir::Value yield : from.yields) ++counts[yield.index];
-    }
 };
 
 std::optional<Op> operation(const ir::Instruction* made)
@@ -172,10 +168,8 @@ private:
     {
         const auto does = [&](const ir::Instruction& inside) {
             if (does_wait(inside.operands)) return true;
-            if (const auto* choice = std::get_if<ir::If>(&inside.kind))
-                return uses_waiting(choice->arms[0]) || uses_waiting(choice->arms[1]);
-            const auto* loop = std::get_if<ir::For>(&inside.kind);
-            return loop && uses_waiting(loop->body[0]);
+            const auto inner = ir::blocks_of(inside);
+            return std::any_of(inner.begin(), inner.end(), [&](const ir::Block& in) { return uses_waiting(in); });
         };
         return does_wait(block.yields) || std::any_of(block.instructions.begin(), block.instructions.end(), does);
     }
@@ -184,9 +178,7 @@ private:
         for (ir::Value parameter : block.parameters) found_loop.waits[parameter.index] = true;
         for (const ir::Instruction& inside : block.instructions) {
             for (ir::Value result : inside.results) found_loop.waits[result.index] = true;
-            if (const auto* choice = std::get_if<ir::If>(&inside.kind))
-                for (const ir::Block& arm : choice->arms) mark_all(arm);
-            if (const auto* loop = std::get_if<ir::For>(&inside.kind)) mark_all(loop->body[0]);
+            for (const ir::Block& inner : ir::blocks_of(inside)) mark_all(inner);
         }
     }
     static uint32_t work_of(const ir::Instruction& inside)
@@ -194,9 +186,8 @@ private:
         if (std::holds_alternative<ir::Call>(inside.kind) || std::holds_alternative<ir::For>(inside.kind))
             return work_least;
         uint32_t work = std::holds_alternative<ir::Operation>(inside.kind) ? 1 : 0;
-        if (const auto* choice = std::get_if<ir::If>(&inside.kind))
-            for (const ir::Block& arm : choice->arms)
-                for (const ir::Instruction& of_arm : arm.instructions) work += work_of(of_arm);
+        for (const ir::Block& arm : ir::blocks_of(inside))
+            for (const ir::Instruction& of_arm : arm.instructions) work += work_of(of_arm);
         return work;
     }
     // Is `value` the parameter with things added to it? Counts the uses of the parameter on the way.
@@ -223,39 +214,26 @@ private:
     }
 };
 
-class Search {
-public:
-    Search(const ir::Function& of, const std::vector<bool>& varying) : function(of), varies(varying), uses(of)
-    {
-        block(of.body);
-    }
-    LaneLoops found;
-
-private:
-    const ir::Function& function;
-    const std::vector<bool>& varies;
-    const Uses uses;
-
-    void block(const ir::Block& from)
-    {
-        for (const ir::Instruction& made : from.instructions) {
-            if (const auto* choice = std::get_if<ir::If>(&made.kind))
-                for (const ir::Block& arm : choice->arms) block(arm);
-            const auto* loop = std::get_if<ir::For>(&made.kind);
-            if (!loop) continue;
-            if (std::optional<LaneLoop> verdict = Judge(function, varies, uses, made).verdict())
+void search(const ir::Function& function, const ir::Block& from, const std::vector<bool>& varies, const Uses& uses,
+            LaneLoops& found)
+{
+    for (const ir::Instruction& made : from.instructions) {
+        if (const auto* loop = std::get_if<ir::For>(&made.kind))
+            if (std::optional<LaneLoop> verdict = Judge(function, varies, uses, made).verdict()) {
                 found.emplace(loop, std::move(*verdict));
-            else
-                block(loop->body[0]);
-        }
+                continue;
+            }
+        for (const ir::Block& inner : ir::blocks_of(made)) search(function, inner, varies, uses, found);
     }
-};
+}
 
 } // namespace
 
 LaneLoops lane_loops(const ir::Function& function, const std::vector<bool>& varies)
 {
-    return Search(function, varies).found;
+    LaneLoops found;
+    search(function, function.body, varies, Uses(function), found);
+    return found;
 }
 
 } // namespace haptel::jit

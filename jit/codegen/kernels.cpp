@@ -14,20 +14,6 @@ struct Extent {
     bool is_library = true; // it and all that it calls
 };
 
-void measure(const ir::Block& block, const std::vector<Extent>& callees, Extent& all)
-{
-    for (const ir::Instruction& made : block.instructions) {
-        ++all.size;
-        if (const auto* call = std::get_if<ir::Call>(&made.kind)) {
-            all.size = std::min(all.size + callees[call->function].size, size_min); // enough is enough
-            all.is_library = all.is_library && callees[call->function].is_library;
-        }
-        if (const auto* choice = std::get_if<ir::If>(&made.kind))
-            for (const ir::Block& arm : choice->arms) measure(arm, callees, all);
-        if (const auto* loop = std::get_if<ir::For>(&made.kind)) measure(loop->body[0], callees, all);
-    }
-}
-
 } // namespace
 
 // Callees stand before their callers.
@@ -38,7 +24,13 @@ std::vector<bool> worth_a_kernel(const ir::Module& module)
     for (const ir::Function& function : module.functions) {
         Extent extent;
         extent.is_library = function.is_library;
-        measure(function.body, extents, extent);
+        ir::for_each_instruction(function.body, [&](const ir::Instruction& made) {
+            ++extent.size;
+            const auto* call = std::get_if<ir::Call>(&made.kind);
+            if (!call) return;
+            extent.size = std::min(extent.size + extents[call->function].size, size_min); // enough is enough
+            extent.is_library = extent.is_library && extents[call->function].is_library;
+        });
         worth.push_back(extent.is_library && extent.size >= size_min);
         extents.push_back(extent);
     }

@@ -3,16 +3,14 @@
 namespace haptel::ir {
 namespace {
 
-// Adds the block's instructions to the sum, and to `reached` what it calls.
+// Adds the block's calls to `reached`, and tells its instructions.
 size_t count(const Block& block, std::vector<bool>& reached)
 {
-    size_t sum = block.instructions.size();
-    for (const Instruction& made : block.instructions) {
+    size_t sum = 0;
+    for_each_instruction(block, [&](const Instruction& made) {
+        ++sum;
         if (auto* call = std::get_if<Call>(&made.kind)) reached[call->function] = true;
-        if (auto* choice = std::get_if<If>(&made.kind))
-            for (const Block& arm : choice->arms) sum += count(arm, reached);
-        if (auto* loop = std::get_if<For>(&made.kind)) sum += count(loop->body[0], reached);
-    }
+    });
     return sum;
 }
 

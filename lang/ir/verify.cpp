@@ -277,13 +277,9 @@ std::vector<uint64_t> costs(const Module& module, size_t count)
 uint32_t deepest_call(const Block& block, const std::vector<uint32_t>& functions)
 {
     uint32_t deepest = 0;
-    for (const Instruction& made : block.instructions) {
+    for_each_instruction(block, [&](const Instruction& made) {
         if (auto* call = std::get_if<Call>(&made.kind)) deepest = std::max(deepest, functions[call->function] + 1);
-        if (auto* choice = std::get_if<If>(&made.kind))
-            for (const Block& arm : choice->arms) deepest = std::max(deepest, deepest_call(arm, functions));
-        if (auto* loop = std::get_if<For>(&made.kind))
-            deepest = std::max(deepest, deepest_call(loop->body[0], functions));
-    }
+    });
     return deepest;
 }
 

@@ -41,31 +41,6 @@ void lay_out(ir::Texture& made, const CheckedTexture& texture)
     made.block_size = aligned(end, alignof(double));
 }
 
-uint32_t reads_bit(ir::Input input)
-{
-    using enum ir::Input;
-    if (input <= p_z) return HAPTEL_READS_POINT;
-    if (input <= n_z) return HAPTEL_READS_NORMAL;
-    if (input <= uv_y) return HAPTEL_READS_UV;
-    if (input == time) return HAPTEL_READS_TIME;
-    if (input < center_x) return 0; // Jacobians come with what they are of
-    if (input <= center_z) return HAPTEL_READS_CENTER;
-    if (input <= extent_z) return HAPTEL_READS_EXTENT;
-    return HAPTEL_READS_FOOTPRINT;
-}
-
-uint32_t reads_of(const ir::Block& block)
-{
-    uint32_t reads = 0;
-    for (const ir::Instruction& made : block.instructions) {
-        if (auto read = std::get_if<ir::ReadInput>(&made.kind)) reads |= reads_bit(read->input);
-        if (auto choice = std::get_if<ir::If>(&made.kind))
-            for (const ir::Block& arm : choice->arms) reads |= reads_of(arm);
-        if (auto loop = std::get_if<ir::For>(&made.kind)) reads |= reads_of(loop->body.front());
-    }
-    return reads;
-}
-
 // 12 000 000 as "1.2e7": nobody counts the digits.
 std::string magnitude(uint64_t count)
 {
@@ -96,7 +71,6 @@ void ModuleLowering::texture(const CheckedTexture& texture)
     for (const CheckedOutput& output : texture.outputs) results.push_back(body.variable(*output.symbol)[0]);
     made.body = body.builder.finish(results);
     if (diagnostics.has_errors()) return;
-    made.reads = reads_of(module.functions[made.body].body);
 
     const auto refuse_long = [&](std::initializer_list<uint32_t> entries, size_t most) {
         size_t count = 0;

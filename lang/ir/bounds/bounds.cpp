@@ -22,17 +22,6 @@ constexpr double useless = 1e9;
 // bounds take.
 constexpr uint32_t points_for_facts = 64;
 
-// The point inputs that an entry reads.
-void find_inputs(const Block& block, std::vector<bool>& is_read)
-{
-    for (const Instruction& made : block.instructions) {
-        if (auto* read = std::get_if<ReadInput>(&made.kind)) is_read[static_cast<size_t>(read->input)] = true;
-        if (auto* choice = std::get_if<If>(&made.kind))
-            for (const Block& arm : choice->arms) find_inputs(arm, is_read);
-        if (auto* loop = std::get_if<For>(&made.kind)) find_inputs(loop->body[0], is_read);
-    }
-}
-
 // "hollow" of "d resolved hollow(vec2)"
 std::string source_name(const std::string& name)
 {
@@ -59,7 +48,9 @@ public:
         const uint64_t extent = instructions_reached(module, entry);
         if (extent > usual_extent) operations_left = operations_in_all * usual_extent / extent;
         std::vector<bool> is_read(input_count, false);
-        find_inputs(module.functions[entry].body, is_read);
+        for_each_instruction(module.functions[entry].body, [&](const Instruction& made) {
+            if (auto* read = std::get_if<ReadInput>(&made.kind)) is_read[static_cast<size_t>(read->input)] = true;
+        });
         for (size_t i = 0; i < input_count; ++i)
             if (is_read[i]) consider(&box.input[i]);
         for (size_t i = 0; i < box.parameters.size(); ++i)

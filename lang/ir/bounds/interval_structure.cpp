@@ -8,16 +8,6 @@ namespace {
 
 using Structure = IntervalEvaluator::Structure;
 
-void collect_makers(const Block& block, std::vector<const Instruction*>& makers)
-{
-    for (const Instruction& made : block.instructions) {
-        for (Value result : made.results) makers[result.index] = &made;
-        if (auto* choice = std::get_if<If>(&made.kind))
-            for (const Block& arm : choice->arms) collect_makers(arm, makers);
-        if (auto* loop = std::get_if<For>(&made.kind)) collect_makers(loop->body[0], makers);
-    }
-}
-
 // Whether a sum of multiples, written out, names some value twice.
 bool has_shared_terms(const std::vector<const Instruction*>& makers, Value whole)
 {
@@ -56,11 +46,8 @@ std::vector<bool> parts_of_results(const Function& function, const std::vector<c
         open.pop_back();
         if (!made) continue;
         for (Value operand : made->operands) mark(operand);
-        if (auto* choice = std::get_if<If>(&made->kind))
-            for (const Block& arm : choice->arms)
-                for (Value yield : arm.yields) mark(yield);
-        if (auto* loop = std::get_if<For>(&made->kind))
-            for (Value yield : loop->body[0].yields) mark(yield);
+        for (const Block& inner : blocks_of(*made))
+            for (Value yield : inner.yields) mark(yield);
     }
     return is_part;
 }
@@ -74,7 +61,9 @@ const Structure& IntervalEvaluator::structure_of(uint32_t index)
     const Function& function = module.functions[index];
     const size_t count = function.value_types.size() + 1;
     known.makers.resize(count);
-    collect_makers(function.body, known.makers);
+    for_each_instruction(function.body, [&](const Instruction& made) {
+        for (Value result : made.results) known.makers[result.index] = &made;
+    });
     known.has_shared_terms.resize(count);
     for (uint32_t i = 0; i + 1 < count; ++i) {
         auto* operation = known.makers[i] ? std::get_if<Operation>(&known.makers[i]->kind) : nullptr;

@@ -15,21 +15,6 @@ Input input_derivative(Input input, size_t axis)
     return input <= Input::n_z ? row(Input::n_dp_00, Input::n_x) : row(Input::uv_dp_00, Input::uv_x);
 }
 
-// The calls of a function that need a derivative of the callee.
-void collect_calls(const Block& block, Callees& callees, const Activity& activity,
-                   std::vector<std::pair<uint32_t, CallPlan>>& wanted)
-{
-    for (const Instruction& made : block.instructions) {
-        if (auto* call = std::get_if<Call>(&made.kind)) {
-            CallPlan plan = callees.plan(made, activity);
-            if (plan.how != CallPlan::How::plain) wanted.emplace_back(call->function, std::move(plan));
-        }
-        if (auto* choice = std::get_if<If>(&made.kind))
-            for (const Block& arm : choice->arms) collect_calls(arm, callees, activity, wanted);
-        if (auto* loop = std::get_if<For>(&made.kind)) collect_calls(loop->body[0], callees, activity, wanted);
-    }
-}
-
 } // namespace
 
 bool input_is_active(Input input, size_t axis)
@@ -77,7 +62,12 @@ DerivativeEmitter::DerivativeEmitter(const Function& source, const Activity& act
 void DerivativeEmitter::prepare(const Block& block)
 {
     std::vector<std::pair<uint32_t, CallPlan>> wanted;
-    collect_calls(block, callees, activity, wanted);
+    for_each_instruction(block, [&](const Instruction& made) {
+        const auto* call = std::get_if<Call>(&made.kind);
+        if (!call) return;
+        CallPlan plan = callees.plan(made, activity);
+        if (plan.how != CallPlan::How::plain) wanted.emplace_back(call->function, std::move(plan));
+    });
     for (const auto& [callee, plan] : wanted) callees.derivative(callee, plan);
 }
 

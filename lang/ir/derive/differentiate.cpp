@@ -34,23 +34,20 @@ Facts facts_of_partial(const Facts& of)
 uint32_t inputs_read(const Block& block)
 {
     uint32_t bits = 0;
-    for (const Instruction& made : block.instructions) {
-        if (auto* read = std::get_if<ReadInput>(&made.kind)) {
-            Input input = read->input;
-            bits |= input <= Input::p_z        ? HAPTEL_READS_POINT
-                    : input <= Input::n_z      ? HAPTEL_READS_NORMAL
-                    : input <= Input::uv_y     ? HAPTEL_READS_UV
-                    : input == Input::time     ? HAPTEL_READS_TIME
-                    : input <= Input::n_dp_22  ? HAPTEL_READS_NORMAL
-                    : input <= Input::uv_dp_12 ? HAPTEL_READS_UV
-                    : input <= Input::center_z ? HAPTEL_READS_CENTER
-                    : input <= Input::extent_z ? HAPTEL_READS_EXTENT
-                                               : HAPTEL_READS_FOOTPRINT;
-        }
-        if (auto* choice = std::get_if<If>(&made.kind))
-            for (const Block& arm : choice->arms) bits |= inputs_read(arm);
-        if (auto* loop = std::get_if<For>(&made.kind)) bits |= inputs_read(loop->body[0]);
-    }
+    for_each_instruction(block, [&](const Instruction& made) {
+        const auto* read = std::get_if<ReadInput>(&made.kind);
+        if (!read) return;
+        const Input input = read->input;
+        bits |= input <= Input::p_z        ? HAPTEL_READS_POINT
+                : input <= Input::n_z      ? HAPTEL_READS_NORMAL
+                : input <= Input::uv_y     ? HAPTEL_READS_UV
+                : input == Input::time     ? HAPTEL_READS_TIME
+                : input <= Input::n_dp_22  ? HAPTEL_READS_NORMAL
+                : input <= Input::uv_dp_12 ? HAPTEL_READS_UV
+                : input <= Input::center_z ? HAPTEL_READS_CENTER
+                : input <= Input::extent_z ? HAPTEL_READS_EXTENT
+                                           : HAPTEL_READS_FOOTPRINT;
+    });
     return bits;
 }
 
