@@ -1,7 +1,7 @@
 // What is felt beside contact: pull of surfaces, viscous media, vibrations. After contact and before the limits.
 //
 // A scene without effects pays one branch a tick; an object without them, one. What acts at a distance keeps its object
-// from falling asleep (reach.h) only within that distance. The file of each effect says what it does with energy.
+// from falling asleep (sleep_queue.h) only within that distance. The file of each effect says what it does with energy.
 #pragma once
 
 #include "runtime/force/viscosity.h"

@@ -26,7 +26,7 @@ namespace {
 
 constexpr double radius_slack = 1e-6; // of a radius
 
-Surroundings box_of(const Surface& surface)
+BoundingSphere box_of(const Surface& surface)
 {
     const glm::dvec3 middle = 0.5 * surface.box_minimum_m + 0.5 * surface.box_maximum_m;
     return {.centre_m = middle, .radius_m = glm::distance(surface.box_minimum_m, middle)};
@@ -46,16 +46,16 @@ std::optional<MotionBounds> bounds_of(const Scene& scene, const BodyObjects& obj
 {
     const Motion* motion = objects.motion(scene);
     if (!motion) return std::nullopt;
-    const Surroundings box = box_of(*objects.surface(scene));
+    const BoundingSphere box = box_of(*objects.surface(scene));
     const auto bounds = motion->bounds(box.centre_m, box.radius_m);
     return bounds && bounds->turn_rad_per_s <= turn_max_rad * scene.servo.rate_hz ? bounds : std::nullopt;
 }
 
 } // namespace
 
-Surroundings surroundings_of(const Scene& scene, const BodyObjects& objects, double probe_radius_m)
+BoundingSphere bounding_sphere_of(const Scene& scene, const BodyObjects& objects, double probe_radius_m)
 {
-    const Surroundings box = box_of(*objects.surface(scene));
+    const BoundingSphere box = box_of(*objects.surface(scene));
     const double felt_m = felt_within_m(scene, objects, probe_radius_m);
     if (!objects.motion(scene))
         return {.centre_m = objects.placement(scene).to_world(box.centre_m),

@@ -5,7 +5,7 @@
 #include "runtime/geometry/placement.h"
 #include "runtime/hand/hand_velocity.h"
 #include "runtime/hand/haptic_device.h"
-#include "runtime/render/reach.h"
+#include "runtime/render/sleep_queue.h"
 #include "runtime/scene/motion.h"
 #include "runtime/scene/scene.h"
 
@@ -42,7 +42,7 @@ struct BodyObjects {
 std::vector<BodyObjects> bodies_of(const Scene& scene);
 
 // Within which a body is felt, effects included, wherever it goes: a radius without end if that is not known.
-Surroundings surroundings_of(const Scene& scene, const BodyObjects& objects, double probe_radius_m);
+BoundingSphere bounding_sphere_of(const Scene& scene, const BodyObjects& objects, double probe_radius_m);
 
 // The friction that holds one end of the probe: the mean of all that it touches, by how hard that pushes, so that in a
 // crease one material comes in place of another without a step.
@@ -59,11 +59,11 @@ struct Body {
 
     BodyObjects objects;
     const Motion* motion; // null: at rest
-    // Moves, within bounds: may be asked where it was, and not at all for a while (reach.h). Its velocities are known
-    // only from when it is touched to when the hand is out of its surroundings.
+    // Moves, within bounds: may be asked where it was, and not at all for a while (sleep_queue.h). Its velocities are
+    // known only from when it is touched to when the hand is out of its bounding sphere.
     bool bounded = false;
     double turn_rad_per_s = 0; // of those bounds
-    Surroundings around;       // in its own space, within which it is felt
+    BoundingSphere around;     // in its own space, within which it is felt
     ProbeContact contact;      // in the body's space
     Placement placement;       // of this tick
     // Of tip and tail, in the space of a body that moves; else not kept.

@@ -31,7 +31,7 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
                                            : scene_->servo.force_limit_n)
     , bodies_(make_bodies(*scene_, probe_))
     , effects_(*scene_, hand_)
-    , reach_(surroundings(*scene_, bodies_, probe_.radius_m), scene_->servo.skips.objects)
+    , sleep_queue_(bounding_spheres(*scene_, bodies_, probe_.radius_m), scene_->servo.skips.objects)
     , waiting_(scene_->servo.wait_for_small_force_n > 0)
     , velocity_(period_s_)
     , tail_velocity_(period_s_)
@@ -52,11 +52,11 @@ std::vector<Body> Renderer::make_bodies(const Scene& scene, const ProbeSettings&
     return all;
 }
 
-std::vector<Surroundings> Renderer::surroundings(const Scene& scene, const std::vector<Body>& bodies,
-                                                 double probe_radius_m)
+std::vector<BoundingSphere> Renderer::bounding_spheres(const Scene& scene, const std::vector<Body>& bodies,
+                                                       double probe_radius_m)
 {
-    std::vector<Surroundings> all;
-    for (const Body& body : bodies) all.push_back(surroundings_of(scene, body.objects, probe_radius_m));
+    std::vector<BoundingSphere> all;
+    for (const Body& body : bodies) all.push_back(bounding_sphere_of(scene, body.objects, probe_radius_m));
     return all;
 }
 
@@ -86,7 +86,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         advance_texture(objects_.front());
         result.binding = objects_.front().texture.to().serial;
     }
-    for (const uint32_t body : reach_.awake())
+    for (const uint32_t body : sleep_queue_.awake())
         if (!bodies_[body].asleep) advance_textures(bodies_[body]);
     if (!finite(pose.tip_m) || !finite(pose.tail_m)) {
         velocity_.lose_hand();
@@ -94,7 +94,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
         effects_.lose_hand();
         if (history_) history_->lose_hand();
         sent_ = left_ = {};
-        for (const uint32_t body : reach_.awake()) { // who sleeps knows of no hand
+        for (const uint32_t body : sleep_queue_.awake()) { // who sleeps knows of no hand
             bodies_[body].velocity.lose_hand();
             bodies_[body].tail_velocity.lose_hand();
         }
@@ -121,12 +121,12 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
 
     held_j_ = 0;
     const double way = way_m(pose), near_m = far_enough_m(pose.tip_m, pose.tail_m, way);
-    if (turned_rad() > turn_max_rad) reach_.wake_who_turns();
-    reach_.go(way, pose.tip_m, pose.tail_m, near_m);
+    if (turned_rad() > turn_max_rad) sleep_queue_.wake_who_turns();
+    sleep_queue_.go(way, pose.tip_m, pose.tail_m, near_m);
     Skipped skipped;
     skipped_.objects += objects_.size();
-    for (std::size_t i = 0; i < reach_.awake().size(); ++i) {
-        const uint32_t number = reach_.awake()[i];
+    for (std::size_t i = 0; i < sleep_queue_.awake().size(); ++i) {
+        const uint32_t number = sleep_queue_.awake()[i];
         Body& body = bodies_[number];
         if (!take_pose(body, pose, periods)) continue;
         skipped_.objects -= body.objects.numbers().size();
@@ -146,7 +146,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
             const double gap = gap_to_sleep_m(number, pose, near_m);
             body.asleep = gap > 0;
             if (body.asleep && !(body.motion && !body.bounded)) {
-                reach_.sleep(number, gap);
+                sleep_queue_.sleep(number, gap);
                 --i;
             }
             continue;
@@ -194,7 +194,7 @@ void Renderer::between_ticks() noexcept
 {
     // Now and then, in turn: so that nobody keeps a texture that is to be freed.
     if (!objects_.empty() && texture_period_ % 8 == 0) advance_texture(objects_[texture_period_ / 8 % objects_.size()]);
-    for (const uint32_t body : reach_.awake())
+    for (const uint32_t body : sleep_queue_.awake())
         if (!bodies_[body].asleep) work_.read_ahead += bodies_[body].contact.read_ahead();
 }
 
@@ -234,8 +234,8 @@ ProbePose Renderer::pose_before(Body& body) const noexcept
 }
 
 // To where a body and the hand are now. False: it sleeps on. One of which nobody knows where it can go is not among
-// those that Reach leaves alone, and cannot be touched while in its own space the hand is out of the ball around it,
-// and its way into this tick is.
+// those that SleepQueue leaves alone, and cannot be touched while in its own space the hand is out of the ball around
+// it, and its way into this tick is.
 bool Renderer::take_pose(Body& body, const DevicePose& pose, uint64_t periods) noexcept
 {
     if (!body.motion && !body.asleep) return true;
@@ -273,7 +273,7 @@ double Renderer::gap_to_sleep_m(uint32_t number, const DevicePose& pose, double 
     for (const uint32_t object : body.objects.numbers())
         awake_within_m = std::max(awake_within_m, effects_.awake_within_m(object));
     double gap = body.contact.gap_m(probe) - awake_within_m;
-    if (body.bounded) gap = std::min(gap, gap_m(reach_.around(number), pose.tip_m, pose.tail_m));
+    if (body.bounded) gap = std::min(gap, gap_m(sleep_queue_.around(number), pose.tip_m, pose.tail_m));
     const glm::dvec3 farthest = glm::abs(probe.tip_m); // in its space, where coordinates may be larger
     return gap > std::max({near_m, 1e-6 * farthest.x, 1e-6 * farthest.y, 1e-6 * farthest.z}) ? gap : 0;
 }
@@ -288,7 +288,7 @@ void Renderer::track_velocity(uint32_t number, const DevicePose& pose, uint64_t 
         if (probe_.has_tail()) body.tail_velocity.update(body.placement.to_object(tail_m), since);
     };
     if (body.velocity.has_hand()) {
-        if (touching || !(gap_m(reach_.around(number), pose.tip_m, pose.tail_m) > 0))
+        if (touching || !(gap_m(sleep_queue_.around(number), pose.tip_m, pose.tail_m) > 0))
             update(pose.tip_m, pose.tail_m, periods);
         else
             body.velocity.lose_hand(), body.tail_velocity.lose_hand();

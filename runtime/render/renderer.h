@@ -12,8 +12,8 @@
 #include "runtime/hand/hand_velocity.h"
 #include "runtime/hand/haptic_device.h"
 #include "runtime/render/body.h"
-#include "runtime/render/reach.h"
 #include "runtime/render/skipped_stages.h"
+#include "runtime/render/sleep_queue.h"
 #include "runtime/scene/scene.h"
 #include "runtime/texture/surface_texture.h"
 #include "runtime/texture/texture_slot.h"
@@ -136,8 +136,8 @@ private:
     };
 
     static std::vector<Body> make_bodies(const Scene& scene, const ProbeSettings& probe);
-    static std::vector<Surroundings> surroundings(const Scene& scene, const std::vector<Body>& bodies,
-                                                  double probe_radius_m);
+    static std::vector<BoundingSphere> bounding_spheres(const Scene& scene, const std::vector<Body>& bodies,
+                                                        double probe_radius_m);
     TickResult feel(const DevicePose& pose) noexcept;
     void fade_shares(Degradation degradation, uint64_t periods) noexcept;
     void push(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept;
@@ -177,7 +177,7 @@ private:
     std::vector<Touched> objects_;
     std::vector<Body> bodies_;
     Effects effects_;
-    Reach reach_;                   // of bodies
+    SleepQueue sleep_queue_;        // of bodies
     double turn_max_rad_per_s_ = 0; // of those that move within bounds
     bool started_ = false;
     uint64_t period_ = 0;         // number of this tick's period, 0 at the first pose

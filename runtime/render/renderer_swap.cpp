@@ -96,7 +96,7 @@ void Renderer::take_over(Renderer& before) noexcept
     if (!last_pose_) return;
 
     HeldBodies held;
-    for (const uint32_t number : before.reach_.awake()) {
+    for (const uint32_t number : before.sleep_queue_.awake()) {
         Body& body = before.bodies_[number];
         if (body.asleep) continue;
         const double way_m = farthest_held_m(body, before);
@@ -114,9 +114,9 @@ void Renderer::take_over(Renderer& before) noexcept
     // Who is farther away than any way on which the hand is held off something neither touches it nor is met on the
     // way back to where it was held: such a body sleeps, as one that the hand has not come near yet.
     const double near_m = held.within_m + nudge + far_enough_m(last_pose_->tip_m, last_pose_->tail_m, 0);
-    reach_.go(0, last_pose_->tip_m, last_pose_->tail_m, near_m);
-    was_.resize(bodies_.size(), none);        // which allocates only for who was not made for this
-    for (const uint32_t i : reach_.awake()) { // the others first: they look at what the old bodies hold
+    sleep_queue_.go(0, last_pose_->tip_m, last_pose_->tail_m, near_m);
+    was_.resize(bodies_.size(), none);              // which allocates only for who was not made for this
+    for (const uint32_t i : sleep_queue_.awake()) { // the others first: they look at what the old bodies hold
         Body& body = bodies_[i];
         if (body.motion) body.move(time_s());
         Body* const old = was_[i] == none ? nullptr : &before.bodies_[was_[i]];
@@ -133,7 +133,7 @@ void Renderer::take_over(Renderer& before) noexcept
             old->contact.follow(old_pose);
         }
     }
-    for (const uint32_t i : reach_.awake()) {
+    for (const uint32_t i : sleep_queue_.awake()) {
         if (was_[i] == none) continue;
         Body &body = bodies_[i], &old = before.bodies_[was_[i]];
         std::swap(body.velocity, old.velocity);

@@ -30,7 +30,7 @@ public:
     // Nothing: the object stays where it was.
     virtual std::optional<Placement> at(double time_s) const noexcept = 0;
     // Of an object that is within the ball in its own space. Only a function of time alone has any; an object with them
-    // costs a tick nothing while the hand is far away (reach.h). Nothing: not known.
+    // costs a tick nothing while the hand is far away (sleep_queue.h). Nothing: not known.
     virtual std::optional<MotionBounds> bounds(const glm::dvec3& /*centre_m*/, double /*radius_m*/) const noexcept
     {
         return std::nullopt;

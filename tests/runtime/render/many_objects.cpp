@@ -1,7 +1,7 @@
 // Ten thousand objects: how many of them a tick looks at, when a scene begins, far later, and when another one takes
 // its place; and that nobody feels which of them it does not.
-#include "runtime/render/reach.h"
 #include "runtime/render/renderer.h"
+#include "runtime/render/sleep_queue.h"
 #include "runtime/servo/allocation_count.h"
 #include "tests/runtime/contact/wild_motion.h"
 #include "tests/support/catch.h"
@@ -91,15 +91,15 @@ TEST_CASE("the first tick of a scene looks at those near the hand alone, be they
 
 TEST_CASE("groups are compared with the hand before those in them, whether it begins near or far away")
 {
-    std::vector<Surroundings> balls;
+    std::vector<BoundingSphere> balls;
     for (int i = 0; i < side * side; ++i)
         balls.push_back({{apart_m * (i % side), apart_m * (i / side), 0}, 0.002, i % 3 == 0});
     for (const double z : {0.01, 10.0}) {
-        Reach reach(balls);
-        reach.go(0, {0.25, 0.25, z}, {0.25, 0.25, z + 0.1}, 1e-3);
-        CHECK(reach.awake().empty());
-        CHECK(reach.compared() < 400); // of a quadtree of balls: some at each of its 14 levels
-        CHECK(reach.compared() >= 2);
+        SleepQueue queue(balls);
+        queue.go(0, {0.25, 0.25, z}, {0.25, 0.25, z + 0.1}, 1e-3);
+        CHECK(queue.awake().empty());
+        CHECK(queue.compared() < 400); // of a quadtree of balls: some at each of its 14 levels
+        CHECK(queue.compared() >= 2);
     }
 }
 

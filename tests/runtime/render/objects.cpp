@@ -1,6 +1,6 @@
 // Scenes of many objects and of objects that move: who is felt, who is left alone, and that nothing slips through.
-#include "runtime/render/reach.h"
 #include "runtime/render/renderer.h"
+#include "runtime/render/sleep_queue.h"
 #include "runtime/scene/motion.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
@@ -252,57 +252,57 @@ TEST_CASE("a texture published to an object out of reach is there when the hand 
 TEST_CASE("whoever the hand may have reached is awake")
 {
     constexpr double anywhere = std::numeric_limits<double>::infinity();
-    Reach reach({{{}, anywhere}, {{}, anywhere}, {{}, anywhere}});
-    const auto go = [&](double way_m) { reach.go(way_m, {}, {}, 1e-6); };
-    CHECK(reach.awake() == std::vector<uint32_t>{0, 1, 2});
-    reach.sleep(1, 0.5);
-    reach.sleep(0, 0.2);
-    CHECK(reach.awake() == std::vector<uint32_t>{2});
+    SleepQueue queue({{{}, anywhere}, {{}, anywhere}, {{}, anywhere}});
+    const auto go = [&](double way_m) { queue.go(way_m, {}, {}, 1e-6); };
+    CHECK(queue.awake() == std::vector<uint32_t>{0, 1, 2});
+    queue.sleep(1, 0.5);
+    queue.sleep(0, 0.2);
+    CHECK(queue.awake() == std::vector<uint32_t>{2});
     go(0.1);
     go(0.05);
-    CHECK(reach.asleep() == 2);
+    CHECK(queue.asleep() == 2);
     go(0.05);
-    CHECK(reach.awake() == std::vector<uint32_t>{0, 2});
+    CHECK(queue.awake() == std::vector<uint32_t>{0, 2});
     go(0.3);
-    CHECK(reach.awake() == std::vector<uint32_t>{0, 1, 2});
-    reach.sleep(2, 10);
+    CHECK(queue.awake() == std::vector<uint32_t>{0, 1, 2});
+    queue.sleep(2, 10);
     go(anywhere);
-    CHECK(reach.asleep() == 0);
+    CHECK(queue.asleep() == 0);
 }
 
 TEST_CASE("who turns is looked at before the whole gap is gone, who is at rest is not")
 {
     constexpr double anywhere = std::numeric_limits<double>::infinity();
-    Reach reach({{.radius_m = anywhere}, {.radius_m = anywhere, .turns = true}});
-    reach.sleep(0, 1);
-    reach.sleep(1, 1);
-    const auto go = [&](double way_m) { reach.go(way_m, {}, {}, 1e-6); };
+    SleepQueue queue({{.radius_m = anywhere}, {.radius_m = anywhere, .turns = true}});
+    queue.sleep(0, 1);
+    queue.sleep(1, 1);
+    const auto go = [&](double way_m) { queue.go(way_m, {}, {}, 1e-6); };
     go(0.89);
-    CHECK(reach.awake().empty());
+    CHECK(queue.awake().empty());
     go(0.05);
-    CHECK(reach.awake() == std::vector<uint32_t>{1});
+    CHECK(queue.awake() == std::vector<uint32_t>{1});
     go(0.05999);
-    CHECK(reach.awake() == std::vector<uint32_t>{1});
+    CHECK(queue.awake() == std::vector<uint32_t>{1});
     go(0.00001);
-    CHECK(reach.awake() == std::vector<uint32_t>{0, 1});
+    CHECK(queue.awake() == std::vector<uint32_t>{0, 1});
 }
 
 TEST_CASE("who is still far away when the hand has gone far sleeps on, and wakes before the hand is there")
 {
-    Reach reach({{{1, 0, 0}, 0.1}});
-    reach.go(0, {}, {}, 1e-3);
-    REQUIRE(reach.asleep() == 1);
+    SleepQueue queue({{{1, 0, 0}, 0.1}});
+    queue.go(0, {}, {}, 1e-3);
+    REQUIRE(queue.asleep() == 1);
     double x = 0;
     for (int i = 0; i < 1000; ++i) { // to and fro: 10 m of way
         x = i % 2 * 0.01;
-        reach.go(0.01, {x, 0, 0}, {x, 1, 0}, 1e-3);
-        REQUIRE(reach.asleep() == 1);
+        queue.go(0.01, {x, 0, 0}, {x, 1, 0}, 1e-3);
+        REQUIRE(queue.asleep() == 1);
     }
-    for (; reach.asleep() == 1 && x < 1; x += 0.01) reach.go(0.01, {x, 0, 0}, {x, 1, 0}, 1e-3);
+    for (; queue.asleep() == 1 && x < 1; x += 0.01) queue.go(0.01, {x, 0, 0}, {x, 1, 0}, 1e-3);
     CHECK(x < 0.9 + 0.02);
     CHECK(x > 0.8);
     // A tail that reaches farther than the tip counts, and so does the shaft between.
-    Reach beside({{{0, 0.5, 0}, 0.1}});
+    SleepQueue beside({{{0, 0.5, 0}, 0.1}});
     beside.go(0, {-0.15, 0, 0}, {-0.15, 1, 0}, 1e-3);
     REQUIRE(beside.asleep() == 1);
     beside.go(0.06, {-0.06, 0, 0}, {0.06, 1, 0}, 1e-3);

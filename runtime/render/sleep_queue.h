@@ -27,14 +27,14 @@
 namespace haptel::runtime {
 
 // Around an object; a radius without end: it may be anywhere.
-struct Surroundings {
+struct BoundingSphere {
     glm::dvec3 centre_m{0};
     double radius_m = 0;
     bool turns = false;
 };
 
 // From the hand to there; not above 0 where that is not known.
-double gap_m(const Surroundings& around, const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
+double gap_m(const BoundingSphere& around, const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
 
 // An object farther away than this is left alone by a hand that went so far in this tick: it needs several ticks to
 // come near, and what rounding does to coordinates is nothing beside it.
@@ -43,11 +43,11 @@ double far_enough_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m, double wa
 // Of who turns, in one tick; who may have turned farther has to be awake.
 inline constexpr double turn_max_rad = 0.05;
 
-class Reach {
+class SleepQueue {
 public:
     // Who may be anywhere is awake; all others sleep until the first call of go(). Not `leaves_alone`: all are awake,
     // and nobody is to be put to sleep.
-    explicit Reach(std::vector<Surroundings> objects, bool leaves_alone = true);
+    explicit SleepQueue(std::vector<BoundingSphere> objects, bool leaves_alone = true);
 
     // The hand, from tip to tail, has gone so far since the last call. Wakes whoever it may have come nearer to than
     // `near_m`, and may wake others.
@@ -58,7 +58,7 @@ public:
     // The object, which is awake, is at least this far from the hand: more than a micrometre.
     void sleep(uint32_t object, double gap_m) noexcept;
 
-    const Surroundings& around(uint32_t object) const noexcept { return balls_[object]; }
+    const BoundingSphere& around(uint32_t object) const noexcept { return spheres_[object]; }
     // In rising order, so that what is summed over them does not depend on who slept when.
     const std::vector<uint32_t>& awake() const noexcept { return awake_; }
     std::size_t asleep() const noexcept { return object_count_ - awake_.size(); }
@@ -83,7 +83,7 @@ private:
     void wake(uint32_t object) noexcept;
 
     std::size_t object_count_;
-    std::vector<Surroundings> balls_; // of the objects, then of the groups
+    std::vector<BoundingSphere> spheres_; // of the objects, then of the groups
     std::vector<Group> groups_;
     std::vector<Sleeper> sleepers_; // heap: the first to wake in front; together they hold each object once
     std::vector<uint32_t> awake_;

@@ -1,4 +1,4 @@
-#include "runtime/render/reach.h"
+#include "runtime/render/sleep_queue.h"
 
 #include <algorithm>
 #include <cmath>
@@ -22,7 +22,7 @@ constexpr double sphere_rounding = 1e-12;
 // A metre before the circle is round, which so happens in every run and not after 1e7 m first.
 constexpr uint64_t way_at_start = uint64_t{0} - (uint64_t{1} << 40);
 
-Surroundings around_both(const Surroundings& a, const Surroundings& b)
+BoundingSphere around_both(const BoundingSphere& a, const BoundingSphere& b)
 {
     const bool turns = a.turns || b.turns;
     const glm::dvec3 way = b.centre_m - a.centre_m;
@@ -37,46 +37,46 @@ Surroundings around_both(const Surroundings& a, const Surroundings& b)
 
 } // namespace
 
-Reach::Reach(std::vector<Surroundings> objects, bool leaves_alone)
-    : object_count_(objects.size()), balls_(std::move(objects)), way_(way_at_start)
+SleepQueue::SleepQueue(std::vector<BoundingSphere> objects, bool leaves_alone)
+    : object_count_(objects.size()), spheres_(std::move(objects)), way_(way_at_start)
 {
     // Who turns is apart, since it has to be awake apart (wake_who_turns).
     std::vector<uint32_t> at_rest, turning;
     awake_.reserve(object_count_);
     for (uint32_t object = 0; object < object_count_; ++object)
-        if (!leaves_alone || !std::isfinite(balls_[object].radius_m))
+        if (!leaves_alone || !std::isfinite(spheres_[object].radius_m))
             awake_.push_back(object);
         else
-            (balls_[object].turns ? turning : at_rest).push_back(object);
+            (spheres_[object].turns ? turning : at_rest).push_back(object);
     sleepers_.reserve(object_count_);
     for (std::vector<uint32_t>* some : {&at_rest, &turning})
         if (!some->empty()) sleepers_.push_back({way_, group(*some)});
 }
 
 // Halves along the axis on which the objects are farthest apart.
-uint32_t Reach::group(std::span<uint32_t> objects)
+uint32_t SleepQueue::group(std::span<uint32_t> objects)
 {
     if (objects.size() == 1) return objects[0];
-    glm::dvec3 least(balls_[objects[0]].centre_m), most = least;
+    glm::dvec3 least(spheres_[objects[0]].centre_m), most = least;
     for (const uint32_t object : objects) {
-        least = glm::min(least, balls_[object].centre_m);
-        most = glm::max(most, balls_[object].centre_m);
+        least = glm::min(least, spheres_[object].centre_m);
+        most = glm::max(most, spheres_[object].centre_m);
     }
     const glm::dvec3 sides = most - least;
     const int axis = sides.x >= sides.y && sides.x >= sides.z ? 0 : sides.y >= sides.z ? 1 : 2;
     const std::size_t half = objects.size() / 2;
     std::nth_element(objects.begin(), objects.begin() + static_cast<std::ptrdiff_t>(half), objects.end(),
                      [&](uint32_t a, uint32_t b) {
-                         const double place_a = balls_[a].centre_m[axis], place_b = balls_[b].centre_m[axis];
+                         const double place_a = spheres_[a].centre_m[axis], place_b = spheres_[b].centre_m[axis];
                          return place_a != place_b ? place_a < place_b : a < b;
                      });
     const uint32_t first = group(objects.first(half)), second = group(objects.subspan(half));
     groups_.push_back({first, second});
-    balls_.push_back(around_both(balls_[first], balls_[second]));
-    return static_cast<uint32_t>(balls_.size() - 1);
+    spheres_.push_back(around_both(spheres_[first], spheres_[second]));
+    return static_cast<uint32_t>(spheres_.size() - 1);
 }
 
-double gap_m(const Surroundings& around, const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
+double gap_m(const BoundingSphere& around, const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
 {
     const glm::dvec3 shaft = tail_m - tip_m, to_centre = around.centre_m - tip_m;
     const double square = glm::dot(shaft, shaft);
@@ -91,12 +91,12 @@ double far_enough_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m, double wa
 }
 
 // On the circle, of which all sleepers are on the half that lies ahead.
-bool Reach::later(const Sleeper& a, const Sleeper& b) noexcept
+bool SleepQueue::later(const Sleeper& a, const Sleeper& b) noexcept
 {
     return static_cast<int64_t>(a.at - b.at) > 0;
 }
 
-void Reach::go(double way_m, const glm::dvec3& tip_m, const glm::dvec3& tail_m, double near_m) noexcept
+void SleepQueue::go(double way_m, const glm::dvec3& tip_m, const glm::dvec3& tail_m, double near_m) noexcept
 {
     const double units = std::ceil(way_m * units_per_m);
     if (units < units_most) {
@@ -109,7 +109,7 @@ void Reach::go(double way_m, const glm::dvec3& tip_m, const glm::dvec3& tail_m, 
         std::pop_heap(sleepers_.begin(), sleepers_.end(), later);
         sleepers_.pop_back();
         ++compared_;
-        const double gap = runtime::gap_m(balls_[node], tip_m, tail_m);
+        const double gap = runtime::gap_m(spheres_[node], tip_m, tail_m);
         if (gap > near_m) {
             sleep_for(node, gap);
         } else if (is_group(node)) {
@@ -120,12 +120,12 @@ void Reach::go(double way_m, const glm::dvec3& tip_m, const glm::dvec3& tail_m, 
     }
 }
 
-void Reach::wake_who_turns() noexcept
+void SleepQueue::wake_who_turns() noexcept
 {
     bool any = false;
     for (std::size_t i = 0; i < sleepers_.size();) {
         const uint32_t node = sleepers_[i].node;
-        if (!balls_[node].turns) {
+        if (!spheres_[node].turns) {
             ++i;
             continue;
         }
@@ -144,25 +144,25 @@ void Reach::wake_who_turns() noexcept
     std::make_heap(sleepers_.begin(), sleepers_.end(), later);
 }
 
-void Reach::sleep(uint32_t object, double gap_m) noexcept
+void SleepQueue::sleep(uint32_t object, double gap_m) noexcept
 {
     awake_.erase(std::lower_bound(awake_.begin(), awake_.end(), object));
     sleep_for(object, gap_m);
 }
 
-void Reach::sleep_for(uint32_t node, double gap_m) noexcept
+void SleepQueue::sleep_for(uint32_t node, double gap_m) noexcept
 {
-    const double units = (balls_[node].turns ? early_if_turning : early) * gap_m * units_per_m;
+    const double units = (spheres_[node].turns ? early_if_turning : early) * gap_m * units_per_m;
     fall_asleep(node, units < units_most ? static_cast<uint64_t>(units) : static_cast<uint64_t>(units_most));
 }
 
-void Reach::fall_asleep(uint32_t node, uint64_t units) noexcept
+void SleepQueue::fall_asleep(uint32_t node, uint64_t units) noexcept
 {
     sleepers_.push_back({way_ + units, node}); // room for all was made
     std::push_heap(sleepers_.begin(), sleepers_.end(), later);
 }
 
-void Reach::wake(uint32_t object) noexcept
+void SleepQueue::wake(uint32_t object) noexcept
 {
     awake_.insert(std::lower_bound(awake_.begin(), awake_.end(), object), object); // room for all was made
 }
