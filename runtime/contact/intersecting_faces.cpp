@@ -20,7 +20,7 @@ constexpr double margin = 8; // so far a wall reaches beyond its outline; less t
 constexpr double notice = 2; // and is known so much farther, before it is in the way
 constexpr double slack = 0.25; // what moves along a wall may lose of the distance by rounding
 
-// Sheets are pushed apart by 1 / sine of their angle; beyond this they are taken as parallel.
+// Planes are pushed apart by 1 / sine of their angle; beyond this they are taken as parallel.
 constexpr double least_square_of_sine = 1e-5;
 constexpr double least_sine = 1e-3; // of lines in a plane
 
@@ -117,24 +117,25 @@ struct HalfPlane {
 
 // The shortest way in the plane to where all of them hold: to none of their lines, to one, or to where two cross.
 // False: there is none.
-bool shortest_way(const std::array<HalfPlane, Cell::most + 3>& planes, uint32_t count, const glm::dvec3& normal,
-                  glm::dvec3& way)
+bool shortest_way(const std::array<HalfPlane, PlaneSet::most + 3>& half_planes, uint32_t count,
+                  const glm::dvec3& normal, glm::dvec3& way)
 {
     double shortest = INFINITY;
     const auto offer = [&](const glm::dvec3& candidate) {
         const double length = glm::length(candidate);
         if (length < shortest &&
-            std::all_of(planes.begin(), planes.begin() + count, [&](const auto& p) { return p.holds(candidate); })) {
+            std::all_of(
+                half_planes.begin(), half_planes.begin() + count, [&](const auto& p) { return p.holds(candidate); })) {
             shortest = length;
             way = candidate;
         }
     };
     offer(glm::dvec3(0));
     for (uint32_t j = 0; j < count; ++j) {
-        const HalfPlane& one = planes[j];
+        const HalfPlane& one = half_planes[j];
         offer(one.least * one.inward);
         for (uint32_t i = 0; i < j; ++i) {
-            const HalfPlane& other = planes[i];
+            const HalfPlane& other = half_planes[i];
             const glm::dvec3 across = glm::cross(normal, other.inward);
             const double sine = glm::dot(one.inward, across);
             if (std::abs(sine) < least_sine) continue;
@@ -144,100 +145,101 @@ bool shortest_way(const std::array<HalfPlane, Cell::most + 3>& planes, uint32_t 
     return shortest < INFINITY;
 }
 
-// Moves the place, which is in the face's plane, off the sheets and into the face's outline, and beside the sheet
+// Moves the place, which is in the face's plane, off the planes and into the face's outline, and beside the plane
 // `along`, if any. False: they leave no room.
-bool keep_off(const Surface& surface, uint32_t face, const Cell& sheets, uint32_t along, glm::dvec3& place)
+bool keep_off(const Surface& surface, uint32_t face, const PlaneSet& planes, uint32_t along, glm::dvec3& place)
 {
     const glm::dvec3& front = surface.faces[face].normal;
-    std::array<HalfPlane, Cell::most + 3> planes;
+    std::array<HalfPlane, PlaneSet::most + 3> half_planes;
     uint32_t count = 0;
     const auto away_from = [&](uint32_t k) {
-        return glm::dot(place - corner(surface, sheets.sheet[k].face, 0), sheets.sheet[k].normal);
+        return glm::dot(place - corner(surface, planes.plane[k].face, 0), planes.plane[k].normal);
     };
-    for (uint32_t k = 0; k < sheets.count; ++k) {
-        bool kept_off = false; // by another sheet of the same body
-        for (uint32_t other = 0; other < sheets.count && !kept_off; ++other)
-            kept_off = other != k && sheets.body[other] == sheets.body[k] && away_from(other) >= distance - slack;
+    for (uint32_t k = 0; k < planes.count; ++k) {
+        bool kept_off = false; // by another plane of the same body
+        for (uint32_t other = 0; other < planes.count && !kept_off; ++other)
+            kept_off = other != k && planes.body[other] == planes.body[k] && away_from(other) >= distance - slack;
         if (kept_off && k != along) continue;
-        const Sheet& sheet = sheets.sheet[k];
+        const Plane& plane = planes.plane[k];
         const double away = away_from(k);
-        const glm::dvec3 within = sheet.normal - glm::dot(sheet.normal, front) * front;
+        const glm::dvec3 within = plane.normal - glm::dot(plane.normal, front) * front;
         const double square = glm::dot(within, within);
         if (square >= least_square_of_sine) {
             const double sine = std::sqrt(square);
-            planes[count++] = {within / sine, (distance - away) / sine, slack / sine, k == along};
+            half_planes[count++] = {within / sine, (distance - away) / sine, slack / sine, k == along};
         } else if (away <= -slack) { // else another triangle of the same plane
             return false;
         }
     }
     for (uint32_t i = 0; i < 3; ++i) {
         const glm::dvec3 in = inward(surface, face, i);
-        planes[count++] = {in, glm::dot(in, corner(surface, face, i) - place), slack, false};
+        half_planes[count++] = {in, glm::dot(in, corner(surface, face, i) - place), slack, false};
     }
     glm::dvec3 way;
-    if (!shortest_way(planes, count, front, way)) return false;
+    if (!shortest_way(half_planes, count, front, way)) return false;
     place += way;
     return true;
 }
 
 } // namespace
 
-void add_walls(const Surface& surface, uint32_t face, const glm::dvec3& at, Cell& cell) noexcept
+void add_walls(const Surface& surface, uint32_t face, const glm::dvec3& at, PlaneSet& planes) noexcept
 {
     const Face& data = surface.faces[face];
-    const uint32_t first = cell.count;
+    const uint32_t first = planes.count;
     for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {
         const uint32_t wall = surface.pierced_by[k];
         const double height = glm::dot(at - corner(surface, wall, 0), surface.faces[wall].normal);
         if (std::abs(height) > beside_wall || within_outline(surface, wall, at) < -margin - notice) continue;
         const uint32_t side = height >= 0 ? 0 : 1;
         if (is_past_ridge(surface, face, wall, 1 - side, at)) continue; // it only seems to be behind the wall
-        cell.add({wall, side, surface.facet_normal(wall, side), false});
+        planes.add({wall, side, surface.facet_normal(wall, side), false});
     }
-    for (uint32_t k = first; k < cell.count; ++k) {
-        const Sheet& wall = cell.sheet[k];
+    for (uint32_t k = first; k < planes.count; ++k) {
+        const Plane& wall = planes.plane[k];
         for (uint32_t i = 0; i < 3; ++i) {
             if (!is_ridge(surface, face, wall.face, wall.side, i)) continue;
             const SideEdge link = surface.faces[wall.face].link[i][wall.side];
-            for (uint32_t other = first; other < cell.count; ++other)
-                if (cell.sheet[other].face == link.face() && cell.sheet[other].side == link.side()) cell.join(k, other);
+            for (uint32_t other = first; other < planes.count; ++other)
+                if (planes.plane[other].face == link.face() && planes.plane[other].side == link.side())
+                    planes.join(k, other);
         }
     }
 }
 
-Descent steepest(const Cell& cell, const glm::dvec3& way) noexcept
+ConeProjection project_on_cone(const PlaneSet& planes, const glm::dvec3& way) noexcept
 {
     const double tolerance = 1e-15 * glm::length(way); // rounding: below 0.01 units
     const auto before = [&](uint32_t k, const glm::dvec3& candidate) {
-        return glm::dot(cell.sheet[k].normal, candidate) >= -tolerance;
+        return glm::dot(planes.plane[k].normal, candidate) >= -tolerance;
     };
     const auto feasible = [&](const glm::dvec3& candidate) {
-        for (uint32_t k = 0; k < cell.count; ++k) {
+        for (uint32_t k = 0; k < planes.count; ++k) {
             bool free = before(k, candidate);
-            for (uint32_t other = 0; other < cell.count && !free; ++other)
-                free = cell.body[other] == cell.body[k] && before(other, candidate);
+            for (uint32_t other = 0; other < planes.count && !free; ++other)
+                free = planes.body[other] == planes.body[k] && before(other, candidate);
             if (!free) return false;
         }
         return true;
     };
-    // The projection onto a cone is the longest of the feasible projections onto the planes and lines that bound it.
-    // Among equals one along the first sheet: no need to leave it.
+    // The projection onto a cone is the longest of the feasible projections onto the planes and lines that bound
+    // it. Among equals one along the first plane: no need to leave it.
     if (feasible(way)) return {way, {}, 0};
-    Descent best{glm::dvec3(0), {}, 3};
+    ConeProjection best{glm::dvec3(0), {}, 3};
     double longest = 0;
-    const auto offer = [&](const Descent& descent) {
-        const double length = glm::length(descent.way) + (descent.sheet[0] == 0 ? equal : 0.0);
-        if (length <= longest || !feasible(descent.way)) return;
-        best = descent;
+    const auto offer = [&](const ConeProjection& projection) {
+        const double length = glm::length(projection.way) + (projection.plane[0] == 0 ? equal : 0.0);
+        if (length <= longest || !feasible(projection.way)) return;
+        best = projection;
         longest = length;
     };
-    for (uint32_t i = 0; i < cell.count; ++i) {
-        const glm::dvec3& n = cell.sheet[i].normal;
+    for (uint32_t i = 0; i < planes.count; ++i) {
+        const glm::dvec3& n = planes.plane[i].normal;
         offer({way - glm::dot(way, n) * n, {i}, 1});
     }
-    for (uint32_t j = 0; j < cell.count; ++j)
-        for (uint32_t i = j + 1; i < cell.count; ++i) {
-            const glm::dvec3 line = glm::cross(cell.sheet[j].normal, cell.sheet[i].normal);
+    for (uint32_t j = 0; j < planes.count; ++j)
+        for (uint32_t i = j + 1; i < planes.count; ++i) {
+            const glm::dvec3 line = glm::cross(planes.plane[j].normal, planes.plane[i].normal);
             const double square = glm::dot(line, line);
             if (square > least_square_of_sine * least_square_of_sine)
                 offer({glm::dot(way, line) / square * line, {j, i}, 2});
@@ -287,22 +289,23 @@ bool stays_before_walls(const Surface& surface, uint32_t face, const glm::dvec3&
 
 glm::dvec3 off_walls(const Surface& surface, uint32_t face, const glm::dvec3& at) noexcept
 {
-    Cell walls;
+    PlaneSet walls;
     add_walls(surface, face, at, walls);
     glm::dvec3 place = at;
     return keep_off(surface, face, walls, none, place) && !blocked(surface, face, at, place) ? place : at;
 }
 
-bool onto_wall(const Surface& surface, const Cell& cell, uint32_t wall, uint32_t along, const glm::dvec3& at,
+bool onto_wall(const Surface& surface, const PlaneSet& planes, uint32_t wall, uint32_t along, const glm::dvec3& at,
                glm::dvec3& place) noexcept
 {
-    const Sheet& onto = cell.sheet[wall];
-    Cell others;
+    const Plane& onto = planes.plane[wall];
+    PlaneSet others;
     uint32_t beside_it = none;
-    for (uint32_t k = 0; k < cell.count; ++k) {
-        if (cell.sheet[k].face == onto.face || cell.sheet[k].is_ridge || cell.body[k] == cell.body[wall]) continue;
+    for (uint32_t k = 0; k < planes.count; ++k) {
+        if (planes.plane[k].face == onto.face || planes.plane[k].is_ridge || planes.body[k] == planes.body[wall])
+            continue;
         if (k == along) beside_it = others.count;
-        others.add(cell.sheet[k], Cell::most + cell.body[k]);
+        others.add(planes.plane[k], PlaneSet::most + planes.body[k]);
     }
     place = at - glm::dot(at - corner(surface, onto.face, 0), onto.normal) * onto.normal;
     return keep_off(surface, onto.face, others, beside_it, place);
@@ -312,7 +315,7 @@ glm::dvec3 landing_off_walls(const Surface& surface, const Crossing& landing, co
                              const glm::dvec3& to, const glm::dvec3& point) noexcept
 {
     const Face& data = surface.faces[landing.face];
-    Cell walls;
+    PlaneSet walls;
     for (uint32_t k = data.pierced_begin; k < data.pierced_end; ++k) {
         const uint32_t wall = surface.pierced_by[k];
         if (within_outline(surface, wall, point) < -margin) continue;
@@ -322,8 +325,8 @@ glm::dvec3 landing_off_walls(const Surface& surface, const Crossing& landing, co
         passing.face = wall;
         const bool passed = crosses_plane(from, to, a, b, c, passing) && earlier(passing, landing);
         const uint32_t side = side_of_plane(a, b, c, passed ? to : from) > 0 ? 0 : 1;
-        const Sheet sheet{wall, side, surface.facet_normal(wall, side), false};
-        if (std::abs(glm::dot(point - a, sheet.normal)) < distance) walls.add(sheet);
+        const Plane plane{wall, side, surface.facet_normal(wall, side), false};
+        if (std::abs(glm::dot(point - a, plane.normal)) < distance) walls.add(plane);
     }
     glm::dvec3 place = point;
     return keep_off(surface, landing.face, walls, none, place) ? place : point;

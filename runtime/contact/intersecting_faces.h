@@ -1,6 +1,6 @@
 // Where faces pierce each other without sharing edges, the links do not see it: the faces listed in Surface::pierced_by
 // are walls that stand on the face walked on. The proxy keeps a little off their planes, so that no rounding can put it
-// behind one, and every move within a face is tested against its walls. Beside walls the sheets around the proxy are
+// behind one, and every move within a face is tested against its walls. Beside walls the planes around the proxy bound
 // half-spaces, and up to three of them at once decide where it goes. Lattice units.
 #pragma once
 
@@ -15,27 +15,27 @@ inline bool has_walls(const Surface& surface, uint32_t face)
 }
 
 // A face seen from one side; or the plane that rises over a ridge, as the bound of one of the ridge's two faces.
-struct Sheet {
+struct Plane {
     uint32_t face = 0, side = 0;
     glm::dvec3 normal{0}; // unit, toward that side; of a ridge's plane into the face
     bool is_ridge = false;
 };
 
-// The sheets around a place, in a cell of free space that they are taken to bound as half-spaces: the first is, or the
-// first two are, what the proxy is on, the others are walls within reach.
-struct Cell {
+// The planes around a place. Each bounds a half-space, and the proxy moves in the intersection of them: the first one,
+// or the first two, carry the proxy, the others are walls within reach. At most `most`; further ones are left out.
+struct PlaneSet {
     static constexpr uint32_t most = 8;
-    Sheet sheet[most];
+    Plane plane[most];
     // Walls that meet in ridges are one body, by the same number: to be before one of them is to be out of it.
     uint32_t body[most];
     uint32_t count = 0;
 
-    void add(const Sheet& another) { add(another, count); }
-    void add(const Sheet& another, uint32_t of_body)
+    void add(const Plane& another) { add(another, count); }
+    void add(const Plane& another, uint32_t of_body)
     {
         if (count == most) return;
         body[count] = of_body;
-        sheet[count++] = another;
+        plane[count++] = another;
     }
     void join(uint32_t one, uint32_t other)
     {
@@ -46,20 +46,22 @@ struct Cell {
 };
 
 // Adds the walls of the face that the place is beside.
-void add_walls(const Surface& surface, uint32_t face, const glm::dvec3& at, Cell& cell) noexcept;
+void add_walls(const Surface& surface, uint32_t face, const glm::dvec3& at, PlaneSet& planes) noexcept;
 
-// The steepest way: the part of `way` that the half-spaces leave, and the sheets that it runs on: up to three.
-struct Descent {
+// The part of a vector `way` that is left when it is projected on the cone of directions that all half-spaces allow:
+// the way along which the distance to way's end falls fastest. `plane`: indices of the up to three planes that it runs
+// on.
+struct ConeProjection {
     glm::dvec3 way{0};
-    uint32_t sheet[3] = {};
+    uint32_t plane[3] = {};
     uint32_t count = 0;
 
     bool runs_on(uint32_t index) const
     {
-        return (count > 0 && sheet[0] == index) || (count > 1 && sheet[1] == index) || (count > 2 && sheet[2] == index);
+        return (count > 0 && plane[0] == index) || (count > 1 && plane[1] == index) || (count > 2 && plane[2] == index);
     }
 };
-Descent steepest(const Cell& cell, const glm::dvec3& way) noexcept;
+ConeProjection project_on_cone(const PlaneSet& planes, const glm::dvec3& way) noexcept;
 
 // How much of the straight way within the face may be gone: all, or up to where it comes too near to a wall.
 double share_before_walls(const Surface& surface, uint32_t face, const glm::dvec3& from, const glm::dvec3& to) noexcept;
@@ -78,9 +80,9 @@ inline bool may_step(const Surface& surface, uint32_t face, const glm::dvec3& fr
 // The place, moved within the face off the walls that it is too near to; the place itself if that cannot be done.
 glm::dvec3 off_walls(const Surface& surface, uint32_t face, const glm::dvec3& at) noexcept;
 
-// A place near `at` that is on a wall of the cell and off its other sheets, or just beside one of them (`along`; the
+// A place near `at` that is on a wall, one of the planes, and off the others, or just beside one of them (`along`; the
 // wall itself: none). False: they are too nearly parallel, or that is not on the wall's triangle.
-bool onto_wall(const Surface& surface, const Cell& cell, uint32_t wall, uint32_t along, const glm::dvec3& at,
+bool onto_wall(const Surface& surface, const PlaneSet& planes, uint32_t wall, uint32_t along, const glm::dvec3& at,
                glm::dvec3& place) noexcept;
 
 // The point where the way from `from` to `to` lands on a face, moved within the face off the walls beside it, to the

@@ -20,30 +20,30 @@ constexpr double near_units = 1024;
 // Share of the depth that nobody feels.
 constexpr double enough = 1e-6;
 
-// Share of the depth: where the sheets around leave more of it than this they are not what holds the proxy.
+// Share of the depth: where the planes around leave more of it than this they are not what holds the proxy.
 constexpr double lost = 1e-3;
 
 // Of the way from the hand to the proxy: walls of a narrow groove that push more than this in sum, each by a stiffness
 // and a texture of its own, share the way itself beyond it.
 constexpr double opposed_way = 4;
 
-// The sheets around a place that may hold a proxy there, those of one part and plane as one.
-struct Sheets {
+// The planes around a place that may hold a proxy there, those of one part that coincide as one.
+struct Planes {
     static constexpr uint32_t most = 10;
-    Sheet sheet[most];
+    Plane plane[most];
     uint32_t count = 0;
     const Surface& surface;
 
-    explicit Sheets(const Surface& of) : surface(of) {}
+    explicit Planes(const Surface& of) : surface(of) {}
 
     uint32_t part_of(uint32_t face) const { return surface.origins.empty() ? 0 : surface.origins[face].part; }
-    uint32_t part(uint32_t k) const { return part_of(sheet[k].face); }
+    uint32_t part(uint32_t k) const { return part_of(plane[k].face); }
     void add(uint32_t face, uint32_t side)
     {
         const glm::dvec3 normal = surface.facet_normal(face, side);
         for (uint32_t k = 0; k < count; ++k)
-            if (part(k) == part_of(face) && glm::distance(sheet[k].normal, normal) < enough) return;
-        if (count < most) sheet[count++] = {face, side, normal, false};
+            if (part(k) == part_of(face) && glm::distance(plane[k].normal, normal) < enough) return;
+        if (count < most) plane[count++] = {face, side, normal, false};
     }
     bool of_one_part() const
     {
@@ -66,9 +66,9 @@ public:
         for (uint32_t k = 0; k < count_; ++k) go_on_from(face_[k], side_[k]);
     }
     const glm::dvec3& at() const { return at_; }
-    void add_to(Sheets& sheets) const
+    void add_to(Planes& planes) const
     {
-        for (uint32_t k = 0; k < count_; ++k) sheets.add(face_[k], side_[k]);
+        for (uint32_t k = 0; k < count_; ++k) planes.add(face_[k], side_[k]);
     }
 
 private:
@@ -102,28 +102,28 @@ private:
     uint32_t count_ = 0;
 };
 
-Sheets sheets_around(const Surface& surface, const Contact& contact)
+Planes planes_around(const Surface& surface, const Contact& contact)
 {
-    Sheets sheets(surface);
+    Planes planes(surface);
     const Around around(surface, contact);
-    around.add_to(sheets);
+    around.add_to(planes);
     if (has_walls(surface, contact.face)) {
-        Cell cell;
-        add_walls(surface, contact.face, around.at(), cell);
-        for (uint32_t k = 0; k < cell.count; ++k) sheets.add(cell.sheet[k].face, cell.sheet[k].side);
+        PlaneSet walls;
+        add_walls(surface, contact.face, around.at(), walls);
+        for (uint32_t k = 0; k < walls.count; ++k) planes.add(walls.plane[k].face, walls.plane[k].side);
     }
-    return sheets;
+    return planes;
 }
 
-// How much each sheet pushes along its normal, none pulling, so that together they make up the push. If there are
+// How much each plane pushes along its normal, none pulling, so that together they make up the push. If there are
 // several ways, the one that is least in sum: it does not jump as the push turns.
 struct Shares {
-    double of[Sheets::most] = {};
+    double of[Planes::most] = {};
     double sum = INFINITY;
     double left = INFINITY; // length of what they do not make up
 };
 
-Shares shares(const Sheets& sheets, const glm::dvec3& push)
+Shares shares(const Planes& planes, const glm::dvec3& push)
 {
     const double few = enough * glm::length(push);
     Shares best;
@@ -135,22 +135,22 @@ Shares shares(const Sheets& sheets, const glm::dvec3& push)
             if (!(share >= 0)) return;
             candidate.of[k] = share;
             candidate.sum += share;
-            rest -= share * sheets.sheet[k].normal;
+            rest -= share * planes.plane[k].normal;
         }
         candidate.left = glm::length(rest);
         const bool better = candidate.left > few ? candidate.left < best.left
                                                  : best.left > few || candidate.sum < best.sum * (1 - enough);
         if (better) best = candidate;
     };
-    const auto normal = [&](uint32_t k) { return sheets.sheet[k].normal; };
-    for (uint32_t i = 0; i < sheets.count; ++i) offer({{i, glm::dot(push, normal(i))}});
-    for (uint32_t j = 0; j < sheets.count; ++j)
+    const auto normal = [&](uint32_t k) { return planes.plane[k].normal; };
+    for (uint32_t i = 0; i < planes.count; ++i) offer({{i, glm::dot(push, normal(i))}});
+    for (uint32_t j = 0; j < planes.count; ++j)
         for (uint32_t i = 0; i < j; ++i) {
             const double cosine = glm::dot(normal(i), normal(j)), square = 1 - cosine * cosine;
             const double along_i = glm::dot(push, normal(i)), along_j = glm::dot(push, normal(j));
             offer({{i, (along_i - cosine * along_j) / square}, {j, (along_j - cosine * along_i) / square}});
         }
-    for (uint32_t k = 0; k < sheets.count; ++k)
+    for (uint32_t k = 0; k < planes.count; ++k)
         for (uint32_t j = 0; j < k; ++j)
             for (uint32_t i = 0; i < j; ++i) {
                 const glm::dvec3 jk = glm::cross(normal(j), normal(k)), ki = glm::cross(normal(k), normal(i)),
@@ -204,33 +204,33 @@ void PartShares::add(const Surface& surface, const Contact& contact) noexcept
     const auto keep = [&](const Contact& one) {
         if (count_ < contacts_.size()) contacts_[count_++] = one;
     };
-    const bool joined = !surface.origins.empty(), by_sheet = contact.on_crease;
-    if (contact.by_shaft || contact.depth_m == 0 || (!joined && !by_sheet)) return keep(contact);
-    const Sheets sheets = sheets_around(surface, contact);
-    if (sheets.of_one_part() && !by_sheet) return keep(contact);
+    const bool joined = !surface.origins.empty(), by_plane = contact.on_crease;
+    if (contact.by_shaft || contact.depth_m == 0 || (!joined && !by_plane)) return keep(contact);
+    const Planes planes = planes_around(surface, contact);
+    if (planes.of_one_part() && !by_plane) return keep(contact);
 
-    const Shares share = shares(sheets, contact.depth_m * contact.normal);
+    const Shares share = shares(planes, contact.depth_m * contact.normal);
     if (!(share.left <= lost * contact.depth_m)) return keep(contact);
     double sum_m = 0;
-    bool done[Sheets::most] = {};
-    for (uint32_t k = 0; k < sheets.count; ++k) {
+    bool done[Planes::most] = {};
+    for (uint32_t k = 0; k < planes.count; ++k) {
         if (done[k]) continue;
         glm::dvec3 push(0);
         uint32_t most = k, pushing = 0;
-        for (uint32_t i = k; i < sheets.count; ++i) {
-            if (by_sheet ? i != k : sheets.part(i) != sheets.part(k)) continue;
+        for (uint32_t i = k; i < planes.count; ++i) {
+            if (by_plane ? i != k : planes.part(i) != planes.part(k)) continue;
             done[i] = true;
-            push += share.of[i] * sheets.sheet[i].normal;
+            push += share.of[i] * planes.plane[i].normal;
             pushing += share.of[i] > 0;
             if (share.of[i] > share.of[most]) most = i;
         }
         const double depth_m = glm::length(push);
         if (!(depth_m > enough * contact.depth_m)) continue;
         Contact part = contact;
-        part.face = sheets.sheet[most].face;
-        part.side = sheets.sheet[most].side;
+        part.face = planes.plane[most].face;
+        part.side = planes.plane[most].side;
         part.barycentric = barycentric_of(surface, part.face, surface.lattice.units(contact.proxy_m));
-        part.facet_normal = sheets.sheet[most].normal;
+        part.facet_normal = planes.plane[most].normal;
         part.normal = pushing == 1 ? part.facet_normal : push / depth_m;
         part.depth_m = depth_m;
         keep(part);

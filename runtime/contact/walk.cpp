@@ -143,11 +143,11 @@ Walk::Step Walk::from_edge()
         const SideEdge to = pull_here >= pull_there ? SideEdge(face, edge, proxy_.side) : link;
         const glm::dvec3 normal = surface_.facet_normal(to.face(), to.side());
         if (glm::dot(hand_ - vertex(face, edge), normal) >= lift_off) return leave_edge(face, edge, link);
-        if (Cell cell; walls_at_edge(face, edge, proxy_.side, cell)) return from_edge_among_walls(cell, edge);
+        if (PlaneSet planes; walls_at_edge(face, edge, proxy_.side, planes)) return from_edge_among_walls(planes, edge);
         return slide(to.face(), to.side(), to.edge(), 3);
     }
     if (free_of_edge(face, edge, proxy_.side)) return leave_edge(face, edge, link);
-    if (Cell cell; walls_at_edge(face, edge, proxy_.side, cell)) return from_edge_among_walls(cell, edge);
+    if (PlaneSet planes; walls_at_edge(face, edge, proxy_.side, planes)) return from_edge_among_walls(planes, edge);
     return slide_along(face, edge, proxy_.side);
 }
 

@@ -1,5 +1,5 @@
 // The walk of proxy.h from the inside: its steps, which walk.cpp takes on faces, edges and vertices and walk_walls.cpp
-// where sheets pierce each other. Internal to the runtime.
+// where faces pierce each other. Internal to the runtime.
 #pragma once
 
 #include "runtime/contact/intersecting_faces.h"
@@ -60,12 +60,12 @@ private:
 
     // Among walls, see walk_walls.cpp.
     Step from_face_among_walls();
-    bool walls_at_edge(uint32_t face, uint32_t edge, uint32_t side, Cell& cell) const;
-    Step from_edge_among_walls(const Cell& cell, uint32_t edge);
-    Step descend(const Cell& cell, uint32_t owned, const Descent& descent, uint32_t from_edge);
-    void hold(const Cell& cell, uint32_t owned, const Descent& descent);
-    Step slide_along_crease(const Sheet& face, const Sheet& wall, uint32_t from_edge);
-    Step change_over(const Cell& cell, uint32_t owned, const Descent& descent);
+    bool walls_at_edge(uint32_t face, uint32_t edge, uint32_t side, PlaneSet& planes) const;
+    Step from_edge_among_walls(const PlaneSet& planes, uint32_t edge);
+    Step descend(const PlaneSet& planes, uint32_t owned, const ConeProjection& projection, uint32_t from_edge);
+    void hold(const PlaneSet& planes, uint32_t owned, const ConeProjection& projection);
+    Step slide_along_crease(const Plane& face, const Plane& wall, uint32_t from_edge);
+    Step change_over(const PlaneSet& planes, uint32_t owned, const ConeProjection& projection);
     Step went(const glm::dvec3& from);
     Step turn();
 
