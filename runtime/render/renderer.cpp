@@ -64,8 +64,8 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
 {
     if (!refused_.empty()) return {.faults = fault_scene_refused};
     const Workspace& workspace = hand_.workspace;
-    if (!workspace.moves()) return feel(pose);
-    TickResult result = feel(workspace.to_scene(pose));
+    if (!workspace.moves()) return tick_in_scene(pose);
+    TickResult result = tick_in_scene(workspace.to_scene(pose));
     result.force_n = workspace.direction_to_hand(result.force_n);
     result.unlimited_force_n = workspace.direction_to_hand(result.unlimited_force_n);
     result.torque_n_m = workspace.torque_to_hand(result.torque_n_m);
@@ -75,7 +75,7 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
 }
 
 // The same in the scene's space, with stiffness and damping stated for the hand.
-TickResult Renderer::feel(const DevicePose& pose) noexcept
+TickResult Renderer::tick_in_scene(const DevicePose& pose) noexcept
 {
     TickResult result;
     const uint64_t periods = std::max(uint64_t{1}, pose.periods);
@@ -151,7 +151,7 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
             }
             continue;
         }
-        for (const PartContacts& part : parts) touch(body, contacts, part, pose, result, skipped);
+        for (const PartContacts& part : parts) render_object(body, contacts, part, pose, result, skipped);
     }
     const double left_work_j = last_pose_ ? work_j(swapped_ ? sent_ : left_, *last_pose_, pose) : 0.0;
     last_pose_ = pose;
@@ -162,10 +162,11 @@ TickResult Renderer::feel(const DevicePose& pose) noexcept
     skipped_.mapping += skipped.mapping;
     if (effects_act) {
         const glm::dvec3 effects_n = shares_.effects * effects_.force_n(); // once: its medium lives a tick
-        push(result, pose, 0, effects_n);
+        add_force(result, pose, 0, effects_n);
         held_j_ += glm::dot(effects_n, effects_n) * hand_.workspace.scale / (2 * effect_stiffness_n_per_m);
     }
-    send(result, std::max(glm::distance(pose.tip_m, grip_m), glm::distance(pose.tail_m, grip_m)), left_work_j);
+    limit_and_send(result, std::max(glm::distance(pose.tip_m, grip_m), glm::distance(pose.tail_m, grip_m)),
+                   left_work_j);
     return result;
 }
 

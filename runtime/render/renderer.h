@@ -138,12 +138,12 @@ private:
     static std::vector<Body> make_bodies(const Scene& scene, const ProbeSettings& probe);
     static std::vector<BoundingSphere> bounding_spheres(const Scene& scene, const std::vector<Body>& bodies,
                                                         double probe_radius_m);
-    TickResult feel(const DevicePose& pose) noexcept;
+    TickResult tick_in_scene(const DevicePose& pose) noexcept;
     void fade_shares(Degradation degradation, uint64_t periods) noexcept;
-    void push(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept;
+    void add_force(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept;
     std::span<const Contact> update_contact(Body& body, const ProbePose& pose, const EndsFriction& friction) noexcept;
-    void touch(Body& body, std::span<const Contact> contacts, const PartContacts& part, const DevicePose& pose,
-               TickResult& result, Skipped& skipped) noexcept;
+    void render_object(Body& body, std::span<const Contact> contacts, const PartContacts& part, const DevicePose& pose,
+                       TickResult& result, Skipped& skipped) noexcept;
     double grown_since_m(const Renderer& before) const noexcept; // a ball in place of another
     double farthest_held_m(const Body& old, const Renderer& before) const noexcept;
     void put_down(Body& body, const Renderer& before, const HeldBodies& held) noexcept;
@@ -164,7 +164,7 @@ private:
     double damping_n(const Body& body, const Material& material, const Placement& placement, const Contact& contact,
                      const glm::dvec3& normal, double depth_m, double stiffness_n_per_m) const noexcept;
     double work_j(const OnHand& on_hand, const DevicePose& from, const DevicePose& to) const noexcept;
-    void send(TickResult& result, double lever_m, double left_work_j) noexcept;
+    void limit_and_send(TickResult& result, double lever_m, double left_work_j) noexcept;
     double time_s() const noexcept { return time_s(period_); }
     double time_s(uint64_t period) const noexcept { return static_cast<double>(period) * period_s_; }
 

@@ -44,7 +44,8 @@ double share_of(const Contact& contact, const glm::dvec3& way_m)
 } // namespace
 
 // On the probe at the share `along` of the way from its tip to its tail.
-void Renderer::push(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept
+void Renderer::add_force(TickResult& result, const DevicePose& pose, double along,
+                         const glm::dvec3& force_n) const noexcept
 {
     result.unlimited_force_n += force_n;
     if (probe_.has_tail())
@@ -54,8 +55,8 @@ void Renderer::push(TickResult& result, const DevicePose& pose, double along, co
 }
 
 // One object, of all `contacts` of its body those with it.
-void Renderer::touch(Body& body, std::span<const Contact> contacts, const PartContacts& part, const DevicePose& pose,
-                     TickResult& result, Skipped& skipped) noexcept
+void Renderer::render_object(Body& body, std::span<const Contact> contacts, const PartContacts& part,
+                             const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept
 {
     const Touched& touched = objects_[body.objects.number(part.part)];
     const Placement& placement = body.placement_of(*touched.object);
@@ -74,7 +75,7 @@ void Renderer::touch(Body& body, std::span<const Contact> contacts, const PartCo
         } else {
             force = force_of(body, touched, placement, contact);
         }
-        push(result, pose, contact.along, force.force_n);
+        add_force(result, pose, contact.along, force.force_n);
         result.faults |= force.faults;
         held_j_ += force.held_j;
         skipped.texture = skipped.texture && !force.textured;

@@ -38,7 +38,7 @@ double Renderer::work_j(const OnHand& on_hand, const DevicePose& from, const Dev
 // What of the force and the torque goes to the hand. `lever_m`: of the end that is farther from the grip. Contacts that
 // push against each other may add up to a torque without a force: it is limited by what the largest force has there.
 // `left_work_j`: of what is left over from another scene, in this tick and had it not faded.
-void Renderer::send(TickResult& result, double lever_m, double left_work_j) noexcept
+void Renderer::limit_and_send(TickResult& result, double lever_m, double left_work_j) noexcept
 {
     if (!finite(result.unlimited_force_n) || !finite(result.unlimited_torque_n_m) ||
         !std::isfinite(result.grip_force_n)) {
