@@ -97,8 +97,8 @@ private:
         bool exact = false; // not met on the way, but crossed at the end of it
         double on_shaft = 0;
     };
-    struct Grips {
-        EndGrip tip, tail;
+    struct FrictionOfEnds {
+        EndFriction tip, tail;
     };
     // A region known to be empty: the shaft is free while each end is within the radius of where it was.
     struct Clear {
@@ -130,9 +130,10 @@ private:
 
     void resolve(const EndsFriction& friction) noexcept;
     enum class Turning : uint8_t { with_the_shaft, not_at_all };
-    double solve(const Shaft& hand, Shaft& aim, Grips& grips, Turning normals = Turning::with_the_shaft) noexcept;
+    double solve(const Shaft& hand, Shaft& aim, FrictionOfEnds& ends,
+                 Turning normals = Turning::with_the_shaft) noexcept;
     Shaft clear_of_sides(const Shaft& to, EndsGive gives) const noexcept;
-    void take_hold(EndGrip& grip, const PointContact& end, const glm::dvec3& on_shaft) const noexcept;
+    void take_hold(EndFriction& end_friction, const PointContact& end, const glm::dvec3& on_shaft) const noexcept;
     bool drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept;
     bool move(Shaft to) noexcept;
     bool blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept;
@@ -144,7 +145,7 @@ private:
     Place place() const noexcept;
     void go_back(const Place& to) noexcept;
     double away(const Shaft& part) const noexcept;
-    void hold_hand_from_here(Grips& grips) noexcept;
+    void hold_hand_from_here(FrictionOfEnds& ends) noexcept;
     void drop(uint32_t side) noexcept;
     void report() noexcept;
     void tell(double along, uint32_t face, const glm::dvec3& point, const glm::dvec3& normal, double push) noexcept;

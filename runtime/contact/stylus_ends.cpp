@@ -80,19 +80,19 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     double stride = 1; // share of the hand's way that is tried at once
     uint32_t round = 0;
     sweeps_left_ = sweeps_max;
-    Grips grips;
-    grips.tip.friction = checked(friction.tip);
-    grips.tail.friction = checked(friction.tail);
-    grips.tip.slides = tip_.proxy_.sliding;
-    grips.tail.slides = tail_.proxy_.sliding;
+    FrictionOfEnds ends;
+    ends.tip.friction = checked(friction.tip);
+    ends.tail.friction = checked(friction.tail);
+    ends.tip.slides = tip_.proxy_.sliding;
+    ends.tail.slides = tail_.proxy_.sliding;
     for (; round < rounds_max && sweeps_left_ > 0; ++round) {
         Shaft aim, to = hand_;
-        const double share = std::min(stride, solve(to, aim, grips));
+        const double share = std::min(stride, solve(to, aim, ends));
         if (share < 1) {
             to = {reached_.tip + share * (to.tip - reached_.tip), reached_.tail + share * (to.tail - reached_.tail)};
-            solve(to, aim, grips);
+            solve(to, aim, ends);
         }
-        const bool drags = grips.tip.drags() || grips.tail.drags();
+        const bool drags = ends.tip.drags() || ends.tail.drags();
         if (round > 0 && !stopped && share == 1 &&
             farther(aim, aim_) <= end_settled + (drags ? dragged_share : settled_share) * farther(aim, hand_))
             break;
@@ -103,24 +103,24 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         const auto go_tip = [&] {
             if (begin_ > 0) return;
             tip_.aim(clear.tip);
-            tip_.go(grips.tip.of_walk(), &tip_path);
+            tip_.go(ends.tip.of_walk(), &tip_path);
             tip_slides |= tip_.proxy_.sliding;
         };
         const auto go_tail = [&] {
             if (end_ < 1) return;
             tail_.aim(clear.tail);
-            tail_.go(grips.tail.of_walk(), &tail_path);
+            tail_.go(ends.tail.of_walk(), &tail_path);
             tail_slides |= tail_.proxy_.sliding;
         };
         // What friction drags goes first: a little off its aim, on a short lever that is far for the other end.
-        if (grips.tail.drags() && !grips.tip.touches) {
+        if (ends.tail.drags() && !ends.tip.touches) {
             go_tail();
             clear.tail = tail_.proxy_.at;
             clear = clear_of_sides(clear, {true, false});
             go_tip();
         } else {
             go_tip();
-            if (grips.tip.drags() && !grips.tail.touches) {
+            if (ends.tip.drags() && !ends.tail.touches) {
                 clear.tip = tip_.proxy_.at;
                 clear = clear_of_sides(clear, {false, true});
             }
@@ -147,13 +147,13 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     counters_.walks_cut += stopped;
     stuck_ticks_ = behind && away_first - away(shaft_) < far_behind ? stuck_ticks_ + 1 : 0;
     if (stuck_ticks_ == patience_ticks_) tracked_ = false;
-    if (let_go_of_unreached() || stopped) hold_hand_from_here(grips);
+    if (let_go_of_unreached() || stopped) hold_hand_from_here(ends);
     tip_.proxy_.sliding = tip_slides;
     tail_.proxy_.sliding = tail_slides;
     tip_.describe();
     tail_.describe();
-    if (!grips.tip.drags()) tip_.contact_.lag_m = glm::dvec3(0); // nothing holds it
-    if (!grips.tail.drags()) tail_.contact_.lag_m = glm::dvec3(0);
+    if (!ends.tip.drags()) tip_.contact_.lag_m = glm::dvec3(0); // nothing holds it
+    if (!ends.tail.drags()) tail_.contact_.lag_m = glm::dvec3(0);
     for (uint32_t i = side_count_; i-- > 0;)
         if (sides_[i].push == 0 && sides_[i].sign * passing_of(sides_[i], shaft_).height > 4 * rest_gap) drop(i);
 }
@@ -183,9 +183,9 @@ double StylusContact::away(const Shaft& part) const noexcept
 
 // What pushes the hand while the shaft is not where it should be: the ends were aimed at less of the hand's way, or at
 // what a side left them that is gone. It is all of the hand that is held, by the contacts as they are here.
-void StylusContact::hold_hand_from_here(Grips& grips) noexcept
+void StylusContact::hold_hand_from_here(FrictionOfEnds& ends) noexcept
 {
-    solve(hand_, aim_, grips, Turning::not_at_all);
+    solve(hand_, aim_, ends, Turning::not_at_all);
     if (begin_ == 0 && tip_.proxy_.touches()) tip_.aim(aim_.tip);
     if (end_ == 1 && tail_.proxy_.touches()) tail_.aim(aim_.tail);
 }
@@ -219,21 +219,23 @@ Shaft StylusContact::clear_of_sides(const Shaft& to, EndsGive gives) const noexc
 }
 
 // An end as it begins. One that went where the shaft could not follow comes back first.
-void StylusContact::take_hold(EndGrip& grip, const PointContact& end, const glm::dvec3& on_shaft) const noexcept
+void StylusContact::take_hold(EndFriction& end_friction, const PointContact& end,
+                              const glm::dvec3& on_shaft) const noexcept
 {
-    grip.touches = end.proxy_.touches();
-    grip.normal = end.contact_.normal;
-    grip.at = end.proxy_.at;
-    if (astray_) grip.at = on_shaft + glm::dot(grip.normal, grip.at - on_shaft) * grip.normal;
-    grip.take_hold(side_count_ > 0);
+    end_friction.touches = end.proxy_.touches();
+    end_friction.normal = end.contact_.normal;
+    end_friction.at = end.proxy_.at;
+    if (astray_)
+        end_friction.at = on_shaft + glm::dot(end_friction.normal, end_friction.at - on_shaft) * end_friction.normal;
+    end_friction.take_hold(side_count_ > 0);
 }
 
 // Where the ends are to be aimed for the sides to hold a hand; and the share of the way there on which each side that
 // pushes stays within its edge and the shaft. `normals`: of the sides; not turned they are those where the shaft is.
-double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips, Turning normals) noexcept
+double StylusContact::solve(const Shaft& hand, Shaft& aim, FrictionOfEnds& ends, Turning normals) noexcept
 {
     std::array<ShaftContact, shaft_contacts_max> contacts;
-    EndGrip &tip = grips.tip, &tail = grips.tail;
+    EndFriction &tip = ends.tip, &tail = ends.tail;
     take_hold(tip, tip_, shaft_.tip);
     take_hold(tail, tail_, shaft_.tail);
     aim = hand;
@@ -253,8 +255,9 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips, Turning
             contacts[i] = {side.normal, side.share, glm::dot(side.normal, side.point) + rest_gap};
         }
         uint32_t count = side_count_;
-        const auto add_end = [&](const EndGrip& grip, double share) {
-            if (grip.touches && !grip.sticks) contacts[count++] = {grip.normal, share, glm::dot(grip.normal, grip.at)};
+        const auto add_end = [&](const EndFriction& end_friction, double share) {
+            if (end_friction.touches && !end_friction.sticks)
+                contacts[count++] = {end_friction.normal, share, glm::dot(end_friction.normal, end_friction.at)};
         };
         add_end(tip, 0);
         add_end(tail, 1);
@@ -285,9 +288,9 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim, Grips& grips, Turning
         if (tail.drags())
             news = std::max(news, tail.follow(aim.tail, held.tail, compliance(ShaftEnd::tail, all, push, gives)));
         agreed &= news < (tip.drags() && tail.drags() ? both_settled : friction_settled);
-        for (EndGrip* grip : {&tip, &tail}) {
-            if (!agreed || !grip->drags() || !grip->moves || grip->slides) continue;
-            grip->slides = true; // more than static friction holds: from here on dynamic friction does
+        for (EndFriction* end_friction : {&tip, &tail}) {
+            if (!agreed || !end_friction->drags() || !end_friction->moves || end_friction->slides) continue;
+            end_friction->slides = true; // more than static friction holds: from here on dynamic friction does
             agreed = false;
         }
         if (agreed) break;

@@ -22,14 +22,14 @@ constexpr double deepest = Lattice::workspace - Lattice::extent;
 
 } // namespace
 
-void EndGrip::take_hold(bool of_sides) noexcept
+void EndFriction::take_hold(bool of_sides) noexcept
 {
     if (!touches) lag = glm::dvec3(0);
     sticks = of_sides && drags() && !slips;
     limit_before_ = limit_;
 }
 
-double EndGrip::follow(const glm::dvec3& aim, const glm::dvec3& held, const glm::dmat3& give) noexcept
+double EndFriction::follow(const glm::dvec3& aim, const glm::dvec3& held, const glm::dmat3& give) noexcept
 {
     const double height = glm::dot(normal, at - aim);
     const double found = coefficient() * glm::clamp(height, 0.0, deepest);
@@ -52,7 +52,7 @@ double EndGrip::follow(const glm::dvec3& aim, const glm::dvec3& held, const glm:
 
 // The limit to try next. Where more friction makes the sides press the end less, taking what was found would swing to
 // and fro: a secant goes between.
-double EndGrip::limited(double found) noexcept
+double EndFriction::limited(double found) noexcept
 {
     const double step = limit_ - limit_before_, slope = step != 0 ? (found - found_before_) / step : 0.0;
     const double next = std::max(0.0, limit_ + (found - limit_) / (1 - std::min(0.0, slope)));
@@ -66,7 +66,7 @@ double EndGrip::limited(double found) noexcept
 // friction or not at all. That is where a quadratic form is least in the disc: along the axes of `give` one equation
 // for the slip is left, solved as in More and Sorensen 1983, Computing a trust region step, algorithm 3.2. Returns
 // whether the end slips.
-bool EndGrip::oppose(const glm::dvec3& way, const glm::dmat3& give, double most) noexcept
+bool EndFriction::oppose(const glm::dvec3& way, const glm::dmat3& give, double most) noexcept
 {
     lag = glm::dvec3(0);
     if (!(most > 0)) return true;

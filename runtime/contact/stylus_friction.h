@@ -14,7 +14,7 @@
 namespace haptel::runtime {
 
 // One end in one tick, and the plane of what it touches.
-struct EndGrip {
+struct EndFriction {
     WalkFriction friction;
     bool touches = false;
     bool slides = false; // dynamic friction holds: it slid in the last tick, or slips in this one

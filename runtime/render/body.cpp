@@ -95,7 +95,7 @@ bool lies_beyond(const Body& body, const ProbePose& probe, double away_m) noexce
     return gap_m(body.around, probe.tip_m, probe.tail_m) > std::max(away_m, far_enough_m(probe.tip_m, probe.tail_m, 0));
 }
 
-void EndFriction::add(const Friction& friction, double push_n) noexcept
+void MeanFriction::add(const Friction& friction, double push_n) noexcept
 {
     if (!(push_n > 0)) return;
     pushing_n += push_n;

@@ -46,7 +46,7 @@ BoundingSphere bounding_sphere_of(const Scene& scene, const BodyObjects& objects
 
 // The friction that holds one end of the probe: the mean of all that it touches, by how hard that pushes, so that in a
 // crease one material comes in place of another without a step.
-struct EndFriction {
+struct MeanFriction {
     Friction mean;
     double pushing_n = 0;
 
@@ -71,7 +71,7 @@ struct Body {
     // Out of the hand's reach: its contact stands where the hand last was, and so does it itself if it is bounded.
     bool asleep = false;
     // Of the tick before: contact comes before texture.
-    EndFriction tip_friction, tail_friction;
+    MeanFriction tip_friction, tail_friction;
 
     ProbePose pose_of(const DevicePose& pose) const noexcept
     {

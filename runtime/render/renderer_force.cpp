@@ -83,7 +83,7 @@ void Renderer::render_object(Body& body, std::span<const Contact> contacts, cons
         skipped.mapping = skipped.mapping || force.unmapped;
         if (!contact.by_shaft) {
             const Material& material = touched.object->material;
-            EndFriction& end = contact.along == 0 ? body.tip_friction : body.tail_friction;
+            MeanFriction& end = contact.along == 0 ? body.tip_friction : body.tail_friction;
             end.add({material.static_friction * force.friction_share, material.dynamic_friction * force.friction_share},
                     material.stiffness_n_per_m * contact.depth_m);
         }

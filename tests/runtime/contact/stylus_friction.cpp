@@ -199,10 +199,10 @@ TEST_CASE("friction on an end follows Coulomb's law, however the shaft makes it 
     const auto any = [&] { return dvec3(u(random), u(random), u(random)); };
     int stuck = 0, slipped = 0;
     for (int trial = 0; trial < 3000; ++trial) {
-        EndGrip grip;
-        grip.friction = {0.5, 0.4};
-        grip.touches = grip.slides = true;
-        grip.normal = glm::normalize(any());
+        EndFriction end_friction;
+        end_friction.friction = {0.5, 0.4};
+        end_friction.touches = end_friction.slides = true;
+        end_friction.normal = glm::normalize(any());
         const double depth = 1e9;
         // What gives is a projection, here along one direction, two or three; a little rest stands for a short lever.
         glm::dmat3 give(0);
@@ -212,23 +212,24 @@ TEST_CASE("friction on an end follows Coulomb's law, however the shaft makes it 
         if (trial % 3 > 1) give = glm::dmat3(1);
         if (trial % 2) give += 1e-6 * glm::dmat3(1);
         const dvec3 way = give * (1e9 * any());
-        const dvec3 aim = grip.at - depth * grip.normal;
+        const dvec3 aim = end_friction.at - depth * end_friction.normal;
         double change = 1;
         for (int turn = 0; turn < 20 && change > 1e-9; ++turn)
-            change = grip.follow(aim, grip.at + way + give * grip.lag, give);
-        const dvec3 moved = way + give * grip.lag, across = moved - glm::dot(moved, grip.normal) * grip.normal;
-        const double length = glm::length(grip.lag), most = 0.4 * depth;
+            change = end_friction.follow(aim, end_friction.at + way + give * end_friction.lag, give);
+        const dvec3 moved = way + give * end_friction.lag,
+                    across = moved - glm::dot(moved, end_friction.normal) * end_friction.normal;
+        const double length = glm::length(end_friction.lag), most = 0.4 * depth;
         CAPTURE(trial, change, length, glm::length(across));
         REQUIRE(change < 1e-6);
-        REQUIRE(std::fabs(glm::dot(grip.lag, grip.normal)) < 1e-6 * most);
+        REQUIRE(std::fabs(glm::dot(end_friction.lag, end_friction.normal)) < 1e-6 * most);
         REQUIRE(length < most * (1 + 1e-9));
-        if (grip.moves) { // against the slip, and all of it
+        if (end_friction.moves) { // against the slip, and all of it
             REQUIRE(length > most * (1 - 1e-9));
-            REQUIRE(glm::distance(across, -glm::length(across) / length * grip.lag) < 1e-6 * depth);
+            REQUIRE(glm::distance(across, -glm::length(across) / length * end_friction.lag) < 1e-6 * depth);
         } else {
             REQUIRE(glm::length(across) < 1e-6 * depth);
         }
-        ++(grip.moves ? slipped : stuck);
+        ++(end_friction.moves ? slipped : stuck);
     }
     CHECK(stuck > 300);
     CHECK(slipped > 300);
@@ -279,7 +280,7 @@ TEST_CASE("an end that is jammed bears as much as its workspace is deep, and sli
     constexpr double deepest = Lattice::workspace - Lattice::extent;
     const dvec3 normal(0, 0, 1);
     const auto end_that_sticks = [&] {
-        EndGrip end;
+        EndFriction end;
         end.friction = {0.5, 0.25};
         end.touches = true;
         end.normal = normal;
@@ -287,13 +288,13 @@ TEST_CASE("an end that is jammed bears as much as its workspace is deep, and sli
         return end;
     };
     for (const double height : {1.0, 0.4 * deepest, 0.999 * deepest}) {
-        EndGrip end = end_that_sticks();
+        EndFriction end = end_that_sticks();
         const dvec3 drawn = 0.4 * height * dvec3(0.6, 0.8, 0);
         CHECK(end.follow(drawn - height * normal, dvec3(0), glm::dmat3(1)) == 0);
         CHECK((end.sticks && glm::distance(end.lag, -drawn) <= 1e-12 * height));
     }
     for (const double height : {1.001 * deepest, 40 * deepest, 1e30}) {
-        EndGrip end = end_that_sticks(); // and hardly drawn: it is the depth that it cannot bear
+        EndFriction end = end_that_sticks(); // and hardly drawn: it is the depth that it cannot bear
         const dvec3 aim = dvec3(1, 0, 0) - height * normal;
         CHECK(end.follow(aim, dvec3(0), glm::dmat3(1)) == HUGE_VAL);
         CHECK((!end.sticks && end.slides));
