@@ -1,8 +1,9 @@
-// What passes between whoever makes textures (compiler, precompiled library, a lambda in a test) and whoever feels
-// them.
+// The interface between the runtime and a source of textures. The runtime sends a TextureRequest for each object; a
+// TextureResolver (the compiler, a library of precompiled textures, a lambda in a test) answers with a TextureBinding,
+// which has everything that the servo calls and reads, or with the reason why there is none.
 //
-// Header-only and part of haptel_abi: the runtime that asks and the JIT that answers share these types and nothing
-// else.
+// Header-only and part of haptel_abi, so that neither side needs to link the other. Lengths are in metres; text in a
+// request is as its author wrote it.
 #pragma once
 
 #include "lang/abi/abi.h"

@@ -134,11 +134,12 @@ struct Member {
 struct Index {
     ExpressionPtr object, index;
 };
-// Elements of an array: "{1.0, 2.0}", only behind '=' of a declaration, or "float[2](1.0, 2.0)" with a type.
+// The elements of an array, in one of two forms: "{1.0, 2.0}", which only an initializer may be, or the constructor
+// "float[2](1.0, 2.0)".
 struct BraceList {
     std::vector<ExpressionPtr> elements;
-    std::optional<TypeName> type = std::nullopt;
-    bool is_damaged = false; // nobody knows how many elements were meant
+    std::optional<TypeName> type = std::nullopt; // of the constructor, "float[2]"; none: braces
+    bool is_damaged = false;                     // a syntax error was reported in it, so its length must not be checked
 };
 
 struct Expression {
@@ -152,7 +153,8 @@ struct Expression {
 // The expressions that `e` is made from, one level down, in source order.
 std::vector<const Expression*> operands_of(const Expression& e);
 
-// Operators outside of parentheses: what is written behind it would go to its last operand.
+// Whether the text of `e` has an operator outside of all parentheses, as "a + b" has. Then text appended to it, as
+// ".x", would apply to its last operand alone: whoever builds a fix from it writes parentheses round it.
 inline bool is_open(const Expression& e)
 {
     const auto chain = std::get_if<Chain>(&e.node);
@@ -226,11 +228,12 @@ struct FactsComment {
     Span span;
 };
 
-// Syntax errors were reported inside: what may follow from them ("no return") is better not said.
+// What syntax errors, already reported, leave unknown about a function or texture. The checker then does not report
+// what may be a consequence of them, such as a missing return or an unknown name.
 struct Damage {
-    bool any = false;
-    bool in_head = false;                      // in the parameters: nobody knows how it is called
-    std::set<std::string, std::less<>> unread; // names in text that could not be read: it may have declared them
+    bool any = false;                          // an error somewhere in it
+    bool in_head = false;                      // an error among its parameters: calls of it cannot be checked
+    std::set<std::string, std::less<>> unread; // names in the text skipped after an error, which may have declared them
 };
 
 struct Function {

@@ -55,8 +55,9 @@ struct Contact {
     double depth_m = 0;    // >= 0: how deep the hand is below the proxy along `normal`
     double along = 0;      // of a stylus or a gripper: where it touches, 0 at its tip, 1 at its tail
     bool by_shaft = false; // of a stylus: between its ends, on an edge
-    // Of a stylus, `by_shaft`: what its springs pull besides, held by what ends and shaft have not come to agree on. It
-    // is told at an end, and at no place of the surface.
+    // Of a stylus, together with `by_shaft`: the part of its force that no contact accounts for, in a tick in which the
+    // solution for the two ends and that for the shaft did not converge. It acts at an end of the stylus, and `normal`
+    // is its direction. `face` is that of the nearest known contact, whose material counts; the end need not be there.
     bool unsettled = false;
     // A crease where its own surface may have no edge: with an object that it is joined to (body.h), or of sheets that
     // pierce each other.

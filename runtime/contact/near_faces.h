@@ -1,7 +1,8 @@
-// The triangles around the centre of a ball, each with a plane that it lies behind. The plane touches the triangle
-// where it was nearest when it was last looked at, and the triangle is convex: it lies behind that plane wherever the
-// ball has gone since. How far that plane is says which of the hundreds of triangles within reach on a fine mesh need
-// not be looked at, and a step towards what holds the ball lays anew only the planes that do.
+// The triangles around the centre of a ball, each with a plane that separates it from the ball. The plane goes through
+// the point of the triangle that was nearest to the centre when the plane was computed, at right angles to the
+// direction there. A triangle is convex, so it lies behind that plane wherever the ball moves afterwards, and the
+// distance to the plane is a lower bound of the distance to the triangle. On a fine mesh with hundreds of triangles
+// near the ball that bound spares most of them, and a step of the solver recomputes only the planes that hold the ball.
 //
 // Lattice units. One servo thread owns one; only the constructor allocates.
 #pragma once
@@ -32,13 +33,13 @@ public:
     std::size_t count() const noexcept { return faces_.size(); }
     std::size_t boxes() const noexcept { return boxes_; } // that the tree delivered
 
-    // Picks those that a ball of this radius may meet within `reach` of the centre, their planes laid as seen from
-    // there.
+    // Picks the triangles that a ball of this radius may touch while its centre stays within `reach` of this one, and
+    // computes their planes as seen from it.
     void pick(const glm::dvec3& centre, double radius, double reach) noexcept;
     // Where its centre may be: in front of each of them by the radius.
     std::span<const HalfSpace> picked() const noexcept { return picked_; }
     uint32_t face(uint32_t picked) const noexcept { return faces_[place_of_[picked]]; }
-    // Lays the plane of one picked anew, as seen from the centre; false if that has been done.
+    // Computes the plane of a picked triangle again, as seen from this centre; false if it is already that one.
     bool renew(uint32_t picked, const glm::dvec3& centre) noexcept;
 
     // Distance of the nearest one, but at most `most`.

@@ -1,6 +1,7 @@
-// Where several parts of a joined surface hold the proxy at once, in a crease or on a ridge between them, or several
-// sheets that pierce each other: what each of them holds, so that each is felt with its own material, texture and
-// shading and none of them begins or ends with a step.
+// Splits a contact between the objects that make it. On a joined surface a proxy in a crease, or on a ridge, may rest
+// on several objects at once, and on a surface that pierces itself on several faces. Each gets the part of the
+// contact's force that its own plane carries, so that it is felt with its own material, texture and shading, and its
+// force begins and ends at 0 as the proxy moves.
 #pragma once
 
 #include "runtime/contact/contact.h"
@@ -12,9 +13,10 @@ namespace haptel::runtime {
 
 class PartShares {
 public:
-    // Each contact as it is if one part alone, or one sheet, holds the proxy there, else one for each, at the same
-    // place, what holds most first. Depths times normals add up to what they were, and so does the lag. What they push
-    // against each other is bounded.
+    // A contact that one object (or one face) makes alone stays as it is. Any other becomes several at the same place,
+    // one for each object, the largest first. Their depth_m * normal add up to that of the contact, and so do their
+    // lag_m; no share pulls, and shares that oppose each other are bounded. At most 16 contacts; valid until the next
+    // call.
     std::span<const Contact> of(const Surface& surface, std::span<const Contact> contacts) noexcept;
 
 private:

@@ -21,26 +21,27 @@ public:
     ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
                  bool skips_free_space = true, double rate_hz = 1000);
 
-    // One tick: where it touches, none if it does not. Of a joined surface each is of one part, and where sheets
-    // pierce each other of one of them.
+    // One tick: the contacts, none if the probe is free. On a joined surface each belongs to one object
+    // (part_shares.h), and where faces pierce each other to one of these.
     std::span<const Contact> update(const ProbePose& pose, const EndsFriction& friction) noexcept;
     // One tick of a probe that is free and known to have met nothing on its way.
     void follow(const ProbePose& pose) noexcept;
 
     void reset() noexcept;
 
-    // A ball that overlaps what touches it by no more than `most_m` goes out of it, as far as the way is free. True: it
-    // went, and the next tick tells.
+    // A ball that was put down where it overlaps the surface is felt with a smaller radius. If that lacks at most
+    // `most_m`, this moves the ball out of the overlap as far as nothing is in the way. True: it moved, and the next
+    // tick's contacts show it. Other probes: false.
     bool move_out(double most_m) noexcept;
 
-    // Where it was held in the last tick, in which the hand was there: each place that touches by `off_m` off what it
-    // touches. Nothing if it touched nothing.
+    // The pose in which the surface held the probe in the last tick, whose hand was at `hand`; every place of contact
+    // is moved `off_m` metres away from the surface. Nothing if the probe touched nothing.
     std::optional<ProbePose> held(const ProbePose& hand, double off_m) const noexcept;
 
     // Brings what the next tick may need into the cache. Returns how many faces it looked at.
     uint32_t read_ahead() const noexcept;
 
-    // At least so far is it from any point of the probe to the nearest triangle; 0: not known.
+    // A lower bound, in metres, of the distance from the probe in this pose to the nearest triangle; 0: not known.
     double gap_m(const ProbePose& pose) const noexcept;
     const ContactCounters& counters() const noexcept;
 

@@ -1,14 +1,15 @@
 // Contact of a stylus with one surface: both ends, each held as a point is, and the shaft between them, which rests on
 // edges and, by two of them, on vertices.
 //
-// The hand's stylus is the pair (p, q) of its tip and its tail. The ideal one is the pair (P, Q) that is nearest to it,
-// by |P - p|^2 + |Q - q|^2, of those that it can come to without passing through the surface. It is as if both ends
-// hung on springs of the object's stiffness: the force of all contacts is minus the gradient of a potential over the
-// poses of the stylus, so that without friction no closed path gains energy. That holds in ticks, too, in which ends
-// and shaft do not come to agree: the pair is where it was nearest to the hand, never farther away than before the
-// tick (while all of it is in the workspace), and what the contacts known by then do not hold is told as held by the
-// ends. A contact at the share s of the shaft pushes with the stiffness times depth / ((1 - s)^2 + s^2): like a point
-// at the tip, twice as hard in the middle.
+// The hand holds a stylus from its tip p to its tail q. The proxy is a second stylus, from P to Q: of all that the
+// first can reach without passing through the surface, the one that minimises |P - p|^2 + |Q - q|^2. So a spring of the
+// object's stiffness connects each end with its proxy, and the force on the hand is minus the gradient of the springs'
+// energy: without friction no closed path gains energy. A contact at the share s of the shaft (0: tip, 1: tail) pushes
+// with stiffness * depth / ((1 - s)^2 + s^2): like a point at the tip, twice as hard in the middle.
+//
+// The solver may stop before the proxies of the ends and that of the shaft agree. Then the pair stays at the place
+// nearest to the hand that was reached, no farther away than before the tick while all of it is in the workspace, and
+// the part of the springs' force that no known contact explains is reported at the ends (Contact::unsettled).
 //
 // Ends are tracked by PointContact, each toward where the pushes of the shaft's contacts would have the hand's end. The
 // shaft that follows them has lattice points for ends. It moves straight, meets edges in the order of time, and takes
@@ -45,22 +46,22 @@ public:
     // `rate_hz`: of the ticks.
     explicit StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true, double rate_hz = 1000);
 
-    // One tick. The first puts the stylus down from its tail: one that enters the object by a front side touches there,
-    // with its tip. A tail that is not finite is none: the tip is a point. Returns the contact of the tip, touching or
-    // not.
+    // One tick: the hand's tip and tail, metres, in the object's space. In the first tick the stylus is put down along
+    // the way from its tail to its tip: if that way enters the object through a front side, the tip touches there. If
+    // the tail is not finite, the tip is treated as a point. Returns the tip's contact, whether it touches or not.
     const Contact& update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
                           const EndsFriction& friction = {}) noexcept;
     void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
     void reset() noexcept;
 
-    // Where the stylus touches: the tip first, then the shaft, then the tail, then what is not known yet (`unsettled`,
-    // at an end). The depth of each is what it pushes over the stiffness: with the ends' lags, by friction, the depths
-    // times the normals add up to (P - p) + (Q - q).
+    // Where the stylus touches: the tip first, then the shaft, then the tail, then what no contact accounts for
+    // (Contact::unsettled). Each depth_m is the contact's force over the stiffness. The sum of depth_m * normal, plus
+    // lag_m of the ends, is (P - p) + (Q - q).
     std::span<const Contact> contacts() const noexcept { return {contacts_.data(), contact_count_}; }
     const Contact& contact() const noexcept { return tip_.contact(); } // the tip's
 
-    // The ideal stylus, lattice units, of which both ends are lattice points: crosses no triangle. Nothing while the
-    // tip alone is held. Of a stylus that reaches beyond the workspace it is the part within.
+    // The proxy of the whole stylus, in lattice units; both ends are lattice points, and it crosses no triangle.
+    // Nothing while the tip alone is held. Of a stylus that reaches beyond the workspace only the part within.
     std::optional<Shaft> ideal() const noexcept;
 
     // At least so far is it from any point of the stylus, where it was last, to the nearest triangle; 0: not known.

@@ -1,10 +1,11 @@
-// Coulomb friction on an end of a stylus whose shaft leans on edges. How far the end moves against it decides how hard
-// the edges push; their pushes, on a short lever a hundred times the hand's, press the end onto its face and drive it
-// along; and by how much it is pressed, so much friction there is. So all of it is found together, in a few turns.
-// Lattice units: a force is the way by which it stretches the spring of an end.
+// Coulomb friction on an end of a stylus whose shaft leans on edges. The forces depend on each other in a circle: the
+// end's displacement changes how hard the edges push the shaft; these pushes press the end onto its face, on a short
+// lever up to a hundred times as hard as the hand; and that pressure limits the friction, which limits the
+// displacement. So the caller iterates: each iteration solves the contacts with the present friction and calls
+// follow(). Forces are in lattice units: the length by which they stretch the spring of an end.
 //
-// Known limit: where both ends touch and slide, and the shaft leans on an edge between them, each is found with the
-// other's friction as it is. That may need more turns than there are, and then the shaft may be stopped in that tick.
+// Known limit: where both ends touch and slide, and the shaft leans on an edge between them, each end is solved with
+// the friction of the other held fixed. If that does not converge, the shaft may be stopped in that tick.
 #pragma once
 
 #include "runtime/contact/contact.h"
@@ -17,12 +18,12 @@ namespace haptel::runtime {
 struct EndFriction {
     WalkFriction friction;
     bool touches = false;
-    bool slides = false; // dynamic friction holds: it slid in the last tick, or slips in this one
-    bool slips = false;  // it was found in this tick that it does not stay where it is
-    bool sticks = false; // it is taken to stay there: whatever pushes
-    bool moves = false;  // it does not stay there, with the friction found last
+    bool slides = false; // the dynamic coefficient holds: it slid in the last tick, or slips in this one
+    bool slips = false;  // static friction was exceeded in this tick
+    bool sticks = false; // this iteration takes it as fixed, whatever pushes it
+    bool moves = false;  // it moves under the friction of the last iteration
     glm::dvec3 at{0}, normal{0};
-    glm::dvec3 lag{0}; // friction, in the plane: from where the end is aimed to where it comes to rest
+    glm::dvec3 lag{0}; // friction, in the plane: from where the end is pulled to where it comes to rest
 
     bool drags() const { return touches && friction.static_coefficient > 0; }
     double coefficient() const { return slides ? friction.dynamic_coefficient : friction.static_coefficient; }
@@ -30,9 +31,10 @@ struct EndFriction {
     Friction of_walk() const { return {coefficient(), friction.dynamic_coefficient}; }
 
     void take_hold(bool of_sides) noexcept;
-    // A turn: with the present friction the pushes of the sides would have the hand's end at `aim`, and the end comes
-    // to `held`; `give` is how it moves by what pulls it while the same contacts push. Takes the friction that follows
-    // from this, and returns by how much that is news, over its limit.
+    // One iteration. With the present friction the contacts of the shaft pull the end toward `aim`, and it comes to
+    // rest at `held`; `give` is the matrix from a pull to the end's displacement while the same contacts stay active.
+    // Sets the friction that follows, and returns its change over its limit: 0 when it has converged, infinite when the
+    // end changed between sticking and slipping.
     double follow(const glm::dvec3& aim, const glm::dvec3& held, const glm::dmat3& give) noexcept;
 
 private:

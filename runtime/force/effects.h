@@ -33,9 +33,11 @@ public:
     // Nearer than this to the object something may be felt now, or still: 0 without effects.
     double awake_within_m(std::size_t object) const noexcept;
 
-    // One tick, if they act at all: begin, then update of each object that has effects and may be near, then force.
-    // `joined`: the contacts of all that the object is joined with, in the scene's space. What they hold the tip
-    // against it is not pulled across, by as much as they push back: nothing begins with a step.
+    // One tick, if act(): begin(), then update() for each object that has effects and may be near, then force_n().
+    // `contacts` are those with the object itself, `joined` those with all objects that it is joined with, in the
+    // scene's space. A magnet does not pull across a surface that holds the tip: the part of its pull along the normals
+    // in `joined` is left out, up to the force that each of these contacts exerts, so that it fades in and out with
+    // them.
     void begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) noexcept;
     void update(std::size_t object, const Placement& placement, std::span<const Contact> contacts,
                 std::span<const Contact> joined) noexcept;

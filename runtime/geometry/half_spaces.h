@@ -18,7 +18,8 @@ struct HalfSpace {
     double offset;
 };
 
-// How much of the way from a point in all of them stays in all, but for `tolerance`: 0 .. 1, and which one ends it.
+// The share, 0 .. 1, of the straight way from `from`, which is in all half-spaces, that stays in all of them within
+// `tolerance`, and the index of the one that ends it; ~0u if none does.
 struct OpenShare {
     double share = 1;
     uint32_t ended_by = ~0u;
@@ -34,9 +35,10 @@ struct NearestInHalfSpaces {
     std::array<double, 3> push{};
 };
 
-// By the dual active set method (Goldfarb and Idnani 1983): from the target out of the space most violated, until none
-// is by more than `tolerance`. `inside`, a point of all of them, bounds what rounding may do: the result lies on the
-// way from it to the point found, as far as that is inside.
+// The point of the intersection nearest to `target`, by the dual active set method (Goldfarb and Idnani 1983): it
+// starts at the target and moves to the boundary of the most violated half-space until none is violated by more than
+// `tolerance`. `inside` is any point of the intersection. It guards against rounding: if the solution is not inside,
+// the result is the last point inside on the straight way from `inside` to it.
 NearestInHalfSpaces nearest_in(std::span<const HalfSpace> spaces, const glm::dvec3& target, const glm::dvec3& inside,
                                double tolerance) noexcept;
 

@@ -41,11 +41,12 @@ struct BodyObjects {
 // Each object in one of them, in the order of their first ones.
 std::vector<BodyObjects> bodies_of(const Scene& scene);
 
-// Within which a body is felt, effects included, wherever it goes: a radius without end if that is not known.
+// The sphere, in the scene's space, outside of which nothing of a body is felt, effects included, wherever its motion
+// takes it. The radius is infinite if its motion has no known bounds.
 BoundingSphere bounding_sphere_of(const Scene& scene, const BodyObjects& objects, double probe_radius_m);
 
-// The friction that holds one end of the probe: the mean of all that it touches, by how hard that pushes, so that in a
-// crease one material comes in place of another without a step.
+// The friction at one end of the probe that touches several objects: the mean of their coefficients, weighted by the
+// force of each, so that it changes without a step when the probe slides through a crease from one to the other.
 struct MeanFriction {
     Friction mean;
     double pushing_n = 0;
@@ -53,7 +54,7 @@ struct MeanFriction {
     void add(const Friction& friction, double push_n) noexcept;
 };
 
-// What the servo remembers of one.
+// The state of a body from tick to tick.
 struct Body {
     Body(const Scene& scene, const BodyObjects& objects, const ProbeSettings& probe);
 
@@ -68,9 +69,10 @@ struct Body {
     Placement placement;       // of this tick
     // Of tip and tail, in the space of a body that moves; else not kept.
     HandVelocity velocity, tail_velocity;
-    // Out of the hand's reach: its contact stands where the hand last was, and so does it itself if it is bounded.
+    // Too far from the hand to be touched (sleep_queue.h): its contact was last updated when it fell asleep, and so was
+    // its placement if it is bounded.
     bool asleep = false;
-    // Of the tick before: contact comes before texture.
+    // Of the tick before, since the contact needs friction before textures are evaluated.
     MeanFriction tip_friction, tail_friction;
 
     ProbePose pose_of(const DevicePose& pose) const noexcept
@@ -86,11 +88,12 @@ struct Body {
     void move(double time_s) noexcept;
 };
 
-// Nothing of it is felt within that distance of a probe in its space, where coordinates may be large.
+// Whether nothing of the body can be felt by a probe at most `away_m` metres from this pose, which is in the body's
+// space. Allows for the rounding of large coordinates.
 bool lies_beyond(const Body& body, const ProbePose& probe, double away_m) noexcept;
 
-// A contact with a joined surface as the object that it belongs to has it: in that one's space, on its own surface. The
-// proxy may lie beside its triangle by what joining has moved vertices.
+// A contact with a joined surface, converted to the object it belongs to: its face and side, in its space. Joining
+// moves vertices a little, so the proxy may lie beside the object's own triangle by as much.
 Contact on_part(const Contact& contact, const Surface& joined, const SceneObject& part) noexcept;
 
 // Contacts with one object of a body, in its space.
@@ -102,11 +105,12 @@ struct PartContacts {
 // Contacts with a joined surface, object by object.
 class ContactsByPart {
 public:
-    // As many as any probe has: the ends of a stylus, held by three sheets each, its shaft, and what it does not know
-    // yet.
+    // The most contacts that any probe has: of a stylus each end rests on up to three faces, and its shaft on up to
+    // four edges; two more are Contact::unsettled.
     static constexpr std::size_t most = 12;
 
-    // In the order of the contacts, the first of each object counting. Valid until the next call.
+    // The contacts grouped by object and converted to its space. Groups are in the order of their first contact. Valid
+    // until the next call.
     std::span<const PartContacts> of(const Scene& scene, const JoinedObjects& joined,
                                      std::span<const Contact> contacts) noexcept;
 

@@ -26,18 +26,18 @@
 
 namespace haptel::runtime {
 
-// Around an object; a radius without end: it may be anywhere.
+// Around an object; an infinite radius: it may be anywhere.
 struct BoundingSphere {
     glm::dvec3 centre_m{0};
     double radius_m = 0;
     bool turns = false;
 };
 
-// From the hand to there; not above 0 where that is not known.
+// The distance from the probe, tip to tail, to the sphere, in metres; 0 or less if they meet or if that is not known.
 double gap_m(const BoundingSphere& around, const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
 
-// An object farther away than this is left alone by a hand that went so far in this tick: it needs several ticks to
-// come near, and what rounding does to coordinates is nothing beside it.
+// The distance, in metres, beyond which an object may sleep when the hand moved `way_m` in this tick: the hand needs
+// several ticks to come near it, and the rounding of coordinates is small beside it.
 double far_enough_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m, double way_m) noexcept;
 
 // Of who turns, in one tick; who may have turned farther has to be awake.

@@ -1,9 +1,10 @@
-// Objects at rest that touch or cross each other, as one surface to the probe.
+// Joins objects at rest that touch or cross each other into one surface.
 //
-// With a proxy for each object, one that slides over two boxes laid side by side would pass at their seam into the side
-// of the second: for itself it is closed there. Joined, what lies inside the other or on it is no way any more, and one
-// proxy slides from object to object by links as it does over one mesh. Objects that do not meet stay apart, nested
-// ones too: a hand pressed through a soft ball still finds the hard one inside.
+// Take two boxes laid side by side. If each had a proxy of its own, the proxy that slides over the seam would meet the
+// side wall of the second box, which is part of that closed mesh although nobody can get there. In the joined surface
+// faces inside of another object, or flush with it, cannot be walked on, and links lead from object to object, so that
+// one proxy slides over all of them as over one mesh. Objects that do not meet are not joined, nor is one that lies
+// wholly inside another: a hand pressed through a soft ball still finds the hard one within.
 #pragma once
 
 #include "runtime/geometry/placement.h"
@@ -33,8 +34,8 @@ std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surface
 // Beyond this joining takes too long, and too much memory.
 inline constexpr std::size_t joined_triangles_max = 4'000'000;
 
-// The surfaces named, in the space that they are placed in. `part` of an origin counts in `numbers`. What lies on each
-// other is kept of the first.
+// The named surfaces as one, in the space that they are placed in. Origin::part is an index into `numbers`. Where faces
+// of several lie on each other, those of the first are kept.
 SurfaceResult join(std::span<const PlacedSurface> surfaces, std::span<const uint32_t> numbers,
                    const Loading* loading = nullptr);
 
