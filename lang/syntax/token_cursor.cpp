@@ -19,9 +19,9 @@ bool is_closer(Token kind)
 // Words that only ever begin something: a bracket left open does not reach across them.
 bool begins_anew(Token kind)
 {
-    constexpr Token words[] = {Token::kw_if,    Token::kw_else,   Token::kw_for,
-                               Token::kw_break, Token::kw_return, Token::end};
-    return std::find(std::begin(words), std::end(words), kind) != std::end(words);
+    constexpr Token beginnings[] = {Token::kw_if,    Token::kw_else,   Token::kw_for,
+                                    Token::kw_break, Token::kw_return, Token::end};
+    return std::find(std::begin(beginnings), std::end(words), kind) != std::end(words);
 }
 
 } // namespace
