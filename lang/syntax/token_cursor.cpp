@@ -21,7 +21,7 @@ bool begins_anew(Token kind)
 {
     constexpr Token beginnings[] = {Token::kw_if,    Token::kw_else,   Token::kw_for,
                                     Token::kw_break, Token::kw_return, Token::end};
-    return std::find(std::begin(beginnings), std::end(words), kind) != std::end(words);
+    return std::find(std::begin(beginnings), std::end(beginnings), kind) != std::end(beginnings);
 }
 
 } // namespace
