@@ -1,5 +1,6 @@
 #include "lang/ir/bounds/interval.h"
 
+#include "lang/ir/bounds/interval_shape.h"
 #include "lang/ir/int_range.h"
 #include "lang/ir/op_info.h"
 #include "lang/ir/semantics.h"
@@ -7,24 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <optional>
 
 namespace haptel::ir {
 namespace {
-
-constexpr Interval empty{infinity, -infinity, true};
-using std::numbers::pi;
-
-double down(double value, int steps = 1)
-{
-    for (int i = 0; i < steps; ++i) value = std::nextafter(value, -infinity);
-    return value;
-}
-double up(double value, int steps = 1)
-{
-    return -down(-value, steps);
-}
 
 // A rounded value as the interval that holds the exact one.
 Interval rounded(double value, bool is_exact)
@@ -59,23 +45,13 @@ Interval quotient(double a, double b)
 
 Interval hull(std::initializer_list<Interval> parts)
 {
-    Interval all = empty;
+    Interval all = not_a_number;
     for (const Interval& part : parts) {
         all.minimum = std::min(all.minimum, part.minimum);
         all.maximum = std::max(all.maximum, part.maximum);
     }
     all.may_be_nan = false;
     return all;
-}
-
-bool may_be_infinite(const Interval& a)
-{
-    return a.minimum == -infinity || a.maximum == infinity;
-}
-
-Interval negated(const Interval& a)
-{
-    return {-a.maximum, -a.minimum, a.may_be_nan};
 }
 
 } // namespace
@@ -110,89 +86,6 @@ Interval divide(const Interval& a, const Interval& b)
     return all;
 }
 
-// Never with -0 as an end: powers tell it from 0.
-Interval absolute(const Interval& a)
-{
-    double low = std::fabs(a.minimum), high = std::fabs(a.maximum);
-    return {a.contains(0) ? 0.0 : std::min(low, high), std::max(low, high)};
-}
-
-// Of reals: what the operation is there.
-double value_at(Op op, double a, double b = 0)
-{
-    Slot<double> result;
-    execute(op, result, Slot<double>{a}, Slot<double>{b}, {}, {});
-    return result.real;
-}
-
-// f rises over the interval and is exact, or right to four units in the last place.
-template <typename F>
-Interval rising(const Interval& a, const F& f, bool is_exact = false)
-{
-    double low = f(a.minimum), high = f(a.maximum);
-    return is_exact ? Interval{low, high} : Interval{down(low, 4), up(high, 4)};
-}
-
-// Part of the operand where the function is defined; elsewhere it is NaN.
-Interval within(const Interval& a, double low, double high, bool& may_be_nan)
-{
-    may_be_nan = a.minimum < low || a.maximum > high;
-    return {std::max(a.minimum, low), std::min(a.maximum, high)};
-}
-
-template <typename F>
-Interval rising_within(const Interval& a, double low, double high, const F& f, bool is_exact)
-{
-    bool nan = false;
-    Interval part = within(a, low, high, nan);
-    if (part.is_empty()) return empty;
-    Interval result = rising(part, f, is_exact);
-    result.may_be_nan = nan;
-    return result;
-}
-
-// A wave between -1 and 1 with a crest at `crest` + k period and a trough half a period later.
-template <typename F>
-Interval wave(const Interval& a, double period, double crest, const F& f)
-{
-    const bool nan = may_be_infinite(a);
-    const double size = size_of(a);
-    if (!(size < 1e9) || a.maximum - a.minimum >= period) return {-1, 1, nan};
-    const double slack = 1e-15 * (size + period); // crests are placed with rounding
-    auto meets = [&](double at) {
-        double k = std::ceil((a.minimum - slack - at) / period);
-        return at + k * period <= a.maximum + slack;
-    };
-    const double left = f(a.minimum), right = f(a.maximum);
-    return {meets(crest + period / 2) ? -1 : down(std::min(left, right), 4),
-            meets(crest) ? 1 : up(std::max(left, right), 4), nan};
-}
-
-Interval tangent(const Interval& a)
-{
-    double cell = std::floor(a.minimum / pi + 0.5), other = std::floor(a.maximum / pi + 0.5);
-    double to_pole = std::min(std::fabs(a.minimum - (cell - 0.5) * pi), std::fabs((other + 0.5) * pi - a.maximum));
-    if (cell != other || !(std::fabs(cell) < 1e9) ||
-        to_pole < 1e-15 * (1 + std::fabs(a.minimum) + std::fabs(a.maximum)))
-        return {-infinity, infinity, may_be_infinite(a)};
-    return rising(a, [](double x) { return value_at(Op::tan, x); });
-}
-
-// The direction of (x, y), behind the origin to half a turn either way.
-Interval angle(Op op, const Interval& y, const Interval& x)
-{
-    const double half_turn = traits(op).period / 2;
-    const bool cut = y.contains(0) && x.minimum <= 0;
-    if (cut) return {down(-half_turn, 4), up(half_turn, 4)};
-    Interval all = empty;
-    for (double b : {y.minimum, y.maximum})
-        for (double a : {x.minimum, x.maximum}) {
-            double value = value_at(op, b, a);
-            all = {std::min(all.minimum, value), std::max(all.maximum, value), false};
-        }
-    return {down(all.minimum, 4), up(all.maximum, 4)};
-}
-
 Interval fraction(const Interval& a)
 {
     if (may_be_infinite(a)) return {0, 1, true};
@@ -223,27 +116,6 @@ Interval length(std::span<const Interval> parts)
     }
     auto count = static_cast<int>(parts.size());
     return {down(semantics::length(low, count), 4), up(semantics::length(high, count), 4)};
-}
-
-Interval power(const Interval& a, const Interval& b)
-{
-    auto corners = [&](const Interval& base) { // monotonic in each operand where the base is not negative
-        Interval all = empty;
-        for (double x : {base.minimum, base.maximum})
-            for (double y : {b.minimum, b.maximum}) {
-                double value = value_at(Op::pow, x, y);
-                all = {std::min(all.minimum, value), std::max(all.maximum, value), false};
-            }
-        return Interval{std::max(0.0, down(all.minimum, 4)), up(all.maximum, 4)};
-    };
-    if (a.contains(0) && b.minimum < 0) return {-infinity, infinity, a.minimum < 0}; // pow(-0, -1) is -infinity
-    const Interval size = corners(absolute(a));
-    if (a.minimum >= 0) return size;
-    const bool is_whole = b.is_point() && std::isfinite(b.minimum) && b.minimum == std::floor(b.minimum);
-    if (!is_whole) return {-size.maximum, size.maximum, true};
-    if (std::fmod(b.minimum, 2) == 0) return size;
-    double low = value_at(Op::pow, a.minimum, b.minimum), high = value_at(Op::pow, a.maximum, b.minimum);
-    return {down(std::min(low, high), 4), up(std::max(low, high), 4)};
 }
 
 Interval truth(bool may_be_false, bool may_be_true)
@@ -295,26 +167,6 @@ Interval on_integers(Op op, Type type, std::span<const Interval> operands)
     for (size_t i = 0; i < operands.size(); ++i) ranges[i] = {end(operands[i].minimum), end(operands[i].maximum)};
     IntRange range = range_of(op, type, {ranges, operands.size()});
     return {static_cast<double>(range.minimum), static_cast<double>(range.maximum)};
-}
-
-Interval by_shape(Op op, std::span<const Interval> x)
-{
-    const Interval& a = x[0];
-    const Traits& row = traits(op);
-    const bool is_exact = row.ulp == 0;
-    const auto value = [op](double v) { return value_at(op, v); };
-    switch (row.shape) {
-    case Shape::rising: return rising_within(a, row.from, row.to, value, is_exact);
-    case Shape::falling:
-        return negated(rising_within(a, row.from, row.to, [&](double v) { return -value(v); }, is_exact));
-    case Shape::even: return rising(absolute(a), value, is_exact);
-    case Shape::wave: return wave(a, row.period, row.crest, value);
-    case Shape::angle: return angle(op, a, x[1]);
-    case Shape::tangent: return tangent(a);
-    case Shape::power: return power(a, x[1]);
-    case Shape::own: break;
-    }
-    return {-infinity, infinity, true};
 }
 
 // Outward rounding leaves nothing beyond what the operation can be.
@@ -413,7 +265,7 @@ bool holds_pole(Op op, std::span<const Interval> operands)
     const Traits& row = traits(op);
     if (op == Op::div) return operands[1].contains(0);
     if (row.shape == Shape::power) return a.contains(0) && operands[1].minimum < 0;
-    if (row.shape == Shape::tangent) return may_be_infinite(tangent(a)); // in double never met, only 1e16
+    if (row.shape == Shape::tangent) return may_be_infinite(by_shape(op, operands)); // in double never met, only 1e16
     return row.has_pole_at_ends && (a.contains(row.from) || a.contains(row.to));
 }
 
@@ -461,7 +313,7 @@ Interval evaluate(Op op, std::span<const Interval> operands)
         is_empty |= operand.is_empty();
         may_be_nan |= operand.may_be_nan;
     }
-    Interval result = is_empty ? empty : clipped(op, value_of(op, operands));
+    Interval result = is_empty ? not_a_number : clipped(op, value_of(op, operands));
     result.may_be_nan |= may_be_nan;
     const bool swallows_nan =
         traits(op).shape == Shape::power &&

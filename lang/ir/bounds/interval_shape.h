@@ -1,0 +1,44 @@
+// Intervals of the functions whose row in ops.def tells their shape: where they rise, fall, turn round and repeat.
+#pragma once
+
+#include "lang/ir/bounds/interval.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::ir {
+
+// Without a value, but perhaps NaN: of an operation on what it is not defined for.
+inline constexpr Interval not_a_number{infinity, -infinity, true};
+
+inline double down(double value, int steps = 1)
+{
+    for (int i = 0; i < steps; ++i) value = std::nextafter(value, -infinity);
+    return value;
+}
+inline double up(double value, int steps = 1)
+{
+    return -down(-value, steps);
+}
+
+inline bool may_be_infinite(const Interval& a)
+{
+    return a.minimum == -infinity || a.maximum == infinity;
+}
+
+inline Interval negated(const Interval& a)
+{
+    return {-a.maximum, -a.minimum, a.may_be_nan};
+}
+
+// Never with -0 as an end: powers tell it from 0.
+inline Interval absolute(const Interval& a)
+{
+    double low = std::fabs(a.minimum), high = std::fabs(a.maximum);
+    return {a.contains(0) ? 0.0 : std::min(low, high), std::max(low, high)};
+}
+
+// Of an operation that has a shape.
+Interval by_shape(Op op, std::span<const Interval> operands);
+
+} // namespace haptel::ir
