@@ -71,6 +71,32 @@ void DerivativeEmitter::prepare(const Block& block)
     for (const auto& [callee, plan] : wanted) callees.derivative(callee, plan);
 }
 
+void DerivativeEmitter::begin(Builder& builder, const Seeds& seeds)
+{
+    Function& made = builder.function();
+    made.first_argument_size = function.first_argument_size;
+    made.is_library = function.is_library;
+    made.facts = function.facts; // its first results are the original's
+    for (Value parameter : function.parameters) set_primal(parameter, builder.parameter(function.type(parameter)));
+    for (size_t p = 0; p < seeds.size(); ++p)
+        for (size_t d = 0; d < activity.directions(); ++d)
+            if (seeds[p][d] == Seed::given)
+                set_tangent(builder, function.parameters[p], d, builder.parameter(Type::real));
+}
+
+std::vector<Value> DerivativeEmitter::results(bool tangents_wanted, std::vector<std::vector<bool>>& exists) const
+{
+    std::vector<Value> all = primals_of(function.body.yields);
+    for (Value result : function.body.yields) {
+        std::vector<bool>& row = exists.emplace_back(activity.directions(), false);
+        for (size_t d = 0; tangents_wanted && d < activity.directions(); ++d) {
+            row[d] = tangent(result, d).has_value();
+            if (row[d]) all.push_back(*tangent(result, d));
+        }
+    }
+    return all;
+}
+
 void DerivativeEmitter::emit(Builder& builder, const Block& block)
 {
     for (const Instruction& made : block.instructions) {

@@ -47,7 +47,12 @@ public:
 
     // Asks for the derivative of every callee, so that none has to be made while this function is.
     void prepare(const Block& block);
+    // Gives the function in the builder what it has of the source, and parameters: those of the source, then its given
+    // tangents.
+    void begin(Builder& builder, const Seeds& seeds);
     void emit(Builder& builder, const Block& block);
+    // The function's results, then their tangents, if they are wanted; which of them exist goes to `exists`.
+    std::vector<Value> results(bool tangents_wanted, std::vector<std::vector<bool>>& exists) const;
 
     void set_primal(Value value, Value made) { primals[value.index] = made; }
     void set_tangent(Builder& builder, Value value, size_t direction, Tangent made);

@@ -130,30 +130,14 @@ Derivative Differentiator::derivative(uint32_t function, const Seeds& seeds)
 
     const bool is_jacobian = directions > 0 && seeds == first_argument_seeds(source);
     Builder builder(module, "d " + source.name + (is_jacobian ? "" : " [" + pattern_of(seeds) + "]"));
-    builder.function().first_argument_size = source.first_argument_size;
-    builder.function().is_library = source.is_library;
-    builder.function().facts = source.facts; // its first results are the original's
-    for (Value parameter : source.parameters) emitter.set_primal(parameter, builder.parameter(source.type(parameter)));
-    for (size_t p = 0; p < seeds.size(); ++p)
-        for (size_t d = 0; d < directions; ++d)
-            if (seeds[p][d] == Seed::given)
-                emitter.set_tangent(builder, source.parameters[p], d, builder.parameter(Type::real));
+    emitter.begin(builder, seeds);
     for (size_t p = 0; p < seeds.size(); ++p)
         for (size_t d = 0; d < directions; ++d)
             if (seeds[p][d] == Seed::unit) emitter.set_tangent(builder, source.parameters[p], d, builder.real(1));
     emitter.emit(builder, source.body);
 
     Derivative made;
-    std::vector<Value> results;
-    for (Value result : source.body.yields) results.push_back(emitter.primal(result));
-    for (Value result : source.body.yields) {
-        std::vector<bool>& row = made.exists.emplace_back();
-        for (size_t d = 0; d < directions; ++d) {
-            const Tangent& tangent = emitter.tangent(result, d);
-            row.push_back(tangent.has_value());
-            if (tangent) results.push_back(*tangent);
-        }
-    }
+    const std::vector<Value> results = emitter.results(true, made.exists);
     if (is_jacobian && !source.facts.empty()) {
         std::vector<Facts>& facts = builder.function().facts;
         facts.resize(source.body.yields.size());

@@ -115,28 +115,11 @@ Derivative PointDerivativeResolver::resolved(uint32_t function, const Seeds& see
     emitter.prepare(source.body);
     Builder builder(module, std::string(tangents_of_results ? "d " : "") + "resolved " + source.name +
                                 (seeds.empty() ? "" : " [" + pattern_of(seeds) + "]"));
-    builder.function().first_argument_size = source.first_argument_size;
-    builder.function().is_library = source.is_library;
-    builder.function().facts = source.facts; // its first result is the original's
-    for (Value parameter : source.parameters) emitter.set_primal(parameter, builder.parameter(source.type(parameter)));
-    for (size_t p = 0; p < seeds.size(); ++p)
-        for (size_t d = 0; d < axes; ++d)
-            if (seeds[p][d] == Seed::given)
-                emitter.set_tangent(builder, source.parameters[p], d, builder.parameter(Type::real));
+    emitter.begin(builder, seeds);
     emitter.emit(builder, source.body);
 
     Derivative made;
-    std::vector<Value> results;
-    for (Value result : source.body.yields) results.push_back(emitter.primal(result));
-    for (Value result : source.body.yields) {
-        std::vector<bool>& row = made.exists.emplace_back(axes, false);
-        for (size_t d = 0; tangents_of_results && d < axes; ++d) {
-            const Tangent& tangent = emitter.tangent(result, d);
-            row[d] = tangent.has_value();
-            if (tangent) results.push_back(*tangent);
-        }
-    }
-    made.function = builder.finish(results);
+    made.function = builder.finish(emitter.results(tangents_of_results, made.exists));
     return memo.emplace(key, made).first->second;
 }
 
