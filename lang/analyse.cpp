@@ -198,17 +198,16 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
         return undefined.span.file == cause.span.file && undefined.span.begin == cause.span.begin;
     };
     if (std::any_of(said.begin(), said.end(), is_same_place)) return found;
+    const auto by = [&] { return "by " + what_of(cause, program.sources); };
     if (found.at_values.smoothness == ir::Smoothness::jump)
         diagnostics
             .warning(cause.span, "jump",
-                     "the height of '" + texture.name + "' may jump here, by " + what_of(cause, program.sources) +
-                         ": an impulse in the hand")
+                     "the height of '" + texture.name + "' may jump here, " + by() + ": an impulse in the hand")
             .hint = smooth_form(cause);
     if (found.at_values.smoothness == ir::Smoothness::c0)
         diagnostics
             .note(cause.span, "kink",
-                  "the slope of '" + texture.name + "' may step here, by " + what_of(cause, program.sources) +
-                      ": a tick in the hand")
+                  "the slope of '" + texture.name + "' may step here, " + by() + ": a tick in the hand")
             .hint = smooth_form(cause);
     return found;
 }

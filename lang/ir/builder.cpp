@@ -49,9 +49,7 @@ Value Builder::State::new_value(Type type, const Definition& made)
 
 Value Builder::State::new_value(Type type)
 {
-    Definition unknown;
-    unknown.range = full_range(type);
-    return new_value(type, unknown);
+    return new_value(type, {.range = full_range(type)});
 }
 
 Value Builder::State::emit(const InstructionKey& key, Instruction instruction, std::span<const Type> types,
@@ -63,6 +61,12 @@ Value Builder::State::emit(const InstructionKey& key, Instruction instruction, s
     scopes.back().keys.push_back(&entry->first);
     append(std::move(instruction));
     return {entry->second};
+}
+
+Value Builder::State::single(const InstructionKey& key, Kind kind, std::span<const Value> operands, Span span,
+                             Type type, const Definition* made)
+{
+    return emit(key, {std::move(kind), {operands.begin(), operands.end()}, {}, span}, {&type, 1}, made);
 }
 
 uint32_t Builder::State::list(std::span<const Value> values)
@@ -125,64 +129,49 @@ Value Builder::parameter(Type type)
 
 Value Builder::real(double value)
 {
-    Definition made;
-    made.kind = Definition::Kind::real;
-    made.real = value;
-    const Type type = Type::real;
-    return state->emit(key_of(KeyKind::real, std::bit_cast<uint64_t>(value), {}), {RealConstant{value}, {}, {}, span},
-                       {&type, 1}, &made);
+    const Definition made{.kind = Definition::Kind::real, .real = value};
+    return state->single(key_of(KeyKind::real, std::bit_cast<uint64_t>(value), {}), RealConstant{value}, {}, span,
+                         Type::real, &made);
 }
 
 Value Builder::i32(int32_t value)
 {
-    Definition made;
-    made.kind = Definition::Kind::integer;
-    made.range = {value, value};
-    const Type type = Type::i32;
-    auto bits = static_cast<uint32_t>(value);
-    return state->emit(key_of(KeyKind::integer, bits, {}), {IntConstant{bits}, {}, {}, span}, {&type, 1}, &made);
+    const Definition made{.kind = Definition::Kind::integer, .range = {value, value}};
+    const auto bits = static_cast<uint32_t>(value);
+    return state->single(key_of(KeyKind::integer, bits, {}), IntConstant{bits}, {}, span, Type::i32, &made);
 }
 
 Value Builder::u32(uint32_t value)
 {
-    Definition made;
-    made.kind = Definition::Kind::integer;
-    made.range = {value, value};
-    const Type type = Type::u32;
-    return state->emit(key_of(KeyKind::integer, value | uint64_t{1} << 32, {}), {IntConstant{value}, {}, {}, span},
-                       {&type, 1}, &made);
+    const Definition made{.kind = Definition::Kind::integer, .range = {value, value}};
+    const uint64_t apart = uint64_t{1} << 32; // from the i32 of the same bits
+    return state->single(key_of(KeyKind::integer, value | apart, {}), IntConstant{value}, {}, span, Type::u32, &made);
 }
 
 Value Builder::boolean(bool value)
 {
-    Definition made;
-    made.kind = Definition::Kind::boolean;
-    made.range = {value, value};
-    const Type type = Type::boolean;
-    return state->emit(key_of(KeyKind::boolean_, value, {}), {BoolConstant{value}, {}, {}, span}, {&type, 1}, &made);
+    const Definition made{.kind = Definition::Kind::boolean, .range = {value, value}};
+    return state->single(key_of(KeyKind::boolean_, value, {}), BoolConstant{value}, {}, span, Type::boolean, &made);
 }
 
 Value Builder::input(Input input)
 {
-    const Type type = Type::real;
-    return state->emit(key_of(KeyKind::input_, static_cast<uint32_t>(input), {}), {ReadInput{input}, {}, {}, span},
-                       {&type, 1});
+    return state->single(key_of(KeyKind::input_, static_cast<uint32_t>(input), {}), ReadInput{input}, {}, span,
+                         Type::real);
 }
 
 Value Builder::texture_parameter(uint32_t index, Type type)
 {
-    return state->emit(key_of(KeyKind::parameter_, index, {}), {ReadParameter{index}, {}, {}, span}, {&type, 1});
+    return state->single(key_of(KeyKind::parameter_, index, {}), ReadParameter{index}, {}, span, type);
 }
 
 Value Builder::table(uint32_t table, Value index)
 {
     Table& cells = state->module.tables[table];
-    const Type type = cells.element;
     if (!cells.range) cells.range = range_of_cells(cells);
-    Definition made;
-    made.range = *cells.range;
-    return state->emit(key_of(KeyKind::table_, table, {&index, 1}), {ReadTable{table}, {index}, {}, span}, {&type, 1},
-                       &made);
+    const Definition made{.range = *cells.range};
+    return state->single(key_of(KeyKind::table_, table, {&index, 1}), ReadTable{table}, {&index, 1}, span,
+                         cells.element, &made);
 }
 
 Value Builder::operation(Op op, std::span<const Value> operands)
@@ -206,9 +195,8 @@ Value Builder::operation(Op op, std::span<const Value> operands)
     Value ordered[4];
     std::copy(operands.begin(), operands.end(), ordered);
     if (traits(op).commutes && ordered[1].index < ordered[0].index) std::swap(ordered[0], ordered[1]);
-    Instruction instruction{Operation{op}, {operands.begin(), operands.end()}, {}, span};
-    return state->emit(key_of(KeyKind::operation, static_cast<uint32_t>(op), {ordered, operands.size()}),
-                       std::move(instruction), {&*result, 1}, &made);
+    return state->single(key_of(KeyKind::operation, static_cast<uint32_t>(op), {ordered, operands.size()}),
+                         Operation{op}, operands, span, *result, &made);
 }
 
 Value Builder::operation(Op op, std::initializer_list<Value> operands)
@@ -219,9 +207,8 @@ Value Builder::operation(Op op, std::initializer_list<Value> operands)
 Value Builder::point_derivative(uint32_t axis, Value of)
 {
     if (real_constant(of)) return real(0);
-    const Type type = Type::real;
-    return state->emit(key_of(KeyKind::point_derivative_, axis, {&of, 1}), {PointDerivative{axis}, {of}, {}, span},
-                       {&type, 1});
+    return state->single(key_of(KeyKind::point_derivative_, axis, {&of, 1}), PointDerivative{axis}, {&of, 1}, span,
+                         Type::real);
 }
 
 std::vector<Value> Builder::call(uint32_t function, std::span<const Value> arguments)

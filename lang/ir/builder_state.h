@@ -12,7 +12,7 @@ namespace haptel::ir {
 struct Definition {
     enum class Kind : uint8_t { other, operation, real, integer, boolean } kind = Kind::other;
     Op op{};
-    Value operand[4];
+    Value operand[4] = {};
     double real = 0;
     IntRange range{0, 0}; // integers and booleans
 };
@@ -47,6 +47,9 @@ struct Builder::State {
     // First result of an equal instruction in an open block, or of this one, appended. Results are consecutive.
     Value emit(const InstructionKey& key, Instruction instruction, std::span<const Type> types,
                const Definition* definition = nullptr);
+    // The same of an instruction with one result.
+    Value single(const InstructionKey& key, Kind kind, std::span<const Value> operands, Span span, Type type,
+                 const Definition* definition = nullptr);
     uint32_t list(std::span<const Value> values); // equal lists, equal numbers
     void append(Instruction instruction);
     void open();
