@@ -199,12 +199,12 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
     };
     if (std::any_of(said.begin(), said.end(), is_same_place)) return found;
     const auto by = [&] { return "by " + what_of(cause, program.sources); };
-    if (found.at_values.smoothness == ir::Smoothness::jump)
+    if (found.at_values.continuity == ir::Continuity::jump)
         diagnostics
             .warning(cause.span, "jump",
                      "the height of '" + texture.name + "' may jump here, " + by() + ": an impulse in the hand")
             .hint = smooth_form(cause);
-    if (found.at_values.smoothness == ir::Smoothness::c0)
+    if (found.at_values.continuity == ir::Continuity::c0)
         diagnostics
             .note(cause.span, "kink",
                   "the slope of '" + texture.name + "' may step here, " + by() + ": a tick in the hand")

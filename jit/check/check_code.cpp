@@ -1,6 +1,6 @@
 #include "jit/check/check_code.h"
 
-#include "jit/check/check_smoothness.h"
+#include "jit/check/check_continuity.h"
 
 #include <algorithm>
 #include <cmath>
@@ -90,7 +90,7 @@ void check_code(GradientCheck& check, const TextureBinding& binding, const Check
     expect_at_most(check, "points where height or gradient is not finite (edges and huge coordinates included)",
                    static_cast<double>(check.not_finite), 0);
     expect_at_most(check, "points where the height leaves its bounds", static_cast<double>(check.bounds_exceeded), 0);
-    check_smoothness(check, binding, points);
+    check_continuity(check, binding, points);
 }
 
 GradientCheck check_gradient(const TextureBinding& binding, const CheckBox& box, uint32_t count, uint64_t seed)

@@ -56,7 +56,7 @@ private:
     void write(const ir::Facts& facts)
     {
         for (const auto& bound : {facts.value_minimum, facts.value_maximum, facts.slope, facts.curvature}) real(bound);
-        word(facts.smoothness ? 1 + static_cast<uint32_t>(*facts.smoothness) : 0);
+        word(facts.continuity ? 1 + static_cast<uint32_t>(*facts.continuity) : 0);
         word(facts.proven);
     }
     void write(const ir::Block& block)

@@ -38,15 +38,15 @@ ir::BoundsBox anywhere()
     return box;
 }
 
-uint32_t continuity_of(ir::Smoothness smoothness)
+uint32_t abi_continuity(ir::Continuity continuity)
 {
-    switch (smoothness) {
-    case ir::Smoothness::unknown: return HAPTEL_CONTINUITY_UNKNOWN;
-    case ir::Smoothness::jump: return HAPTEL_CONTINUITY_JUMP;
-    case ir::Smoothness::c0: return HAPTEL_CONTINUITY_C0;
-    case ir::Smoothness::c1:
-    case ir::Smoothness::c2:
-    case ir::Smoothness::smooth: return HAPTEL_CONTINUITY_C1;
+    switch (continuity) {
+    case ir::Continuity::unknown: return HAPTEL_CONTINUITY_UNKNOWN;
+    case ir::Continuity::jump: return HAPTEL_CONTINUITY_JUMP;
+    case ir::Continuity::c0: return HAPTEL_CONTINUITY_C0;
+    case ir::Continuity::c1:
+    case ir::Continuity::c2:
+    case ir::Continuity::smooth: return HAPTEL_CONTINUITY_C1;
     }
     return HAPTEL_CONTINUITY_UNKNOWN;
 }
@@ -60,7 +60,7 @@ uint32_t operations_max(const ir::Module& module, const ir::Texture& texture)
 haptel_facts facts(const ir::Module& module, const ir::Texture& texture, const ir::BoundsBox& box, uint32_t evaluations)
 {
     const ir::TextureBounds bounds = ir::texture_bounds(module, texture, box, evaluations);
-    const uint32_t continuity = continuity_of(bounds.smoothness);
+    const uint32_t continuity = abi_continuity(bounds.continuity);
     return {bounds.height.minimum,
             bounds.height.maximum,
             bounds.slope_max,

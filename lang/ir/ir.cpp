@@ -85,32 +85,32 @@ std::optional<Type> result_type(Op op, std::span<const Type> operands)
 }
 
 namespace {
-constexpr std::string_view smoothness_names[] = {"unknown", "jump", "C0", "C1", "C2", "smooth"};
+constexpr std::string_view continuity_names[] = {"unknown", "jump", "C0", "C1", "C2", "smooth"};
 }
 
-std::string_view to_string(Smoothness smoothness)
+std::string_view to_string(Continuity continuity)
 {
-    return smoothness_names[static_cast<size_t>(smoothness)];
+    return continuity_names[static_cast<size_t>(continuity)];
 }
 
-std::optional<Smoothness> smoothness_named(std::string_view name)
+std::optional<Continuity> continuity_named(std::string_view name)
 {
-    const auto found = std::find(std::begin(smoothness_names), std::end(smoothness_names), name);
-    if (found == std::end(smoothness_names)) return std::nullopt;
-    return static_cast<Smoothness>(found - std::begin(smoothness_names));
+    const auto found = std::find(std::begin(continuity_names), std::end(continuity_names), name);
+    if (found == std::end(continuity_names)) return std::nullopt;
+    return static_cast<Continuity>(found - std::begin(continuity_names));
 }
 
-Smoothness lowered(Smoothness smoothness)
+Continuity lowered(Continuity continuity)
 {
-    switch (smoothness) {
-    case Smoothness::unknown: return Smoothness::unknown;
-    case Smoothness::jump:
-    case Smoothness::c0: return Smoothness::jump;
-    case Smoothness::c1: return Smoothness::c0;
-    case Smoothness::c2: return Smoothness::c1;
-    case Smoothness::smooth: return Smoothness::smooth;
+    switch (continuity) {
+    case Continuity::unknown: return Continuity::unknown;
+    case Continuity::jump:
+    case Continuity::c0: return Continuity::jump;
+    case Continuity::c1: return Continuity::c0;
+    case Continuity::c2: return Continuity::c1;
+    case Continuity::smooth: return Continuity::smooth;
     }
-    return Smoothness::unknown;
+    return Continuity::unknown;
 }
 
 } // namespace haptel::ir

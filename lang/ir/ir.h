@@ -155,8 +155,8 @@ void for_each_instruction(const Block& block, const Visit& visit)
 
 // How smooth a value is as a function of what it is made from, the rougher the less; a composition is as smooth as its
 // roughest part. The derivative of a c1 function is c0, and so on.
-enum class Smoothness : uint8_t { unknown, jump, c0, c1, c2, smooth };
-Smoothness lowered(Smoothness smoothness); // of the derivative
+enum class Continuity : uint8_t { unknown, jump, c0, c1, c2, smooth };
+Continuity lowered(Continuity continuity); // of the derivative
 
 // Proven or declared properties of one result of a function; norms with respect to its first non-function argument,
 // all other arguments within their ranges. Absent: unknown. Slope and curvature are of the pieces between jumps and,
@@ -164,7 +164,7 @@ Smoothness lowered(Smoothness smoothness); // of the derivative
 struct Facts {
     std::optional<double> value_minimum, value_maximum;
     std::optional<double> slope, curvature;
-    std::optional<Smoothness> smoothness;
+    std::optional<Continuity> continuity;
     bool proven = false; // the standard library's; others print as `declared`
     Span span = {};      // where they are declared
 };

@@ -11,9 +11,6 @@
 
 namespace haptel::ir {
 
-// How smooth an operation is by itself: no kink; continuous with kinks; with jumps.
-enum class Continuity : uint8_t { smooth, kink, jump };
-
 enum class OpKind : uint8_t { plain, discrete, elementary, angular }; // see ops.def
 
 // On what a real result stays on one smooth piece: nothing decides; which of two operands is less; the operand's sign;
@@ -132,8 +129,8 @@ std::optional<Op> op_named(std::string_view name);
 
 std::string_view to_string(Type type);             // "real", "i32", "u32", "bool", "image"
 std::string_view to_string(Input input);           // "p_x"
-std::string_view to_string(Smoothness smoothness); // "unknown", "jump", "C0", "C1", "C2", "smooth"
-std::optional<Smoothness> smoothness_named(std::string_view name);
+std::string_view to_string(Continuity continuity); // "unknown", "jump", "C0", "C1", "C2", "smooth"
+std::optional<Continuity> continuity_named(std::string_view name);
 
 // Type of the operation's result, or nothing if number or types of the operands do not fit its signature.
 std::optional<Type> result_type(Op op, std::span<const Type> operands);

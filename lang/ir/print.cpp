@@ -136,7 +136,7 @@ private:
         if (facts.value_maximum) text += " maximum " + number(*facts.value_maximum);
         if (facts.slope) text += " slope " + number(*facts.slope);
         if (facts.curvature) text += " curvature " + number(*facts.curvature);
-        if (facts.smoothness) text += " class " + std::string(to_string(*facts.smoothness));
+        if (facts.continuity) text += " class " + std::string(to_string(*facts.continuity));
         if (facts.proven) text += " proven";
     }
 

@@ -33,7 +33,7 @@ ir::Facts facts_of(const FactsComment& comment, bool is_library)
     facts.value_maximum = comment.value_maximum;
     facts.slope = comment.slope;
     facts.curvature = comment.curvature;
-    facts.smoothness = ir::smoothness_named(comment.continuity);
+    facts.continuity = ir::continuity_named(comment.continuity);
     facts.proven = is_library;
     facts.span = comment.span;
     return facts;
@@ -224,7 +224,7 @@ uint32_t ModuleLowering::smooth_ramp()
     function.first_argument_size = 1;
     function.is_library = true;
     // |6 t (1 - t)| is 3/2 at 1/2, |6 - 12 t| is 6 at the ends, where the second derivative jumps to 0
-    function.facts = {{0.0, 1.0, 1.5, 6.0, ir::Smoothness::c1, true, {}}};
+    function.facts = {{0.0, 1.0, 1.5, 6.0, ir::Continuity::c1, true, {}}};
     ramp = builder.finish(std::vector<Value>{make(ir::Op::mul, make(ir::Op::mul, t, t), slant)});
     return *ramp;
 }

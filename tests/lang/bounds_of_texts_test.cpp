@@ -96,7 +96,7 @@ TEST_CASE("facts: of a vector function they are each component's")
                     "texture t() { return f(p.x / 1m).y; }",
                     0, 100);
     CHECK(bounds.slope_max <= 1 + 1e-9);
-    CHECK(bounds.smoothness >= ir::Smoothness::c1);
+    CHECK(bounds.continuity >= ir::Continuity::c1);
 }
 
 TEST_CASE("bounds: what shares terms is not wider than it is")

@@ -36,7 +36,7 @@ TEST_CASE("compile: the library is seen by all, lowered only where it is reached
     CHECK(base->facts[0].value_maximum == 1.0);
     CHECK(base->facts[0].slope == 2.0);
     CHECK(base->facts[0].curvature == 3.0);
-    CHECK(base->facts[0].smoothness == ir::Smoothness::c1);
+    CHECK(base->facts[0].continuity == ir::Continuity::c1);
 
     // The user's base is used by the user; the library goes on with its own.
     result = compile({"main.haptel", "float base(vec3 q) { return 7.0; }\ntexture t() { return base(p) + over(p); }"},

@@ -25,14 +25,14 @@ std::shared_ptr<const Program> program_of(const std::string& text)
     return result.program;
 }
 
-ir::Smoothness class_of(const ir::Module& module, const ir::Texture& texture)
+ir::Continuity class_of(const ir::Module& module, const ir::Texture& texture)
 {
     ir::BoundsBox box;
     for (const ir::Input input : {ir::Input::p_x, ir::Input::p_y})
         box.input[static_cast<size_t>(input)] = {-box_m, box_m};
     for (const ir::Parameter& parameter : texture.parameters)
         box.parameters.push_back({parameter.value, parameter.value});
-    return ir::texture_bounds(module, texture, box, 16).smoothness;
+    return ir::texture_bounds(module, texture, box, 16).continuity;
 }
 
 // Of a texture's height along lines: halves each towards where more changes, until two neighbouring numbers are left.
@@ -156,7 +156,7 @@ TEST_CASE("patterns: told to jump are those that do, but for those that say so")
         const bool does_jump = texture.doc.starts_with("Jumps");
         const bool is_not_seen = texture.doc.starts_with("Continuous, not seen");
         REQUIRE((does_jump || texture.doc.starts_with("Continuous")));
-        CHECK((class_of(program->module, texture) <= ir::Smoothness::jump) == (does_jump || is_not_seen));
+        CHECK((class_of(program->module, texture) <= ir::Continuity::jump) == (does_jump || is_not_seen));
         const double found = JumpSearch(program->module, texture).greatest_jump(7, 4000);
         CHECK((found > 1e-6) == does_jump); // of heights of 20 um and more
         jumps += does_jump;
@@ -173,7 +173,7 @@ TEST_CASE("patterns: what is called continuous has no jump, whatever was drawn")
         const std::string text = RandomPattern(seed).text();
         const auto program = program_of(text);
         const ir::Texture& texture = program->module.textures[0];
-        if (class_of(program->module, texture) <= ir::Smoothness::jump) continue;
+        if (class_of(program->module, texture) <= ir::Continuity::jump) continue;
         ++continuous;
         CAPTURE(seed, text);
         CHECK(JumpSearch(program->module, texture).greatest_jump(seed, 400) < 1e-8); // of heights of some mm

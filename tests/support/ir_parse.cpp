@@ -69,9 +69,9 @@ private:
         return known_word(enumerator_named<Type>(token().text, static_cast<uint32_t>(Type::image) + 1),
                           "a type (real, i32, u32, bool)");
     }
-    Smoothness smoothness()
+    Continuity continuity()
     {
-        return known_word(smoothness_named(token().text), "a class (unknown, jump, C0, C1, C2, smooth)");
+        return known_word(continuity_named(token().text), "a class (unknown, jump, C0, C1, C2, smooth)");
     }
 
     Value use()
@@ -162,7 +162,7 @@ private:
             else if (accept("curvature"))
                 made.curvature = real();
             else if (accept("class"))
-                made.smoothness = smoothness();
+                made.continuity = continuity();
             else if (accept("proven"))
                 made.proven = true;
             else

@@ -54,7 +54,7 @@ Json to_json(const ir::Interval& height_m)
 // A curvature is of a gradient without jumps.
 bool has_curvature(const ir::TextureBounds& bounds)
 {
-    return bounds.smoothness >= ir::Smoothness::c1;
+    return bounds.continuity >= ir::Continuity::c1;
 }
 Json curvature_of(const ir::TextureBounds& bounds)
 {
@@ -63,13 +63,13 @@ Json curvature_of(const ir::TextureBounds& bounds)
 
 Json continuity_of(const ir::TextureBounds& bounds)
 {
-    switch (bounds.smoothness) {
-    case ir::Smoothness::unknown: return nullptr;
-    case ir::Smoothness::jump: return "jump";
-    case ir::Smoothness::c0: return "C0";
-    case ir::Smoothness::c1:
-    case ir::Smoothness::c2:
-    case ir::Smoothness::smooth: return "C1";
+    switch (bounds.continuity) {
+    case ir::Continuity::unknown: return nullptr;
+    case ir::Continuity::jump: return "jump";
+    case ir::Continuity::c0: return "C0";
+    case ir::Continuity::c1:
+    case ir::Continuity::c2:
+    case ir::Continuity::smooth: return "C1";
     }
     return nullptr;
 }
@@ -161,11 +161,11 @@ std::string shown_bounds(double here, double over_ranges, std::string_view unit)
 std::string shown_class(const CheckedTexture& checked)
 {
     const ir::TextureBounds& bounds = checked.analysis.at_values;
-    if (bounds.smoothness >= ir::Smoothness::c1)
+    if (bounds.continuity >= ir::Continuity::c1)
         return std::isfinite(bounds.curvature_max_per_m) ? "C1, smooth enough for a bounded change of force"
                                                          : "C1, no kinks, but no bound of how fast the slope changes";
-    const std::string_view meaning = bounds.smoothness == ir::Smoothness::unknown ? "not found"
-                                     : bounds.smoothness == ir::Smoothness::jump  ? "jump, the height steps"
+    const std::string_view meaning = bounds.continuity == ir::Continuity::unknown ? "not found"
+                                     : bounds.continuity == ir::Continuity::jump  ? "jump, the height steps"
                                                                                   : "C0, the slope steps";
     const lang::SourceSet& sources = checked.program->sources;
     const lang::Position at = sources.position(bounds.cause.span.file, bounds.cause.span.begin);

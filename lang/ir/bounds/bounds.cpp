@@ -177,7 +177,7 @@ private:
     }
 
     // A curvature is of a gradient without jumps; of others it is not looked for, only told as it comes.
-    bool is_wanted(size_t goal) const { return goals[goal] != Goal::curvature || whole.smoothness >= Smoothness::c1; }
+    bool is_wanted(size_t goal) const { return goals[goal] != Goal::curvature || whole.continuity >= Continuity::c1; }
 
     size_t next_of(Queue& queue)
     {
@@ -238,12 +238,12 @@ std::vector<Interval> output_bounds(const Module& module, const Texture& texture
 
 TextureBounds texture_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations)
 {
-    TextureBounds bounds{height_bounds(module, texture, box, evaluations), 0, 0, Smoothness::unknown, {}, {}};
+    TextureBounds bounds{height_bounds(module, texture, box, evaluations), 0, 0, Continuity::unknown, {}, {}};
     Bisection bisection(module, texture, box, {Goal::slope, Goal::curvature});
     bisection.run(evaluations);
     bounds.slope_max = std::max(0.0, bisection.bound(0));
     bounds.curvature_max_per_m = std::max(0.0, bisection.bound(1));
-    bounds.smoothness = bisection.over_all().smoothness;
+    bounds.continuity = bisection.over_all().continuity;
     bounds.cause = bisection.over_all().cause;
     for (uint32_t function : bisection.believed_over_all()) {
         const std::string name = source_name(module.functions[function].name);

@@ -51,7 +51,7 @@ struct TextureBounds {
     Interval height;            // metres; includes 0 where the height may be not finite
     double slope_max;           // sup of the Euclidean norm of the gradient by p; at jumps, of the smooth pieces
     double curvature_max_per_m; // sup of the Hessian's spectral norm; of a texture below C1, of the smooth pieces
-    Smoothness smoothness;      // as a function of p
+    Continuity continuity;      // as a function of p
     Cause cause;                // of what makes it no smoother
     std::vector<std::string> declared; // functions whose facts these bounds believe, by name: declared, not proven
     std::vector<FalseFact> contradicted = {}; // of these

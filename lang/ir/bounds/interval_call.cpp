@@ -47,7 +47,7 @@ std::optional<FalseFact::What> contradicted_by(const IntervalEvaluator::Results&
 {
     using What = FalseFact::What;
     if (are_apart(found.values[result], declared.values[result])) return What::value;
-    if (found.variations.empty() || found.variations[result].smoothness < Smoothness::c1) return std::nullopt;
+    if (found.variations.empty() || found.variations[result].continuity < Continuity::c1) return std::nullopt;
     const Variation &by_body = found.variations[result], &by_facts = declared.variations[result];
     if (are_apart(by_body.gradient, by_facts.gradient)) return What::slope;
     if (are_apart(by_body.hessian, by_facts.hessian)) return What::curvature;
@@ -149,11 +149,11 @@ Variation IntervalEvaluator::by_facts(const Function& function, const Facts& fac
                 variation.gradient[j] = add(of_first.gradient[j], by_others->gradient[j]);
             variation.slope = (of_first.slope + by_others->slope) * (1 + 1e-15);
         }
-        variation.smoothness = facts.smoothness.value_or(Smoothness::unknown);
-        roughen(variation, before.smoothness, before.cause);
-        roughen(variation, other.smoothness, other.cause);
+        variation.continuity = facts.continuity.value_or(Continuity::unknown);
+        roughen(variation, before.continuity, before.cause);
+        roughen(variation, other.continuity, other.cause);
     }
-    if (!facts.smoothness && variation.is_active) variation.smoothness = Smoothness::unknown;
+    if (!facts.continuity && variation.is_active) variation.continuity = Continuity::unknown;
     return variation;
 }
 
@@ -181,7 +181,7 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
     for (size_t r = 0; r < count; ++r) {
         const Facts facts = r < function.facts.size() ? function.facts[r] : Facts{};
         declared.values.push_back(declared_value(facts, !are_finite));
-        const bool says_something = facts.value_minimum || facts.slope || facts.curvature || facts.smoothness;
+        const bool says_something = facts.value_minimum || facts.slope || facts.curvature || facts.continuity;
         if (varying && says_something && !facts.proven) believed_functions.insert(index);
         is_all_told &= facts.value_minimum && facts.value_maximum && facts.slope;
         const Interval& value = declared.values.back();
@@ -192,7 +192,7 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
         variation.may_fault |= !is_derivative_told;
         is_all_told &= is_derivative_told;
         if (variation.is_active && variation.cause.span.end == 0) variation.cause = {span, {}, function.is_library};
-        is_all_told &= !variation.is_active || (facts.smoothness && variation.curvature < infinity);
+        is_all_told &= !variation.is_active || (facts.continuity && variation.curvature < infinity);
     }
     if (seams && varying) cross_call(function, index, arguments, declared, span);
     // One value alone is looked at, too.
@@ -259,7 +259,7 @@ void IntervalEvaluator::sharpen_by_slope(uint32_t index, const Results& argument
 {
     const Function& function = module.functions[index];
     const auto is_lipschitz = [](const Facts& facts) {
-        return facts.slope && facts.smoothness && *facts.smoothness >= Smoothness::c0;
+        return facts.slope && facts.continuity && *facts.continuity >= Continuity::c0;
     };
     if (std::none_of(function.facts.begin(), function.facts.end(), is_lipschitz)) return;
     Results middle{arguments.values, {}};

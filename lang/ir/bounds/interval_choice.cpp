@@ -26,7 +26,7 @@ void IntervalEvaluator::choose(Frame& frame, const Instruction& made, const If& 
     for (size_t i = 0; is_either && i < all.variations.size(); ++i)
         all.variations[i] = merge(arms[0].variations[i], arms[1].variations[i]);
     const Variation& by = frame.variations[made.operands[0].index];
-    std::vector<Smoothness> meets;
+    std::vector<Continuity> meets;
     std::optional<uint32_t> met; // the seam of the condition
     if (seams && by.is_active) {
         meets = meeting(frame, made, choice, all);
@@ -52,11 +52,11 @@ void IntervalEvaluator::choose(Frame& frame, const Instruction& made, const If& 
         if (!by.is_active) continue;
         variation.is_active = true;
         variation.kink = 0;
-        if (!meets.empty() && meets[i] >= Smoothness::c0) {
+        if (!meets.empty() && meets[i] >= Continuity::c0) {
             roughen(variation, meets[i], {made.span, {}});
             if (met) variation = without(std::move(variation), *met);
-        } else if (by.smoothness <= Smoothness::jump) {
-            roughen(variation, by.smoothness, {made.span, {}});
+        } else if (by.continuity <= Continuity::jump) {
+            roughen(variation, by.continuity, {made.span, {}});
         }
     }
 }

@@ -1,6 +1,6 @@
 #include "lang/ir/bounds/interval_evaluator.h"
 
-#include "lang/ir/bounds/smoothness.h"
+#include "lang/ir/bounds/continuity.h"
 #include "lang/ir/op_info.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ Interval integer(Type type, uint32_t bits)
 Variation carried_along(const BoundsBox& box, Input first_partial, Span span)
 {
     Variation variation = unknown_variation(span);
-    variation.smoothness = Smoothness::smooth;
+    variation.continuity = Continuity::smooth;
     variation.may_fault = false;
     double squares = 0;
     for (size_t j = 0; j < Variation::directions; ++j) {
@@ -158,7 +158,7 @@ void IntervalEvaluator::roughen_all(Results& results, const Variation& by, Span 
     for (Variation& variation : results.variations) {
         variation.is_active = true;
         variation.kink = 0;
-        if (by.smoothness <= Smoothness::jump) roughen(variation, by.smoothness, {where, {}});
+        if (by.continuity <= Continuity::jump) roughen(variation, by.continuity, {where, {}});
     }
 }
 
@@ -252,7 +252,7 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadT
     const Variation& of_index = frame.variations[made.operands[0].index];
     variation = {};
     variation.is_active = of_index.is_active && !index.is_point();
-    if (variation.is_active) roughen(variation, of_index.smoothness, {made.span, {}});
+    if (variation.is_active) roughen(variation, of_index.continuity, {made.span, {}});
     if (seams)
         seams->cross(
             seam_operands(frame, made.operands), all,
@@ -270,7 +270,7 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Call&
     is_compared = was_compared;
     if (varying) pass_faults(callee.function, arguments, results);
     for (Variation& variation : results.variations) // what is made by the compiler has no place
-        if (variation.smoothness != Smoothness::smooth && variation.cause.span.end == 0)
+        if (variation.continuity != Continuity::smooth && variation.cause.span.end == 0)
             variation.cause = {made.span, {}, module.functions[callee.function].is_library};
     store(frame, made.results, results);
 }
@@ -302,7 +302,7 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const For& 
         all.variations.resize(made.results.size());
         if (!trips.is_point()) {
             Variation by = frame.variations[made.operands[0].index];
-            by.smoothness = std::min(by.smoothness, Smoothness::jump);
+            by.continuity = std::min(by.continuity, Continuity::jump);
             roughen_all(all, by, made.span);
         }
     }

@@ -122,7 +122,7 @@ private:
     Variation chosen(Frame& frame, const Instruction& made, bool first, bool second, const Variation* by) const;
     void block(Frame& frame, const Block& block);
     // How smooth each result of an undecided `if` is where its arms meet: they may meet in value, and in slope.
-    std::vector<Smoothness> meeting(Frame& frame, const Instruction& made, const If& choice, const Results& joined);
+    std::vector<Continuity> meeting(Frame& frame, const Instruction& made, const If& choice, const Results& joined);
     void choose(Frame& frame, const Instruction& made, const If& choice, const Results (&arms)[2], Results& all);
     // Arms that cannot be entered give no values at all.
     Results arm(Frame& frame, const Block& block, Value condition, bool taken, Span span);

@@ -23,10 +23,10 @@ const Value* added_to(Value unchanged, const Instruction* changed)
 
 } // namespace
 
-std::vector<Smoothness> IntervalEvaluator::meeting(Frame& frame, const Instruction& made, const If& choice,
+std::vector<Continuity> IntervalEvaluator::meeting(Frame& frame, const Instruction& made, const If& choice,
                                                    const Results& joined)
 {
-    std::vector<Smoothness> meets(made.results.size(), Smoothness::jump);
+    std::vector<Continuity> meets(made.results.size(), Continuity::jump);
     const Instruction* comparison = frame.makers[made.operands[0].index];
     auto* operation = comparison ? std::get_if<Operation>(&comparison->kind) : nullptr;
     if (is_trying || depth > 32 || !operation || (operation->op != Op::lt && operation->op != Op::le)) return meets;
@@ -34,7 +34,7 @@ std::vector<Smoothness> IntervalEvaluator::meeting(Frame& frame, const Instructi
     if (!frame.variations[moving.index].is_active) std::swap(moving, fixed);
     const Interval border = frame.values[fixed.index];
     const Variation& of_moving = frame.variations[moving.index];
-    if (!border.is_point() || frame.variations[fixed.index].is_active || of_moving.smoothness < Smoothness::c0)
+    if (!border.is_point() || frame.variations[fixed.index].is_active || of_moving.continuity < Continuity::c0)
         return meets;
 
     Frame there{frame.function, frame.values, std::vector<Variation>(frame.variations.size()), frame.structure,
@@ -66,12 +66,12 @@ std::vector<Smoothness> IntervalEvaluator::meeting(Frame& frame, const Instructi
         const Variation first = settled(sides[0].variations[i]), second = settled(sides[1].variations[i]);
         const double size = size_of(joined.values[i]);
         if (!std::isfinite(size) || !are_close(sides[0].values[i], sides[1].values[i], size)) continue;
-        meets[i] = Smoothness::c0;
+        meets[i] = Continuity::c0;
         const double steepest = std::max({first.slope, second.slope, 1e-300});
         const bool bends = !are_close(first.gradient[0], second.gradient[0], steepest);
-        if (!bends && std::min(first.smoothness, second.smoothness) >= Smoothness::c1 &&
-            of_moving.smoothness >= Smoothness::c1)
-            meets[i] = Smoothness::c1;
+        if (!bends && std::min(first.continuity, second.continuity) >= Continuity::c1 &&
+            of_moving.continuity >= Continuity::c1)
+            meets[i] = Continuity::c1;
     }
     return meets;
 }

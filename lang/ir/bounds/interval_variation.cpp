@@ -1,6 +1,6 @@
 // How the result of one operation varies with the point: its derivatives, its class and its crossings of seams.
+#include "lang/ir/bounds/continuity.h"
 #include "lang/ir/bounds/interval_evaluator.h"
-#include "lang/ir/bounds/smoothness.h"
 #include "lang/ir/op_info.h"
 
 #include <algorithm>
@@ -89,19 +89,19 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
         variation.curvature = infinity;
         variation.hessian.fill({-infinity, infinity});
     }
-    Smoothness own = smoothness_of(op, operands, moving, result, partials);
-    const bool was_smooth = variation.smoothness == Smoothness::smooth;
+    Continuity own = continuity_of(op, operands, moving, result, partials);
+    const bool was_smooth = variation.continuity == Continuity::smooth;
     const Cause cause{made.span, op};
-    if (own != Smoothness::smooth) variation.kink = 0;
+    if (own != Continuity::smooth) variation.kink = 0;
     if (seams) {
         const std::vector<Seams::Operand> all = seam_operands(frame, made.operands);
         seams->cross(op, all, result, variation);
         const Cause outside = user ? Cause{*user, {}, true} : cause;
-        if (own == Smoothness::jump && seams->begin(op, all, result, outside, variation)) own = Smoothness::smooth;
+        if (own == Continuity::jump && seams->begin(op, all, result, outside, variation)) own = Continuity::smooth;
     }
     roughen(variation, own, cause);
     const bool at_zero = op == Op::abs || is_length(op) || ((op == Op::min || op == Op::max) && is_zero_side(operands));
-    if (own == Smoothness::c0 && was_smooth && at_zero) variation.kink = ++kinks, variation.kink_power = 1;
+    if (own == Continuity::c0 && was_smooth && at_zero) variation.kink = ++kinks, variation.kink_power = 1;
     return variation;
 }
 

@@ -20,9 +20,9 @@ const Crossing* crossing_of(const Seams::Operand& operand, uint32_t seam)
 
 void settle(const Crossing& crossing, Variation& variation)
 {
-    const Smoothness left = crossing.is_continuous ? Smoothness::c0 : Smoothness::jump;
-    if (left > variation.smoothness) return;
-    variation.smoothness = left;
+    const Continuity left = crossing.is_continuous ? Continuity::c0 : Continuity::jump;
+    if (left > variation.continuity) return;
+    variation.continuity = left;
     variation.cause = crossing.cause; // also of what is as rough by itself: a fold is seen at its seam
 }
 

@@ -94,14 +94,14 @@ Variation roughest_of(std::span<const Variation> parts)
     for (const Variation& part : parts) {
         if (!part.is_active) continue;
         all.is_active = true;
-        roughen(all, part.smoothness, part.cause);
+        roughen(all, part.continuity, part.cause);
     }
     return all;
 }
 
-Smoothness of_power(uint32_t power)
+Continuity of_power(uint32_t power)
 {
-    return power == 1 ? Smoothness::c0 : power == 2 ? Smoothness::c1 : Smoothness::c2;
+    return power == 1 ? Continuity::c0 : power == 2 ? Continuity::c1 : Continuity::c2;
 }
 
 // A length that is not 0 is smooth in the squares of its parts: of kinks where they are 0, twice the power is left.
@@ -110,10 +110,10 @@ void smooth_in_length(std::span<const Variation> parts, Variation& made)
     Variation rest;
     for (const Variation& part : parts) {
         if (!part.is_active) continue;
-        const Smoothness left = part.kink != 0 ? of_power(2 * part.kink_power) : part.smoothness;
-        roughen(rest, std::max(left, part.smoothness), part.cause);
+        const Continuity left = part.kink != 0 ? of_power(2 * part.kink_power) : part.continuity;
+        roughen(rest, std::max(left, part.continuity), part.cause);
     }
-    made.smoothness = rest.smoothness;
+    made.continuity = rest.continuity;
     made.cause = rest.cause;
 }
 
@@ -124,7 +124,7 @@ void keep_kink(Op op, std::span<const Variation> variations, Variation& made)
     uint32_t kink = 0, power = 0;
     for (size_t i = 0; i < variations.size(); ++i) {
         const Variation& a = variations[i];
-        const bool is_smooth = !a.is_active || a.smoothness >= Smoothness::c2;
+        const bool is_smooth = !a.is_active || a.continuity >= Continuity::c2;
         const bool is_numerator = op != Op::div || i == 0;
         if (is_smooth && a.kink == 0) continue;
         if (a.kink == 0 || !is_numerator || (kink != 0 && kink != a.kink)) return;
@@ -134,7 +134,7 @@ void keep_kink(Op op, std::span<const Variation> variations, Variation& made)
     if (kink == 0) return;
     made.kink = kink;
     made.kink_power = power;
-    made.smoothness = of_power(power);
+    made.continuity = of_power(power);
 }
 
 bool is_bounded(const std::array<Interval, axes>& gradient)
@@ -168,7 +168,7 @@ Variation unknown_variation(Span where)
 {
     Variation variation;
     variation.is_active = variation.has_tangent = true;
-    variation.smoothness = Smoothness::unknown;
+    variation.continuity = Continuity::unknown;
     variation.cause = {where, {}};
     variation.gradient.fill(around_zero(infinity));
     variation.hessian.fill(around_zero(infinity));
@@ -177,10 +177,10 @@ Variation unknown_variation(Span where)
     return variation;
 }
 
-void roughen(Variation& variation, Smoothness smoothness, const Cause& cause)
+void roughen(Variation& variation, Continuity continuity, const Cause& cause)
 {
-    if (smoothness >= variation.smoothness) return;
-    variation.smoothness = smoothness;
+    if (continuity >= variation.continuity) return;
+    variation.continuity = continuity;
     variation.cause = cause;
 }
 
@@ -195,8 +195,8 @@ Variation merge(const Variation& a, const Variation& b)
     all.is_active = a.is_active || b.is_active;
     all.has_tangent = a.has_tangent || b.has_tangent;
     all.may_fault = a.may_fault || b.may_fault;
-    roughen(all, a.smoothness, a.cause);
-    roughen(all, b.smoothness, b.cause);
+    roughen(all, a.continuity, a.cause);
+    roughen(all, b.continuity, b.cause);
     for (size_t j = 0; j < all.gradient.size(); ++j) all.gradient[j] = join(a.gradient[j], b.gradient[j]);
     for (size_t j = 0; j < all.hessian.size(); ++j) all.hessian[j] = join(a.hessian[j], b.hessian[j]);
     all.slope = std::max(a.slope, b.slope);
@@ -211,7 +211,7 @@ bool stays_between_jumps(const Variation& variation)
 
 Variation intersect(const Variation& a, const Variation& b)
 {
-    Variation both = settled(a).smoothness >= settled(b).smoothness ? a : b;
+    Variation both = settled(a).continuity >= settled(b).continuity ? a : b;
     both.is_active = a.is_active && b.is_active;
     both.may_fault = a.may_fault && b.may_fault;
     for (size_t j = 0; j < both.gradient.size(); ++j) both.gradient[j] = intersect(a.gradient[j], b.gradient[j]);
@@ -288,7 +288,7 @@ Variation chain(const Facts& facts, std::span<const Variation> arguments)
         made.may_fault |= argument.has_tangent && !facts.slope; // a bound of the slope says that there is one
     }
     if (!made.is_active) return made;
-    if (facts.smoothness) roughen(made, *facts.smoothness, arguments.empty() ? Cause{} : arguments[0].cause);
+    if (facts.continuity) roughen(made, *facts.continuity, arguments.empty() ? Cause{} : arguments[0].cause);
     const double jacobian = jacobian_norm(arguments), second = second_norm(arguments);
     const double slope = facts.slope.value_or(infinity), curvature = facts.curvature.value_or(infinity);
 

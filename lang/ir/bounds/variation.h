@@ -31,7 +31,7 @@ struct Variation {
     // An entry computes a gradient of it, be it 0 for certain: 0 times what is infinite is not a number.
     bool has_tangent = false;
     bool may_fault = false; // the gradient, as an entry computes it, may be infinite or NaN
-    Smoothness smoothness = Smoothness::smooth;
+    Continuity continuity = Continuity::smooth;
     Cause cause; // of the roughest part
     // Not 0: the value is smooth but where it is 0, as |u|, a length and max(u, 0) are; its powers of 2, 3.. are C1,
     // C2..
@@ -51,7 +51,7 @@ Variation axis(size_t direction); // of p_x, p_y, p_z themselves
 Variation unknown_variation(Span where);
 
 // Rougher of the two, with its cause.
-void roughen(Variation& variation, Smoothness smoothness, const Cause& cause);
+void roughen(Variation& variation, Continuity continuity, const Cause& cause);
 
 // Whether the value stays as it is between jumps.
 bool stays_between_jumps(const Variation& variation);

@@ -25,7 +25,7 @@ Facts facts_of_partial(const Facts& of)
     Facts partial;
     partial.slope = of.curvature;
     if (of.slope) partial.value_minimum = -*of.slope, partial.value_maximum = *of.slope;
-    if (of.smoothness) partial.smoothness = lowered(*of.smoothness);
+    if (of.continuity) partial.continuity = lowered(*of.continuity);
     partial.proven = of.proven;
     return partial;
 }

@@ -192,8 +192,8 @@ TEST_CASE("the hash of a function covers all that decides its code, and neither 
     all.insert(changed(facts.value_minimum, 1.0));
     all.insert(changed(facts.slope, 1.0));
     all.insert(changed(facts.curvature, 1.0));
-    all.insert(changed(facts.smoothness, ir::Smoothness::c1));
-    all.insert(changed(facts.smoothness, ir::Smoothness::c2));
+    all.insert(changed(facts.continuity, ir::Continuity::c1));
+    all.insert(changed(facts.continuity, ir::Continuity::c2));
     all.insert(changed(facts.proven, !facts.proven));
     CHECK(all.size() == 14);
     module = parsed(text("f", "2", "add", "1, 2", "3"));

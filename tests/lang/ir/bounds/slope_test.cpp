@@ -59,7 +59,7 @@ TEST_CASE("slope and curvature: closed forms")
                                               {{-1, 1}, {-1, 1}});
         CHECK(is_near(plane.slope_max, 5));
         CHECK(plane.curvature_max_per_m == 0);
-        CHECK(plane.smoothness == Smoothness::smooth);
+        CHECK(plane.continuity == Continuity::smooth);
     }
     SECTION("a square: the largest slope lies at the end")
     {
@@ -113,10 +113,10 @@ TEST_CASE("slope and curvature: closed forms")
         const std::string length = "%x = input p_x %y = input p_y %z = input p_z %h = length3 %x, %y, %z return %h";
         const TextureBounds cone = bounds_of(length, {{-1, 1}, {-1, 1}, {-1, 1}});
         CHECK(is_near(cone.slope_max, 1));
-        CHECK(cone.smoothness == Smoothness::c0);
+        CHECK(cone.continuity == Continuity::c0);
         const TextureBounds away = bounds_of(length, {{-1, 1}, {-1, 1}, {2, 3}});
         CHECK(is_near(away.curvature_max_per_m, 0.5));
-        CHECK(away.smoothness == Smoothness::smooth);
+        CHECK(away.continuity == Continuity::smooth);
     }
 }
 
@@ -134,7 +134,7 @@ TEST_CASE("slope and curvature: facts by the chain rule")
                                           {{-1, 1}, {-1, 1}, {-1, 1}}, noise);
     CHECK(is_near(plain.slope_max, 2));
     CHECK(is_near(plain.curvature_max_per_m, 1e4));
-    CHECK(plain.smoothness == Smoothness::c1);
+    CHECK(plain.continuity == Continuity::c1);
 
     // a rotation does not make it steeper
     const std::string turned = "%x = input p_x %y = input p_y %z = input p_z %k = real 1 "
@@ -155,52 +155,52 @@ TEST_CASE("slope and curvature: facts by the chain rule")
 
 TEST_CASE("class: the roughest part that can be met, with its place")
 {
-    const auto class_of = [](const std::string& body, Interval x) { return bounds_of(body, {x}).smoothness; };
+    const auto class_of = [](const std::string& body, Interval x) { return bounds_of(body, {x}).continuity; };
     const std::string x = "%x = input p_x %t = real 0.1 ";
-    CHECK(class_of(x + "%h = abs %x return %h", {-1, 1}) == Smoothness::c0);
-    CHECK(class_of(x + "%h = abs %x return %h", {0.5, 1}) == Smoothness::smooth);
-    CHECK(class_of(x + "%h = floor %x return %h", {0.2, 0.8}) == Smoothness::smooth);
-    CHECK(class_of(x + "%h = floor %x return %h", {0.2, 1.8}) == Smoothness::jump);
-    CHECK(class_of(x + "%h = floor %t return %h", {0.2, 1.8}) == Smoothness::smooth);
-    CHECK(class_of(x + "%h = max %x, %t return %h", {-1, 1}) == Smoothness::c0);
-    CHECK(class_of(x + "%h = max %x, %t return %h", {0.2, 1}) == Smoothness::smooth);
-    CHECK(class_of(x + "%h = sqrt %x return %h", {0, 1}) == Smoothness::c0);
-    CHECK(class_of(x + "%h = div %t, %x return %h", {-1, 1}) == Smoothness::jump);
-    CHECK(class_of(x + "%c = lt %x, %t %h = select %c, %x, %t return %h", {-1, 1}) == Smoothness::c0); // they meet
-    CHECK(class_of(x + "%c = lt %x, %t %k = real 0 %h = select %c, %x, %k return %h", {-1, 1}) == Smoothness::jump);
-    CHECK(class_of(x + "%c = lt %x, %t %h = select %c, %x, %t return %h", {-1, 0}) == Smoothness::smooth);
+    CHECK(class_of(x + "%h = abs %x return %h", {-1, 1}) == Continuity::c0);
+    CHECK(class_of(x + "%h = abs %x return %h", {0.5, 1}) == Continuity::smooth);
+    CHECK(class_of(x + "%h = floor %x return %h", {0.2, 0.8}) == Continuity::smooth);
+    CHECK(class_of(x + "%h = floor %x return %h", {0.2, 1.8}) == Continuity::jump);
+    CHECK(class_of(x + "%h = floor %t return %h", {0.2, 1.8}) == Continuity::smooth);
+    CHECK(class_of(x + "%h = max %x, %t return %h", {-1, 1}) == Continuity::c0);
+    CHECK(class_of(x + "%h = max %x, %t return %h", {0.2, 1}) == Continuity::smooth);
+    CHECK(class_of(x + "%h = sqrt %x return %h", {0, 1}) == Continuity::c0);
+    CHECK(class_of(x + "%h = div %t, %x return %h", {-1, 1}) == Continuity::jump);
+    CHECK(class_of(x + "%c = lt %x, %t %h = select %c, %x, %t return %h", {-1, 1}) == Continuity::c0); // they meet
+    CHECK(class_of(x + "%c = lt %x, %t %k = real 0 %h = select %c, %x, %k return %h", {-1, 1}) == Continuity::jump);
+    CHECK(class_of(x + "%c = lt %x, %t %h = select %c, %x, %t return %h", {-1, 0}) == Continuity::smooth);
     CHECK(class_of(x + "%c = lt %x, %t %h = if %c { yield %t } else { yield %x } return %h", {-1, 1}) ==
-          Smoothness::c0); // they meet
+          Continuity::c0); // they meet
     CHECK(class_of(x + "%c = lt %x, %t %k = real 0 %h = if %c { yield %k } else { yield %x } return %h", {-1, 1}) ==
-          Smoothness::jump);
-    CHECK(class_of(x + "%h = div %x, %x return %h", {-1, 1}) == Smoothness::jump);
+          Continuity::jump);
+    CHECK(class_of(x + "%h = div %x, %x return %h", {-1, 1}) == Continuity::jump);
 }
 
 TEST_CASE("class: a kink where the value is 0 is smoothed by a power")
 {
-    const auto class_of = [](const std::string& body) { return bounds_of(body, {{-1, 1}}).smoothness; };
+    const auto class_of = [](const std::string& body) { return bounds_of(body, {{-1, 1}}).continuity; };
     const std::string ramp = "%x = input p_x %z = real 0 %r = max %x, %z ";
-    CHECK(class_of(ramp + "return %r") == Smoothness::c0);
-    CHECK(class_of(ramp + "%h = mul %r, %r return %h") == Smoothness::c1);
-    CHECK(class_of(ramp + "%s = mul %r, %r %h = mul %s, %r return %h") == Smoothness::c2);
-    CHECK(class_of(ramp + "%w = sin %x %h = mul %r, %w return %h") == Smoothness::c0);
-    CHECK(class_of(ramp + "%w = abs %x %h = mul %r, %w return %h") == Smoothness::c0);
-    CHECK(class_of(ramp + "%s = mul %r, %r %k = real 1 %h = add %s, %k return %h") == Smoothness::c1);
-    CHECK(class_of("%x = input p_x %k = real 0.5 %r = max %x, %k %h = mul %r, %r return %h") == Smoothness::c0);
-    CHECK(class_of(ramp + "%s = mul %r, %r %q = sqrt %s return %q") == Smoothness::c0);
+    CHECK(class_of(ramp + "return %r") == Continuity::c0);
+    CHECK(class_of(ramp + "%h = mul %r, %r return %h") == Continuity::c1);
+    CHECK(class_of(ramp + "%s = mul %r, %r %h = mul %s, %r return %h") == Continuity::c2);
+    CHECK(class_of(ramp + "%w = sin %x %h = mul %r, %w return %h") == Continuity::c0);
+    CHECK(class_of(ramp + "%w = abs %x %h = mul %r, %w return %h") == Continuity::c0);
+    CHECK(class_of(ramp + "%s = mul %r, %r %k = real 1 %h = add %s, %k return %h") == Continuity::c1);
+    CHECK(class_of("%x = input p_x %k = real 0.5 %r = max %x, %k %h = mul %r, %r return %h") == Continuity::c0);
+    CHECK(class_of(ramp + "%s = mul %r, %r %q = sqrt %s return %q") == Continuity::c0);
 }
 
 TEST_CASE("class: a length of lengths is smooth where it is not 0")
 {
     const std::string inner = "%x = input p_x %y = input p_y %r = length2 %x, %y ";
     const auto class_of = [&](const std::string& rest) {
-        return bounds_of(inner + rest + " return %h", {{-1, 1}, {-1, 1}}).smoothness;
+        return bounds_of(inner + rest + " return %h", {{-1, 1}, {-1, 1}}).continuity;
     };
-    CHECK(class_of("%k = real 2 %h = length2 %r, %k") == Smoothness::c1);
-    CHECK(class_of("%a = abs %x %k = real 2 %h = length2 %a, %k") == Smoothness::c1);
-    CHECK(class_of("%h = length2 %r, %x") == Smoothness::c0);
+    CHECK(class_of("%k = real 2 %h = length2 %r, %k") == Continuity::c1);
+    CHECK(class_of("%a = abs %x %k = real 2 %h = length2 %a, %k") == Continuity::c1);
+    CHECK(class_of("%h = length2 %r, %x") == Continuity::c0);
     CHECK(class_of("%k = real 0.5 %a = sub %r, %k %t = real 2 %h = length2 %a, %t") ==
-          Smoothness::c0); // the tip is elsewhere
+          Continuity::c0); // the tip is elsewhere
 }
 
 TEST_CASE("class: arms of an if that meet")
@@ -210,31 +210,31 @@ TEST_CASE("class: arms of an if that meet")
                          "%h = if %c { " +
                              arms + " return %h",
                          {{-3, 3}, {-3, 3}})
-            .smoothness;
+            .continuity;
     };
     const std::string bowl = "%s = mul %r, %r %b = sub %one, %s ";
-    CHECK(class_of(bowl + "yield %b } else { yield %z }") == Smoothness::c0);                 // 1 - r^2, 0
-    CHECK(class_of(bowl + "%q = mul %b, %b yield %q } else { yield %z }") == Smoothness::c0); // r alone is C0, at 0
-    CHECK(class_of(bowl + "yield %b } else { yield %one }") == Smoothness::jump);
-    CHECK(class_of("%u = add %x, %y yield %u } else { yield %z }") == Smoothness::jump);
+    CHECK(class_of(bowl + "yield %b } else { yield %z }") == Continuity::c0);                 // 1 - r^2, 0
+    CHECK(class_of(bowl + "%q = mul %b, %b yield %q } else { yield %z }") == Continuity::c0); // r alone is C0, at 0
+    CHECK(class_of(bowl + "yield %b } else { yield %one }") == Continuity::jump);
+    CHECK(class_of("%u = add %x, %y yield %u } else { yield %z }") == Continuity::jump);
 
     const auto along_x = [](const std::string& arms) {
         return bounds_of("%x = input p_x %y = input p_y %z = real 0 %two = real 2 %c = lt %x, %two %h = if %c { " +
                              arms + " return %h",
                          {{-3, 3}, {-3, 3}})
-            .smoothness;
+            .continuity;
     };
-    CHECK(along_x("yield %x } else { yield %two }") == Smoothness::c0);
+    CHECK(along_x("yield %x } else { yield %two }") == Continuity::c0);
     CHECK(along_x(
               "%s = mul %x, %x yield %s } else { %a = mul %x, %two %b = add %a, %a %d = add %two, %two %e = sub %b, %d "
-              "yield %e }") == Smoothness::c1); // x^2, 4 x - 4
+              "yield %e }") == Continuity::c1); // x^2, 4 x - 4
     // y + (x - 2)^2, y: what is added comes to 0, and so does its slope; (x - 2) y: its slope does not; x y: nothing
     // does
     const std::string short_of = "%s = sub %x, %two ";
-    CHECK(along_x(short_of + "%q = mul %s, %s %b = add %y, %q yield %b } else { yield %y }") == Smoothness::c1);
-    CHECK(along_x(short_of + "%q = mul %s, %y %b = add %y, %q yield %b } else { yield %y }") == Smoothness::c0);
-    CHECK(along_x("yield %y } else { %q = mul %x, %y %b = add %q, %y yield %b }") == Smoothness::jump);
-    CHECK(along_x("%s = mul %x, %y yield %s } else { %t = mul %two, %y yield %t }") == Smoothness::jump); // not told
+    CHECK(along_x(short_of + "%q = mul %s, %s %b = add %y, %q yield %b } else { yield %y }") == Continuity::c1);
+    CHECK(along_x(short_of + "%q = mul %s, %y %b = add %y, %q yield %b } else { yield %y }") == Continuity::c0);
+    CHECK(along_x("yield %y } else { %q = mul %x, %y %b = add %q, %y yield %b }") == Continuity::jump);
+    CHECK(along_x("%s = mul %x, %y yield %s } else { %t = mul %two, %y yield %t }") == Continuity::jump); // not told
 }
 
 // For programs at random: no pair of points of the box breaks what slope, curvature and class promise.
@@ -270,7 +270,7 @@ TEST_CASE("slope and curvature: never exceeded")
         Differentiator(module).make_entries(texture);
         const TextureBounds bounds = texture_bounds(module, texture, box, 64);
         with_slope += bounds.slope_max < infinity;
-        with_curvature += bounds.smoothness >= Smoothness::c1 && bounds.curvature_max_per_m < infinity;
+        with_curvature += bounds.continuity >= Continuity::c1 && bounds.curvature_max_per_m < infinity;
 
         std::mt19937 random(seed);
         const auto anywhere = [&] {
@@ -300,11 +300,11 @@ TEST_CASE("slope and curvature: never exceeded")
             if (a.is_faulty || b.is_faulty) continue;
             const double distance = norm(minus(from, to));
             const double size = std::max({1.0, std::fabs(a.height), norm(a.gradient), norm(b.gradient)});
-            INFO(seed << ' ' << pair << " class " << to_string(bounds.smoothness));
+            INFO(seed << ' ' << pair << " class " << to_string(bounds.continuity));
             CHECK(norm(a.gradient) <= bounds.slope_max * (1 + 1e-9) + 1e-9);
-            if (bounds.smoothness >= Smoothness::c0)
+            if (bounds.continuity >= Continuity::c0)
                 CHECK(std::fabs(a.height - b.height) <= bounds.slope_max * distance * (1 + 1e-9) + 1e-11 * size);
-            if (bounds.smoothness >= Smoothness::c1)
+            if (bounds.continuity >= Continuity::c1)
                 CHECK(norm(minus(a.gradient, b.gradient)) <=
                       bounds.curvature_max_per_m * distance * (1 + 1e-9) + 1e-9 * size);
         }

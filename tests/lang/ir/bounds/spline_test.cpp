@@ -283,7 +283,7 @@ texture "pic" { parameter "picture" image 0 in 0 .. 0 unit "" offset 56 block 64
     CHECK(bounds.height.maximum < 20.001);
     CHECK(std::fabs(bounds.slope_max - 1) < 1e-3);
     CHECK(bounds.curvature_max_per_m < 1e-2);
-    CHECK(bounds.smoothness == Smoothness::c2);
+    CHECK(bounds.continuity == Continuity::c2);
     box.images.clear();
     CHECK(texture_bounds(*parsed.module, parsed.module->textures[0], box).height.maximum == infinity);
 }

@@ -1,4 +1,4 @@
-#include "jit/check/check_smoothness.h"
+#include "jit/check/check_continuity.h"
 
 #include "jit/check/check_code.h"
 
@@ -90,7 +90,7 @@ private:
 
 } // namespace
 
-void check_smoothness(GradientCheck& check, const TextureBinding& binding, const CheckPoints& points)
+void check_continuity(GradientCheck& check, const TextureBinding& binding, const CheckPoints& points)
 {
     Paths all(binding, points);
     for (uint64_t i = 0; i < paths; ++i) all.follow(i);

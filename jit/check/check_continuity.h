@@ -8,6 +8,6 @@
 namespace haptel::jit {
 
 // Fills continuity_measured, and adds to bounds_exceeded and failures where the facts promise more.
-void check_smoothness(GradientCheck& check, const TextureBinding& binding, const CheckPoints& points);
+void check_continuity(GradientCheck& check, const TextureBinding& binding, const CheckPoints& points);
 
 } // namespace haptel::jit

@@ -9,7 +9,7 @@ namespace haptel::ir {
 
 // `active`: a bit per operand that depends on the point. A kink or jump that the intervals exclude does not count, nor
 // does one that only operands can reach which do not depend on the point.
-Smoothness smoothness_of(Op op, std::span<const Interval> operands, uint32_t active, const Interval& result,
+Continuity continuity_of(Op op, std::span<const Interval> operands, uint32_t active, const Interval& result,
                          const Partials& partials);
 
 } // namespace haptel::ir
