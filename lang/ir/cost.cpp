@@ -16,18 +16,6 @@ struct BySource {
     }
 };
 
-// Saturates, as the whole does.
-uint64_t plus(uint64_t a, uint64_t b)
-{
-    uint64_t sum = 0;
-    return __builtin_add_overflow(a, b, &sum) ? UINT64_MAX : sum;
-}
-uint64_t times(uint64_t a, uint64_t b)
-{
-    uint64_t product = 0;
-    return __builtin_mul_overflow(a, b, &product) ? UINT64_MAX : product;
-}
-
 struct Spent {
     std::map<Span, uint64_t, BySource> places;
     uint64_t all = 0;

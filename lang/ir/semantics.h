@@ -290,19 +290,11 @@ inline void execute(Op op, Slot<T>& result, const Slot<T>& a, const Slot<T>& b, 
     case Op::fract: result.real = s::difference(a.real, T(floor(a.real))); return;
     case Op::mod: result.real = s::difference(a.real, T(b.real * T(floor(T(a.real / b.real))))); return;
     case Op::sqrt: result.real = sqrt(a.real); return;
-    case Op::length2: {
-        const T x[] = {a.real, b.real};
-        result.real = s::length(x, 2);
-        return;
-    }
-    case Op::length3: {
-        const T x[] = {a.real, b.real, c.real};
-        result.real = s::length(x, 3);
-        return;
-    }
+    case Op::length2:
+    case Op::length3:
     case Op::length4: {
         const T x[] = {a.real, b.real, c.real, d.real};
-        result.real = s::length(x, 4);
+        result.real = s::length(x, op == Op::length2 ? 2 : op == Op::length3 ? 3 : 4);
         return;
     }
     case Op::sinturn: result.real = s::sine_of_turns(a.real); return;

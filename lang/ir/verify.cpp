@@ -12,16 +12,6 @@
 namespace haptel::ir {
 namespace {
 
-uint64_t add(uint64_t a, uint64_t b)
-{
-    return a > UINT64_MAX - b ? UINT64_MAX : a + b;
-}
-
-uint64_t multiply(uint64_t a, uint64_t b)
-{
-    return b != 0 && a > UINT64_MAX / b ? UINT64_MAX : a * b;
-}
-
 // Walks one function in execution order; stops at the first problem.
 class FunctionCheck {
 public:
@@ -245,14 +235,14 @@ uint64_t cost(const Block& block, const std::vector<uint64_t>& functions);
 
 uint64_t cost(const Instruction& made, const std::vector<uint64_t>& functions)
 {
-    if (auto* call = std::get_if<Call>(&made.kind)) return add(functions[call->function], 1);
+    if (auto* call = std::get_if<Call>(&made.kind)) return plus(functions[call->function], 1);
     if (auto* choice = std::get_if<If>(&made.kind)) {
         uint64_t worst = 0;
         for (const Block& arm : choice->arms) worst = std::max(worst, cost(arm, functions));
-        return add(worst, 1);
+        return plus(worst, 1);
     }
     if (auto* loop = std::get_if<For>(&made.kind))
-        return add(multiply(add(cost(loop->body[0], functions), 1), loop->trip_max), 1);
+        return plus(times(plus(cost(loop->body[0], functions), 1), loop->trip_max), 1);
     if (auto* operation = std::get_if<Operation>(&made.kind)) return operations_of(operation->op);
     bool is_constant = std::holds_alternative<RealConstant>(made.kind) ||
                        std::holds_alternative<IntConstant>(made.kind) ||
@@ -263,7 +253,7 @@ uint64_t cost(const Instruction& made, const std::vector<uint64_t>& functions)
 uint64_t cost(const Block& block, const std::vector<uint64_t>& functions)
 {
     uint64_t sum = 0;
-    for (const Instruction& made : block.instructions) sum = add(sum, cost(made, functions));
+    for (const Instruction& made : block.instructions) sum = plus(sum, cost(made, functions));
     return sum;
 }
 
