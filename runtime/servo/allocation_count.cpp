@@ -8,6 +8,13 @@ namespace {
 // Plain and constant-initialised, so that reading it needs no guard; part of the program itself, so that reaching it
 // allocates nothing.
 thread_local uint64_t allocations = 0;
+thread_local uint64_t bytes = 0;
+
+void count(std::size_t size) noexcept
+{
+    ++allocations;
+    bytes += size;
+}
 
 } // namespace
 
@@ -16,6 +23,11 @@ namespace haptel::runtime {
 uint64_t allocations_of_this_thread() noexcept
 {
     return allocations;
+}
+
+uint64_t allocated_bytes_of_this_thread() noexcept
+{
+    return bytes;
 }
 
 } // namespace haptel::runtime
@@ -30,9 +42,9 @@ uint64_t allocations_of_this_thread() noexcept
     HAPTEL_HAS_FEATURE(thread_sanitizer) || HAPTEL_HAS_FEATURE(memory_sanitizer)
 
 // The sanitizer calls these weak hooks around every allocation.
-extern "C" void __sanitizer_malloc_hook(const volatile void*, std::size_t)
+extern "C" void __sanitizer_malloc_hook(const volatile void*, std::size_t size)
 {
-    ++allocations;
+    count(size);
 }
 extern "C" void __sanitizer_free_hook(const volatile void*) {}
 
@@ -50,25 +62,25 @@ void __libc_free(void*);
 
 void* malloc(std::size_t size)
 {
-    ++allocations;
+    count(size);
     return __libc_malloc(size);
 }
 
-void* calloc(std::size_t count, std::size_t size)
+void* calloc(std::size_t elements, std::size_t size)
 {
-    ++allocations;
-    return __libc_calloc(count, size);
+    count(elements * size);
+    return __libc_calloc(elements, size);
 }
 
 void* realloc(void* old, std::size_t size)
 {
-    ++allocations;
+    count(size);
     return __libc_realloc(old, size);
 }
 
 void* memalign(std::size_t alignment, std::size_t size)
 {
-    ++allocations;
+    count(size);
     return __libc_memalign(alignment, size);
 }
 

@@ -1,6 +1,6 @@
 // What a text costs: twice the text, about twice the work, at every stage. Work is counted in bytes allocated.
 #include "lang/compile.h"
-#include "tests/support/allocated.h"
+#include "runtime/servo/allocation_count.h"
 #include "tests/support/catch.h"
 
 #include <functional>
@@ -28,9 +28,9 @@ std::string repeated(size_t count, const std::string& text)
 
 uint64_t work_of(const std::string& text)
 {
-    const uint64_t before = test::allocated_bytes();
+    const uint64_t before = runtime::allocated_bytes_of_this_thread();
     compile({"main.haptel", text}, {});
-    return test::allocated_bytes() - before;
+    return runtime::allocated_bytes_of_this_thread() - before;
 }
 
 // How much more twice as much text costs: 2 where the work is linear, 4 where it is quadratic.
