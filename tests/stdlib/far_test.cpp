@@ -7,6 +7,7 @@
 #include "jit/check/oracle.h"
 #include "jit/texture/texture.h"
 #include "tests/support/catch.h"
+#include "tests/support/haptel_files.h"
 
 #include <algorithm>
 #include <cmath>
@@ -80,9 +81,9 @@ TextureRequest request_for(const haptel_texture& texture, bool is_exact, bool& h
 TEST_CASE("f64 keeps the place within a wavelength up to 1e6 of them from the origin")
 {
     size_t textures = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(HAPTEL_SOURCE_DIR "/stdlib/tests")) {
-        const std::string file = entry.path().filename();
-        const jit::CompiledTextures compiled = jit::compile_texture_file(entry.path());
+    for (const std::filesystem::path& path : test::haptel_files({"stdlib/tests"})) {
+        const std::string file = path.filename();
+        const jit::CompiledTextures compiled = jit::compile_texture_file(path);
         INFO(compiled.rendered());
         REQUIRE(compiled.program);
         for (const haptel_texture& texture : compiled.program->textures()) {

@@ -6,6 +6,7 @@
 #include "lang/syntax/parser.h"
 #include "stdlib/stdlib.h"
 #include "tests/support/catch.h"
+#include "tests/support/haptel_files.h"
 
 #include <filesystem>
 #include <fstream>
@@ -22,16 +23,6 @@ std::string read(const std::filesystem::path& path)
     std::stringstream text;
     text << file.rdbuf();
     return text.str();
-}
-
-std::vector<std::filesystem::path> textures_in(const std::string& folder)
-{
-    std::vector<std::filesystem::path> files;
-    for (const auto& entry : std::filesystem::directory_iterator(std::string(HAPTEL_SOURCE_DIR) + "/" + folder)) {
-        if (entry.path().extension() == ".haptel") files.push_back(entry.path());
-    }
-    std::sort(files.begin(), files.end());
-    return files;
 }
 
 lang::ast::File parsed(const std::string& name, std::string text)
@@ -59,7 +50,7 @@ std::string signature(const lang::ast::Function& function)
 
 TEST_CASE("the embedded text is the text of the files")
 {
-    CHECK(stdlib::library().size() == textures_in("stdlib").size());
+    CHECK(stdlib::library().size() == test::haptel_files({"stdlib"}).size());
     for (const stdlib::LibraryFile& file : stdlib::library()) {
         CAPTURE(file.name);
         CHECK(file.text == read(std::string(HAPTEL_SOURCE_DIR) + "/stdlib/" + std::string(file.name)));
@@ -70,7 +61,7 @@ TEST_CASE("every documented function of the library is called by a texture of st
 {
     // The functions that the textures' modules hold: what is called, and what that calls.
     std::set<std::string> called;
-    for (const std::filesystem::path& path : textures_in("stdlib/tests")) {
+    for (const std::filesystem::path& path : test::haptel_files({"stdlib/tests"})) {
         const jit::CompiledTextures compiled = jit::compile_texture_file(path.string());
         INFO(compiled.rendered());
         REQUIRE(compiled.program);
@@ -104,7 +95,7 @@ TEST_CASE("library and examples: gradients are those of the heights, heights sta
     const auto [footprint_m, folder] = GENERATE(table<double, std::string>(
         {{0.0, "stdlib/tests"}, {0.0, "examples/textures"}, {0.6e-3, "stdlib/tests"}, {0.6e-3, "examples/textures"}}));
     {
-        for (const std::filesystem::path& path : textures_in(folder)) {
+        for (const std::filesystem::path& path : test::haptel_files({folder})) {
             const jit::CompiledTextures compiled = jit::compile_texture_file(path.string());
             INFO(compiled.rendered());
             REQUIRE(compiled.program);

@@ -3,6 +3,7 @@
 #include "lang/text/lexer.h"
 #include "stdlib/stdlib.h"
 #include "tests/support/catch.h"
+#include "tests/support/haptel_files.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -16,12 +17,8 @@ namespace {
 
 std::vector<std::string> texts_of(const char* folder)
 {
-    std::vector<std::filesystem::path> paths;
-    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(HAPTEL_SOURCE_DIR) / folder))
-        if (entry.path().extension() == ".haptel") paths.push_back(entry.path());
-    std::sort(paths.begin(), paths.end());
     std::vector<std::string> texts;
-    for (const auto& path : paths) {
+    for (const auto& path : test::haptel_files({folder})) {
         std::ostringstream text;
         text << std::ifstream(path).rdbuf();
         texts.push_back(text.str());

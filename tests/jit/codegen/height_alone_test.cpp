@@ -2,6 +2,7 @@
 // computes.
 #include "tests/fuzz/random_source.h"
 #include "tests/jit/codegen/samples.h"
+#include "tests/support/haptel_files.h"
 
 #include <filesystem>
 #include <random>
@@ -165,16 +166,14 @@ TEST_CASE("the height alone has the bits of the height beside its gradient, what
 TEST_CASE("the height alone has the bits of the height beside its gradient: the library's textures and the examples'",
           "[code]")
 {
-    for (const char* folder : {"/stdlib/tests", "/examples/textures"})
-        for (const auto& file : std::filesystem::directory_iterator(HAPTEL_SOURCE_DIR + std::string(folder))) {
-            if (file.path().extension() != ".haptel") continue;
-            const jit::CompiledTextures compiled = jit::compile_texture_file(file.path(), cheap());
-            REQUIRE(compiled.program);
-            for (const haptel_texture& texture : compiled.program->textures()) {
-                INFO(file.path() << " " << texture.name);
-                CHECK(differences(compiled, texture.name, jit::Effort::draft) == 0);
-            }
+    for (const std::filesystem::path& file : test::texture_files()) {
+        const jit::CompiledTextures compiled = jit::compile_texture_file(file, cheap());
+        REQUIRE(compiled.program);
+        for (const haptel_texture& texture : compiled.program->textures()) {
+            INFO(file << " " << texture.name);
+            CHECK(differences(compiled, texture.name, jit::Effort::draft) == 0);
         }
+    }
 }
 
 TEST_CASE("the height alone has the bits of the height beside its gradient: random programs", "[code]")

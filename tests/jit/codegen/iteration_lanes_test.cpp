@@ -2,6 +2,7 @@
 // additions.
 #include "jit/codegen/uniformity.h"
 #include "tests/jit/codegen/samples.h"
+#include "tests/support/haptel_files.h"
 
 #include <cstring>
 #include <filesystem>
@@ -239,40 +240,38 @@ TEST_CASE("iterations in lanes: every texture's height is the same with and with
     std::mt19937_64 random(8);
     std::uniform_real_distribution<double> place(-0.02, 0.02);
     size_t in_another_order = 0;
-    for (const char* folder : {"/stdlib/tests", "/examples/textures"})
-        for (const auto& file : std::filesystem::directory_iterator(HAPTEL_SOURCE_DIR + std::string(folder))) {
-            if (file.path().extension() != ".haptel") continue;
-            jit::TextureOptions options;
-            options.precision = precision;
-            options.iterations_in_lanes = true;
-            const jit::CompiledTextures lanes = jit::compile_texture_file(file.path(), options);
-            options.iterations_in_lanes = false;
-            const jit::CompiledTextures serial = jit::compile_texture_file(file.path(), options);
-            REQUIRE((lanes.program && serial.program));
-            for (size_t i = 0; i < lanes.program->textures().size(); ++i) {
-                const haptel_texture& texture = lanes.program->textures()[i];
-                INFO(file.path() << " " << texture.name);
-                const TextureResult bound =
-                    jit::make_binding(lanes.program, texture.name, test::request_over(0.04), jit::Unbounded::allowed);
-                REQUIRE(bound.binding);
-                size_t unequal = 0, differs = 0;
-                double largest = 0, off = 0;
-                for (int k = 0; k < 300; ++k) {
-                    const haptel_point point{{place(random), place(random), place(random)}, {0, 0, 1}, {}, 0, {}, {}};
-                    haptel_sample both{}, height{}, in_order{};
-                    texture.height_gradient(&point, bound.binding->block, &both);
-                    texture.height(&point, bound.binding->block, &height);
-                    serial.program->textures()[i].height_gradient(&point, bound.binding->block, &in_order);
-                    unequal += !test::same(both.height_m, height.height_m);
-                    differs += !test::same(both.height_m, in_order.height_m);
-                    largest = std::max(largest, std::fabs(in_order.height_m));
-                    off = std::max(off, std::fabs(both.height_m - in_order.height_m));
-                }
-                CHECK(unequal == 0);
-                CHECK(off <= (precision == jit::Precision::f64 ? 4e-15 : 2e-6) * largest);
-                in_another_order += differs > 0;
+    for (const std::filesystem::path& file : test::texture_files()) {
+        jit::TextureOptions options;
+        options.precision = precision;
+        options.iterations_in_lanes = true;
+        const jit::CompiledTextures lanes = jit::compile_texture_file(file, options);
+        options.iterations_in_lanes = false;
+        const jit::CompiledTextures serial = jit::compile_texture_file(file, options);
+        REQUIRE((lanes.program && serial.program));
+        for (size_t i = 0; i < lanes.program->textures().size(); ++i) {
+            const haptel_texture& texture = lanes.program->textures()[i];
+            INFO(file << " " << texture.name);
+            const TextureResult bound =
+                jit::make_binding(lanes.program, texture.name, test::request_over(0.04), jit::Unbounded::allowed);
+            REQUIRE(bound.binding);
+            size_t unequal = 0, differs = 0;
+            double largest = 0, off = 0;
+            for (int k = 0; k < 300; ++k) {
+                const haptel_point point{{place(random), place(random), place(random)}, {0, 0, 1}, {}, 0, {}, {}};
+                haptel_sample both{}, height{}, in_order{};
+                texture.height_gradient(&point, bound.binding->block, &both);
+                texture.height(&point, bound.binding->block, &height);
+                serial.program->textures()[i].height_gradient(&point, bound.binding->block, &in_order);
+                unequal += !test::same(both.height_m, height.height_m);
+                differs += !test::same(both.height_m, in_order.height_m);
+                largest = std::max(largest, std::fabs(in_order.height_m));
+                off = std::max(off, std::fabs(both.height_m - in_order.height_m));
             }
+            CHECK(unequal == 0);
+            CHECK(off <= (precision == jit::Precision::f64 ? 4e-15 : 2e-6) * largest);
+            in_another_order += differs > 0;
         }
+    }
     CHECK(in_another_order > 10);
 }
 
@@ -299,11 +298,7 @@ TEST_CASE("a draft, which has no lanes, gives the bits of lanes", "[code]")
              "min(n, 20); ++i) { t += p.x * f; f *= 0.7; } s = s * t + sin(t); } return s;",
          })
         texts.push_back(source(body));
-#if !defined(__SANITIZE_ADDRESS__) // which takes minutes over them
-    for (const char* folder : {"/stdlib/tests", "/examples/textures"})
-        for (const auto& file : std::filesystem::directory_iterator(HAPTEL_SOURCE_DIR + std::string(folder)))
-            if (file.path().extension() == ".haptel") files.push_back(file.path());
-#endif
+    for (const std::filesystem::path& file : test::texture_files()) files.push_back(file);
 
     std::mt19937_64 random(9);
     std::uniform_real_distribution<double> place(-3, 3);

@@ -2,6 +2,7 @@
 #include "jit/codegen/uniformity.h"
 #include "tests/jit/codegen/batch.h"
 #include "tests/jit/codegen/samples.h"
+#include "tests/support/haptel_files.h"
 #include "tests/support/ir_parse.h"
 
 #include <filesystem>
@@ -25,16 +26,6 @@ std::vector<haptel_point> random_points(size_t count, std::mt19937_64& random)
     return points;
 }
 
-std::vector<std::string> texture_files()
-{
-    std::vector<std::string> files;
-    for (const char* folder : {"/stdlib/tests", "/examples/textures"})
-        for (const auto& entry : std::filesystem::directory_iterator(HAPTEL_SOURCE_DIR + std::string(folder)))
-            if (entry.path().extension() == ".haptel") files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    return files;
-}
-
 } // namespace
 
 TEST_CASE("batches of every texture of the library and of the examples have the bits of single points", "[code]")
@@ -42,7 +33,7 @@ TEST_CASE("batches of every texture of the library and of the examples have the 
     const jit::Precision precision = GENERATE(jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32);
     std::mt19937_64 random(5);
     size_t compared = 0;
-    for (const std::string& file : texture_files()) {
+    for (const std::filesystem::path& file : test::texture_files()) {
         jit::TextureOptions options;
         options.entries = jit::Entries::both_and_batches;
         options.precision = precision;
@@ -192,7 +183,7 @@ TEST_CASE("mixed precision keeps its place within a cell, however far away; f32 
 
 TEST_CASE("mixed precision keeps its place in every texture of the library and of the examples", "[code]")
 {
-    for (const std::string& file : texture_files()) {
+    for (const std::filesystem::path& file : test::texture_files()) {
         jit::TextureOptions options;
         const jit::CompiledTextures exact = jit::compile_texture_file(file, options);
         options.precision = jit::Precision::mixed;

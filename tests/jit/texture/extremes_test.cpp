@@ -2,6 +2,7 @@
 // What is found never leaves the bounds, and at the default parameters the bounds are not far from it.
 #include "jit/texture/texture.h"
 #include "tests/jit/codegen/samples.h"
+#include "tests/support/haptel_files.h"
 
 #include <algorithm>
 #include <cmath>
@@ -132,15 +133,6 @@ std::string with_value(const haptel_parameter& parameter, double value)
     return text + std::string(parameter.unit);
 }
 
-std::vector<std::string> library_files()
-{
-    std::vector<std::string> files;
-    for (const auto& entry : std::filesystem::directory_iterator(HAPTEL_SOURCE_DIR "/stdlib/tests"))
-        if (entry.path().extension() == ".haptel") files.push_back(entry.path());
-    std::sort(files.begin(), files.end());
-    return files;
-}
-
 } // namespace
 
 TEST_CASE("bounds of every library texture hold, and are near what is found")
@@ -148,7 +140,7 @@ TEST_CASE("bounds of every library texture hold, and are near what is found")
     std::printf("%-28s %23s %23s %6s %10s %10s %6s  %s\n", "texture", "found height (um)", "bound", "ratio",
                 "found slope", "bound", "ratio", "class");
     size_t tried = 0;
-    for (const std::string& file : library_files()) {
+    for (const std::filesystem::path& file : test::haptel_files({"stdlib/tests"})) {
         const jit::CompiledTextures compiled = jit::compile_texture_file(file);
         INFO(compiled.rendered());
         REQUIRE(compiled.program);

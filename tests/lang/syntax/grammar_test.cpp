@@ -5,6 +5,7 @@
 #include "lang/text/lexer.h"
 #include "tests/lang/syntax/ebnf.h"
 #include "tests/support/catch.h"
+#include "tests/support/haptel_files.h"
 
 #include <filesystem>
 #include <fstream>
@@ -104,14 +105,12 @@ TEST_CASE("grammar: the library and the examples can be derived")
 {
     const Ebnf grammar = grammar_of_the_page();
     size_t files = 0;
-    for (const char* folder : {"stdlib", "stdlib/tests", "examples/textures"})
-        for (const auto& entry :
-             std::filesystem::directory_iterator(std::filesystem::path(HAPTEL_SOURCE_DIR) / folder)) {
-            if (entry.path().extension() != ".haptel") continue;
-            CAPTURE(entry.path());
-            ++files;
-            CHECK(grammar.derives("file", terminals_of(read(entry.path()), grammar)));
-        }
+    for (const std::filesystem::path& path :
+         haptel::test::haptel_files({"stdlib", "stdlib/tests", "examples/textures"})) {
+        CAPTURE(path);
+        ++files;
+        CHECK(grammar.derives("file", terminals_of(read(path), grammar)));
+    }
     CHECK(files > 25);
 }
 

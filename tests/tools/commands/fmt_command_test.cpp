@@ -5,6 +5,7 @@
 #include "stdlib/stdlib.h"
 #include "tests/fuzz/random_source.h"
 #include "tests/support/catch.h"
+#include "tests/support/haptel_files.h"
 #include "tests/tools/commands/run_command.h"
 
 #include <sys/stat.h>
@@ -41,18 +42,14 @@ TEST_CASE("fmt: what a file means is what its formatted text means, and formatti
 {
     size_t files = 0;
     for (const char* folder : {"stdlib", "stdlib/tests", "examples/textures", "tests/lang/golden"}) {
-        for (const auto& entry :
-             std::filesystem::directory_iterator(std::filesystem::path(HAPTEL_SOURCE_DIR) / folder)) {
-            if (entry.path().extension() != ".haptel") continue;
-            const std::string text = read_file(entry.path()), result = formatted(text);
+        const bool is_library = std::string(folder) == "stdlib", is_golden = std::string(folder) == "tests/lang/golden";
+        for (const std::filesystem::path& path : test::haptel_files({folder})) {
+            const std::string text = read_file(path), result = formatted(text);
             if (result.empty()) continue; // syntax errors, on purpose
-            CAPTURE(entry.path());
+            CAPTURE(path);
             ++files;
             CHECK(formatted(result) == result);
-            const bool is_library = std::string(folder) == "stdlib",
-                       is_golden = std::string(folder) == "tests/lang/golden";
-            CHECK(meaning(entry.path(), text, !is_library && !is_golden) ==
-                  meaning(entry.path(), result, !is_library && !is_golden));
+            CHECK(meaning(path, text, !is_library && !is_golden) == meaning(path, result, !is_library && !is_golden));
         }
     }
     CHECK(files > 30);

@@ -1,0 +1,30 @@
+#include "tests/support/haptel_files.h"
+
+#include <algorithm>
+
+namespace haptel::test {
+
+std::vector<std::filesystem::path> haptel_files(const std::vector<std::string>& folders)
+{
+    std::vector<std::filesystem::path> files;
+    for (const std::string& folder : folders)
+        for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(HAPTEL_SOURCE_DIR) / folder))
+            if (entry.path().extension() == ".haptel") files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    return files;
+}
+
+std::vector<std::filesystem::path> texture_files()
+{
+    const std::vector<std::filesystem::path> files = haptel_files({"stdlib/tests", "examples/textures"});
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+    const size_t step = 3;
+#else
+    const size_t step = 1;
+#endif
+    std::vector<std::filesystem::path> some;
+    for (size_t i = 0; i < files.size(); i += step) some.push_back(files[i]);
+    return some;
+}
+
+} // namespace haptel::test
