@@ -63,6 +63,8 @@ void Grammar::array_suffix(TypeName& type)
                 "write the rows one behind the other and index by row * columns + column";
             type.base.text.clear(); // of no type: nothing more is said about it
         }
+        const Nesting nesting(*this, Nesting::bracket);
+        if (nesting.too_deep()) return skip_brackets();
         advance();
         type.is_array = true;
         type.array_size.reset();

@@ -68,6 +68,10 @@ TEST_CASE("nesting above 256 is one error, found at once; 256 is none")
     CHECK(only_code(nested("(", "1", ")", 20'000)) == "too-deep");
     CHECK(only_code(nested("f(", "1", ")", 20'000)) == "too-deep");
     CHECK(only_code(nested("a[", "1", "]", 20'000)) == "too-deep");
+    CHECK(nested("float[", "1", "](1)", 256).messages() == "");
+    CHECK(only_code(nested("float[", "1", "](1)", 20'000)) == "too-deep");
+    CHECK(only_code(parse_text(repeated("float[", 20'000) + "1" + repeated("]", 20'000) + " f() { return 1; }")) ==
+          "too-deep");
     CHECK(only_code(nested("- ", "1", "", 20'000)) == "too-deep");
     CHECK(only_code(nested("a ? b : ", "1", "", 20'000)) == "too-deep");
     CHECK(only_code(nested("a ? ", "1", " : b", 20'000)) == "too-deep");
