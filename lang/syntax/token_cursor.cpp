@@ -27,7 +27,11 @@ bool begins_anew(Token kind)
 } // namespace
 
 TokenCursor::TokenCursor(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink)
-    : sources(all_sources), file(file_index), list(std::move(token_list)), diagnostics(sink)
+    : sources(all_sources)
+    , file(file_index)
+    , list(std::move(token_list))
+    , diagnostics(sink)
+    , line_end(sources.file(file).text.find_first_of("\r\n"))
 {
 }
 
@@ -102,11 +106,12 @@ void TokenCursor::stand_again()
 }
 
 // On the line where we stood again, or before it.
-bool TokenCursor::lingers(Span where) const
+bool TokenCursor::lingers(Span where)
 {
     if (footing == SIZE_MAX) return false;
     const uint32_t from = footing > 0 ? list.tokens[footing - 1].end : 0;
-    return sources.text({file, from, where.begin}).find_first_of("\r\n") == std::string_view::npos;
+    if (line_end < from) line_end = sources.file(file).text.find_first_of("\r\n", from);
+    return where.begin <= line_end;
 }
 
 Diagnostic& TokenCursor::error(Span where, ErrorCode code, std::string message)

@@ -85,8 +85,9 @@ protected:
 private:
     Span span_of(const PlacedToken& placed) const { return {file, placed.begin, placed.end}; }
     bool beside_invalid() const;
-    bool lingers(Span where) const;
+    bool lingers(Span where);
     size_t footing = SIZE_MAX; // where we last stood again
+    size_t line_end;           // the first behind there, or behind an earlier footing on the same line
     bool end_is_reported = false;
     Diagnostic unheard;
 };

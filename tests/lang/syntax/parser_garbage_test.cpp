@@ -111,6 +111,7 @@ TEST_CASE("megabytes of nonsense are read in one go")
         check_sane("float f() { " + repeated(piece, megabyte / 8 / std::string_view(piece).size()));
     }
     check_sane(std::string(megabyte, '\0'));
+    check_sane("float f(" + repeated("; struct ", megabyte / 8)); // on one line, which is not searched for each
 }
 
 TEST_CASE("slips in a file with more mistakes than are said")
