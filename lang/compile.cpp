@@ -5,8 +5,8 @@
 #include "lang/check/library.h"
 #include "lang/ir/verify.h"
 #include "lang/lower/lower.h"
-#include "lang/program/limits.h"
 #include "lang/syntax/parser.h"
+#include "lang/text/limits.h"
 #include "lang/text/near_name.h"
 
 #include <algorithm>
@@ -55,18 +55,8 @@ private:
     uint32_t add(SourceFile file)
     {
         const uint32_t index = sources.add(std::move(file));
-        TokenList tokens = lex(sources, index, diagnostics);
-        const size_t room = tokens_max - std::min(tokens_max, token_count);
-        if (tokens.tokens.size() > room) {
-            const PlacedToken& first = tokens.tokens[room];
-            diagnostics
-                .error({index, first.begin, first.end}, "too-large",
-                       "expected at most " + std::to_string(tokens_max) +
-                           " words, numbers and signs in a program with its imports")
-                .hint = "large tables belong into pictures: texture t(image picture)";
-            tokens = {{tokens.tokens.back()}, {}};
-        }
-        token_count += tokens.tokens.size();
+        TokenList tokens = lex(sources, index, diagnostics, tokens_max - token_count);
+        token_count += tokens.count;
         for (const PlacedToken& token : tokens.tokens)
             if (token.kind == Token::name) named.insert(sources.text({index, token.begin, token.end}));
         files.push_back({parse(sources, index, std::move(tokens), diagnostics), {}});
@@ -77,7 +67,8 @@ private:
     void import(uint32_t file, size_t which)
     {
         const ast::Import import = files[file].tree.imports[which];
-        if (!asked.emplace(file, import.path).second) return;
+        const bool is_told = text_bytes > text_bytes_max;
+        if (is_told || !asked.emplace(file, import.path).second) return;
         std::optional<SourceFile> text;
         if (options.load_import) text = options.load_import(import.path, sources.file(file).name);
         if (!text) {
@@ -86,8 +77,11 @@ private:
                                     : "this program was given no way to read other files";
             return;
         }
-        if (by_name.size() >= import_max) {
-            diagnostics.error(import.span, "too-large", "expected at most " + std::to_string(import_max) + " files");
+        text_bytes += text->text.size();
+        if (by_name.size() >= import_max || text_bytes > text_bytes_max) {
+            diagnostics.error(import.span, "too-large",
+                              "expected imports of at most " + std::to_string(import_max) + " files, with " +
+                                  std::to_string(text_bytes_max >> 20) + " MiB of text");
             return;
         }
         const auto known = by_name.find(text->name);
@@ -135,6 +129,7 @@ private:
     std::map<std::string, uint32_t, std::less<>> by_name;
     std::set<std::pair<uint32_t, std::string>> asked; // by file and path: what is imported again is not read again
     size_t token_count = 0;                           // of all files
+    size_t text_bytes = 0;                            // read for imports, again where a path is written in another way
     std::vector<Edge> edges;
 };
 

@@ -1,7 +1,7 @@
 // Scopes and whole bodies.
 #include "lang/check/body_checker.h"
-#include "lang/program/limits.h"
 #include "lang/syntax/foreign.h"
+#include "lang/text/limits.h"
 #include "lang/text/near_name.h"
 
 #include <algorithm>

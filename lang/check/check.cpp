@@ -4,8 +4,8 @@
 #include "lang/check/body_checker.h"
 #include "lang/check/call_graph.h"
 #include "lang/check/library.h"
-#include "lang/program/limits.h"
 #include "lang/syntax/grammar.h"
+#include "lang/text/limits.h"
 #include "lang/text/near_name.h"
 
 #include <algorithm>

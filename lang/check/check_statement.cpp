@@ -1,7 +1,7 @@
 // Statements: declarations, assignments, branches, and whether every path returns.
 #include "lang/check/body_checker.h"
-#include "lang/program/limits.h"
 #include "lang/syntax/operators.h"
+#include "lang/text/limits.h"
 
 #include <algorithm>
 

@@ -6,7 +6,7 @@
 #include "lang/ir/extent.h"
 #include "lang/ir/verify.h"
 #include "lang/lower/lowering.h"
-#include "lang/program/limits.h"
+#include "lang/text/limits.h"
 
 namespace haptel::lang {
 namespace {

@@ -41,8 +41,6 @@ constexpr Lookalike lookalikes[] = {
     {0x22C5, "*"}, {0x2264, "<="}, {0x2265, ">="}, {0x2260, "!="}, {0x037E, ";"},
 };
 
-constexpr uint32_t longest_file = 64u << 20;
-
 constexpr uint8_t index_of(char c)
 {
     return static_cast<uint8_t>(c);
@@ -90,8 +88,8 @@ constexpr ByFirstCharacter keywords_by_character(keywords);
 
 class Lexer {
 public:
-    Lexer(std::string_view file_text, Span part, Diagnostics& sink)
-        : text(file_text.substr(0, part.end)), file(part.file), at(part.begin), diagnostics(sink)
+    Lexer(std::string_view file_text, Span part, Diagnostics& sink, size_t max)
+        : text(file_text.substr(0, part.end)), file(part.file), at(part.begin), diagnostics(sink), room(max)
     {
     }
 
@@ -135,7 +133,32 @@ private:
     bool at_line_end() const { return at >= text.size() || text[at] == '\n' || text[at] == '\r'; }
 
     Span span_from(uint32_t begin) const { return {file, begin, at}; }
-    void push(Token kind, uint32_t begin) { list.tokens.push_back({kind, begin, at}); }
+
+    void push(Token kind, uint32_t begin)
+    {
+        if (!has_room(begin)) return;
+        if (kind != Token::invalid && at - begin > word_bytes_max) {
+            diagnostics.error(span_from(begin), "too-large",
+                              "expected at most " + std::to_string(word_bytes_max) +
+                                  " characters in a name, number or path, found " + std::to_string(at - begin));
+            kind = Token::invalid;
+        }
+        list.tokens.push_back({kind, begin, at});
+    }
+
+    // For one more token or comment, which is at `begin`; else nothing is kept and the rest is not read.
+    bool has_room(uint32_t begin)
+    {
+        if (list.count++ < room) return true;
+        diagnostics
+            .error({file, begin, begin + 1}, "too-large",
+                   "expected at most " + std::to_string(tokens_max) +
+                       " words, numbers, signs and comments in a program with its imports")
+            .hint = "large tables belong into pictures: texture t(image picture)";
+        list = {{}, {}, room};
+        at = size();
+        return false;
+    }
 
     static Token keyword_or_name(std::string_view word)
     {
@@ -168,14 +191,15 @@ private:
         const bool doc = rest().starts_with("///") && !rest().starts_with("////");
         const std::string_view line = rest().substr(0, rest().find('\n'));
         at += static_cast<uint32_t>(std::min(line.size(), line.find('\r')));
-        if (doc) list.docs.push_back({span_from(begin), static_cast<uint32_t>(list.tokens.size())});
+        if (has_room(begin) && doc) list.docs.push_back({span_from(begin), static_cast<uint32_t>(list.tokens.size())});
     }
 
     void block_comment()
     {
         const size_t end = text.find("*/", at + 2);
         if (end != std::string_view::npos) {
-            at = static_cast<uint32_t>(end + 2);
+            const uint32_t begin = std::exchange(at, static_cast<uint32_t>(end + 2));
+            has_room(begin);
             return;
         }
         diagnostics.error({file, at, at + 2}, "open-comment",
@@ -294,6 +318,7 @@ private:
     uint32_t file;
     uint32_t at;
     Diagnostics& diagnostics;
+    size_t room;
     TokenList list;
 };
 
@@ -344,24 +369,24 @@ std::string_view describe(Token token)
     return {};
 }
 
-TokenList lex(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics)
+TokenList lex(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics, size_t room)
 {
     const std::string& text = sources.file(file).text;
-    if (text.size() > longest_file) {
+    if (text.size() > text_bytes_max) {
         diagnostics.error({file, 0, 0}, "too-large", "this file is larger than 64 MiB");
-        return {{{Token::invalid, 0, 0}, {Token::end, 0, 0}}, {}};
+        return {{{Token::invalid, 0, 0}, {Token::end, 0, 0}}, {}, 0};
     }
     if (const auto garbage = first_of_garbage(text)) {
         diagnostics.error({file, *garbage, *garbage + 1}, "not-text", "this file is not text, expected UTF-8").hint =
             "is it the right file, and saved as UTF-8?";
-        return {{{Token::invalid, *garbage, *garbage}, {Token::end, *garbage, *garbage}}, {}};
+        return {{{Token::invalid, *garbage, *garbage}, {Token::end, *garbage, *garbage}}, {}, 0};
     }
-    return lex(sources, {file, 0, static_cast<uint32_t>(text.size())}, diagnostics);
+    return Lexer(text, {file, 0, static_cast<uint32_t>(text.size())}, diagnostics, room).run();
 }
 
 TokenList lex(const SourceSet& sources, Span part, Diagnostics& diagnostics)
 {
-    return Lexer(sources.file(part.file).text, part, diagnostics).run();
+    return Lexer(sources.file(part.file).text, part, diagnostics, tokens_max).run();
 }
 
 } // namespace haptel::lang

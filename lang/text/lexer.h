@@ -3,6 +3,7 @@
 #pragma once
 
 #include "lang/text/diagnostic.h"
+#include "lang/text/limits.h"
 #include "lang/text/source.h"
 
 #include <string_view>
@@ -40,10 +41,11 @@ struct DocLine {
 struct TokenList {
     std::vector<PlacedToken> tokens; // ends with Token::end
     std::vector<DocLine> docs;
+    size_t count = 0; // of tokens, but for the last, and of comments
 };
 
-// Stops early once `diagnostics` is full.
-TokenList lex(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics);
+// Stops early once `diagnostics` is full. More than `room` tokens and comments are an error, and none of them is kept.
+TokenList lex(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics, size_t room = tokens_max);
 
 // Only the bytes of `part`: for what is written inside a comment.
 TokenList lex(const SourceSet& sources, Span part, Diagnostics& diagnostics);

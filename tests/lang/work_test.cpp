@@ -1,5 +1,6 @@
 // What a text costs: twice the text, about twice the work, at every stage. Work is counted in bytes allocated.
 #include "lang/compile.h"
+#include "lang/format/format.h"
 #include "runtime/servo/allocation_count.h"
 #include "tests/support/catch.h"
 
@@ -112,6 +113,36 @@ TEST_CASE("work: a file that is imported again is not read again, and many impor
     CHECK(reads == 1);
 }
 
+TEST_CASE("limits: what is imported is read up to 64 MiB, and the same file in many ways of writing its path too")
+{
+    size_t reads = 0;
+    CompileOptions options;
+    options.load_import = [&](std::string_view path, std::string_view) {
+        ++reads;
+        return std::optional(SourceFile{path.back() == 'a' ? "a" : std::string(path), std::string(16 << 20, ' ')});
+    };
+    const auto result_of = [&](const Text& path) {
+        reads = 0;
+        std::string imports;
+        for (size_t i = 0; i < 200; ++i) imports += "import \"" + path(i) + "\";\n";
+        const auto said = compile({"main.haptel", imports + "texture t() { return 0.0; }"}, options).diagnostics;
+        return std::to_string(reads) + " " + said.all().front().code;
+    };
+    CHECK(result_of([](size_t i) { return std::to_string(i); }) == "5 too-large");
+    CHECK(result_of([](size_t i) { return std::string(i, '/') + "a"; }) == "5 too-large");
+}
+
+TEST_CASE("limits: what is too large to compile is refused by the formatter")
+{
+    SourceSet sources;
+    Diagnostics diagnostics;
+    const uint32_t file = sources.add({"main.haptel", "const int A[] = {" + repeated(1'000'000, "1,") + "};"});
+    const uint64_t before = runtime::allocated_bytes_of_this_thread();
+    CHECK(!format(sources, file, diagnostics));
+    CHECK(runtime::allocated_bytes_of_this_thread() - before < 100 << 20);
+    CHECK(diagnostics.all().front().code == "too-large");
+}
+
 namespace {
 
 // "3:7 too-large" of the only error, or what there is instead.
@@ -181,4 +212,14 @@ TEST_CASE("limits: what is too much is refused at its place, and what is at the 
     for (int i = 0; i < 50; ++i)
         tables += "const int A" + std::to_string(i) + "[] = {" + repeated(65'535, "1,") + "1};\n";
     CHECK(refusal(tables + texture) == "8:82452 too-large\n"); // 1 000 000 tokens further on
+    CHECK(refusal(repeated(999'000, "//\n") + texture) == "");
+    CHECK(refusal(repeated(1'000'000, "//\n") + texture) == "1000001:1 too-large\n");
+    CHECK(refusal(repeated(1'000'000, "/**/\n") + texture) == "1000001:1 too-large\n");
+    CHECK(refusal(repeated(1'000'000, "///\n") + texture) == "1000001:1 too-large\n");
+
+    const std::string letters(4096, 'a');
+    CHECK(refusal("const float " + letters + " = 1.0;\n" + texture) == "");
+    CHECK(refusal("const float a" + letters + " = 1.0;\n" + texture) == "1:13 too-large\n");
+    CHECK(refusal("const float a = 0." + std::string(4095, '1') + ";\n" + texture) == "1:17 too-large\n");
+    CHECK(refusal("import \"" + letters + "\";\n" + texture) == "1:8 too-large\n");
 }
