@@ -69,12 +69,13 @@ private:
         const ast::Import import = files[file].tree.imports[which];
         const bool is_told = text_bytes > text_bytes_max;
         if (is_told || !asked.emplace(file, import.path).second) return;
-        std::optional<SourceFile> text;
-        if (options.load_import) text = options.load_import(import.path, sources.file(file).name);
+        Imported found(std::nullopt, {}, "this program was given no way to read other files");
+        if (options.load_import) found = options.load_import(import.path, sources.file(file).name);
+        std::optional<SourceFile>& text = found.file;
         if (!text) {
-            diagnostics.error(import.span, "missing-import", "cannot read " + quoted_path(import.path)).hint =
-                options.load_import ? "the path is relative to the file that imports"
-                                    : "this program was given no way to read other files";
+            const std::string why = found.why.empty() ? "" : ": " + found.why;
+            diagnostics.error(import.span, "missing-import", "cannot read " + quoted_path(import.path) + why).hint =
+                found.hint.empty() ? "the path is relative to the file that imports" : found.hint;
             return;
         }
         text_bytes += text->text.size();

@@ -16,8 +16,18 @@
 
 namespace haptel::lang {
 
-// Text of an imported file, or nothing if there is none. `path` as written, `importer` the name of the file that asks.
-using ImportLoader = std::function<std::optional<SourceFile>(std::string_view path, std::string_view importer)>;
+// An imported file; or nothing, then perhaps why ("it is a pipe") and what to do.
+struct Imported {
+    std::optional<SourceFile> file;
+    std::string why, hint;
+    Imported(std::optional<SourceFile> found, std::string reason = {}, std::string help = {})
+        : file(std::move(found)), why(std::move(reason)), hint(std::move(help))
+    {
+    }
+};
+
+// `path` as written, `importer` the name of the file that asks.
+using ImportLoader = std::function<Imported(std::string_view path, std::string_view importer)>;
 
 struct CompileOptions {
     std::vector<SourceFile> library; // visible everywhere without import; normally stdlib's

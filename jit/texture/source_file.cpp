@@ -49,12 +49,11 @@ bool is_name(std::string_view text)
     return true;
 }
 
-} // namespace
-
-SourceText read_source(const std::string& path)
+// With the error as a clause of its own: "it is a pipe".
+SourceText read(const std::string& path)
 {
     input::FileBytes file = input::read_regular_file(path, source_bytes_max);
-    const std::string error = "cannot read this file: it " + file.refused.why;
+    const std::string error = "it " + file.refused.why;
     switch (file.refused.refusal) {
     case input::Refusal::none: return {std::move(file.bytes), {}, {}};
     case input::Refusal::missing: return {{}, error, did_you_mean(path)};
@@ -66,12 +65,21 @@ SourceText read_source(const std::string& path)
     return {{}, error, {}};
 }
 
-std::optional<lang::SourceFile> load_beside(std::string_view path, std::string_view importer)
+} // namespace
+
+SourceText read_source(const std::string& path)
+{
+    SourceText source = read(path);
+    if (!source.error.empty()) source.error.insert(0, "cannot read this file: ");
+    return source;
+}
+
+lang::Imported load_beside(std::string_view path, std::string_view importer)
 {
     const fs::path full = (fs::path(importer).parent_path() / fs::path(path)).lexically_normal();
-    SourceText source = read_source(full);
-    if (!source.error.empty()) return std::nullopt;
-    return lang::SourceFile{full, std::move(source.text)};
+    SourceText source = read(full);
+    if (!source.error.empty()) return {std::nullopt, std::move(source.error), std::move(source.hint)};
+    return {lang::SourceFile{full, std::move(source.text)}};
 }
 
 TextureReference split_reference(std::string_view reference)

@@ -3,7 +3,6 @@
 
 #include "lang/compile.h"
 
-#include <optional>
 #include <string>
 #include <string_view>
 
@@ -20,7 +19,7 @@ SourceText read_source(const std::string& path);
 inline constexpr size_t source_bytes_max = 16u << 20;
 
 // lang::ImportLoader: `path` is relative to the file that imports it.
-std::optional<lang::SourceFile> load_beside(std::string_view path, std::string_view importer);
+lang::Imported load_beside(std::string_view path, std::string_view importer);
 
 // "rock.haptel:rock" taken apart; `texture` is empty where the reference is a path alone.
 struct TextureReference {

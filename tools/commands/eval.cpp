@@ -152,14 +152,15 @@ ExitCode run(const EvalOptions& options)
                               options.precision, options.engine));
         return ExitCode::misuse;
     }
-    PointTable table;
-    if (!options.points.empty()) {
-        table = read_points(options.points);
-        if (!table.error.empty()) {
-            say_error(table.error);
-            return ExitCode::findings;
-        }
-    }
+    constexpr std::size_t rows_at_once = 4096;
+    std::optional<PointTable> table;
+    std::vector<PointTable::Row> rows;
+    const auto is_sound = [&] {
+        if (table && !table->error().empty()) say_error(table->error());
+        return !table || table->error().empty();
+    };
+    if (!options.points.empty()) rows = table.emplace(options.points).next(rows_at_once);
+    if (!is_sound()) return ExitCode::findings;
     const Engine engine = open_engine(options);
     if (!engine.evaluate) return ExitCode::findings;
     if (options.at_m) {
@@ -167,19 +168,16 @@ ExitCode run(const EvalOptions& options)
         print_point(options, engine.writes, engine.evaluate({&point, 1})[0]);
         return ExitCode::fine;
     }
-    fmt::print("{},height_m,gx,gy,gz\n", table.header);
-    constexpr std::size_t rows_at_once = 4096;
-    std::vector<haptel_point> points;
-    for (std::size_t first = 0; first < table.rows.size(); first += points.size()) {
-        points.clear();
-        for (std::size_t i = first; i < std::min(first + rows_at_once, table.rows.size()); ++i)
-            points.push_back(point_at(options, table.rows[i].p_m));
+    fmt::print("{},height_m,gx,gy,gz\n", table->header());
+    for (; !rows.empty(); rows = table->next(rows_at_once)) {
+        std::vector<haptel_point> points;
+        for (const PointTable::Row& row : rows) points.push_back(point_at(options, row.p_m));
         const std::vector<Evaluated> found = engine.evaluate(points);
         for (std::size_t i = 0; i < found.size(); ++i)
-            fmt::print("{},{},{},{},{}\n", table.rows[first + i].text, found[i].height_m, found[i].gradient[0],
-                       found[i].gradient[1], found[i].gradient[2]);
+            fmt::print("{},{},{},{},{}\n", rows[i].text, found[i].height_m, found[i].gradient[0], found[i].gradient[1],
+                       found[i].gradient[2]);
     }
-    return ExitCode::fine;
+    return is_sound() ? ExitCode::fine : ExitCode::findings;
 }
 
 template <typename T>

@@ -1,13 +1,12 @@
 #include "tools/report/eval_table.h"
 
+#include "input/regular_file.h"
 #include "tools/arguments/quantity.h"
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <fmt/format.h>
-#include <fstream>
 #include <string_view>
 
 namespace haptel::tools {
@@ -47,65 +46,78 @@ constexpr size_t longest_line = 1 << 20;
 
 } // namespace
 
-PointTable read_points(const std::string& file)
+PointTable::PointTable(std::string file) : file_(std::move(file))
 {
-    PointTable table;
-    std::ifstream in(file);
-    if (!in) {
-        table.error = fmt::format("cannot read {}: {}", file, std::strerror(errno));
-        return table;
-    }
-    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf"; // spreadsheets begin with it
-    std::array<size_t, 3> columns = {0, 1, 2};
-    size_t width = 0; // cells of the first line, and of every other
-    std::string line;
+    const input::Refused look = input::look_at_regular_file(file_, UINTMAX_MAX);
+    if (look.refusal == input::Refusal::none) in_.open(file_);
+    if (in_.is_open())
+        buffer_.resize(longest_line);
+    else
+        error_ = fmt::format("cannot read {}: it {}", file_, look.why.empty() ? std::strerror(errno) : look.why);
+}
+
+std::vector<PointTable::Row> PointTable::next(size_t count)
+{
+    std::vector<Row> rows;
     errno = 0;
-    std::vector<char> buffer(longest_line);
-    for (size_t number = 1; in.getline(buffer.data(), static_cast<std::streamsize>(buffer.size())); ++number) {
-        line = buffer.data();
-        if (number == 1 && line.starts_with(byte_order_mark)) line.erase(0, byte_order_mark.size());
-        const std::string_view text = trimmed(line);
-        if (text.empty()) continue;
-        const std::vector<std::string_view> cells = cells_of(text);
-        if (table.header.empty()) {
-            width = cells.size();
-            const bool is_header = !parse_number(cells[0]);
-            table.header = is_header ? std::string(text) : "x,y,z";
-            for (size_t axis = 0; is_header && axis < 3; ++axis) {
-                const auto found = std::find(cells.begin(), cells.end(), std::string_view("xyz").substr(axis, 1));
-                if (found == cells.end()) {
-                    table.error =
-                        fmt::format("{}:{}: expected the columns x,y,z, found '{}'", file, number, shown(text));
-                    return table;
-                }
-                columns[axis] = static_cast<size_t>(found - cells.begin());
-            }
-            if (is_header) continue;
+    for (Row row; error_.empty() && rows.size() < count;) {
+        if (!in_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()))) {
+            report_end();
+            break;
         }
-        PointTable::Row row{std::string(text), {}};
-        for (int axis = 0; axis < 3; ++axis) {
-            const size_t column = columns[static_cast<size_t>(axis)];
-            const Parsed<double> value = parse_number(column < cells.size() ? cells[column] : std::string_view{});
-            if (!value) {
-                table.error = fmt::format("{}:{}: column {}: {}", file, number, column + 1, value.error);
-                return table;
-            }
-            row.p_m[axis] = value.value;
-        }
-        if (cells.size() != width) {
-            table.error = fmt::format("{}:{}: expected {} columns as in the first line, found {}", file, number, width,
-                                      cells.size());
-            return table;
-        }
-        table.rows.push_back(std::move(row));
+        ++number_;
+        if (read_line(row)) rows.push_back(std::move(row));
     }
-    if (static_cast<size_t>(in.gcount()) + 1 == longest_line)
-        table.error = fmt::format("{}: a line in it is longer than any of a table of points", file);
-    else if (in.bad())
-        table.error = fmt::format("cannot read {}: {}", file, std::strerror(errno != 0 ? errno : EIO));
-    else if (table.header.empty())
-        table.error = fmt::format("{}: there are no points in it", file);
-    return table;
+    if (!error_.empty()) rows.clear();
+    return rows;
+}
+
+bool PointTable::read_line(Row& row)
+{
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf"; // spreadsheets begin with it
+    std::string_view text = buffer_.data();
+    if (number_ == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(byte_order_mark.size());
+    text = trimmed(text);
+    if (text.empty()) return false;
+    const std::vector<std::string_view> cells = cells_of(text);
+    if (head_.empty()) {
+        width_ = cells.size();
+        const bool is_header = !parse_number(cells[0]);
+        head_ = is_header ? std::string(text) : "x,y,z";
+        for (size_t axis = 0; is_header && axis < 3; ++axis) {
+            const auto found = std::find(cells.begin(), cells.end(), std::string_view("xyz").substr(axis, 1));
+            if (found == cells.end()) {
+                error_ = fmt::format("{}:{}: expected the columns x,y,z, found '{}'", file_, number_, shown(text));
+                return false;
+            }
+            columns_[axis] = static_cast<size_t>(found - cells.begin());
+        }
+        if (is_header) return false;
+    }
+    row.text = text;
+    for (int axis = 0; axis < 3; ++axis) {
+        const size_t column = columns_[static_cast<size_t>(axis)];
+        const Parsed<double> value = parse_number(column < cells.size() ? cells[column] : std::string_view{});
+        if (!value) {
+            error_ = fmt::format("{}:{}: column {}: {}", file_, number_, column + 1, value.error);
+            return false;
+        }
+        row.p_m[axis] = value.value;
+    }
+    if (cells.size() != width_)
+        error_ = fmt::format("{}:{}: expected {} columns as in the first line, found {}", file_, number_, width_,
+                             cells.size());
+    return error_.empty();
+}
+
+void PointTable::report_end()
+{
+    if (static_cast<size_t>(in_.gcount()) + 1 == longest_line)
+        error_ = fmt::format("{}: a line in it is longer than any of a table of points", file_);
+    else if (in_.bad())
+        error_ = fmt::format("cannot read {}: {}", file_, std::strerror(errno != 0 ? errno : EIO));
+    else if (head_.empty())
+        error_ = fmt::format("{}: there are no points in it", file_);
 }
 
 } // namespace haptel::tools

@@ -5,6 +5,7 @@
 #include "tools/output/json.h"
 
 #include <algorithm>
+#include <sys/stat.h>
 
 using namespace haptel::test;
 using haptel::tools::Json;
@@ -268,4 +269,18 @@ TEST_CASE("check: a few lines per texture for people")
     CHECK(contains(ran.out, "height     unbounded (unbounded)\n"));
     CHECK(contains(ran.out, "slope      unbounded (unbounded)\n"));
     CHECK(contains(ran.out, "reads p, time\n"));
+}
+
+TEST_CASE("check: an import that is no file says what it is, or which file was meant")
+{
+    const Folder folder;
+    REQUIRE(mkfifo(folder.file("pipe.haptel").c_str(), 0600) == 0);
+    folder.write("oak.haptel", "float f(float x) { return x; }\n");
+    const std::string file =
+        folder.write("t.haptel", "import \"pipe.haptel\";\nimport \"oka.haptel\";\ntexture t() { return 0.0; }\n");
+    const Ran ran = run_command("check '" + file + "'", "timeout 20");
+    CHECK(ran.code == 1);
+    CHECK(contains(ran.err + ran.out, "1:1: error: cannot read \"pipe.haptel\": it is a pipe, not a regular file"));
+    CHECK(contains(ran.err + ran.out, "2:1: error: cannot read \"oka.haptel\": it does not exist"));
+    CHECK(contains(ran.err + ran.out, "did you mean 'oak.haptel'?"));
 }

@@ -2,9 +2,11 @@
 #include "tests/support/catch.h"
 #include "tests/tools/commands/run_command.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <sys/stat.h>
 
 using namespace haptel::test;
 using Json = nlohmann::json;
@@ -100,13 +102,33 @@ TEST_CASE("eval adds columns to a table of points")
         CHECK(ran.err.size() < 1000);
     }
     CHECK(table("\xef\xbb\xbfx,y,z\n0.004,0,0\n").out == "x,y,z,height_m,gx,gy,gz\n0.004,0,0,0.002,0.5,0.5,0\n");
-    const Ran endless = run_command("eval '" + file + ":tilt' --points /dev/zero");
-    CHECK(endless.code == 1);
-    CHECK(contains(endless.err, "longer than any of a table"));
-    const Ran folder_as_table = run_command("eval '" + file + ":tilt' --points '" + folder.file(".") + "'");
-    CHECK(folder_as_table.code == 1);
-    CHECK(contains(folder_as_table.err, "cannot read"));
-    CHECK(contains(folder_as_table.err, "directory"));
+    const Ran wide = table(std::string(2 << 20, '1') + "\n");
+    CHECK(wide.code == 1);
+    CHECK(contains(wide.err, "longer than any of a table"));
+    REQUIRE(mkfifo(folder.file("pipe").c_str(), 0600) == 0);
+    for (const auto& [name, is] :
+         std::vector<std::pair<std::string, std::string>>{{"/dev/zero", "it is a device"},
+                                                          {folder.file("pipe"), "it is a pipe"},
+                                                          {folder.file("."), "it is a folder"}}) {
+        const Ran ran = run_command("eval '" + file + ":tilt' --points '" + name + "'", "timeout 20");
+        CHECK(ran.code == 1);
+        CHECK(contains(ran.err, "cannot read " + name + ": " + is));
+    }
+}
+
+TEST_CASE("eval reads a table of any length piece by piece")
+{
+    const Folder folder;
+    const std::string texture = "'" + folder.write("t.haptel", tilt) + ":tilt'";
+    std::string csv = "x,y,z\n";
+    for (int i = 0; i < 10'000; ++i) csv += "0.004,0,0\n";
+    const Ran whole = run_command("eval " + texture + " --points '" + folder.write("a.csv", csv) + "'");
+    CHECK(whole.code == 0);
+    CHECK(std::count(whole.out.begin(), whole.out.end(), '\n') == 10'001);
+    CHECK(whole.out.ends_with("\n0.004,0,0,0.002,0.5,0.5,0\n"));
+    const Ran broken = run_command("eval " + texture + " --points '" + folder.write("b.csv", csv + "1,2\n") + "'");
+    CHECK(broken.code == 1);
+    CHECK(contains(broken.err, "b.csv:10002: column 3: expected a number"));
 }
 
 TEST_CASE("eval gives many points the numbers of single ones, in each precision")
