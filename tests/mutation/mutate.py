@@ -1,23 +1,29 @@
 #!/usr/bin/env python3
 """Breaks the product in one place at a time, at random, and expects a red test: what survives is not tested.
 
-    ./dev mutate [--folder FOLDER]... [--count N] [--seed S] [--programs N] [--list] [--resume]
+    ./dev mutate [--folder FOLDER]... [--count N] [--seed S] [--seconds S] [--jobs N] [--list] [--resume]
 
 A mutant differs by one token: a comparison, a sign, a constant, a condition turned round, a statement that is gone, two
 arguments swapped, nothing returned. Places are drawn kind by kind from the folders or files that are named (all of the
 product's otherwise); the same tree and seed give the same mutants. Each is built as far as a test program needs, the
-programs of the nearest tests first, and is killed by the first one that fails, crashes or takes many times as long as
-it does otherwise. One that does not compile is replaced by the next. Exit code 1 where one survives.
+programs of the nearest tests first and the quick ones before the slow, and is killed by the first one that fails,
+crashes or takes many times as long as it does otherwise. One that does not compile is replaced by the next. Exit code 1
+where one survives.
 
-Works in a copy of the tree under build-mutate, so that nothing here is touched. Some seconds to minutes for each mutant,
-and a build of all that it needs before the first: not part of CI. --resume goes on where a run was stopped.
+Works in copies of the tree under build-mutate, one for each job, so that nothing here is touched. Some seconds to
+minutes for each mutant, and a build and a run of all tests before the first: not part of CI. --resume goes on where a
+run was stopped.
 """
 
 import argparse
 import collections
+import concurrent.futures
+import itertools
 import json
+import math
 import os
 import pathlib
+import queue
 import random
 import re
 import resource
@@ -25,12 +31,10 @@ import shutil
 import signal
 import subprocess
 import sys
-import time
+import tempfile
 
 root = pathlib.Path(__file__).resolve().parents[2]
 work = root / "build-mutate"
-copy = work / "tree"
-build = copy / "build-test"  # where the preset has it: a compiler cache finds what another tree has built
 everything = ["lang", "jit", "runtime", "device", "tools"]
 memory_max = 8 << 30  # bytes of one test program
 
@@ -140,94 +144,107 @@ def tracked():
     return [name for name in listed.decode().split("\0") if name and (root / name).is_file()]
 
 
-def prepare():
-    """The copy as the tree is, with the times of what is the same, and configured."""
-    names = set(tracked())
-    for name in names:
-        source, target = root / name, copy / name
-        if not target.is_file() or target.read_bytes() != source.read_bytes():
-            target.parent.mkdir(parents=True, exist_ok=True)
-            shutil.copyfile(source, target)
-            shutil.copymode(source, target)
-    for old in copy.rglob("*"):
-        if old.is_file() and build not in old.parents and str(old.relative_to(copy)) not in names:
-            old.unlink()
-    code, said = run(["cmake", "-S", copy, "--preset", "test"])
-    if code:
-        sys.exit(said)
+class Tree:
+    """A copy of the tree, built, with its tests as (folder, name, programs, whether a program alone is the command)."""
 
+    def __init__(self, number):
+        self.copy = work / f"tree{number}"
+        self.build = self.copy / "build-test"  # where the preset has it: a compiler cache finds what another tree built
+        self.tests, self.cost_s, self.made_of = [], {}, {}
 
-class Tests:
-    """Each as (folder, name, targets, programs), and how long it takes, once that is known."""
-
-    def __init__(self):
-        self.all, self.took_s = [], {}
-        for listing in sorted(build.rglob("CTestTestfile.cmake")):
-            folder = listing.parent.relative_to(build).as_posix()
+    def prepare(self):
+        """As the tree is, with the times of what is the same; everything built, every test green and its cost known."""
+        names = set(tracked())
+        for name in names:
+            source, target = root / name, self.copy / name
+            if not target.is_file() or target.read_bytes() != source.read_bytes():
+                target.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(source, target)
+                shutil.copymode(source, target)
+        for old in self.copy.rglob("*"):
+            if old.is_file() and self.build not in old.parents and str(old.relative_to(self.copy)) not in names:
+                old.unlink()
+        for command in (["cmake", "-S", self.copy, "--preset", "test"], ["cmake", "--build", self.build]):
+            code, said = run(command)
+            if code:
+                sys.exit(said)
+        for listing in sorted(self.build.rglob("CTestTestfile.cmake")):
+            folder = listing.parent.relative_to(self.build).as_posix()
             for name, rest in re.findall(r"^add_test\(\[=\[(.*?)\]=\]((?: \"[^\"]*\")+)\)", listing.read_text(), re.M):
-                programs = [pathlib.Path(word) for word in re.findall(r'"([^"]*)"', rest) if f"{build}/bin/" in word]
+                command = re.findall(r'"([^"]*)"', rest)
+                programs = [pathlib.Path(word) for word in command if f"{self.build}/bin/" in word]
                 if programs:
-                    self.all.append((folder, name, programs))
+                    self.tests.append((folder, name, programs, len(command) == 1))
+
+    def measure(self, kept):
+        """What each test costs in seconds; kept in a file, since the same for all copies."""
+        if not kept.is_file():
+            names = "|".join(re.escape(test[1]) for test in self.tests)
+            code, said = run(["ctest", "--test-dir", self.build, "--parallel", str(os.cpu_count()), "--output-on-failure",
+                              "-R", f"^({names})$"])
+            if code:
+                sys.exit(f"{said[-4000:]}\nall tests must pass before anything is broken")
+            shutil.copyfile(self.build / "Testing" / "Temporary" / "CTestCostData.txt", kept)
+        for line in kept.read_text().splitlines():
+            words = line.split()
+            if len(words) == 3:
+                self.cost_s[words[0]] = float(words[2])
+
+    def find_uses(self):
+        """Which programs are made of which files, by what the compilers read."""
+        reads, name = collections.defaultdict(set), ""
+        for line in run(["ninja", "-C", self.build, "-t", "deps"])[1].splitlines():
+            if line.startswith("    "):
+                reads[name].add(os.path.normpath(self.build / line.strip()))
+            else:
+                name = line.split(":")[0]
+        for program in {program for test in self.tests for program in test[2]}:
+            _, said = run(["ninja", "-C", self.build, "-t", "inputs", program.relative_to(self.build)])
+            files = set().union(*(reads[line] for line in said.splitlines() if line in reads))
+            self.made_of[program] = {os.path.relpath(file, self.copy) for file in files}
 
     def nearest(self, file):
-        """Those of the folder that mirrors the file's first, then in the order of how much of the way is the same."""
-        folders = pathlib.PurePath(file).parent.parts
+        """Tests of programs that the file is in: those of its top folder first, and the quick before the slow."""
+        top = pathlib.PurePath(file).parts[0]
+        within = [test for test in self.tests if any(file in self.made_of[program] for program in test[2])]
+        return sorted(within, key=lambda test: (top not in pathlib.PurePath(test[0]).parts, self.cost_s.get(test[1], 0)))
 
-        def distance(test):
-            own = pathlib.PurePath(test[0]).parts[1:]
-            same = next((i for i, (a, b) in enumerate(zip(folders, own)) if a != b), min(len(folders), len(own)))
-            return -same, len(own) - same, test[1].startswith("link_")
-
-        return sorted(self.all, key=distance)
-
-    def build_programs(self, test):
-        return run(["cmake", "--build", build, "--target", *{program.name for program in test[2]}])
-
-    def run_one(self, test):
-        """True where it is green, None where it takes too long. What is broken may fill the memory, or a home."""
-        limit_s = 30 + 5 * self.took_s[test[1]] if test[1] in self.took_s else 3600
-        begun = time.monotonic()
-        code, said = run(["ctest", "--test-dir", build, "-R", f"^{re.escape(test[1])}$", "--timeout", str(int(limit_s))],
-                         env={**os.environ, "HOME": str(work)},
-                         preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (memory_max, memory_max)))
-        if "***Timeout" in said:
-            return None
-        self.took_s.setdefault(test[1], time.monotonic() - begun)
-        return code == 0
-
-    def verdict(self, place, programs):
-        """(word, by which test) of a mutant; "does not compile"."""
-        target = copy / place.file
-        original = target.read_text()
-        broken = quiet + original[:place.start] + place.after + original[place.end:]
-
-        def times(test):
-            return [program.stat().st_mtime_ns for program in test[2]]
-
-        asked = 0
-        for test in self.nearest(place.file):
-            if asked == programs:
-                break
-            code, said = self.build_programs(test)
-            if code or (test[1] not in self.took_s and not self.run_one(test)):
-                sys.exit(f"{said[-4000:]}\n{test[1]} must pass before anything is broken")
-            before = times(test)
-            target.write_text(broken)
-            os.environ["CCACHE_READONLY"] = "1"
+    def is_green(self, test):
+        """None where it takes too long. What is broken may fill the memory, or a home."""
+        _, name, programs, is_alone = test
+        limit_s = 30 + 5 * self.cost_s.get(name, 600)
+        command = [programs[0], "--abort"] if is_alone else ["ctest", "--test-dir", self.build, "-R", f"^{re.escape(name)}$"]
+        with tempfile.TemporaryDirectory(dir=work) as home, subprocess.Popen(
+                command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True, cwd=self.build,
+                env={**os.environ, "HOME": home, "HAPTEL_CACHE": str(self.build / "test-cache")},
+                preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (memory_max, memory_max))) as running:
             try:
-                code, said = self.build_programs(test)
+                return running.wait(limit_s) == 0
+            except subprocess.TimeoutExpired:
+                os.killpg(running.pid, signal.SIGKILL)
+                return None
+
+    def verdict(self, place, seconds):
+        """(word, by which test) of a mutant; "does not compile"."""
+        target = self.copy / place.file
+        original = target.read_text()
+        spent_s = 0
+        target.write_text(quiet + original[:place.start] + place.after + original[place.end:])
+        try:
+            for test in self.nearest(place.file):
+                cost_s = self.cost_s.get(test[1], 0)
+                if spent_s and spent_s + cost_s > seconds:
+                    continue
+                code, _ = run(["cmake", "--build", self.build, "--target", *{program.name for program in test[2]}])
                 if code:
                     return "does not compile", ""
-                if times(test) == before:
-                    continue  # nothing of it is in there
-                asked += 1
-                green = self.run_one(test)
+                spent_s += cost_s
+                green = self.is_green(test)
                 if not green:
                     return "killed" if green is False else "killed by time", test[1]
-            finally:
-                del os.environ["CCACHE_READONLY"]
-                target.write_text(original)
-        return "SURVIVED", ""
+            return "SURVIVED", ""
+        finally:
+            target.write_text(original)
 
 
 def table(results):
@@ -255,7 +272,8 @@ def main():
     parser.add_argument("--folder", action="append", help=f"or a file; {' '.join(everything)} where none is named")
     parser.add_argument("--count", type=int, default=20, help="mutants that compile; 0: all there are")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--programs", type=int, default=0, help="run at most so many tests on each; 0: all that it is in")
+    parser.add_argument("--seconds", type=float, default=math.inf, help="what the tests of a mutant may cost together")
+    parser.add_argument("--jobs", type=int, default=1, help="mutants at once, each in a copy of some gigabytes")
     parser.add_argument("--list", action="store_true", help="show the mutants, run none")
     parser.add_argument("--resume", action="store_true", help="go on with the list of the last run")
     arguments = parser.parse_args()
@@ -276,20 +294,38 @@ def main():
     record, known, results = work / "results.jsonl", {}, []
     if arguments.resume and record.is_file():
         known = {tuple(place): (word, by) for place, word, by in map(json.loads, record.read_text().splitlines())}
-    prepare()
-    tests = Tests()
-    with record.open("a" if arguments.resume else "w") as kept:
-        for place in mutants:
-            if len(results) == wanted:
+    trees = queue.Queue()
+    for number in range(arguments.jobs):
+        tree = Tree(number)
+        tree.prepare()
+        tree.find_uses()
+        tree.measure(work / "seconds.txt")
+        trees.put(tree)
+    os.environ["CCACHE_READONLY"] = "1"
+
+    def judged(place):
+        if tuple(place) in known:
+            return place, *known[tuple(place)]
+        tree = trees.get()
+        try:
+            word, by = tree.verdict(place, arguments.seconds)
+        finally:
+            trees.put(tree)
+        kept.write(json.dumps([place, word, by]) + "\n")
+        kept.flush()
+        return place, word, by
+
+    with record.open("a" if arguments.resume else "w") as kept, \
+            concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        while len(results) < wanted:
+            places = list(itertools.islice(mutants, min(wanted - len(results), 20)))
+            for place, word, by in pool.map(judged, places):
+                if word == "does not compile":
+                    continue
+                results.append((place, word, by))
+                print(f"{len(results)} {word}{f' by {by}' if by else ''}: {shown(place)}", flush=True)
+            if not places:
                 break
-            word, by = known.get(tuple(place)) or tests.verdict(place, arguments.programs or sys.maxsize)
-            if tuple(place) not in known:
-                kept.write(json.dumps([place, word, by]) + "\n")
-                kept.flush()
-            if word == "does not compile":
-                continue
-            results.append((place, word, by))
-            print(f"{len(results)} {word}{f' by {by}' if by else ''}: {shown(place)}", flush=True)
     survivors = [place for place, word, _ in results if word == "SURVIVED"]
     print(f"\n{table(results)}")
     for place in survivors:
