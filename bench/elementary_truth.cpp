@@ -1,5 +1,6 @@
 #include "bench/elementary_truth.h"
 
+#include "lang/ir/elementary_functions.h"
 #include "lang/ir/op_info.h"
 #include "lang/ir/semantics.h"
 
@@ -85,6 +86,17 @@ Quad elementary_truth(Op op, double a, double b)
     if (takes_angle(op) && std::fabs(a) > 1e9) return truth_of_large_angle(op, a);
 #endif
     return semantics::elementary_value(op, Quad(a), Quad(b));
+}
+
+float elementary_f32(Op op, float a, float b)
+{
+    using R = elementary::Number<float>;
+    return elementary::apply(op, R(static_cast<double>(a)), R(static_cast<double>(b))).value;
+}
+
+float elementary_f32_of_angle(Op op, double a)
+{
+    return elementary::apply_to_angle(op, elementary::Number<double>(a)).value;
 }
 
 std::vector<Op> elementary_ops()

@@ -11,6 +11,10 @@ namespace haptel::ir {
 
 std::vector<Op> elementary_ops();
 
+// As code has them in single precision; the latter of an angle in double, for takes_angle(op).
+float elementary_f32(Op op, float a, float b = 0);
+float elementary_f32_of_angle(Op op, double a);
+
 // Of what a double is exactly.
 Quad elementary_truth(Op op, double a, double b = 0);
 

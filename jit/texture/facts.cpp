@@ -1,7 +1,7 @@
 #include "jit/texture/facts.h"
 
 #include "lang/ir/bounds/bounds.h"
-#include "lang/ir/verify.h"
+#include "lang/ir/cost.h"
 
 #include <algorithm>
 #include <cmath>

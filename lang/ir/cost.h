@@ -1,4 +1,7 @@
-// Where the operations of a worst case are spent.
+// How many operations code takes at worst, and where they are spent.
+//
+// The dearer arm of an `if` counts, and loops as often as they may run; what is a few instructions of a processor or
+// one call of the mathematical library is one operation. Counts saturate.
 #pragma once
 
 #include "lang/ir/ir.h"
@@ -8,13 +11,16 @@
 
 namespace haptel::ir {
 
+// One call of each of these functions, callees included, by index. `wanted`: with what they call; of others, 0.
+std::vector<uint64_t> operations_max(const Module& module, const std::vector<bool>& wanted);
+uint64_t operations_max(const Module& module, uint32_t function);
+
 struct SpanCost {
     Span span; // innermost user code: what the library does counts for the call
     uint64_t operations;
 };
 
-// One call of `function`, callees included, by place in the source, in order of places. The sum is operations_max()
-// (verify.h), which counts the dearer arm of an `if`, and loops as often as they may run.
+// What one call of `function` takes, by place in the source, in order of places. The sum is operations_max().
 std::vector<SpanCost> cost_by_span(const Module& module, uint32_t function);
 
 } // namespace haptel::ir

@@ -11,7 +11,5 @@ namespace haptel::ir {
 
 // Of is_elementary(op); b where it takes two.
 double elementary_f64(Op op, double a, double b = 0);
-float elementary_f32(Op op, float a, float b = 0);
-float elementary_f32_of_angle(Op op, double a);
 
 } // namespace haptel::ir

@@ -22,12 +22,10 @@ static_assert(are_whole(all_ops()),
 // Adding a function to a module must not move the blocks of the others: they are held by pointer while it is built.
 static_assert(std::is_nothrow_move_constructible_v<Function>);
 
-constexpr std::array<std::string_view, input_count> input_names = {
-    "p_x",      "p_y",      "p_z",      "n_x",      "n_y",      "n_z",      "uv_x",     "uv_y",
-    "time",     "n_dp_00",  "n_dp_01",  "n_dp_02",  "n_dp_10",  "n_dp_11",  "n_dp_12",  "n_dp_20",
-    "n_dp_21",  "n_dp_22",  "uv_dp_00", "uv_dp_01", "uv_dp_02", "uv_dp_10", "uv_dp_11", "uv_dp_12",
-    "center_x", "center_y", "center_z", "extent_x", "extent_y", "extent_z", "footprint"};
-static_assert(input_names.back() == "footprint");
+constexpr std::string_view input_names[] = {
+#define INPUT(name) #name,
+#include "lang/ir/inputs.def"
+};
 
 constexpr std::array<std::string_view, 5> type_names = {"real", "i32", "u32", "bool", "image"};
 

@@ -35,37 +35,8 @@ struct Value {
 // What a texture's entry may read of the point and of the block's head. Scalars, in the order of haptel_point and
 // haptel_block_head; only entry functions hold `input` and `parameter` instructions: other functions get values passed.
 enum class Input : uint8_t {
-    p_x,
-    p_y,
-    p_z,
-    n_x,
-    n_y,
-    n_z,
-    uv_x,
-    uv_y,
-    time,
-    n_dp_00,
-    n_dp_01,
-    n_dp_02,
-    n_dp_10,
-    n_dp_11,
-    n_dp_12,
-    n_dp_20,
-    n_dp_21,
-    n_dp_22, // n_dp[i][j] = dn_i/dp_j
-    uv_dp_00,
-    uv_dp_01,
-    uv_dp_02,
-    uv_dp_10,
-    uv_dp_11,
-    uv_dp_12,
-    center_x,
-    center_y,
-    center_z,
-    extent_x,
-    extent_y,
-    extent_z,
-    footprint,
+#define INPUT(name) name,
+#include "lang/ir/inputs.def"
 };
 constexpr uint32_t input_count = static_cast<uint32_t>(Input::footprint) + 1;
 

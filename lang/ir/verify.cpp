@@ -1,9 +1,8 @@
 #include "lang/ir/verify.h"
 
 #include "lang/abi/abi.h"
-#include "lang/ir/extent.h"
+#include "lang/ir/cost.h"
 #include "lang/ir/int_range.h"
-#include "lang/ir/op_cost.h"
 #include "lang/ir/op_info.h"
 
 #include <algorithm>
@@ -231,39 +230,6 @@ private:
     }
 };
 
-uint64_t cost(const Block& block, const std::vector<uint64_t>& functions);
-
-uint64_t cost(const Instruction& made, const std::vector<uint64_t>& functions)
-{
-    if (auto* call = std::get_if<Call>(&made.kind)) return plus(functions[call->function], 1);
-    if (auto* choice = std::get_if<If>(&made.kind)) {
-        uint64_t worst = 0;
-        for (const Block& arm : choice->arms) worst = std::max(worst, cost(arm, functions));
-        return plus(worst, 1);
-    }
-    if (auto* loop = std::get_if<For>(&made.kind))
-        return plus(times(plus(cost(loop->body[0], functions), 1), loop->trip_max), 1);
-    if (auto* operation = std::get_if<Operation>(&made.kind)) return operations_of(operation->op);
-    bool is_constant = std::holds_alternative<RealConstant>(made.kind) ||
-                       std::holds_alternative<IntConstant>(made.kind) ||
-                       std::holds_alternative<BoolConstant>(made.kind);
-    return is_constant ? 0 : 1;
-}
-
-uint64_t cost(const Block& block, const std::vector<uint64_t>& functions)
-{
-    uint64_t sum = 0;
-    for (const Instruction& made : block.instructions) sum = plus(sum, cost(made, functions));
-    return sum;
-}
-
-std::vector<uint64_t> costs(const Module& module, size_t count)
-{
-    std::vector<uint64_t> known;
-    for (size_t i = 0; i < count; ++i) known.push_back(cost(module.functions[i].body, known));
-    return known;
-}
-
 uint32_t deepest_call(const Block& block, const std::vector<uint32_t>& functions)
 {
     uint32_t deepest = 0;
@@ -350,21 +316,12 @@ std::string verify(const Module& module)
         call_depth.push_back(deepest_call(module.functions[i].body, call_depth));
         if (call_depth.back() > call_depth_max) return "calls nest deeper than " + std::to_string(call_depth_max);
     }
-    const std::vector<uint64_t> cost_of = costs(module, count);
+    const std::vector<uint64_t> cost_of = operations_max(module, std::vector<bool>(count, true));
     for (uint32_t i = 0; i < count; ++i)
         if (is_entry[i] && cost_of[i] > operations_limit)
             return "texture \"" + owners[i]->name + "\" may need " + std::to_string(cost_of[i]) +
                    " operations per call, above " + std::to_string(operations_limit);
     return "";
-}
-
-uint64_t operations_max(const Module& module, uint32_t function)
-{
-    const std::vector<bool> is_reached = reached_from(module, function);
-    std::vector<uint64_t> known(is_reached.size(), 0);
-    for (size_t i = 0; i < known.size(); ++i)
-        if (is_reached[i]) known[i] = cost(module.functions[i].body, known);
-    return known.back();
 }
 
 } // namespace haptel::ir

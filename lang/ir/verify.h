@@ -17,7 +17,4 @@ constexpr uint32_t call_depth_max = 512;          // calls inside calls, likewis
 // worst-case cost.
 std::string verify(const Module& module);
 
-// Worst-case count of operations of one call of `function`, callees included; saturates.
-uint64_t operations_max(const Module& module, uint32_t function);
-
 } // namespace haptel::ir

@@ -2,6 +2,7 @@
 #include "lang/lower/lower.h"
 
 #include "lang/abi/abi.h"
+#include "lang/ir/cost.h"
 #include "lang/ir/derive/point_derivative.h"
 #include "lang/ir/extent.h"
 #include "lang/ir/verify.h"

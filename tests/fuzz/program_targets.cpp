@@ -3,6 +3,7 @@
 #include "jit/engine/engine.h"
 #include "lang/compile.h"
 #include "lang/ir/bounds/bounds.h"
+#include "lang/ir/cost.h"
 #include "lang/ir/verify.h"
 #include "lang/math/quad.h"
 #include "tests/fuzz/random_source.h"

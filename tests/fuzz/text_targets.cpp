@@ -1,6 +1,7 @@
 // Text of any bytes: source, and the text form of the IR.
 #include "lang/analyse.h"
 #include "lang/format/format.h"
+#include "lang/ir/cost.h"
 #include "lang/ir/print.h"
 #include "lang/ir/run/interpret.h"
 #include "lang/ir/verify.h"

@@ -1,6 +1,7 @@
 #include "tools/report/check_report.h"
 
 #include "lang/abi/abi.h"
+#include "lang/ir/cost.h"
 #include "lang/ir/verify.h"
 #include "tools/report/check_cost.h"
 

@@ -267,9 +267,4 @@ std::vector<Undefined> undefined_in(const Module& module, const Texture& texture
     return bisection.excludes_faults(evaluations) ? std::vector<Undefined>{} : bisection.undefined_over_all();
 }
 
-std::vector<Interval> function_bounds(const Module& module, uint32_t function, std::span<const Interval> arguments)
-{
-    return IntervalEvaluator(module, operations_per_evaluation).run(function, arguments, nullptr);
-}
-
 } // namespace haptel::ir

@@ -74,7 +74,4 @@ Interval height_bounds(const Module& module, const Texture& texture, const Bound
 std::vector<Interval> output_bounds(const Module& module, const Texture& texture, const BoundsBox& box,
                                     uint32_t evaluations = 4096);
 
-// Every result of a function that is no entry, for arguments that lie in these intervals.
-std::vector<Interval> function_bounds(const Module& module, uint32_t function, std::span<const Interval> arguments);
-
 } // namespace haptel::ir

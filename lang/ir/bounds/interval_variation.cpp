@@ -77,8 +77,8 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
         if (op == Op::spline)
             partials = spline_partials(operands);
         else if (of_reals)
-            partials = rules.of(op, operands, differentiated, true);
-        variation = chain(op, operands, {variations, operands.size()}, partials, of_reals || op == Op::spline);
+            partials = rules.of(op, operands, differentiated);
+        variation = chain(op, operands, {variations, operands.size()}, partials);
         const auto may_fault = [](const Variation& operand) { return operand.may_fault; };
         const bool is_new = std::none_of(variations, variations + operands.size(), may_fault);
         const bool is_part = frame.structure.is_part_of_result[made.results[0].index];

@@ -63,8 +63,6 @@ PartialRules::Line PartialRules::differentiated(Op op, uint32_t active)
             line.first.emplace_back(directions[d], place[results[next++].index]);
             tangent_of.push_back(directions[d]);
         }
-    for (const auto& [operand, where] : line.first)
-        line.steps_for_first = std::max<size_t>(line.steps_for_first, where < arity ? 0 : where - arity + 1);
     next += static_cast<size_t>(std::count(twice.exists[0].begin(), twice.exists[0].end(), true));
     for (size_t t = 0; t < tangent_of.size(); ++t)
         for (size_t d = 0; d < directions.size(); ++d)
@@ -73,16 +71,14 @@ PartialRules::Line PartialRules::differentiated(Op op, uint32_t active)
     return line;
 }
 
-Partials PartialRules::of(Op op, std::span<const Interval> operands, uint32_t active, bool with_second)
+Partials PartialRules::of(Op op, std::span<const Interval> operands, uint32_t active)
 {
     auto known = lines.find({op, active});
     if (known == lines.end()) known = lines.emplace(std::pair{op, active}, differentiated(op, active)).first;
     const Line& line = known->second;
 
     values.assign(operands.begin(), operands.end());
-    const size_t count = with_second ? line.steps.size() : line.steps_for_first;
-    for (size_t i = 0; i < count; ++i) {
-        const Step& step = line.steps[i];
+    for (const Step& step : line.steps) {
         Interval parts[operands_max];
         for (size_t k = 0; k < step.operands.size(); ++k) parts[k] = values[step.operands[k]];
         values.push_back(step.operands.empty() ? step.constant : evaluate(step.op, {parts, step.operands.size()}));
@@ -97,8 +93,7 @@ Partials PartialRules::of(Op op, std::span<const Interval> operands, uint32_t ac
         partials.first[operand] = bounded(where);
         partials.may_fault[operand] = !values[where].is_finite() && !is_guarded(op, operands);
     }
-    if (with_second)
-        for (const auto& [i, k, where] : line.second) partials.second[i][k] = bounded(where);
+    for (const auto& [i, k, where] : line.second) partials.second[i][k] = bounded(where);
     return partials;
 }
 

@@ -19,8 +19,8 @@ struct Partials {
 class PartialRules {
 public:
     // Of a real operation of reals, with respect to the operands whose bit is set in `active`; the others are left 0.
-    // May be infinite where the true derivative has no bound. `with_second`: second partials as well.
-    Partials of(Op op, std::span<const Interval> operands, uint32_t active, bool with_second);
+    // May be infinite where the true derivative has no bound.
+    Partials of(Op op, std::span<const Interval> operands, uint32_t active);
 
 private:
     struct Step {
@@ -32,7 +32,6 @@ private:
         std::vector<Step> steps;                                      // their values follow the operands'
         std::vector<std::pair<uint32_t, uint32_t>> first;             // operand, where
         std::vector<std::tuple<uint32_t, uint32_t, uint32_t>> second; // operand, operand, where
-        size_t steps_for_first = 0;
     };
     std::map<std::pair<Op, uint32_t>, Line> lines;
     std::vector<Interval> values; // of one evaluation; kept for its memory

@@ -82,10 +82,10 @@ Interval around_zero(double size)
     return {-size, size};
 }
 
-void tighten(Variation& variation, bool second)
+void tighten(Variation& variation)
 {
     variation.slope = std::min(variation.slope, norm(variation.gradient));
-    if (second) variation.curvature = std::min(variation.curvature, spectral_norm(variation.hessian));
+    variation.curvature = std::min(variation.curvature, spectral_norm(variation.hessian));
 }
 
 Variation roughest_of(std::span<const Variation> parts)
@@ -222,7 +222,7 @@ Variation intersect(const Variation& a, const Variation& b)
 }
 
 Variation chain(Op op, std::span<const Interval> operands, std::span<const Variation> variations,
-                const Partials& partials, bool second)
+                const Partials& partials)
 {
     Variation made = roughest_of(variations);
     for (size_t i = 0; i < variations.size(); ++i)
@@ -249,7 +249,6 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
         curvature += times(size_of(by.first[i]), a.curvature);
         for (size_t j = 0; j < axes; ++j)
             made.gradient[j] = add(made.gradient[j], multiply(by.first[i], a.gradient[j]));
-        if (!second) continue;
         for (size_t j = 0; j < made.hessian.size(); ++j)
             made.hessian[j] = add(made.hessian[j], multiply(by.first[i], a.hessian[j]));
         for (size_t l = 0; l < variations.size(); ++l) {
@@ -274,7 +273,7 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
     made.may_fault |= overflows(by, variations, made);
     made.slope = slope * rounding_up;
     made.curvature = curvature * rounding_up;
-    tighten(made, second);
+    tighten(made);
     keep_kink(op, variations, made);
     if (is_norm && shortest > 0) smooth_in_length(variations, made);
     return made;
@@ -312,7 +311,7 @@ Variation chain(const Facts& facts, std::span<const Variation> arguments)
         }
     made.slope = times(slope, jacobian) * rounding_up;
     made.curvature = (times(curvature, jacobian * jacobian) + times(slope, second)) * rounding_up;
-    tighten(made, true);
+    tighten(made);
     return made;
 }
 

@@ -63,9 +63,9 @@ Variation merge(const Variation& a, const Variation& b);
 // Of what is known by two ways.
 Variation intersect(const Variation& a, const Variation& b);
 
-// By the chain rule, of a real operation with these partials at its operands. Without `second` the Hessian is left out.
+// By the chain rule, of a real operation with these partials at its operands.
 Variation chain(Op op, std::span<const Interval> operands, std::span<const Variation> variations,
-                const Partials& partials, bool second);
+                const Partials& partials);
 
 // By the chain rule, of a function known by its facts: slope and curvature are norms with respect to these arguments.
 Variation chain(const Facts& facts, std::span<const Variation> arguments);

@@ -2,6 +2,8 @@
 // the truth about a derivative.
 #pragma once
 
+#include "lang/ir/bounds/interval_evaluator.h"
+#include "lang/ir/cost.h"
 #include "lang/ir/run/interpret.h"
 #include "lang/ir/verify.h"
 #include "lang/math/quad.h"
@@ -51,6 +53,12 @@ inline std::vector<double> call(const Module& module, uint32_t function, std::ve
     for (const Slot<double>& slot : interpreter.run(function, slots_of<double>(arguments), nullptr))
         results.push_back(slot.real);
     return results;
+}
+
+// Intervals of every result of a function that is no entry.
+inline std::vector<Interval> bounds_of(const Module& module, uint32_t function, std::vector<Interval> arguments)
+{
+    return IntervalEvaluator(module, 1'000'000).run(function, arguments, nullptr);
 }
 
 // Derivative of every result with respect to argument `which`, by central differences of the 113-bit function at step h

@@ -187,8 +187,7 @@ TEST_CASE("verify: operations are counted at their worst")
     CHECK(operations_max(module, 0) == 1 + 2 + 1 + 5 * (2 + 1));
     CHECK(operations_max(module, 1) == 2 * (19 + 1));
 
-    // Sampling an image, counted by hand. Along each axis: 9 for the place in a pair of mirrored tiles, 19 for four
-    // cubic weights, 4 texels. Then 16 reads, and a product and a sum for each of them and for each of four rows.
+    // Sampling an image: see cost.cpp.
     const Module sampled = parsed(R"(
         function "h" (%m: image, %x: real, %o: i32) { %a = spline %m, %x, %x, %o return %a })");
     CHECK(operations_max(sampled, 0) == 2 * (9 + 19 + 4) + 16 + 2 * (16 + 4));

@@ -149,9 +149,9 @@ TEST_CASE("bounds: the range of a table's cells within the index")
           return %r
         })");
     const Interval middle{1, 2}, all{-5, 100};
-    Interval some = function_bounds(module, 0, {&middle, 1})[0];
+    Interval some = bounds_of(module, 0, {middle})[0];
     CHECK((some.minimum == 1 && some.maximum == 2));
-    Interval every = function_bounds(module, 0, {&all, 1})[0];
+    Interval every = bounds_of(module, 0, {all})[0];
     CHECK((every.minimum == 1 && every.maximum == 9));
 }
 
@@ -189,7 +189,7 @@ TEST_CASE("bounds: a read of a table is one step, however many cells it may be o
           return %r
         })");
     const Interval any{0, 60'000};
-    const Interval found = function_bounds(module, 0, {&any, 1})[0];
+    const Interval found = bounds_of(module, 0, {any})[0];
     CHECK((found.minimum == 0 && found.maximum == 999 && !found.may_be_nan)); // well below a million operations
 }
 

@@ -119,7 +119,7 @@ TEST_CASE("intervals: random programs stay inside")
         Sampler sampler(seed);
         std::vector<Interval> arguments;
         for (Value parameter : function.parameters) arguments.push_back(sampler.interval(function.type(parameter)));
-        const std::vector<Interval> claimed = function_bounds(module, last, arguments);
+        const std::vector<Interval> claimed = bounds_of(module, last, arguments);
         decided += claimed[0].is_finite();
         Interpreter<double> machine(module);
         for (int sample = 0; sample < 40; ++sample) {
