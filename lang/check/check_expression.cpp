@@ -220,22 +220,23 @@ Type BodyChecker::check(Expression& e, Unary& node)
     }
     const Type type = expression(*node.operand);
     if (type.is_error()) return type;
-    const std::string op = quoted(spelling(node.op));
     switch (node.op) {
     case UnaryOp::negate:
     case UnaryOp::plus:
         if (type.is_numeric() && !type.is_array()) return type;
-        return fail(e.span, "type-mismatch", op + " expects a number, found " + to_string(type),
+        return fail(e.span, "type-mismatch",
+                    (node.op == UnaryOp::negate ? "'-'" : "'+'") + std::string(" expects a number, found ") +
+                        to_string(type),
                     type.is_array() ? "an array is used by its elements: a[i]" : "write !x for a bool");
     case UnaryOp::logical_not:
         if (type == bool_type) return type;
-        return fail(e.span, "type-mismatch", op + " expects bool, found " + to_string(type),
+        return fail(e.span, "type-mismatch", "'!' expects bool, found " + to_string(type),
                     !type.is_scalar()
                         ? "there are no bool vectors: compare the components"
                         : "compare: " + operand(*node.operand) + (type == float_type ? " == 0.0" : " == 0"));
     case UnaryOp::bit_not:
         if (is_integer(type)) return type;
-        return fail(e.span, "type-mismatch", op + " expects int or uint, found " + to_string(type),
+        return fail(e.span, "type-mismatch", "'~' expects int or uint, found " + to_string(type),
                     type == bool_type ? "write !x for a bool" : "bits are those of int or uint");
     }
     return Type::error();
@@ -268,7 +269,8 @@ Type BodyChecker::check(Expression&, Chain& node)
 Type BodyChecker::report_operator(BinaryOp op, Span span, Type left, const Expression& right)
 {
     return fail(span, "type-mismatch",
-                quoted(spelling(op)) + " does not take " + to_string(left) + " and " + to_string(right.type),
+                std::string(describe(operator_of(op).token)) + " does not take " + to_string(left) + " and " +
+                    to_string(right.type),
                 operator_hint(op, left, right.type));
 }
 

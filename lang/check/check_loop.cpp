@@ -13,8 +13,6 @@ using namespace ast;
 
 namespace {
 
-using Compare = LoopPlan::Compare;
-
 constexpr const char* loop_form = "a loop counts: for (int i = 0; i < 8; ++i)";
 
 // The names that are assigned to anywhere in a statement.
@@ -39,31 +37,6 @@ const NameExpression* first_read(const Expression& e, const std::vector<const Na
     for (const Expression* operand : operands_of(e))
         if (auto read = first_read(*operand, names)) return read;
     return nullptr;
-}
-
-std::optional<Compare> compare_of(BinaryOp op)
-{
-    if (op == BinaryOp::less) return Compare::less;
-    if (op == BinaryOp::less_equal) return Compare::less_equal;
-    if (op == BinaryOp::greater) return Compare::greater;
-    if (op == BinaryOp::greater_equal) return Compare::greater_equal;
-    return std::nullopt;
-}
-
-Compare mirrored(Compare compare)
-{
-    switch (compare) {
-    case Compare::less: return Compare::greater;
-    case Compare::less_equal: return Compare::greater_equal;
-    case Compare::greater: return Compare::less;
-    case Compare::greater_equal: return Compare::less_equal;
-    }
-    return compare;
-}
-
-bool counts_up(Compare compare)
-{
-    return compare == Compare::less || compare == Compare::less_equal;
 }
 
 bool names_counter(const Expression& e, const Symbol& counter)
@@ -158,14 +131,15 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
         refuse(loop.condition->span, "expected a comparison of " + quoted(counter.name) + " with a bound");
         return;
     }
-    const auto compare = compare_of(chain->rest[0].op);
-    if (!compare) {
+    const BinaryOp compare = chain->rest[0].op;
+    const bool is_less = compare == BinaryOp::less || compare == BinaryOp::less_equal;
+    if (!is_less && compare != BinaryOp::greater && compare != BinaryOp::greater_equal) {
         Diagnostic& reported =
             refuse(loop.condition->span, "expected <, <=, > or >= between " + quoted(counter.name) + " and its bound");
-        if (chain->rest[0].op == BinaryOp::not_equal) reported.hint = "!= may step over the bound: write < or >";
+        if (compare == BinaryOp::not_equal) reported.hint = "!= may step over the bound: write < or >";
         return;
     }
-    made.compare = left ? *compare : mirrored(*compare);
+    made.is_inclusive = compare == BinaryOp::less_equal || compare == BinaryOp::greater_equal;
     made.bound = left ? chain->rest[0].operand.get() : chain->first.get();
     if (made.bound->type != counter.type) {
         refuse(made.bound->span,
@@ -177,7 +151,7 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
     // the step: ++i, --i, i += c, i -= c
     auto step = loop.step ? std::get_if<Assignment>(&loop.step->node) : nullptr;
     auto stepped = step ? std::get_if<NameExpression>(&step->target->node) : nullptr;
-    const bool adds = step && (step->op == AssignOp::add || step->op == AssignOp::subtract);
+    const bool adds = step && (step->op == BinaryOp::add || step->op == BinaryOp::subtract);
     if (!adds || !stepped || stepped->name != counter.name) {
         refuse(loop.step ? loop.step->span : s.span, "expected a step of " + quoted(counter.name) + ": ++" +
                                                          counter.name + ", --" + counter.name + ", " + counter.name +
@@ -191,8 +165,8 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
         refuse(step->value->span, "expected a constant step, not 0");
         return;
     }
-    made.step = step->op == AssignOp::add ? by.minimum : -by.minimum;
-    if (counts_up(made.compare) != (made.step > 0)) {
+    made.step = step->op == BinaryOp::add ? by.minimum : -by.minimum;
+    if ((is_less == left) != (made.step > 0)) {
         refuse(loop.step->span, quoted(counter.name) + " steps away from its bound").hint =
             made.step > 0 ? "write --" + counter.name : "write ++" + counter.name;
         return;
@@ -214,11 +188,12 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
     // how often, at most: the distance between the farthest start and bound, in steps
     const ir::IntRange from = range(*made.start), to = range(*made.bound);
     const bool up = made.step > 0;
-    const bool inclusive = made.compare == Compare::less_equal || made.compare == Compare::greater_equal;
     const int64_t stride = up ? made.step : -made.step;
     const int64_t farthest = up ? to.maximum - from.minimum : from.maximum - to.minimum;
     const int64_t nearest = up ? to.minimum - from.maximum : from.minimum - to.maximum;
-    const int64_t trips = farthest < 0 ? 0 : inclusive ? farthest / stride + 1 : (farthest + stride - 1) / stride;
+    const int64_t trips = farthest < 0        ? 0
+                          : made.is_inclusive ? farthest / stride + 1
+                                              : (farthest + stride - 1) / stride;
     const ir::IntRange full = ir::full_range(counter.type == uint_type ? ir::Type::u32 : ir::Type::i32);
     const int64_t way_max = INT32_MAX - stride; // beyond, the last step could wrap
     if (trips > static_cast<int64_t>(ir::operations_limit) || farthest > way_max) {
@@ -248,11 +223,11 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
         return;
     }
     made.trip_max = static_cast<uint32_t>(trips);
-    made.runs = loop.body && nearest >= (inclusive ? 0 : 1);
+    made.runs = loop.body && nearest >= (made.is_inclusive ? 0 : 1);
     made.difference_may_wrap = nearest < INT32_MIN;
     loop.plan = made;
-    ir::IntRange inside = up ? ir::IntRange{from.minimum, to.maximum - (inclusive ? 0 : 1)}
-                             : ir::IntRange{to.minimum + (inclusive ? 0 : 1), from.maximum};
+    ir::IntRange inside = up ? ir::IntRange{from.minimum, to.maximum - (made.is_inclusive ? 0 : 1)}
+                             : ir::IntRange{to.minimum + (made.is_inclusive ? 0 : 1), from.maximum};
     if (inside.minimum <= inside.maximum) flow.variables[counter.slot].range = inside;
 }
 

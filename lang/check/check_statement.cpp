@@ -106,8 +106,7 @@ void BodyChecker::check(Statement& s, Assignment& node)
     }
     target.symbol->is_assigned = true;
     Variable& variable = flow.variables[target.symbol->slot];
-    const auto operation = operation_of(node.op);
-    if (!operation) {
+    if (!node.op) {
         if (require(*node.value, target.type, " for " + quoted(excerpt(*node.target))))
             variable.range = range(*node.value);
         variable.assigned |= target.parts;
@@ -127,14 +126,15 @@ void BodyChecker::check(Statement& s, Assignment& node)
     if (right.is_error()) return;
     if (target.type == uint_type && right == int_type && std::holds_alternative<NumberLiteral>(node.value->node))
         right = node.value->type = uint_type;
-    const auto types = operator_types(*operation, target.type, right);
+    const auto types = operator_types(*node.op, target.type, right);
     if (!types) {
-        report_operator(*operation, s.span, target.type, *node.value);
+        report_operator(*node.op, s.span, target.type, *node.value);
     } else if (types->result != target.type) {
         diagnostics
             .error(node.value->span, "type-mismatch",
-                   quoted(spelling(node.op)) + " would make " + quoted(excerpt(*node.target)) + " a " +
-                       to_string(types->result) + ", expected " + to_string(target.type))
+                   std::string(describe(operator_of(*node.op).assignment)) + " would make " +
+                       quoted(excerpt(*node.target)) + " a " + to_string(types->result) + ", expected " +
+                       to_string(target.type))
             .hint = !types->result.is_scalar() ? "declare it as " + to_string(types->result)
                                                : "write " + to_string(target.type) + "(...) round the value";
     }

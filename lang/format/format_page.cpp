@@ -1,6 +1,6 @@
 #include "lang/format/format_page.h"
 
-#include "lang/syntax/grammar.h"
+#include "lang/syntax/operators.h"
 
 #include <algorithm>
 #include <limits>
@@ -41,15 +41,6 @@ bool is_prefix(std::span<const Piece> pieces, size_t i)
     return (kind == Token::minus || kind == Token::plus || is_step(kind)) && !follows_operand(pieces, i);
 }
 
-bool is_assignment(Token kind)
-{
-    constexpr Token all[] = {
-        Token::assign,       Token::plus_assign,       Token::minus_assign,      Token::star_assign,
-        Token::slash_assign, Token::percent_assign,    Token::and_assign,        Token::or_assign,
-        Token::xor_assign,   Token::shift_left_assign, Token::shift_right_assign};
-    return std::find(std::begin(all), std::end(all), kind) != std::end(all);
-}
-
 constexpr int never = std::numeric_limits<int>::max();
 
 // How bad a line end before piece `i` is, brackets aside.
@@ -65,8 +56,8 @@ int cost_of_break(std::span<const Piece> pieces, size_t i)
     if (here == Token::question || here == Token::colon) return 20;
     if (is_assignment(before)) return 180; // rather between the arguments of the one call that is the value
     if (before == Token::dot_dot) return 70;
-    const int precedence = precedence_of(before);
-    return precedence > 0 && !is_prefix(pieces, i - 1) ? 30 + precedence : never;
+    const Operator* ends = operator_of(before);
+    return ends && !is_prefix(pieces, i - 1) ? 30 + ends->precedence : never;
 }
 
 // Where a broken line goes on: below the first piece inside of the innermost bracket, or of the value.

@@ -26,19 +26,6 @@ uint32_t reads_of(const FunctionReference& reference)
     return source ? (*source)->reads : 0;
 }
 
-ir::Facts facts_of(const FactsComment& comment, bool is_library)
-{
-    ir::Facts facts;
-    facts.value_minimum = comment.value_minimum;
-    facts.value_maximum = comment.value_maximum;
-    facts.slope = comment.slope;
-    facts.curvature = comment.curvature;
-    facts.continuity = ir::continuity_named(comment.continuity);
-    facts.proven = is_library;
-    facts.span = comment.span;
-    return facts;
-}
-
 } // namespace
 
 // ---- in a body
@@ -188,7 +175,8 @@ LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector
     body.input_parameters(made.reads);
     body.bind_functions(passed);
     function.is_library = info.is_library;
-    if (info.tree->facts) function.facts.assign(info.result.components(), facts_of(*info.tree->facts, info.is_library));
+    if (info.tree->facts) function.facts.assign(info.result.components(), *info.tree->facts);
+    for (ir::Facts& facts : function.facts) facts.proven = info.is_library;
     const Values results = body.whole_body(*info.tree->body, info.result);
     made.index = body.builder.finish(results);
     made.depth = body.depth;

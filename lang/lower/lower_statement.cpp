@@ -181,14 +181,13 @@ void BodyLowering::lower(const Declaration& node)
 void BodyLowering::lower(const Assignment& node)
 {
     const Expression& target = *node.target;
-    const auto operation = operation_of(node.op);
     Values value = expression(*node.value);
     Type type = node.value->type;
-    if (operation) {
+    if (node.op) {
         const Values before = expression(target);
         builder.span = join(target.span, node.value->span);
-        value = binary(*operation, before, target.type, value, type);
-        type = operator_types(*operation, target.type, type)->result;
+        value = binary(*node.op, before, target.type, value, type);
+        type = operator_types(*node.op, target.type, type)->result;
     }
     value = convert(value, type, target.type);
     store(target, value);
@@ -227,8 +226,6 @@ void BodyLowering::lower(const For& node)
     const LoopPlan& plan = node.plan;
     const Type type = plan.counter->type;
     const bool up = plan.step > 0;
-    const bool inclusive =
-        plan.compare == LoopPlan::Compare::less_equal || plan.compare == LoopPlan::Compare::greater_equal;
     const auto stride = static_cast<int32_t>(up ? plan.step : -plan.step);
     const Value start = converted(*plan.start, type)[0], bound = converted(*plan.bound, type)[0];
     builder.span = join(plan.start->span, plan.bound->span);
@@ -236,7 +233,7 @@ void BodyLowering::lower(const For& node)
 
     // bound - start, rounded up to whole strides; the checker has proven that it does not wrap where it matters
     Value trips = as_signed(up ? integer(Op::isub, bound, start) : integer(Op::isub, start, bound));
-    trips = builder.operation(Op::iadd, {trips, builder.i32(inclusive ? stride : stride - 1)});
+    trips = builder.operation(Op::iadd, {trips, builder.i32(plan.is_inclusive ? stride : stride - 1)});
     trips = builder.operation(Op::idiv, {trips, builder.i32(stride)});
     if (plan.difference_may_wrap) {
         const Value beyond = binary_scalar(BinaryOp::less, up ? bound : start, up ? start : bound);

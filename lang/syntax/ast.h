@@ -7,6 +7,7 @@
 
 #include "lang/syntax/resolution.h"
 #include "lang/syntax/type.h"
+#include "lang/text/number.h"
 #include "lang/text/source.h"
 
 #include <functional>
@@ -67,24 +68,11 @@ enum class BinaryOp {
     shift_left,
     shift_right,
 };
-enum class AssignOp {
-    assign,
-    add,
-    subtract,
-    multiply,
-    divide,
-    remainder,
-    bit_and,
-    bit_or,
-    bit_xor,
-    shift_left,
-    shift_right
-};
-
 struct ErrorExpression {};
 // A literal as written; `value` is the f64 nearest to the decimal value times the unit's factor (SI).
 struct NumberLiteral {
-    enum class Kind { real, integer, unsigned_integer } kind = Kind::real;
+    using Kind = Number::Kind;
+    Kind kind = Kind::real;
     double value = 0;     // real
     uint64_t integer = 0; // integer kinds, before range checking
     std::string unit;     // as written: "mm", "deg"; empty: none. A literal with a unit is real.
@@ -172,7 +160,7 @@ struct Declaration { // one name; "float a = 1, b;" makes two in a row
 };
 struct Assignment { // target: name, swizzle or index of one. "++i;" and "i++;" are "i += 1".
     ExpressionPtr target;
-    AssignOp op = AssignOp::assign;
+    std::optional<BinaryOp> op; // in "+=" and its like; nothing: "="
     Span op_span;
     ExpressionPtr value;
 };
@@ -221,13 +209,6 @@ struct FunctionParameter {
     Span span;
 };
 
-// "@facts value -0.866 .. 0.866, slope 2.179, curvature 11.59, class C1" in a doc comment, as numbers.
-struct FactsComment {
-    std::optional<double> value_minimum, value_maximum, slope, curvature;
-    std::string continuity; // "jump", "C0", "C1", "C2"; empty: not given
-    Span span;
-};
-
 // What syntax errors, already reported, leave unknown about a function or texture. The checker then does not report
 // what may be a consequence of them, such as a missing return or an unknown name.
 struct Damage {
@@ -238,7 +219,7 @@ struct Damage {
 
 struct Function {
     std::string doc; // without the slashes, without @facts
-    std::optional<FactsComment> facts;
+    std::optional<ir::Facts> facts;
     TypeName result;
     Name name;
     std::vector<FunctionParameter> parameters;

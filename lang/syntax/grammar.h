@@ -18,8 +18,8 @@ class Grammar : private TokenCursor {
 public:
     Grammar(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink);
 
-    ast::File parse_file();                 // parser.cpp
-    ast::FactsComment parse_facts(Span at); // parse_facts.cpp; the tokens are those of one "@facts" line
+    ast::File parse_file();         // parser.cpp
+    ir::Facts parse_facts(Span at); // parse_facts.cpp; the tokens are those of one "@facts" line
 
 private:
     // parser.cpp
@@ -117,7 +117,7 @@ private:
     ast::TypeName type_name();
     void array_suffix(ast::TypeName& type);
     std::optional<ast::Name> name(std::string_view what); // reports if there is none
-    std::string doc_before(size_t token_index, std::optional<ast::FactsComment>* facts);
+    std::string doc_before(size_t token_index, std::optional<ir::Facts>* facts);
     template <class Node>
     ast::ExpressionPtr make(Span where, Node node);
     template <class Node>
@@ -130,9 +130,6 @@ private:
     bool is_misshapen = false;                 // its braces do not fit
     bool has_stray_brace = false;              // nor can they: one was found where none can stand
 };
-
-// Of a binary operator, higher binds tighter; 0 for any other token.
-int precedence_of(Token token);
 
 bool is_own_type(std::string_view word);
 // Those of other languages too.

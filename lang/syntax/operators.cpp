@@ -1,7 +1,34 @@
 #include "lang/syntax/operators.h"
 
+#include <algorithm>
+
 namespace haptel::lang {
+
+using ast::BinaryOp;
+
 namespace {
+
+constexpr Operator operators[] = {
+    {BinaryOp::logical_or, Token::logical_or, 1},
+    {BinaryOp::logical_xor, Token::logical_xor, 2},
+    {BinaryOp::logical_and, Token::logical_and, 3},
+    {BinaryOp::bit_or, Token::pipe, 4, Token::or_assign},
+    {BinaryOp::bit_xor, Token::caret, 5, Token::xor_assign},
+    {BinaryOp::bit_and, Token::ampersand, 6, Token::and_assign},
+    {BinaryOp::equal, Token::equal, 7},
+    {BinaryOp::not_equal, Token::not_equal, 7},
+    {BinaryOp::less, Token::less, 8},
+    {BinaryOp::less_equal, Token::less_equal, 8},
+    {BinaryOp::greater, Token::greater, 8},
+    {BinaryOp::greater_equal, Token::greater_equal, 8},
+    {BinaryOp::shift_left, Token::shift_left, 9, Token::shift_left_assign},
+    {BinaryOp::shift_right, Token::shift_right, 9, Token::shift_right_assign},
+    {BinaryOp::add, Token::plus, 10, Token::plus_assign},
+    {BinaryOp::subtract, Token::minus, 10, Token::minus_assign},
+    {BinaryOp::multiply, Token::star, 11, Token::star_assign},
+    {BinaryOp::divide, Token::slash, 11, Token::slash_assign},
+    {BinaryOp::remainder, Token::percent, 11, Token::percent_assign},
+};
 
 bool is_scalar_number(Type type)
 {
@@ -85,82 +112,26 @@ bool converts_implicitly(Type from, Type to)
     return from == to || (is_integer(from) && to == float_type);
 }
 
-std::optional<ast::BinaryOp> operation_of(ast::AssignOp op)
+const Operator& operator_of(BinaryOp op)
 {
-    using ast::BinaryOp;
-    using enum ast::AssignOp;
-    switch (op) {
-    case assign: return std::nullopt;
-    case add: return BinaryOp::add;
-    case subtract: return BinaryOp::subtract;
-    case multiply: return BinaryOp::multiply;
-    case divide: return BinaryOp::divide;
-    case remainder: return BinaryOp::remainder;
-    case bit_and: return BinaryOp::bit_and;
-    case bit_or: return BinaryOp::bit_or;
-    case bit_xor: return BinaryOp::bit_xor;
-    case shift_left: return BinaryOp::shift_left;
-    case shift_right: return BinaryOp::shift_right;
-    }
-    return std::nullopt;
+    return *std::ranges::find(operators, op, &Operator::op);
 }
 
-std::string_view spelling(ast::BinaryOp op)
+const Operator* operator_of(Token token)
 {
-    using enum ast::BinaryOp;
-    switch (op) {
-    case add: return "+";
-    case subtract: return "-";
-    case multiply: return "*";
-    case divide: return "/";
-    case remainder: return "%";
-    case less: return "<";
-    case less_equal: return "<=";
-    case greater: return ">";
-    case greater_equal: return ">=";
-    case equal: return "==";
-    case not_equal: return "!=";
-    case logical_and: return "&&";
-    case logical_or: return "||";
-    case logical_xor: return "^^";
-    case bit_and: return "&";
-    case bit_or: return "|";
-    case bit_xor: return "^";
-    case shift_left: return "<<";
-    case shift_right: return ">>";
-    }
-    return {};
+    const auto found = std::ranges::find(operators, token, &Operator::token);
+    return found == std::end(operators) ? nullptr : found;
 }
 
-std::string_view spelling(ast::UnaryOp op)
+bool is_assignment(Token token)
 {
-    using enum ast::UnaryOp;
-    switch (op) {
-    case negate: return "-";
-    case plus: return "+";
-    case logical_not: return "!";
-    case bit_not: return "~";
-    }
-    return {};
+    return token == Token::assign || operation_in(token).has_value();
 }
 
-std::string_view spelling(ast::AssignOp op)
+std::optional<BinaryOp> operation_in(Token assignment)
 {
-    using enum ast::AssignOp;
-    switch (op) {
-    case assign: return "=";
-    case add: return "+=";
-    case subtract: return "-=";
-    case multiply: return "*=";
-    case divide: return "/=";
-    case remainder: return "%=";
-    case bit_and: return "&=";
-    case bit_or: return "|=";
-    case bit_xor: return "^=";
-    case shift_left: return "<<=";
-    case shift_right: return ">>=";
-    }
-    return {};
+    const auto found = std::ranges::find(operators, assignment, &Operator::assignment);
+    return found == std::end(operators) || assignment == Token::invalid ? std::nullopt : std::optional(found->op);
 }
 
 } // namespace haptel::lang

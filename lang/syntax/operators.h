@@ -1,10 +1,10 @@
-// The operators as GLSL has them: which operand types go together, what comes out, how they are spelled.
+// The operators as GLSL has them: their tokens, which operand types go together and what comes out.
 #pragma once
 
 #include "lang/syntax/ast.h"
+#include "lang/text/lexer.h"
 
 #include <optional>
-#include <string_view>
 
 namespace haptel::lang {
 
@@ -21,11 +21,17 @@ bool is_linear_product(Type left, Type right);
 // Without being asked: int and uint become float; nothing else changes.
 bool converts_implicitly(Type from, Type to);
 
-// The operation inside "+=" and its like; nothing for "=".
-std::optional<ast::BinaryOp> operation_of(ast::AssignOp op);
+struct Operator {
+    ast::BinaryOp op;
+    Token token;
+    int precedence;                    // higher binds tighter
+    Token assignment = Token::invalid; // "+=" and its like, where there is one
+};
+const Operator& operator_of(ast::BinaryOp op);
+const Operator* operator_of(Token token); // null: it is none
 
-std::string_view spelling(ast::BinaryOp op);
-std::string_view spelling(ast::UnaryOp op);
-std::string_view spelling(ast::AssignOp op);
+bool is_assignment(Token token);
+// In "+=" and its like; nothing in "=".
+std::optional<ast::BinaryOp> operation_in(Token assignment);
 
 } // namespace haptel::lang

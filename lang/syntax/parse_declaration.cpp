@@ -258,7 +258,7 @@ void Grammar::function_signature(FunctionParameter& parameter)
 void Grammar::texture(File& result)
 {
     Texture made;
-    std::optional<FactsComment> facts;
+    std::optional<ir::Facts> facts;
     made.doc = doc_before(position, &facts);
     if (facts)
         diagnostics.error(facts->span, "facts",

@@ -1,5 +1,6 @@
 // Expressions. Operators of one precedence in a row become one flat Chain.
 #include "lang/syntax/grammar.h"
+#include "lang/syntax/operators.h"
 #include "lang/text/number.h"
 
 #include <algorithm>
@@ -7,50 +8,6 @@
 namespace haptel::lang {
 
 using namespace ast;
-
-namespace {
-
-struct Operator {
-    Token token;
-    BinaryOp op;
-    int precedence; // higher binds tighter
-};
-constexpr Operator operators[] = {
-    {Token::logical_or, BinaryOp::logical_or, 1},
-    {Token::logical_xor, BinaryOp::logical_xor, 2},
-    {Token::logical_and, BinaryOp::logical_and, 3},
-    {Token::pipe, BinaryOp::bit_or, 4},
-    {Token::caret, BinaryOp::bit_xor, 5},
-    {Token::ampersand, BinaryOp::bit_and, 6},
-    {Token::equal, BinaryOp::equal, 7},
-    {Token::not_equal, BinaryOp::not_equal, 7},
-    {Token::less, BinaryOp::less, 8},
-    {Token::less_equal, BinaryOp::less_equal, 8},
-    {Token::greater, BinaryOp::greater, 8},
-    {Token::greater_equal, BinaryOp::greater_equal, 8},
-    {Token::shift_left, BinaryOp::shift_left, 9},
-    {Token::shift_right, BinaryOp::shift_right, 9},
-    {Token::plus, BinaryOp::add, 10},
-    {Token::minus, BinaryOp::subtract, 10},
-    {Token::star, BinaryOp::multiply, 11},
-    {Token::slash, BinaryOp::divide, 11},
-    {Token::percent, BinaryOp::remainder, 11},
-};
-
-const Operator* operator_of(Token token)
-{
-    const auto found =
-        std::find_if(std::begin(operators), std::end(operators), [&](const Operator& o) { return o.token == token; });
-    return found == std::end(operators) ? nullptr : found;
-}
-
-} // namespace
-
-int precedence_of(Token token)
-{
-    const Operator* found = operator_of(token);
-    return found ? found->precedence : 0;
-}
 
 // expression = conditional
 ExpressionPtr Grammar::expression()
@@ -277,15 +234,7 @@ ExpressionPtr Grammar::number()
         ++mistakes;
         return make(where, ErrorExpression{});
     }
-    const auto kind_of = [](Number::Kind kind) {
-        switch (kind) {
-        case Number::Kind::real: return NumberLiteral::Kind::real;
-        case Number::Kind::integer: return NumberLiteral::Kind::integer;
-        case Number::Kind::unsigned_integer: return NumberLiteral::Kind::unsigned_integer;
-        }
-        return NumberLiteral::Kind::real;
-    };
-    return make(where, NumberLiteral{kind_of(read.kind), read.value, read.integer, std::string(read.unit),
+    return make(where, NumberLiteral{read.kind, read.value, read.integer, std::string(read.unit),
                                      std::string(sources.text(where))});
 }
 

@@ -1,4 +1,5 @@
 // Doc comments, and the facts in them: "/// @facts value -0.866 .. 0.866, slope 2.179, curvature 11.59, class C1".
+#include "lang/ir/op_info.h"
 #include "lang/syntax/grammar.h"
 #include "lang/text/number.h"
 
@@ -29,7 +30,7 @@ bool is_facts(std::string_view line)
 } // namespace
 
 // The doc lines that stand right above the token, without slashes. A blank line separates them from what is further up.
-std::string Grammar::doc_before(size_t token_index, std::optional<FactsComment>* facts)
+std::string Grammar::doc_before(size_t token_index, std::optional<ir::Facts>* facts)
 {
     const auto before = [](const DocLine& line, size_t index) { return line.before_token < index; };
     const auto first = std::lower_bound(list.docs.begin(), list.docs.end(), token_index, before);
@@ -64,9 +65,9 @@ std::string Grammar::doc_before(size_t token_index, std::optional<FactsComment>*
 
 // facts = fact {"," fact}
 // fact  = "value" number ".." number | "slope" number | "curvature" number | "class" ("jump" | "C0" | "C1" | "C2")
-FactsComment Grammar::parse_facts(Span where)
+ir::Facts Grammar::parse_facts(Span where)
 {
-    FactsComment facts;
+    ir::Facts facts;
     facts.span = where;
     Span last{}; // of the last number
     const auto signed_number = [&]() -> std::optional<double> {
@@ -108,10 +109,8 @@ FactsComment Grammar::parse_facts(Span where)
         } else if (what == "curvature") {
             facts.curvature = size(what);
         } else if (what == "class") {
-            constexpr std::string_view classes[] = {"jump", "C0", "C1", "C2"};
-            if (std::find(std::begin(classes), std::end(classes), text()) != std::end(classes))
-                facts.continuity = text();
-            else
+            facts.continuity = ir::continuity_named(text());
+            if (!facts.continuity || facts.continuity < ir::Continuity::jump || facts.continuity > ir::Continuity::c2)
                 error(span(), "facts", "expected jump, C0, C1 or C2" + found());
             if (!lost) advance();
         } else {

@@ -1,5 +1,6 @@
 // Statements.
 #include "lang/syntax/grammar.h"
+#include "lang/syntax/operators.h"
 
 #include <algorithm>
 
@@ -8,31 +9,6 @@ namespace haptel::lang {
 using namespace ast;
 
 namespace {
-
-struct Assigner {
-    Token token;
-    AssignOp op;
-};
-constexpr Assigner assigners[] = {
-    {Token::assign, AssignOp::assign},
-    {Token::plus_assign, AssignOp::add},
-    {Token::minus_assign, AssignOp::subtract},
-    {Token::star_assign, AssignOp::multiply},
-    {Token::slash_assign, AssignOp::divide},
-    {Token::percent_assign, AssignOp::remainder},
-    {Token::and_assign, AssignOp::bit_and},
-    {Token::or_assign, AssignOp::bit_or},
-    {Token::xor_assign, AssignOp::bit_xor},
-    {Token::shift_left_assign, AssignOp::shift_left},
-    {Token::shift_right_assign, AssignOp::shift_right},
-};
-
-const Assigner* assigner_of(Token token)
-{
-    const auto found =
-        std::find_if(std::begin(assigners), std::end(assigners), [&](const Assigner& a) { return a.token == token; });
-    return found == std::end(assigners) ? nullptr : found;
-}
 
 bool begins_expression(Token token)
 {
@@ -94,7 +70,7 @@ void Grammar::statement(Statements& into)
 // "default = 2;": a word that only other languages reserve.
 bool Grammar::is_used_as_name() const
 {
-    return assigner_of(kind(1)) || kind(1) == Token::dot || kind(1) == Token::plus_plus ||
+    return is_assignment(kind(1)) || kind(1) == Token::dot || kind(1) == Token::plus_plus ||
            kind(1) == Token::minus_minus;
 }
 
@@ -255,7 +231,7 @@ StatementPtr Grammar::assignment_or_expression()
     const auto step_by_one = [&](ExpressionPtr target, bool up, Span op) {
         const Span whole = since(first);
         NumberLiteral one{NumberLiteral::Kind::integer, 1, 1, {}, "1"};
-        return make_statement(whole, Assignment{std::move(target), up ? AssignOp::add : AssignOp::subtract, op,
+        return make_statement(whole, Assignment{std::move(target), up ? BinaryOp::add : BinaryOp::subtract, op,
                                                 make(op, std::move(one))});
     };
     if (at(Token::plus_plus) || at(Token::minus_minus)) {
@@ -272,12 +248,13 @@ StatementPtr Grammar::assignment_or_expression()
         advance();
         return step_by_one(std::move(target), up, op);
     }
-    if (const Assigner* assigner = assigner_of(kind())) {
+    if (is_assignment(kind())) {
         const Span op = span();
+        const auto operation = operation_in(kind());
         advance();
         ExpressionPtr value = expression();
         const Span whole = since(first);
-        return make_statement(whole, Assignment{std::move(target), assigner->op, op, std::move(value)});
+        return make_statement(whole, Assignment{std::move(target), operation, op, std::move(value)});
     }
     const Span whole = target->span;
     return make_statement(whole, ExpressionStatement{std::move(target)});

@@ -86,13 +86,12 @@ struct CallTarget {
     std::vector<FunctionReference> function_arguments; // one per argument; empty where the argument is a value
 };
 
-// A loop whose trip count is bounded: `for (int i = start; i COMPARE bound; i += step)`.
+// A loop whose trip count is bounded: `for (int i = start; i < bound; i += step)`, or with <=, > or >=.
 struct LoopPlan {
-    enum class Compare : uint8_t { less, less_equal, greater, greater_equal };
     const Symbol* counter = nullptr;
     const ast::Expression* start = nullptr;
     const ast::Expression* bound = nullptr; // not changed by the body, so it is evaluated once
-    Compare compare = Compare::less;
+    bool is_inclusive = false;              // the counter may be the bound
     int64_t step = 1;
     uint32_t trip_max = 0;
     bool runs = false;                // certainly, at least once, and there is a body

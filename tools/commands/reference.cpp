@@ -90,12 +90,15 @@ void add_library_file(const stdlib::LibraryFile& file, std::vector<Entry>& entri
         overload.signature = in_one_line(sources.text({index, function.span.begin, function.body->span.begin}));
         overload.doc = function.doc;
         if (function.facts) {
-            const lang::ast::FactsComment& facts = *function.facts;
+            const ir::Facts& facts = *function.facts;
             std::string_view text = sources.text(facts.span);
             if (const size_t marker = text.find("@facts"); marker != text.npos) text.remove_prefix(marker + 6);
-            overload.facts =
-                Facts{facts.value_minimum, facts.value_maximum, facts.slope,
-                      facts.curvature,     facts.continuity,    in_one_line(text.substr(text.find_first_not_of(' ')))};
+            overload.facts = Facts{facts.value_minimum,
+                                   facts.value_maximum,
+                                   facts.slope,
+                                   facts.curvature,
+                                   std::string(facts.continuity ? to_string(*facts.continuity) : ""),
+                                   in_one_line(text.substr(text.find_first_not_of(' ')))};
         }
         const auto known = std::find_if(entries.begin(), entries.end(),
                                         [&](const Entry& entry) { return entry.name == function.name.text; });

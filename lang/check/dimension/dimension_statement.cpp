@@ -109,8 +109,7 @@ void DimensionBody::assign(const Statement& s, const Assignment& node)
     }
     Dimension value = expression(*node.value);
     const Symbol& symbol = *std::get<NameExpression>(object->node).symbol;
-    if (const auto operation = operation_of(node.op))
-        value = binary(*operation, read(symbol, object->span), value, s.span, nullptr, *node.value);
+    if (node.op) value = binary(*node.op, read(symbol, object->span), value, s.span, nullptr, *node.value);
     Variable& variable = (*flow)[symbol.slot];
     const bool is_whole = object == node.target.get() || components == (1u << symbol.type.size) - 1;
     const Dimension before = is_whole ? Dimension::any() : read(symbol, object->span);

@@ -120,12 +120,12 @@ texture brushed "Long irregular grooves,|  as left by a brush."
   {(return pitch)}
 )");
     REQUIRE(parsed.file.functions[0].facts);
-    const ast::FactsComment& facts = *parsed.file.functions[0].facts;
+    const haptel::ir::Facts& facts = *parsed.file.functions[0].facts;
     CHECK(facts.value_minimum == -2.0);
     CHECK(facts.value_maximum == 2.0);
     CHECK(facts.slope == 150.0);
     CHECK(facts.curvature == 11.59);
-    CHECK(facts.continuity == "C1");
+    CHECK(facts.continuity == haptel::ir::Continuity::c1);
     CHECK(parsed.sources.text(facts.span) == "@facts value -2 .. 2, slope 1.5e2, curvature 11.59, class C1");
     CHECK_FALSE(parsed.file.functions[0].damage.any);
 }
@@ -134,9 +134,9 @@ TEST_CASE("facts may have units and be given in part")
 {
     const Parsed parsed = parse_text("/// @facts class jump, value -60um..60um\nfloat f() { return 0.0; }");
     CHECK(parsed.messages() == "");
-    const ast::FactsComment& facts = *parsed.file.functions.at(0).facts;
+    const haptel::ir::Facts& facts = *parsed.file.functions.at(0).facts;
     CHECK(facts.value_minimum == -60e-6);
-    CHECK(facts.continuity == "jump");
+    CHECK(facts.continuity == haptel::ir::Continuity::jump);
     CHECK_FALSE(facts.slope);
 }
 

@@ -34,24 +34,6 @@ std::string spelling(BinaryOp op)
     return "?";
 }
 
-std::string spelling(AssignOp op)
-{
-    switch (op) {
-    case AssignOp::assign: return "=";
-    case AssignOp::add: return "+=";
-    case AssignOp::subtract: return "-=";
-    case AssignOp::multiply: return "*=";
-    case AssignOp::divide: return "/=";
-    case AssignOp::remainder: return "%=";
-    case AssignOp::bit_and: return "&=";
-    case AssignOp::bit_or: return "|=";
-    case AssignOp::bit_xor: return "^=";
-    case AssignOp::shift_left: return "<<=";
-    case AssignOp::shift_right: return ">>=";
-    }
-    return "?";
-}
-
 std::string spelling(UnaryOp op)
 {
     switch (op) {
@@ -125,7 +107,7 @@ struct StatementText {
     std::string operator()(const Declaration& d) const { return declaration_text(d); }
     std::string operator()(const Assignment& a) const
     {
-        return "(" + spelling(a.op) + " " + maybe(a.target) + " " + maybe(a.value) + ")";
+        return "(" + (a.op ? spelling(*a.op) : "") + "= " + maybe(a.target) + " " + maybe(a.value) + ")";
     }
     std::string operator()(const ExpressionStatement& e) const { return "(do " + maybe(e.expression) + ")"; }
     std::string operator()(const Scope& s) const
