@@ -96,23 +96,25 @@ void report(const ir::Undefined& found, Diagnostics& diagnostics)
 {
     using Why = ir::Undefined::Why;
     if (found.why == ir::Undefined::Why::not_looked_at) {
-        diagnostics.warning(found.span, "domain", "whether this is finite was not found out").hint =
-            "it takes too many operations to look at: fewer trips of its loops would tell";
+        diagnostics.warning(found.span, "domain", "whether this is finite was not found out",
+                            "it takes too many operations to look at: fewer trips of its loops would tell");
         return;
     }
     if (!found.op) {
-        diagnostics.warning(found.span, "domain", "a constant here is not a finite number").hint =
-            "a division by 0, or a function outside of where it is defined, was computed once and for all";
+        diagnostics.warning(
+            found.span, "domain", "a constant here is not a finite number",
+            "a division by 0, or a function outside of where it is defined, was computed once and for all");
         return;
     }
     const std::string name = name_of(*found.op), where = shown(found.operand);
     if (found.why == Why::pole && *found.op == Op::div) {
-        diagnostics.warning(found.span, "division", "this may divide by zero: the divisor lies in " + where).hint =
-            "add a small constant, or keep it away from 0 with max(); where it is 0 the height counts as 0";
+        diagnostics.warning(
+            found.span, "division", "this may divide by zero: the divisor lies in " + where,
+            "add a small constant, or keep it away from 0 with max(); where it is 0 the height counts as 0");
         return;
     }
     const auto say = [&](const std::string& what, const char* hint) {
-        diagnostics.warning(found.span, "domain", what + ": its argument lies in " + where).hint = hint;
+        diagnostics.warning(found.span, "domain", what + ": its argument lies in " + where, hint);
     };
     switch (found.why) {
     case Why::not_looked_at: return;
@@ -140,9 +142,9 @@ void report(const ir::FalseFact& fact, Diagnostics& diagnostics)
                                        ", found " + shown(fact.found)
         : fact.what == What::slope ? "a slope of at most " + most(fact.facts.slope) + ", found a steeper place"
                                    : "a curvature of at most " + most(fact.facts.curvature) + ", found a greater one";
-    diagnostics.warning(fact.facts.span, "false-facts", "this function is not as its facts say: expected " + said)
-        .hint =
-        "bounds are computed with what is declared here, and are wrong if it is: haptel test measures the true sizes";
+    diagnostics.warning(
+        fact.facts.span, "false-facts", "this function is not as its facts say: expected " + said,
+        "bounds are computed with what is declared here, and are wrong if it is: haptel test measures the true sizes");
 }
 
 // A scale that is no number, or would pull instead of push, counts as 1: no author means that.
@@ -158,14 +160,13 @@ void report_scales(const ir::Texture& texture, std::span<const ir::Interval> sca
         const bool is_negative = scale.is_finite(); // else that is worse
         if (is_negative && scale.minimum >= 0) continue;
         const std::string what = scale.is_empty() ? "is not a number" : "lies in " + shown(scale);
-        diagnostics
-            .warning(span, "scale",
-                     std::string(names[bit]) + " of '" + texture.name + "' may be " +
-                         (is_negative ? "negative" : "not finite") + ": it " + what)
-            .hint = is_negative
-                        ? "keep it at 0 or above, with max(x, 0.0) or clamp(); where it is negative it counts as 1"
+        diagnostics.warning(
+            span, "scale",
+            std::string(names[bit]) + " of '" + texture.name + "' may be " + (is_negative ? "negative" : "not finite") +
+                ": it " + what,
+            is_negative ? "keep it at 0 or above, with max(x, 0.0) or clamp(); where it is negative it counts as 1"
                         : "keep it bounded, with clamp(), or its divisors away from 0; where it is not finite it "
-                          "counts as 1";
+                          "counts as 1");
     }
 }
 
@@ -200,15 +201,13 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
     if (std::any_of(said.begin(), said.end(), is_same_place)) return found;
     const auto by = [&] { return "by " + what_of(cause, program.sources); };
     if (found.at_values.continuity == ir::Continuity::jump)
-        diagnostics
-            .warning(cause.span, "jump",
-                     "the height of '" + texture.name + "' may jump here, " + by() + ": an impulse in the hand")
-            .hint = smooth_form(cause);
+        diagnostics.warning(cause.span, "jump",
+                            "the height of '" + texture.name + "' may jump here, " + by() + ": an impulse in the hand",
+                            smooth_form(cause));
     if (found.at_values.continuity == ir::Continuity::c0)
-        diagnostics
-            .note(cause.span, "kink",
-                  "the slope of '" + texture.name + "' may step here, " + by() + ": a tick in the hand")
-            .hint = smooth_form(cause);
+        diagnostics.note(cause.span, "kink",
+                         "the slope of '" + texture.name + "' may step here, " + by() + ": a tick in the hand",
+                         smooth_form(cause));
     return found;
 }
 

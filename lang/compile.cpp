@@ -74,8 +74,8 @@ private:
         std::optional<SourceFile>& text = found.file;
         if (!text) {
             const std::string why = found.why.empty() ? "" : ": " + found.why;
-            diagnostics.error(import.span, "missing-import", "cannot read " + quoted_path(import.path) + why).hint =
-                found.hint.empty() ? "the path is relative to the file that imports" : found.hint;
+            diagnostics.error(import.span, "missing-import", "cannot read " + quoted_path(import.path) + why,
+                              found.hint.empty() ? "the path is relative to the file that imports" : found.hint);
             return;
         }
         text_bytes += text->text.size();
@@ -115,11 +115,10 @@ private:
             std::string cycle = printable(sources.file(edge.from).name);
             for (uint32_t at = edge.from; at != edge.to; at = reached_from[at])
                 cycle = printable(sources.file(reached_from[at]).name) + " -> " + cycle;
-            diagnostics
-                .error(edge.span, "import-cycle",
-                       "this import leads back to its own file: " + printable(sources.file(edge.from).name) + " -> " +
-                           cycle)
-                .hint = "move what both need into a third file";
+            diagnostics.error(edge.span, "import-cycle",
+                              "this import leads back to its own file: " + printable(sources.file(edge.from).name) +
+                                  " -> " + cycle,
+                              "move what both need into a third file");
             return; // the others are the same cycle, or wait
         }
     }
@@ -157,8 +156,8 @@ CompileResult compile(const SourceFile& main, const CompileOptions& options,
 
     Diagnostics& diagnostics = result.diagnostics;
     if (holds_nothing(files.files.front()) && !diagnostics.has_errors())
-        diagnostics.warning({}, "empty-file", "expected a texture, found an empty file").hint =
-            "the smallest one is: texture flat() { return 0.0; }";
+        diagnostics.warning({}, "empty-file", "expected a texture, found an empty file",
+                            "the smallest one is: texture flat() { return 0.0; }");
     const CheckedProgram checked = check(result.sources, std::move(files.files), library, diagnostics);
     if (!options.only_texture.empty()) {
         std::vector<std::string_view> names;

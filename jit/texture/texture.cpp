@@ -156,7 +156,7 @@ CompiledTextures compile_texture_file(const std::string& path, TextureOptions op
     CompiledTextures result;
     result.files = {path};
     result.sources.add({path, {}});
-    result.diagnostics.error({}, "unreadable-file", source.error).hint = source.hint;
+    result.diagnostics.error({}, "unreadable-file", source.error, source.hint);
     return result;
 }
 

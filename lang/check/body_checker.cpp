@@ -58,10 +58,10 @@ Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
     if (kind == SymbolKind::local) {
         symbol.slot = slot_count;
         if (symbol.slot == variables_max)
-            diagnostics
-                .error(name.span, "too-large",
-                       "expected at most " + std::to_string(variables_max) + " variables in a function or texture")
-                .hint = "an array is one; what repeats is a loop";
+            diagnostics.error(name.span, "too-large",
+                              "expected at most " + std::to_string(variables_max) +
+                                  " variables in a function or texture",
+                              "an array is one; what repeats is a loop");
         Variable& variable = new_variable();
         if (type == uint_type) variable.range = ir::full_range(ir::Type::u32);
     }
@@ -149,10 +149,10 @@ void BodyChecker::whole_body(StatementPtr& tree, const Name& name, Type result, 
     if (auto block = std::get_if<Scope>(&tree->node))
         statements(block->statements); // in the parameters' scope, as in C
     if (flow.reachable && !in_damaged_body && !result.is_error()) {
-        diagnostics
-            .error(name.span, "missing-return",
-                   std::string(what) + " " + quoted(name.text) + " can end without returning a " + to_string(result))
-            .hint = "end it with 'return ...;' outside of every if and for";
+        diagnostics.error(name.span, "missing-return",
+                          std::string(what) + " " + quoted(name.text) + " can end without returning a " +
+                              to_string(result),
+                          "end it with 'return ...;' outside of every if and for");
     }
 }
 
@@ -215,10 +215,9 @@ void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
     whole_body(tree.body, tree.name, float_type, "texture", tree.damage);
     for (const CheckedOutput& output : texture.outputs)
         if (!output.symbol->is_assigned && !is_library && !in_damaged_body)
-            diagnostics
-                .warning(output.symbol->span, "unassigned-output",
-                         "output " + quoted(output.symbol->name) + " is never assigned: it is always 1")
-                .hint = "assign it in the body or leave it out";
+            diagnostics.warning(output.symbol->span, "unassigned-output",
+                                "output " + quoted(output.symbol->name) + " is never assigned: it is always 1",
+                                "assign it in the body or leave it out");
     close_scope();
     texture.slot_count = slot_count;
     texture.mentions = std::move(mentions);
@@ -237,10 +236,9 @@ Symbol* BodyChecker::check_global(Declaration& declaration)
     const bool has_type = declaration.initializer && !declaration.initializer->type.is_error();
     const Expression* culprit = has_type ? first_not_constant(*declaration.initializer) : nullptr;
     if (culprit && !culprit->type.is_error())
-        diagnostics
-            .error(culprit->span, "not-constant",
-                   "a global is constant, expected a value known when the texture is compiled")
-            .hint = "literals, other constants and built-in functions of them are";
+        diagnostics.error(culprit->span, "not-constant",
+                          "a global is constant, expected a value known when the texture is compiled",
+                          "literals, other constants and built-in functions of them are");
     made->kind = SymbolKind::constant; // no variable of any body
     made->type = Type::error();
     return made;

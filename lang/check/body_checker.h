@@ -113,7 +113,7 @@ private:
     // Reports unless `e` has or becomes that type; `where` as a clause: " for 'x'".
     bool require(ast::Expression& e, Type wanted, const std::string& where);
     // Reports; the type of what is wrong.
-    Type fail(Span span, ErrorCode code, std::string message, std::string hint = {});
+    Type fail(Span span, ErrorCode code, std::string message, std::string_view hint = {});
     Type report_operator(ast::BinaryOp op, Span span, Type left, const ast::Expression& right);
     std::string excerpt(const ast::Expression& e) const;
     std::string operand(const ast::Expression& e) const; // to write something behind it

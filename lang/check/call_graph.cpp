@@ -110,11 +110,10 @@ private:
             if (visit - first == shown) cycle += "... -> ";
             if (visit - first < shown || visit + 1 == path.end()) cycle += visit->function->name + " -> ";
         }
-        diagnostics
-            .error(mention.span, "recursion",
-                   "function '" + mention.function->name + "' ends up calling itself: " + cycle +
-                       mention.function->name)
-            .hint = "every texture must end: write a for loop with a bound";
+        diagnostics.error(mention.span, "recursion",
+                          "function '" + mention.function->name + "' ends up calling itself: " + cycle +
+                              mention.function->name,
+                          "every texture must end: write a for loop with a bound");
     }
 
     const CallDepths& known;

@@ -54,9 +54,9 @@ Type resolve_type(CheckContext& context, const TypeName& name)
 
 void report_image(CheckContext& context, const TypeName& name)
 {
-    context.diagnostics
-        .error(name.base.span, "image", "an image is a parameter of a texture or of a function, and nothing else")
-        .hint = "pass it on as it is: float bark(image picture, vec2 q) { return sample(picture, q); }";
+    context.diagnostics.error(name.base.span, "image",
+                              "an image is a parameter of a texture or of a function, and nothing else",
+                              "pass it on as it is: float bark(image picture, vec2 q) { return sample(picture, q); }");
 }
 
 namespace {
@@ -215,8 +215,8 @@ private:
         if (type == image_type && (name.is_array || is_result))
             report_image(context, name);
         else if (type == void_type)
-            context.diagnostics.error(name.base.span, "type-mismatch", why + ", found void").hint =
-                "write float, int, vec3 ...";
+            context.diagnostics.error(name.base.span, "type-mismatch", why + ", found void",
+                                      "write float, int, vec3 ...");
         else
             return name.is_array ? BodyChecker(context, scope, true).array_type(name, type) : type;
         return Type::error();
@@ -244,10 +244,9 @@ private:
         for (Texture& tree : program.files[file].tree.textures) {
             if (context.diagnostics.full()) return;
             if (++count > textures_max) {
-                context.diagnostics
-                    .error(tree.name.span, "too-large",
-                           "expected at most " + std::to_string(textures_max) + " textures in a file")
-                    .hint = "put the others into another file";
+                context.diagnostics.error(tree.name.span, "too-large",
+                                          "expected at most " + std::to_string(textures_max) + " textures in a file",
+                                          "put the others into another file");
                 return;
             }
             const auto [twin, is_new] = seen.try_emplace(tree.name.text, &tree);

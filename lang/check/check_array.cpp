@@ -84,13 +84,12 @@ bool BodyChecker::fits_body(Type type, Span span)
 {
     if (type.array_size <= array_size_max && type.components() <= array_components_max) return true;
     const bool is_long = type.array_size > array_size_max;
-    diagnostics
-        .error(span, "table-size",
-               "an array that is no constant table has at most " +
-                   std::to_string(is_long ? array_size_max : array_components_max) +
-                   (is_long ? " elements" : " numbers") + ", found " +
-                   std::to_string(is_long ? type.array_size : type.components()))
-        .hint = "its elements are values of the program; a constant table may have " + std::to_string(table_size_max);
+    diagnostics.error(
+        span, "table-size",
+        "an array that is no constant table has at most " +
+            std::to_string(is_long ? array_size_max : array_components_max) + (is_long ? " elements" : " numbers") +
+            ", found " + std::to_string(is_long ? type.array_size : type.components()),
+        "its elements are values of the program; a constant table may have " + std::to_string(table_size_max));
     return false;
 }
 
@@ -114,8 +113,8 @@ Symbol* BodyChecker::array(Declaration& node, Type element)
         return of_no_type();
     }
     if (element == bool_type && node.is_const) {
-        diagnostics.error(node.type.base.span, "type-mismatch", "a table holds numbers, found bool").hint =
-            "write int A[] = {0, 1}; and compare, A[i] != 0";
+        diagnostics.error(node.type.base.span, "type-mismatch", "a table holds numbers, found bool",
+                          "write int A[] = {0, 1}; and compare, A[i] != 0");
         element = Type::error();
     }
 
@@ -143,11 +142,10 @@ Symbol* BodyChecker::array(Declaration& node, Type element)
         if (size > 0 && size != count) {
             // the size stands in the declaration, or in front of the list: float[2](...)
             const Expression& written = *(node.type.array_size ? node.type : *list->type).array_size->written;
-            diagnostics
-                .error(written.span, "table-size",
-                       name + " is declared with " + std::to_string(size) + " elements and has " +
-                           std::to_string(count))
-                .hint = "leave the size out, " + node.name.text + "[], and it is counted";
+            diagnostics.error(written.span, "table-size",
+                              name + " is declared with " + std::to_string(size) + " elements and has " +
+                                  std::to_string(count),
+                              "leave the size out, " + node.name.text + "[], and it is counted");
         } else if (count == 0 || count > table_size_max) {
             diagnostics.error(node.initializer->span, "table-size",
                               "expected 1 .. " + std::to_string(table_size_max) + " elements, found " +
@@ -188,9 +186,9 @@ Symbol* BodyChecker::array(Declaration& node, Type element)
         if (size == 0 && !found.is_error()) wanted.array_size = 1; // "float a[] = 1.0;"
         is_sound = require(value, is_sound ? wanted : Type::error(), " for " + name) && is_sound;
     } else if (is_sound && size == 0) {
-        diagnostics
-            .error(node.name.span, "table-size", "expected the number of elements of " + name + " between '[' and ']'")
-            .hint = to_string(element) + " " + node.name.text + "[4];";
+        diagnostics.error(node.name.span, "table-size",
+                          "expected the number of elements of " + name + " between '[' and ']'",
+                          to_string(element) + " " + node.name.text + "[4];");
         is_sound = false;
     }
 
@@ -246,8 +244,8 @@ BodyChecker::Target BodyChecker::target_of(Expression& e)
                              : *std::get<Member>(accessors.front()->node).object;
     if (!name) {
         if (!std::holds_alternative<ErrorExpression>(object.node))
-            diagnostics.error(e.span, "not-assignable", "expected a variable or components of one before '='").hint =
-                "v.xy and v[1] are such components, v.xyz.x is not";
+            diagnostics.error(e.span, "not-assignable", "expected a variable or components of one before '='",
+                              "v.xy and v[1] are such components, v.xyz.x is not");
         return {};
     }
     Symbol* local = find_local(name->name);

@@ -71,9 +71,8 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
     if (const auto type = type_named(call.callee.text)) return constructor(e, call, *type);
     const ForeignWord* foreign = foreign_word(ForeignKind::type, call.callee.text);
     if (foreign && !find(call.callee.text) && !scope.is_function(call.callee.text)) {
-        Diagnostic& reported =
-            diagnostics.error(call.callee.span, "foreign-word", quoted(call.callee.text) + " is not a type of Haptel");
-        reported.hint = foreign->hint;
+        Diagnostic& reported = diagnostics.error(call.callee.span, "foreign-word",
+                                                 quoted(call.callee.text) + " is not a type of Haptel", foreign->hint);
         if (foreign->is_exact && !foreign->replacement.empty())
             reported.fix = FixIt{call.callee.span, std::string(foreign->replacement)};
         if (const auto type = type_named(foreign->replacement)) return constructor(e, call, *type);
@@ -104,22 +103,21 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
             const std::string full =
                 type.is_scalar() ? "is made of one value"
                                  : "has all its " + count_of(type.components(), "component") + " before this argument";
-            diagnostics.error(argument.span, "wrong-argument-count", to_string(type) + " " + full).hint =
-                "leave this argument out";
+            diagnostics.error(argument.span, "wrong-argument-count", to_string(type) + " " + full,
+                              "leave this argument out");
             damaged = true;
         }
         if (!damaged && found == image_type) {
-            diagnostics
-                .error(argument.span, "image", "expected numbers and vectors for " + to_string(type) + ", found image")
-                .hint = "read it: sample(" + excerpt(argument) + ", uv)";
+            diagnostics.error(argument.span, "image",
+                              "expected numbers and vectors for " + to_string(type) + ", found image",
+                              "read it: sample(" + excerpt(argument) + ", uv)");
             damaged = true;
         }
         if (!damaged && (found.is_array() || (type.is_matrix() && found.is_matrix() && call.arguments.size() > 1))) {
-            diagnostics
-                .error(argument.span, "type-mismatch",
-                       "expected numbers and vectors for " + to_string(type) + ", found " + to_string(found))
-                .hint = found.is_array() ? "pick elements: " + operand(argument) + "[i]"
-                                         : "pick columns: " + operand(argument) + "[0]";
+            diagnostics.error(argument.span, "type-mismatch",
+                              "expected numbers and vectors for " + to_string(type) + ", found " + to_string(found),
+                              found.is_array() ? "pick elements: " + operand(argument) + "[i]"
+                                               : "pick columns: " + operand(argument) + "[0]");
             damaged = true;
         }
         components += found.components();
@@ -221,10 +219,9 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
         return std::nullopt;
     }
     if (ties.size() > 1) {
-        diagnostics
-            .error(e.span, "ambiguous-call",
-                   "this call of " + quoted(callee.text) + " fits several functions equally well")
-            .hint = listed(ties) + "; convert arguments to say which, for example float(i)";
+        diagnostics.error(e.span, "ambiguous-call",
+                          "this call of " + quoted(callee.text) + " fits several functions equally well",
+                          listed(ties) + "; convert arguments to say which, for example float(i)");
         return std::nullopt;
     }
     target.function = best->function;
@@ -301,7 +298,7 @@ void BodyChecker::report_no_match(const Expression& e, const Name& callee, const
         for (size_t i = 0; i + 1 < counts.size(); ++i)
             message += std::to_string(counts[i]) + (i + 2 < counts.size() ? ", " : " or ");
         message += count_of(counts.back(), "argument") + ", found " + std::to_string(arguments.size());
-        diagnostics.error(e.span, "wrong-argument-count", std::move(message)).hint = listed(candidates);
+        diagnostics.error(e.span, "wrong-argument-count", std::move(message), listed(candidates));
         return;
     }
     if (same_count.size() == 1) {
@@ -318,8 +315,8 @@ void BodyChecker::report_no_match(const Expression& e, const Name& callee, const
         found += (i > 0 ? ", " : "") + (classes[i].is_function
                                             ? "function " + std::string(context.sources.text(arguments[i]->span))
                                             : to_string(arguments[i]->type));
-    diagnostics.error(e.span, "no-matching-function", "no " + quoted(callee.text) + " takes (" + found + ")").hint =
-        listed(same_count);
+    diagnostics.error(e.span, "no-matching-function", "no " + quoted(callee.text) + " takes (" + found + ")",
+                      listed(same_count));
 }
 
 void BodyChecker::report_argument(const Candidate& candidate, size_t index, const Expression& argument,
@@ -332,8 +329,8 @@ void BodyChecker::report_argument(const Candidate& candidate, size_t index, cons
                                                      : "functions that take other arguments";
     Diagnostic& reported = diagnostics.error(argument.span, "type-mismatch",
                                              "expected " + described(parameter) + " as argument " +
-                                                 std::to_string(index + 1) + ", found " + found);
-    reported.hint = listed({candidate});
+                                                 std::to_string(index + 1) + ", found " + found,
+                                             listed({candidate}));
     auto source = std::get_if<const FunctionInfo*>(&candidate.function);
     if (source && parameter.symbol)
         reported.related.push_back({parameter.symbol->span, quoted(parameter.name) + " is declared here"});

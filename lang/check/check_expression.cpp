@@ -99,9 +99,9 @@ Type BodyChecker::expression(Expression& e)
     return e.type;
 }
 
-Type BodyChecker::fail(Span span, ErrorCode code, std::string message, std::string hint)
+Type BodyChecker::fail(Span span, ErrorCode code, std::string message, std::string_view hint)
 {
-    diagnostics.error(span, code, std::move(message)).hint = std::move(hint);
+    diagnostics.error(span, code, std::move(message), hint);
     return Type::error();
 }
 
@@ -125,9 +125,8 @@ bool BodyChecker::require(Expression& e, Type wanted, const std::string& where)
         e.type = uint_type;
         return true;
     }
-    Diagnostic& reported = diagnostics.error(e.span, "type-mismatch",
-                                             "expected " + to_string(wanted) + where + ", found " + to_string(e.type));
-    reported.hint = conversion_hint(e.type, wanted, excerpt(e), operand(e));
+    diagnostics.error(e.span, "type-mismatch", "expected " + to_string(wanted) + where + ", found " + to_string(e.type),
+                      conversion_hint(e.type, wanted, excerpt(e), operand(e)));
     return false;
 }
 
@@ -193,12 +192,12 @@ Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
         std::string name = node.name;
         if (assigned & whole) name += part_name(symbol->type, static_cast<uint32_t>(std::countr_zero(missing)));
         Diagnostic& reported =
-            diagnostics.error(e.span, "unassigned", quoted(name) + " is read here before it has a value on every path");
-        reported.hint = symbol->type.is_array()
-                            ? "give each element one: for (int i = 0; i < " + std::to_string(symbol->type.array_size) +
-                                  "; ++i) " + node.name + "[i] = " + zero_of(symbol->type.element()) + ";"
-                            : "give it one where it is declared: " + to_string(symbol->type) + " " + node.name + " = " +
-                                  zero_of(symbol->type) + ";";
+            diagnostics.error(e.span, "unassigned", quoted(name) + " is read here before it has a value on every path",
+                              symbol->type.is_array() ? "give each element one: for (int i = 0; i < " +
+                                                            std::to_string(symbol->type.array_size) + "; ++i) " +
+                                                            node.name + "[i] = " + zero_of(symbol->type.element()) + ";"
+                                                      : "give it one where it is declared: " + to_string(symbol->type) +
+                                                            " " + node.name + " = " + zero_of(symbol->type) + ";");
         reported.related.push_back({symbol->span, quoted(node.name) + " is declared here"});
         flow.variables[symbol->slot].assigned = whole; // one report is enough
         break;
@@ -285,10 +284,9 @@ Type BodyChecker::check(Expression& e, Conditional& node)
     if (a == b) return a;
     if (converts_implicitly(a, b)) return b;
     if (converts_implicitly(b, a)) return a;
-    Diagnostic& reported =
-        diagnostics.error(e.span, "type-mismatch",
-                          "both sides of ':' must have one type, found " + to_string(a) + " and " + to_string(b));
-    reported.hint = conversion_hint(b, a, excerpt(*node.when_false), operand(*node.when_false));
+    diagnostics.error(e.span, "type-mismatch",
+                      "both sides of ':' must have one type, found " + to_string(a) + " and " + to_string(b),
+                      conversion_hint(b, a, excerpt(*node.when_false), operand(*node.when_false)));
     return Type::error();
 }
 
@@ -311,11 +309,11 @@ Type BodyChecker::check(Expression& e, Member& node)
                     : object.is_array()  ? "pick an element: " + excerpt(*node.object) + "[i]"
                                          : std::string{});
     if (!swizzle || swizzle->highest() >= object.size) {
-        Diagnostic& reported = diagnostics.error(node.member.span, "bad-swizzle",
-                                                 to_string(object) + " has no component " + quoted(node.member.text));
-        reported.hint = "its components are " + std::string(object.size == 2   ? "x and y"
-                                                            : object.size == 3 ? "x, y and z"
-                                                                               : "x, y, z and w");
+        Diagnostic& reported = diagnostics.error(
+            node.member.span, "bad-swizzle", to_string(object) + " has no component " + quoted(node.member.text),
+            "its components are " + std::string(object.size == 2   ? "x and y"
+                                                : object.size == 3 ? "x, y and z"
+                                                                   : "x, y, z and w"));
         if (node.member.text.size() > 1)
             reported.hint += ", picked by up to four letters of one set: xyzw, rgba or stpq";
         return Type::error();
@@ -340,9 +338,8 @@ Type BodyChecker::check(Expression& e, Index& node)
     const Type element = object.element();
     if (index.is_error()) return element;
     if (!is_integer(index)) {
-        Diagnostic& reported =
-            diagnostics.error(node.index->span, "type-mismatch", "expected int as an index, found " + to_string(index));
-        reported.hint = conversion_hint(index, int_type, excerpt(*node.index), operand(*node.index));
+        diagnostics.error(node.index->span, "type-mismatch", "expected int as an index, found " + to_string(index),
+                          conversion_hint(index, int_type, excerpt(*node.index), operand(*node.index)));
         return element;
     }
     check_index(*node.index, *node.object);
@@ -361,8 +358,8 @@ void BodyChecker::check_index(const Expression& index, const Expression& object)
     const std::string last = std::to_string(size - 1);
     Diagnostic& reported =
         diagnostics.error(index.span, "index-out-of-range",
-                          "index " + found + " is outside " + quoted(of_what) + ", expected 0 .. " + last);
-    reported.hint = "counted from 0, the last of " + std::to_string(size) + " is " + of_what + "[" + last + "]";
+                          "index " + found + " is outside " + quoted(of_what) + ", expected 0 .. " + last,
+                          "counted from 0, the last of " + std::to_string(size) + " is " + of_what + "[" + last + "]");
     auto name = std::get_if<NameExpression>(&object.node);
     if (name && name->symbol && name->symbol->span.end > 0)
         reported.related.push_back({name->symbol->span, quoted(name->name) + " is declared here"});

@@ -63,19 +63,18 @@ void BodyChecker::check(Statement& s, For& node)
         if (*repeated) forget_ranges_assigned_in(**repeated);
     if (node.condition) condition(node.condition, "as the condition of a loop");
     if (counter && !counter->type.is_error() && counter->type != int_type && counter->type != uint_type) {
-        diagnostics.error(counter->span, "unbounded-loop", "a loop counts in int, found " + to_string(counter->type))
-            .hint = "count in int and compute the " + to_string(counter->type) + " from it: float x = 0.1 * i;";
+        diagnostics.error(counter->span, "unbounded-loop", "a loop counts in int, found " + to_string(counter->type),
+                          "count in int and compute the " + to_string(counter->type) + " from it: float x = 0.1 * i;");
         counter = nullptr;
     } else if (counter && is_const && !counter->type.is_error()) {
-        diagnostics.error(counter->span, "read-only", quoted(counter->name) + " counts the loop and cannot be constant")
-            .hint = "leave 'const' out";
+        diagnostics.error(counter->span, "read-only", quoted(counter->name) + " counts the loop and cannot be constant",
+                          "leave 'const' out");
         counter = nullptr;
     } else if (!counter && in_damaged_body) {
         diagnostics.count_consequence(); // most likely what declares it could not be read
     } else if (!counter) {
-        diagnostics
-            .error(node.init ? node.init->span : s.span, "unbounded-loop", "expected a counter declared in the loop")
-            .hint = loop_form;
+        diagnostics.error(node.init ? node.init->span : s.span, "unbounded-loop",
+                          "expected a counter declared in the loop", loop_form);
     }
     if (counter && counter->kind == SymbolKind::local) {
         plan(s, node, *counter);
@@ -109,8 +108,7 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
     auto init = std::get_if<Declaration>(&loop.init->node);
     if (!init->initializer || init->initializer->type.is_error()) return;
     auto refuse = [&](Span span, std::string message) -> Diagnostic& {
-        Diagnostic& reported = diagnostics.error(span, "unbounded-loop", std::move(message));
-        reported.hint = loop_form;
+        Diagnostic& reported = diagnostics.error(span, "unbounded-loop", std::move(message), loop_form);
         return reported;
     };
     LoopPlan made;
@@ -203,22 +201,20 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
         if (bound_unknown || start_unknown) {
             const Expression& culprit = bound_unknown ? *made.bound : *made.start;
             const char* limit = up == bound_unknown ? "min" : "max";
-            diagnostics
-                .error(culprit.span, "unbounded-loop",
-                       "cannot tell how often this loop runs: " + quoted(excerpt(culprit)) + " can be any " +
-                           to_string(counter.type))
-                .hint = std::string("write ") + limit + "(" + excerpt(culprit) + ", " +
-                        (up == bound_unknown ? "16" : "0") + "), or give the parameter a range: in 1 .. 16";
+            diagnostics.error(culprit.span, "unbounded-loop",
+                              "cannot tell how often this loop runs: " + quoted(excerpt(culprit)) + " can be any " +
+                                  to_string(counter.type),
+                              std::string("write ") + limit + "(" + excerpt(culprit) + ", " +
+                                  (up == bound_unknown ? "16" : "0") + "), or give the parameter a range: in 1 .. 16");
         } else if (trips <= static_cast<int64_t>(ir::operations_limit)) {
             refuse(loop.condition->span, "the bound of this loop may be " + std::to_string(farthest) +
                                              " from its start, expected at most " + std::to_string(way_max))
                 .hint = "the last step could pass the greatest " + to_string(counter.type) + ": lower the bound";
         } else {
-            diagnostics
-                .error(loop.condition->span, "too-costly",
-                       "this loop may run " + std::to_string(trips) + " times, expected at most " +
-                           std::to_string(ir::operations_limit))
-                .hint = "a texture is computed a thousand times a second: lower the bound";
+            diagnostics.error(loop.condition->span, "too-costly",
+                              "this loop may run " + std::to_string(trips) + " times, expected at most " +
+                                  std::to_string(ir::operations_limit),
+                              "a texture is computed a thousand times a second: lower the bound");
         }
         return;
     }

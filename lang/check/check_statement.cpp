@@ -53,8 +53,8 @@ void BodyChecker::check(Statement&, Declaration& node)
         type = Type::error();
     }
     if (type == void_type) {
-        diagnostics.error(node.type.base.span, "type-mismatch", "a variable cannot be void").hint =
-            "write float, int, vec3 ...";
+        diagnostics.error(node.type.base.span, "type-mismatch", "a variable cannot be void",
+                          "write float, int, vec3 ...");
         type = Type::error();
     }
     if (node.type.is_array) {
@@ -130,23 +130,21 @@ void BodyChecker::check(Statement& s, Assignment& node)
     if (!types) {
         report_operator(*node.op, s.span, target.type, *node.value);
     } else if (types->result != target.type) {
-        diagnostics
-            .error(node.value->span, "type-mismatch",
-                   std::string(describe(operator_of(*node.op).assignment)) + " would make " +
-                       quoted(excerpt(*node.target)) + " a " + to_string(types->result) + ", expected " +
-                       to_string(target.type))
-            .hint = !types->result.is_scalar() ? "declare it as " + to_string(types->result)
-                                               : "write " + to_string(target.type) + "(...) round the value";
+        diagnostics.error(node.value->span, "type-mismatch",
+                          std::string(describe(operator_of(*node.op).assignment)) + " would make " +
+                              quoted(excerpt(*node.target)) + " a " + to_string(types->result) + ", expected " +
+                              to_string(target.type),
+                          !types->result.is_scalar() ? "declare it as " + to_string(types->result)
+                                                     : "write " + to_string(target.type) + "(...) round the value");
     }
 }
 
 void BodyChecker::check(Statement& s, ExpressionStatement& node)
 {
     if (expression(*node.expression).is_error() || in_damaged_body) return;
-    diagnostics
-        .warning(s.span, "useless-statement",
-                 "this value is not used: functions only return values, they change nothing")
-        .hint = "assign it to a variable or leave it out";
+    diagnostics.warning(s.span, "useless-statement",
+                        "this value is not used: functions only return values, they change nothing",
+                        "assign it to a variable or leave it out");
 }
 
 void BodyChecker::condition(ExpressionPtr& e, const char* of_what)

@@ -50,8 +50,8 @@ std::optional<double> BodyChecker::check_constant(Expression& e, Type type, cons
     if (!require(e, type, where) || diagnostics.reports() != reports) return std::nullopt;
     if (const Expression* culprit = first_not_constant(e)) {
         if (culprit->type.is_error()) return std::nullopt; // of a mistake that was reported
-        diagnostics.error(culprit->span, "not-constant", "expected a value known when the texture is compiled" + where)
-            .hint = "literals, global constants and built-in functions of them are";
+        diagnostics.error(culprit->span, "not-constant", "expected a value known when the texture is compiled" + where,
+                          "literals, global constants and built-in functions of them are");
         return std::nullopt;
     }
     return as_number(context.constants.value(e, type).front(), type);
@@ -73,14 +73,13 @@ uint32_t BodyChecker::check_output(TextureParameter& tree)
     }
     const Type type = resolve_type(context, tree.type);
     if (!type.is_error() && (type != float_type || tree.type.is_array)) {
-        diagnostics.error(tree.type.base.span, "type-mismatch", "an output is a float").hint = names;
+        diagnostics.error(tree.type.base.span, "type-mismatch", "an output is a float", names);
         bit = 0;
     }
     if (tree.value || tree.minimum) {
-        diagnostics
-            .error((tree.value ? tree.value : tree.minimum)->span, "output-default",
-                   "an output has neither default nor range, expected ',' or ')' behind its name")
-            .hint = "it is 1 until the body assigns it: " + tree.name.text + " = ...;";
+        diagnostics.error((tree.value ? tree.value : tree.minimum)->span, "output-default",
+                          "an output has neither default nor range, expected ',' or ')' behind its name",
+                          "it is 1 until the body assigns it: " + tree.name.text + " = ...;");
         bit = 0;
     }
     return bit;
@@ -96,19 +95,18 @@ CheckedParameter check_texture_parameter(CheckContext& context, const FileScope&
     symbol.type = resolve_type(context, tree.type);
     const std::string name = quoted(tree.name.text);
     if (!symbol.type.is_error() && (!symbol.type.is_scalar() || symbol.type == void_type || tree.type.is_array)) {
-        diagnostics
-            .error(tree.type.base.span, "type-mismatch",
-                   "a parameter of a texture is a float, int, uint, bool or image, found " +
-                       (tree.type.is_array ? "a table" : to_string(symbol.type)))
-            .hint = !symbol.type.is_scalar() ? "take the components as parameters of their own" : "";
+        diagnostics.error(tree.type.base.span, "type-mismatch",
+                          "a parameter of a texture is a float, int, uint, bool or image, found " +
+                              (tree.type.is_array ? "a table" : to_string(symbol.type)),
+                          !symbol.type.is_scalar() ? "take the components as parameters of their own" : "");
         symbol.type = Type::error();
     }
     if (symbol.type == image_type) {
         const Expression* given = tree.value ? tree.value.get() : tree.minimum.get();
         if (given)
-            diagnostics.error(given->span, "image", "an image has neither default nor range, expected ',' or ')'")
-                .hint = "it is flat, 0 everywhere, until a scene names a file: parameters = { " + tree.name.text +
-                        " = \"dents.png\" }";
+            diagnostics.error(given->span, "image", "an image has neither default nor range, expected ',' or ')'",
+                              "it is flat, 0 everywhere, until a scene names a file: parameters = { " + tree.name.text +
+                                  " = \"dents.png\" }");
         return made;
     }
     BodyChecker checker(context, scope, true);

@@ -58,13 +58,13 @@ void BodyChecker::report_unknown_function(const Expression& e, const Name& calle
         mark_read(callee.text);
         if (variable->type.is_error()) return; // enough has been said of it
         const std::string found = quoted(callee.text) + " is a " + to_string(variable->type);
-        diagnostics.error(callee.span, "not-a-function", found + ", expected a function").hint =
-            "to multiply, write " + callee.text + " * (...)";
+        diagnostics.error(callee.span, "not-a-function", found + ", expected a function",
+                          "to multiply, write " + callee.text + " * (...)");
         return;
     }
     if (callee.text == "grad") {
-        diagnostics.error(callee.span, "grad", "grad takes the name of a function").hint =
-            "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)";
+        diagnostics.error(callee.span, "grad", "grad takes the name of a function",
+                          "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)");
         return;
     }
     if (scope.lacks_functions() || may_be_unread(callee.text) || diagnostics.full())

@@ -77,21 +77,19 @@ void ModuleLowering::texture(const CheckedTexture& texture)
         size_t count = 0;
         for (uint32_t entry : entries) count += ir::instructions_reached(module, entry);
         if (count > most)
-            diagnostics
-                .error(texture.tree->name.span, "too-large",
-                       "'" + made.name + "' and what it calls take " + std::to_string(count) +
-                           " instructions, expected at most " + std::to_string(most))
-                .hint = "what repeats is a loop; a function is made anew for each derivative of it";
+            diagnostics.error(texture.tree->name.span, "too-large",
+                              "'" + made.name + "' and what it calls take " + std::to_string(count) +
+                                  " instructions, expected at most " + std::to_string(most),
+                              "what repeats is a loop; a function is made anew for each derivative of it");
         return count > most;
     };
     const auto refuse_costly = [&](uint32_t entry) {
         const uint64_t count = ir::operations_max(module, entry);
         if (count > ir::operations_limit)
-            diagnostics
-                .error(texture.tree->name.span, "too-costly",
-                       "'" + made.name + "' takes up to " + magnitude(count) +
-                           " operations at one point, expected at most " + magnitude(ir::operations_limit))
-                .hint = "loops inside loops multiply: lower their bounds";
+            diagnostics.error(texture.tree->name.span, "too-costly",
+                              "'" + made.name + "' takes up to " + magnitude(count) +
+                                  " operations at one point, expected at most " + magnitude(ir::operations_limit),
+                              "loops inside loops multiply: lower their bounds");
         return count > ir::operations_limit;
     };
     if (is_too_large(texture.tree->name.span) || refuse_costly(made.body)) return;

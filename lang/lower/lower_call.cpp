@@ -124,9 +124,9 @@ bool ModuleLowering::is_too_large(Span span, size_t under_work)
         value_count += module.functions[counted_functions].value_types.size();
     if (value_count + under_work <= value_count_max) return false;
     if (!reported_size)
-        diagnostics
-            .error(span, "too-large", "this program grows beyond " + std::to_string(value_count_max) + " values here")
-            .hint = "a function is made anew for each function that is passed to it and each derivative of it";
+        diagnostics.error(span, "too-large",
+                          "this program grows beyond " + std::to_string(value_count_max) + " values here",
+                          "a function is made anew for each function that is passed to it and each derivative of it");
     reported_size = true;
     return true;
 }

@@ -85,8 +85,7 @@ Values BodyLowering::zeros(Type type)
 bool BodyLowering::too_deep(Span span)
 {
     if (owner.nesting <= nesting_limit) return false;
-    owner.diagnostics.error(span, "too-deep", "expressions and calls nest too deep here").hint =
-        "put parts into variables";
+    owner.diagnostics.error(span, "too-deep", "expressions and calls nest too deep here", "put parts into variables");
     return true;
 }
 

@@ -59,8 +59,8 @@ ExpressionPtr Grammar::grad_call(Span first)
         std::vector<ExpressionPtr> values = arguments(opener);
         if (at(Token::left_paren)) {
             if (call.order == 1) // else the innermost has said it
-                error(first, "grad", "grad takes the name of a function").hint =
-                    "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)";
+                error(first, "grad", "grad takes the name of a function",
+                      "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)");
             const Span second = span();
             advance();
             arguments(second);
@@ -71,8 +71,8 @@ ExpressionPtr Grammar::grad_call(Span first)
     call.function = {std::string(sources.text(span(ahead))), span(ahead)};
     for (size_t i = 0; i < ahead + 1 + call.order; ++i) advance();
     if (!at(Token::left_paren)) {
-        error(since(first), "grad", "the derivative of a function is a function: expected its arguments" + found())
-            .hint = "write grad(" + call.function.text + ")(q)";
+        error(since(first), "grad", "the derivative of a function is a function: expected its arguments" + found(),
+              "write grad(" + call.function.text + ")(q)");
         return make(since(first), ErrorExpression{});
     }
     const Span second = span();

@@ -41,9 +41,8 @@ TypeName Grammar::type_name()
     if (!base) return type;
     type.base = std::move(*base);
     if (const ForeignWord* foreign = foreign_word(ForeignKind::type, type.base.text)) {
-        Diagnostic& reported =
-            diagnostics.error(type.base.span, "foreign-word", "'" + type.base.text + "' is not a type of Haptel");
-        reported.hint = foreign->hint;
+        Diagnostic& reported = diagnostics.error(type.base.span, "foreign-word",
+                                                 "'" + type.base.text + "' is not a type of Haptel", foreign->hint);
         if (!foreign->replacement.empty()) {
             if (foreign->is_exact) reported.fix = FixIt{type.base.span, std::string(foreign->replacement)};
             type.base.text = foreign->replacement;
@@ -59,8 +58,8 @@ void Grammar::array_suffix(TypeName& type)
     while (at(Token::left_bracket)) {
         const Span opener = span();
         if (type.is_array) {
-            error(opener, "nested-table", "tables have one dimension").hint =
-                "write the rows one behind the other and index by row * columns + column";
+            error(opener, "nested-table", "tables have one dimension",
+                  "write the rows one behind the other and index by row * columns + column");
             type.base.text.clear(); // of no type: nothing more is said about it
         }
         const Nesting nesting(*this, Nesting::bracket);
@@ -121,9 +120,8 @@ void Grammar::function_or_variable(File& result)
     const Span first = span();
     const size_t first_token = position;
     if (kind(1) == Token::name && kind(2) != Token::left_paren && !body_follows()) {
-        Diagnostic& reported =
-            diagnostics.error(first, "global-variable", "a variable of a whole file must be constant");
-        reported.hint = "write 'const' before it, or make it a parameter of the texture";
+        diagnostics.error(first, "global-variable", "a variable of a whole file must be constant",
+                          "write 'const' before it, or make it a parameter of the texture");
         constants(result);
         if (!result.constants.empty()) result.constants.back().declaration.is_const = true;
         return;
@@ -170,8 +168,8 @@ void Grammar::function(File& result, TypeName result_type, Name function_name, s
     Function made;
     made.doc = doc_before(doc_token, &made.facts);
     if (function_name.text == "grad") {
-        diagnostics.error(function_name.span, "reserved-name", "'grad' is the derivative of functions").hint =
-            "choose another name";
+        diagnostics.error(function_name.span, "reserved-name", "'grad' is the derivative of functions",
+                          "choose another name");
     }
     const Span first = result_type.base.span;
     made.result = std::move(result_type);
@@ -196,9 +194,8 @@ void Grammar::function(File& result, TypeName result_type, Name function_name, s
     is_head_damaged |= lost;
     if (at(Token::semicolon) && !lost) {
         advance();
-        Diagnostic& reported = diagnostics.warning(since(first), "prototype",
-                                                   "functions may stand in any order: a prototype does nothing");
-        reported.hint = "leave it out";
+        Diagnostic& reported = diagnostics.warning(
+            since(first), "prototype", "functions may stand in any order: a prototype does nothing", "leave it out");
         reported.fix = FixIt{since(first), ""};
         return;
     }
@@ -217,8 +214,8 @@ FunctionParameter Grammar::function_parameter()
     accept(Token::kw_const);
     accept(Token::kw_in); // as GLSL writes it: all parameters are
     if (at(Token::kw_out) || text() == "inout") {
-        diagnostics.error(span(), "output-parameter", "a function cannot write its parameters").hint =
-            "return the result; several results fit into a vector";
+        diagnostics.error(span(), "output-parameter", "a function cannot write its parameters",
+                          "return the result; several results fit into a vector");
         advance();
     }
     parameter.type = type_name();
@@ -234,8 +231,8 @@ FunctionParameter Grammar::function_parameter()
     if (at(Token::left_paren)) function_signature(parameter);
     parameter.span = since(first);
     if (at(Token::assign) && !lost) {
-        error(span(), "default-argument", "parameters of functions have no default").hint =
-            "write a second function with fewer parameters that calls this one";
+        error(span(), "default-argument", "parameters of functions have no default",
+              "write a second function with fewer parameters that calls this one");
     }
     return parameter;
 }
@@ -271,8 +268,8 @@ void Grammar::texture(File& result)
     made.name = std::move(*texture_name);
     const Span opener = span();
     if (at(Token::left_brace)) {
-        diagnostics.error(made.name.span, "syntax", "expected '(' after the name of the texture").hint =
-            "write 'texture " + made.name.text + "()' if it has no parameters";
+        diagnostics.error(made.name.span, "syntax", "expected '(' after the name of the texture",
+                          "write 'texture " + made.name.text + "()' if it has no parameters");
     } else if (expect(Token::left_paren, "after the name of the texture")) {
         if (!at(Token::right_paren) && !at(Token::left_brace)) {
             do {
@@ -306,8 +303,8 @@ TextureParameter Grammar::texture_parameter()
     parameter.is_output = accept(Token::kw_out);
     if (const ForeignWord* foreign = foreign_word(ForeignKind::declaration, text());
         foreign && kind(1) == Token::name) {
-        diagnostics.error(span(), "foreign-word", "there is no '" + std::string(text()) + "' in Haptel").hint =
-            "leave it out";
+        diagnostics.error(span(), "foreign-word", "there is no '" + std::string(text()) + "' in Haptel",
+                          "leave it out");
         advance();
     }
     parameter.type = type_name();
@@ -322,10 +319,9 @@ TextureParameter Grammar::texture_parameter()
     } else if (needs_default && !lost && !is_type_word(parameter.type.base.text)) {
         parameter.value = make(parameter.name.span, ErrorExpression{}); // of no type: enough is said
     } else if (needs_default && !lost) {
-        diagnostics
-            .error(parameter.name.span, "missing-default",
-                   "the parameter '" + parameter.name.text + "' needs a default value")
-            .hint = "for example " + parameter.type.base.text + " " + parameter.name.text + " = 1.0 in 0.0 .. 10.0";
+        diagnostics.error(
+            parameter.name.span, "missing-default", "the parameter '" + parameter.name.text + "' needs a default value",
+            "for example " + parameter.type.base.text + " " + parameter.name.text + " = 1.0 in 0.0 .. 10.0");
         parameter.value = make(parameter.name.span, ErrorExpression{});
         lost = !at(Token::kw_in) && !at(Token::comma) && !at(Token::right_paren); // "float depth 1mm": enough is said
     }
@@ -336,8 +332,8 @@ TextureParameter Grammar::texture_parameter()
             advance();
             parameter.maximum = binary(1);
         } else {
-            error(span(), "range", "expected '..' and the upper end of the range" + found()).hint =
-                "a range is written 0.2mm .. 5mm";
+            error(span(), "range", "expected '..' and the upper end of the range" + found(),
+                  "a range is written 0.2mm .. 5mm");
         }
         if (!parameter.maximum) parameter.maximum = make(previous_span(), ErrorExpression{});
     }

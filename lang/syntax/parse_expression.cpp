@@ -14,8 +14,8 @@ ExpressionPtr Grammar::expression()
 {
     ExpressionPtr result = conditional();
     if (at(Token::assign) && !lost) {
-        error(span(), "assignment-in-expression", "expected the end of the expression, found '='").hint =
-            "to compare, write '=='; an assignment is a statement of its own";
+        error(span(), "assignment-in-expression", "expected the end of the expression, found '='",
+              "to compare, write '=='; an assignment is a statement of its own");
     }
     return result;
 }
@@ -121,16 +121,15 @@ ExpressionPtr Grammar::postfix()
             object = method_call(std::move(object));
             is_member = false;
         } else if (at(Token::left_paren)) {
-            error(span(), "not-callable", "only a name can be called").hint =
-                "for a constant table write: const float A[3] = {1.0, 2.0, 3.0};";
+            error(span(), "not-callable", "only a name can be called",
+                  "for a constant table write: const float A[3] = {1.0, 2.0, 3.0};");
             const Span opener = span();
             advance();
             arguments(opener);
             object = make(since(object->span), ErrorExpression{});
         } else {
             if (at(Token::arrow))
-                error(span(), "no-pointers", "there are no pointers in Haptel").hint =
-                    "write '.' to take components: q.xy";
+                error(span(), "no-pointers", "there are no pointers in Haptel", "write '.' to take components: q.xy");
             advance();
             std::optional<Name> member = name("after '.': components such as x or xyz");
             const Span whole = since(object->span);
@@ -169,8 +168,7 @@ ExpressionPtr Grammar::primary()
         advance();
         ExpressionPtr inner = expression();
         if (at(Token::comma) && !lost) {
-            error(span(), "syntax", "expected ')', found ','").hint =
-                "a vector is made by its constructor: vec3(x, y, z)";
+            error(span(), "syntax", "expected ')', found ','", "a vector is made by its constructor: vec3(x, y, z)");
             skip_to({Token::right_paren});
             inner = unknown_value(*inner);
         }
@@ -185,8 +183,8 @@ ExpressionPtr Grammar::primary()
     }
     if (at(Token::plus_plus) || at(Token::minus_minus)) {
         error(first, "assignment-in-expression",
-              "'" + std::string(text()) + "' is a statement of its own, not part of an expression")
-            .hint = "write it on a line before";
+              "'" + std::string(text()) + "' is a statement of its own, not part of an expression",
+              "write it on a line before");
         return behind_stray_operator();
     }
     if (at(Token::left_brace)) {
@@ -198,8 +196,8 @@ ExpressionPtr Grammar::primary()
     if (at(Token::ampersand) || at(Token::star)) {
         const bool is_power = at(Token::star) && position > 0 && list.tokens[position - 1].kind == Token::star;
         if (is_power)
-            error(join(previous_span(), first), "foreign-word", "there is no '**' in Haptel").hint =
-                "a power is pow(x, y), a square x * x";
+            error(join(previous_span(), first), "foreign-word", "there is no '**' in Haptel",
+                  "a power is pow(x, y), a square x * x");
         else
             error(first, "no-pointers", "expected an expression" + found() + "; there are no pointers in Haptel");
         return behind_stray_operator();
@@ -229,7 +227,7 @@ ExpressionPtr Grammar::number()
     Number read = read_number(text());
     advance();
     if (!read.error.empty()) {
-        if (!lost) diagnostics.error(where, read.code, std::move(read.error)).hint = std::move(read.hint);
+        if (!lost) diagnostics.error(where, read.code, std::move(read.error), read.hint);
         list.tokens[position - 1].kind = Token::invalid; // who knows what was glued together
         ++mistakes;
         return make(where, ErrorExpression{});
@@ -251,8 +249,8 @@ ExpressionPtr Grammar::brace_list()
     advance();
     while (!at(Token::right_brace) && !at(Token::end)) {
         if (at(Token::left_brace)) {
-            error(span(), "nested-table", "tables have one dimension").hint =
-                "write the rows one behind the other and index by row * columns + column";
+            error(span(), "nested-table", "tables have one dimension",
+                  "write the rows one behind the other and index by row * columns + column");
             const Span inner = span();
             brace_list();
             list_of.elements.push_back(make(since(inner), ErrorExpression{}));

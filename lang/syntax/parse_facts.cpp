@@ -75,7 +75,7 @@ ir::Facts Grammar::parse_facts(Span where)
         const bool negative = accept(Token::minus);
         const Number read = read_number(at(Token::number) ? text() : std::string_view{});
         if (!read.error.empty()) {
-            error(span(), "facts", at(Token::number) ? read.error : "expected a number" + found()).hint = read.hint;
+            error(span(), "facts", at(Token::number) ? read.error : "expected a number" + found(), read.hint);
             return std::nullopt;
         }
         last = join(last, span());
@@ -86,8 +86,8 @@ ir::Facts Grammar::parse_facts(Span where)
         const std::optional<double> found = signed_number();
         if (found && *found < 0)
             error(last, "facts",
-                  "expected a " + std::string(what) + " of 0 or more, found " + printable(sources.text(last)))
-                .hint = "it is a length: the greatest there is, whatever its direction";
+                  "expected a " + std::string(what) + " of 0 or more, found " + printable(sources.text(last)),
+                  "it is a length: the greatest there is, whatever its direction");
         return found;
     };
     do {
@@ -101,9 +101,8 @@ ir::Facts Grammar::parse_facts(Span where)
             if (facts.value_maximum && *facts.value_minimum > *facts.value_maximum)
                 error(join(first, last), "facts",
                       "expected the least value before the greatest, found " +
-                          printable(sources.text(join(first, last))))
-                    .hint =
-                    "write value " + std::string(sources.text(last)) + " .. " + std::string(sources.text(first));
+                          printable(sources.text(join(first, last))),
+                      "write value " + std::string(sources.text(last)) + " .. " + std::string(sources.text(first)));
         } else if (what == "slope") {
             facts.slope = size(what);
         } else if (what == "curvature") {
@@ -114,8 +113,8 @@ ir::Facts Grammar::parse_facts(Span where)
                 error(span(), "facts", "expected jump, C0, C1 or C2" + found());
             if (!lost) advance();
         } else {
-            error(where, "facts", "expected value, slope, curvature or class in the facts").hint =
-                "write /// @facts value -1 .. 1, slope 2.5, curvature 10, class C1";
+            error(where, "facts", "expected value, slope, curvature or class in the facts",
+                  "write /// @facts value -1 .. 1, slope 2.5, curvature 10, class C1");
         }
     } while (!lost && accept(Token::comma));
     if (!lost && !at(Token::end)) error(span(), "facts", "expected ','" + found());

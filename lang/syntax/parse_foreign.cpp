@@ -17,9 +17,8 @@ void Grammar::skip_foreign_qualifiers()
                                         (kind(2) == Token::left_bracket && is_type_word(text(1))) ||
                                         kind(2) == Token::less || kind(1) == Token::kw_const;
         if (!word || !stands_before_type) return; // "flat x": a type that is misspelt
-        Diagnostic& reported =
-            diagnostics.error(span(), "foreign-word", "there is no '" + std::string(text()) + "' in Haptel");
-        reported.hint = word->hint;
+        Diagnostic& reported = diagnostics.error(span(), "foreign-word",
+                                                 "there is no '" + std::string(text()) + "' in Haptel", word->hint);
         reported.fix = word->replacement.empty() ? FixIt{{file, span().begin, span(1).begin}, ""}
                                                  : FixIt{span(), std::string(word->replacement)};
         ++mistakes;
@@ -32,8 +31,9 @@ void Grammar::skip_type_arguments()
 {
     if (!at(Token::less) || kind(1) != Token::name || kind(2) != Token::greater) return;
     const Span whole = join(span(), span(2));
-    Diagnostic& reported = diagnostics.error(whole, "foreign-word", "types take no arguments in angle brackets");
-    reported.hint = "write float, vec3, mat3 ...; precision is chosen when the texture is compiled";
+    Diagnostic& reported =
+        diagnostics.error(whole, "foreign-word", "types take no arguments in angle brackets",
+                          "write float, vec3, mat3 ...; precision is chosen when the texture is compiled");
     const ForeignWord* argument = foreign_word(ForeignKind::type, text(1));
     const bool is_real = text(1) == "float" || (argument && argument->replacement == "float");
     if (is_real) reported.fix = FixIt{whole, ""};
@@ -68,8 +68,8 @@ void Grammar::read_misspelt_keyword()
                                 next == Token::minus || next == Token::kw_true || next == Token::kw_false;
     if (!fits) return;
     Diagnostic& reported =
-        diagnostics.error(span(), "syntax", "expected a statement, found '" + std::string(text()) + "'");
-    reported.hint = "did you mean '" + std::string(meant) + "'?";
+        diagnostics.error(span(), "syntax", "expected a statement, found '" + std::string(text()) + "'",
+                          "did you mean '" + std::string(meant) + "'?");
     if (is_only) reported.fix = FixIt{span(), std::string(meant)};
     ++mistakes;
     list.tokens[position].kind = then;
@@ -82,8 +82,7 @@ void Grammar::read_misspelt_in()
     if (lost || !is_word || nearest_name(text(), {"in"}).empty()) return;
     const Span word = span();
     list.tokens[position].kind = Token::kw_in;
-    Diagnostic& reported = error(word, "syntax", "expected 'in', ',' or ')'" + found());
-    reported.hint = "did you mean 'in'?";
+    Diagnostic& reported = error(word, "syntax", "expected 'in', ',' or ')'" + found(), "did you mean 'in'?");
     reported.fix = FixIt{word, "in"};
     lost = false;
 }
@@ -94,8 +93,7 @@ Token Grammar::foreign_operator()
     const ForeignWord* word = at(Token::name) ? foreign_word(ForeignKind::operation, text()) : nullptr;
     if (!word || lost) return Token::name;
     Diagnostic& reported =
-        diagnostics.error(span(), "foreign-word", "there is no '" + std::string(text()) + "' in Haptel");
-    reported.hint = word->hint;
+        diagnostics.error(span(), "foreign-word", "there is no '" + std::string(text()) + "' in Haptel", word->hint);
     reported.fix = FixIt{span(), std::string(word->replacement)};
     ++mistakes;
     list.tokens[position].kind = word->word == "and"   ? Token::logical_and
@@ -114,8 +112,8 @@ ExpressionPtr Grammar::cast()
     ExpressionPtr operand = unary();
     const Span whole = since(first);
     const std::string written = type.text + "(" + std::string(sources.text(operand->span)) + ")";
-    Diagnostic& reported = diagnostics.error(whole, "foreign-word", "a value is converted by the type's constructor");
-    reported.hint = "write " + printable(written);
+    Diagnostic& reported = diagnostics.error(whole, "foreign-word", "a value is converted by the type's constructor",
+                                             "write " + printable(written));
     reported.fix = FixIt{whole, written};
     ++mistakes;
     std::vector<ExpressionPtr> arguments;
@@ -139,8 +137,8 @@ ExpressionPtr Grammar::method_call(ExpressionPtr object)
     }
     const Span whole = since(first);
     if (!lost) {
-        Diagnostic& reported = diagnostics.error(whole, "not-callable", "values have no functions of their own");
-        reported.hint = "write " + printable(written + ")"); // GLSL's q.length() counts components
+        diagnostics.error(whole, "not-callable", "values have no functions of their own",
+                          "write " + printable(written + ")")); // GLSL's q.length() counts components
     }
     ++mistakes;
     return make(whole, CallExpression{std::move(callee), std::move(values)});
@@ -149,9 +147,9 @@ ExpressionPtr Grammar::method_call(ExpressionPtr object)
 // "in vec2 uv;" at the top of a file.
 void Grammar::skip_global_in_or_out()
 {
-    error(span(), "foreign-word", "a file has no inputs and outputs of its own").hint =
-        at(Token::kw_in) ? "the point of contact is p, its normal n, its mesh coordinates uv"
-                         : "a texture returns its height: return 1mm;";
+    error(span(), "foreign-word", "a file has no inputs and outputs of its own",
+          at(Token::kw_in) ? "the point of contact is p, its normal n, its mesh coordinates uv"
+                           : "a texture returns its height: return 1mm;");
     skip_to({});
     accept(Token::semicolon);
     lost = false;
@@ -160,7 +158,7 @@ void Grammar::skip_global_in_or_out()
 // "struct S {...};", "uniform float x;": says what to write, skips the whole.
 void Grammar::skip_foreign_declaration(const ForeignWord& word)
 {
-    error(span(), "foreign-word", "there is no '" + std::string(word.word) + "' in Haptel").hint = word.hint;
+    error(span(), "foreign-word", "there is no '" + std::string(word.word) + "' in Haptel", word.hint);
     advance();
     skip_to({Token::left_brace});
     if (at(Token::left_brace)) skip_brackets();
@@ -173,8 +171,7 @@ void Grammar::skip_foreign_declaration(const ForeignWord& word)
 // run, is still read for its own mistakes.
 void Grammar::foreign_statement(const ForeignWord& word, Statements& into)
 {
-    Diagnostic& reported = error(span(), "foreign-word", "there is no '" + std::string(word.word) + "' in Haptel");
-    reported.hint = word.hint;
+    error(span(), "foreign-word", "there is no '" + std::string(word.word) + "' in Haptel", word.hint);
     advance();
     const bool is_loop = word.word == "while" || word.word == "do";
     const Span head = since(span());

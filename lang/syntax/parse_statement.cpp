@@ -41,8 +41,8 @@ void Grammar::statement(Statements& into)
         expect_semicolon("'break'");
         into.push_back(make_statement(since(first), Break{}));
     } else if (at(Token::kw_else)) {
-        error(first, "else-without-if", "this 'else' belongs to no 'if'").hint =
-            "an 'if' with several statements needs braces around them";
+        error(first, "else-without-if", "this 'else' belongs to no 'if'",
+              "an 'if' with several statements needs braces around them");
         advance();
         into.push_back(single_statement("'else'"));
     } else if (const ForeignWord* word = at(Token::name) ? foreign_word(ForeignKind::statement, text()) : nullptr;
@@ -179,16 +179,16 @@ StatementPtr Grammar::for_statement()
     const auto end_part = [&](std::string_view part) {
         if (lost) skip_to({Token::right_paren});
         if (accept(Token::semicolon)) return;
-        error(span(), "syntax", "expected ';' after the " + std::string(part) + " of the loop" + found()).hint =
-            "write for (int i = 0; i < count; i++)";
+        error(span(), "syntax", "expected ';' after the " + std::string(part) + " of the loop" + found(),
+              "write for (int i = 0; i < count; i++)");
     };
     if (expect(Token::left_paren, "after 'for'")) {
         if (at_declaration()) {
             Statements made;
             declaration_list(made);
             if (made.size() > 1)
-                error(made[1]->span, "syntax", "a loop has one variable, found a second").hint =
-                    "declare the others above the loop";
+                error(made[1]->span, "syntax", "a loop has one variable, found a second",
+                      "declare the others above the loop");
             if (!made.empty()) loop.init = std::move(made.front());
         } else if (!at(Token::semicolon)) {
             loop.init = assignment_or_expression();
@@ -198,8 +198,7 @@ StatementPtr Grammar::for_statement()
         end_part("condition");
         if (!at(Token::right_paren)) loop.step = assignment_or_expression();
         if (at(Token::comma) && !lost)
-            error(span(), "syntax", "a loop has one step, found a second").hint =
-                "put the others at the end of its body";
+            error(span(), "syntax", "a loop has one step, found a second", "put the others at the end of its body");
         while (!close(Token::right_paren, opener) && accept(Token::semicolon)) {
         }
     }

@@ -106,8 +106,8 @@ bool Grammar::top_level_name(File& result)
     if (!guess.empty() && follows) {
         const ErrorCode code = foreign ? ErrorCode("foreign-word") : ErrorCode("syntax");
         Diagnostic& reported = diagnostics.error(
-            span(), code, "expected 'texture' or the type of a function, found '" + std::string(text()) + "'");
-        reported.hint = foreign ? std::string(foreign->hint) : "did you mean '" + std::string(guess) + "'?";
+            span(), code, "expected 'texture' or the type of a function, found '" + std::string(text()) + "'",
+            foreign ? std::string(foreign->hint) : "did you mean '" + std::string(guess) + "'?");
         if (!foreign) reported.fix = FixIt{span(), std::string(guess)};
         ++mistakes;
         if (guess == "const") list.tokens[position].kind = Token::kw_const;

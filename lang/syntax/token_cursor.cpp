@@ -114,14 +114,14 @@ bool TokenCursor::lingers(Span where)
     return where.begin <= line_end;
 }
 
-Diagnostic& TokenCursor::error(Span where, ErrorCode code, std::string message)
+Diagnostic& TokenCursor::error(Span where, ErrorCode code, std::string message, std::string_view hint)
 {
     const bool silent = lost || beside_invalid() || lingers(where) || (at(Token::end) && end_is_reported);
     lost = true;
     ++mistakes;
     if (silent) return unheard = {};
     end_is_reported = at(Token::end);
-    Diagnostic& reported = diagnostics.error(where, code, std::move(message));
+    Diagnostic& reported = diagnostics.error(where, code, std::move(message), hint);
     if (diagnostics.full()) position = list.tokens.size() - 1; // enough is said: run off the end
     return reported;
 }
@@ -190,7 +190,7 @@ TokenCursor::Nesting::Nesting(TokenCursor& owner, uint32_t weight_of_level) : cu
 
 void TokenCursor::report_too_deep()
 {
-    error(span(), "too-deep", "this is nested more than 256 levels deep").hint = "give parts of it names of their own";
+    error(span(), "too-deep", "this is nested more than 256 levels deep", "give parts of it names of their own");
 }
 
 } // namespace haptel::lang

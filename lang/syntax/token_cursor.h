@@ -43,7 +43,7 @@ protected:
     void report_unclosed(Token closer, Span opener, bool list_may_go_on = false);
 
     // Silent while lost and beside an invalid token; lost afterwards, and at the end of the file if enough is said.
-    Diagnostic& error(Span where, ErrorCode code, std::string message);
+    Diagnostic& error(Span where, ErrorCode code, std::string message, std::string_view hint = {});
     std::string found() const; // ", found 'x'"
     // "texture wood" or "import wood": never inside a body, so that a bracket left open does not reach across.
     bool at_texture_or_import() const;

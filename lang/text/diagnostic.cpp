@@ -11,24 +11,24 @@ constexpr size_t notice_limit = 200; // warnings and notes
 
 } // namespace
 
-Diagnostic& Diagnostics::error(Span span, ErrorCode code, std::string message)
+Diagnostic& Diagnostics::error(Span span, ErrorCode code, std::string message, std::string_view hint)
 {
-    return add(Severity::error, span, code.string(), std::move(message));
+    return add(Severity::error, span, code.string(), std::move(message), hint);
 }
 
-Diagnostic& Diagnostics::warning(Span span, WarningCode code, std::string message)
+Diagnostic& Diagnostics::warning(Span span, WarningCode code, std::string message, std::string_view hint)
 {
-    return add(Severity::warning, span, code.string(), std::move(message));
+    return add(Severity::warning, span, code.string(), std::move(message), hint);
 }
 
-Diagnostic& Diagnostics::note(Span span, NoteCode code, std::string message)
+Diagnostic& Diagnostics::note(Span span, NoteCode code, std::string message, std::string_view hint)
 {
-    return add(Severity::note, span, code.string(), std::move(message));
+    return add(Severity::note, span, code.string(), std::move(message), hint);
 }
 
-Diagnostic& Diagnostics::add(Severity severity, Span span, std::string code, std::string message)
+Diagnostic& Diagnostics::add(Severity severity, Span span, std::string code, std::string message, std::string_view hint)
 {
-    Diagnostic diagnostic{severity, std::move(code), span, std::move(message), {}, {}, {}};
+    Diagnostic diagnostic{severity, std::move(code), span, std::move(message), std::string(hint), {}, {}};
     const bool is_error = severity == Severity::error;
     if (is_error) ++report_count;
     const auto same_place = [&](const Diagnostic& other) {

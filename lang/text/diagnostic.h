@@ -38,10 +38,10 @@ struct Diagnostic {
 // Collects; keeps at most one error per place and at most `error_limit` errors, so that one mistake does not cascade.
 class Diagnostics {
 public:
-    // Returns the stored diagnostic to add hint, related or fix to; a dropped one goes to a scratch object.
-    Diagnostic& error(Span span, ErrorCode code, std::string message);
-    Diagnostic& warning(Span span, WarningCode code, std::string message);
-    Diagnostic& note(Span span, NoteCode code, std::string message);
+    // Returns the stored diagnostic to add related places or a fix to; a dropped one goes to a scratch object.
+    Diagnostic& error(Span span, ErrorCode code, std::string message, std::string_view hint = {});
+    Diagnostic& warning(Span span, WarningCode code, std::string message, std::string_view hint = {});
+    Diagnostic& note(Span span, NoteCode code, std::string message, std::string_view hint = {});
 
     // An error that follows from one that was reported is not said, but what it is in is not sound either.
     void count_consequence() { ++report_count; }
@@ -56,7 +56,7 @@ public:
     uint32_t error_limit = 50;
 
 private:
-    Diagnostic& add(Severity severity, Span span, std::string code, std::string message);
+    Diagnostic& add(Severity severity, Span span, std::string code, std::string message, std::string_view hint);
     std::vector<Diagnostic> items;
     Diagnostic scratch;
     uint32_t error_count = 0, report_count = 0;

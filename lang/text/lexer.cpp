@@ -150,11 +150,10 @@ private:
     bool has_room(uint32_t begin)
     {
         if (list.count++ < room) return true;
-        diagnostics
-            .error({file, begin, begin + 1}, "too-large",
-                   "expected at most " + std::to_string(tokens_max) +
-                       " words, numbers, signs and comments in a program with its imports")
-            .hint = "large tables belong into pictures: texture t(image picture)";
+        diagnostics.error({file, begin, begin + 1}, "too-large",
+                          "expected at most " + std::to_string(tokens_max) +
+                              " words, numbers, signs and comments in a program with its imports",
+                          "large tables belong into pictures: texture t(image picture)");
         list = {{}, {}, room};
         at = size();
         return false;
@@ -171,8 +170,8 @@ private:
     {
         if (at == 0 && text.starts_with("\xEF\xBB\xBF")) at = 3;
         if (at == 0 && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))) {
-            diagnostics.error({file, 0, 2}, "not-text", "this file is UTF-16, expected UTF-8").hint =
-                "save it as UTF-8 in your editor";
+            diagnostics.error({file, 0, 2}, "not-text", "this file is UTF-16, expected UTF-8",
+                              "save it as UTF-8 in your editor");
             give_up();
         }
     }
@@ -259,8 +258,9 @@ private:
             if (at < text.size()) ++at;
         }
         const bool define = text.substr(begin, word.end - begin) == "#define";
-        Diagnostic& found = diagnostics.error(word, "preprocessor", "Haptel has no preprocessor");
-        found.hint = define ? "write a constant, \"const float WIDTH = 2mm;\", or a function" : "leave this line out";
+        Diagnostic& found = diagnostics.error(word, "preprocessor", "Haptel has no preprocessor",
+                                              define ? "write a constant, \"const float WIDTH = 2mm;\", or a function"
+                                                     : "leave this line out");
         const std::string_view ignored[] = {"#version", "#extension", "#pragma", "#line"}; // what changes nothing here
         for (const std::string_view known : ignored)
             if (text.substr(begin, word.end - begin) == known) found.fix = FixIt{span_from(begin), ""};
@@ -294,8 +294,8 @@ private:
             Diagnostic& found = diagnostics.error(
                 first, "unexpected-character",
                 point.value == 0xA0 ? "unexpected no-break space"
-                                    : "unexpected character '" + printable(text.substr(begin, point.length)) + "'");
-            found.hint = lookalike.meant == " " ? "write an ordinary space" : "write " + std::string(lookalike.meant);
+                                    : "unexpected character '" + printable(text.substr(begin, point.length)) + "'",
+                lookalike.meant == " " ? "write an ordinary space" : "write " + std::string(lookalike.meant));
             found.fix = FixIt{first, std::string(lookalike.meant)};
             push(Token::invalid, begin);
             return;
@@ -377,8 +377,8 @@ TokenList lex(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics,
         return {{{Token::invalid, 0, 0}, {Token::end, 0, 0}}, {}, 0};
     }
     if (const auto garbage = first_of_garbage(text)) {
-        diagnostics.error({file, *garbage, *garbage + 1}, "not-text", "this file is not text, expected UTF-8").hint =
-            "is it the right file, and saved as UTF-8?";
+        diagnostics.error({file, *garbage, *garbage + 1}, "not-text", "this file is not text, expected UTF-8",
+                          "is it the right file, and saved as UTF-8?");
         return {{{Token::invalid, *garbage, *garbage}, {Token::end, *garbage, *garbage}}, {}, 0};
     }
     return Lexer(text, {file, 0, static_cast<uint32_t>(text.size())}, diagnostics, room).run();
