@@ -2,7 +2,7 @@
 //
 // There are no vectors (split on lowering), no branches (only `if` and `for` regions that yield values), no memory and
 // no side effects; every program ends. What is here is what every evaluator must understand: interpreter, intervals,
-// differentiation, LLVM, later C and GLSL. Text form: print.h; invariants: verify.h; construction: builder.h.
+// differentiation, LLVM, later C and GLSL. Invariants: verify.h; construction: builder.h.
 #pragma once
 
 #include "lang/text/source.h"

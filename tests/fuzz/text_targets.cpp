@@ -2,7 +2,6 @@
 #include "lang/analyse.h"
 #include "lang/format/format.h"
 #include "lang/ir/cost.h"
-#include "lang/ir/print.h"
 #include "lang/ir/run/interpret.h"
 #include "lang/ir/verify.h"
 #include "lang/syntax/parser.h"
@@ -12,6 +11,7 @@
 #include "tests/fuzz/target.h"
 #include "tests/lang/ir/ir_random.h"
 #include "tests/support/ir_parse.h"
+#include "tests/support/ir_print.h"
 
 #include <cmath>
 

@@ -23,7 +23,7 @@
 #pragma once
 
 #include "lang/ir/ir.h"
-#include "lang/ir/print.h"
+#include "tests/support/ir_print.h"
 
 #include <optional>
 #include <string>

@@ -1,4 +1,4 @@
-// Text form of the IR, for people and tests: equal text means an equal module.
+// Text form of the IR, for tests: equal text means an equal module.
 #pragma once
 
 #include "lang/ir/ir.h"
