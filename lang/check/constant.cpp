@@ -57,7 +57,16 @@ std::vector<ConstantPart> ConstantEvaluator::value(const Expression& e, Type typ
     BodyLowering body(work->lowering, "constant", 0);
     const Values parts = body.converted(e, type);
     const uint32_t function = body.builder.finish(parts);
-    const std::vector<ConstantPart> found = ir::interpret<double>(work->module, function, {}, nullptr);
+    ir::Interpreter<double> interpreter(work->module);
+    std::vector<ConstantPart> found;
+    for (const ir::Slot<double>& slot : interpreter.run(function, {}, nullptr)) {
+        if (type.scalar == Scalar::float_)
+            found.emplace_back(slot.real);
+        else if (type.scalar == Scalar::bool_)
+            found.emplace_back(slot.bits != 0);
+        else
+            found.emplace_back(slot.bits);
+    }
     work->module.functions.pop_back(); // nothing calls it
     return found;
 }

@@ -6,6 +6,7 @@
 #include "tests/conformance/case.h"
 #include "tests/conformance/folder.h"
 #include "tests/support/catch.h"
+#include "tests/support/interpret.h"
 
 #include <cstring>
 #include <set>

@@ -10,6 +10,7 @@
 #include "tests/conformance/folder.h"
 #include "tests/fuzz/target.h"
 #include "tests/lang/ir/ir_random.h"
+#include "tests/support/interpret.h"
 #include "tests/support/ir_parse.h"
 #include "tests/support/ir_print.h"
 

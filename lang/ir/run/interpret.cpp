@@ -3,7 +3,5 @@
 namespace haptel::ir {
 
 template class Interpreter<double>;
-template std::vector<Scalar<double>> interpret(const Module&, uint32_t, std::span<const Scalar<double>>,
-                                               const EntryInputs<double>*);
 
 } // namespace haptel::ir

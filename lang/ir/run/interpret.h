@@ -26,20 +26,15 @@ struct EntryInputs {
     std::vector<const haptel_image*> images = {}; // by the same index; missing: flat
 };
 
-// Results of a function for these arguments. `inputs` may be null for functions that are not entries.
-template <typename T>
-std::vector<Scalar<T>> interpret(const Module& module, uint32_t function, std::span<const Scalar<T>> arguments,
-                                 const EntryInputs<T>* inputs);
-
-// The same, prepared once for many evaluations of one module, which must be verified and must not change meanwhile: no
-// allocation per evaluation. For one thread.
+// Of one module, which must be verified and must not change meanwhile; prepared once, so that no evaluation allocates.
+// For one thread.
 template <typename T>
 class Interpreter {
 public:
     explicit Interpreter(const Module& module);
     ~Interpreter();
 
-    // The results stay valid until the next run.
+    // `inputs` may be null for functions that are not entries. The results stay valid until the next run.
     std::span<const Slot<T>> run(uint32_t function, std::span<const Slot<T>> arguments, const EntryInputs<T>* inputs);
 
     // Digest of every discrete choice of the last run: comparisons, cells, sides of abs, min and max. Two points of one

@@ -161,26 +161,4 @@ uint64_t Interpreter<T>::decisions() const
     return machine->digest;
 }
 
-template <typename T>
-std::vector<Scalar<T>> interpret(const Module& module, uint32_t function, std::span<const Scalar<T>> arguments,
-                                 const EntryInputs<T>* inputs)
-{
-    Interpreter<T> interpreter(module);
-    std::vector<Slot<T>> slots;
-    for (const Scalar<T>& argument : arguments) slots.push_back(slot_of<T>(argument));
-    std::vector<Scalar<T>> results;
-    const Function& called = module.functions[function];
-    std::span<const Slot<T>> made = interpreter.run(function, slots, inputs);
-    for (size_t i = 0; i < made.size(); ++i) {
-        switch (called.type(called.body.yields[i])) {
-        case Type::real: results.emplace_back(made[i].real); break;
-        case Type::i32:
-        case Type::u32: results.emplace_back(made[i].bits); break;
-        case Type::boolean: results.emplace_back(made[i].bits != 0); break;
-        case Type::image: results.emplace_back(uint32_t{0}); break; // no scalar; no function of the language yields one
-        }
-    }
-    return results;
-}
-
 } // namespace haptel::ir

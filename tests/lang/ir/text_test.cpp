@@ -1,6 +1,7 @@
 #include "lang/ir/run/interpret.h"
 #include "lang/ir/verify.h"
 #include "tests/support/catch.h"
+#include "tests/support/interpret.h"
 #include "tests/support/ir_parse.h"
 #include "tests/support/ir_print.h"
 

@@ -3,6 +3,7 @@
 #include "lang/compile.h"
 #include "lang/ir/run/interpret.h"
 #include "tests/support/catch.h"
+#include "tests/support/interpret.h"
 
 #include <cmath>
 
