@@ -15,7 +15,7 @@ houses=(
     'runtime: geometry hand surface surface/build contact texture scene force files render servo | input lang/abi lang/text/near_name.h'
     'device: . | !runtime/files runtime lang/abi lang/text/near_name.h'
     'tools: output arguments plot report commands . | input lang stdlib jit runtime device bench'
-    'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h lang stdlib'
+    'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h runtime/servo/allocation_count.h lang stdlib'
     'tests/runtime: . | tests/support runtime lang/abi'
 )
 
