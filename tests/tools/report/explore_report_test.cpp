@@ -39,6 +39,21 @@ TEST_CASE("the report holds every promised field, null where nothing was measure
     CHECK(!to_lines(outcome).empty());
 }
 
+TEST_CASE("times are told in the unit that suits them")
+{
+    ExploreOutcome outcome;
+    outcome.hands.resize(1);
+    const auto longest_of = [&](uint64_t ns) {
+        outcome.hands[0].servo.tick_ns.add(ns);
+        const std::string all = to_lines(outcome);
+        const size_t at = all.find("longest ");
+        return all.substr(at, all.find('\n', at) - at);
+    };
+    CHECK(longest_of(999) == "longest 999 ns");
+    CHECK(longest_of(1'500) == "longest 1.5 us");
+    CHECK(longest_of(2'500'000) == "longest 2.5 ms");
+}
+
 TEST_CASE("what was left out because deadlines were missed is told, and nothing where none was")
 {
     ExploreOutcome outcome;
