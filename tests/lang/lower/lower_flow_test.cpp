@@ -1,9 +1,11 @@
 // What branches, loops and calls mean.
 #include "lang/check/check.h"
+#include "lang/compile.h"
 #include "lang/lower/lower.h"
 #include "lang/syntax/parser.h"
 #include "tests/lang/lower/evaluation.h"
 #include "tests/support/catch.h"
+#include "tests/support/ir_print.h"
 
 using namespace haptel::lang::test;
 
@@ -141,6 +143,25 @@ TEST_CASE("lower: overloads and functions as arguments")
                   {"compose(shift, square, 2.0)", 12 + 400},
                   {"late(2.0)", 21}},
                  functions, at);
+}
+
+TEST_CASE("lower: a choice branches where a side is work, and selects where both are at hand")
+{
+    const auto branches = [](const std::string& choice) {
+        const auto compiled =
+            haptel::lang::compile({"choice.haptel", "texture t() { return 1m * (" + choice + "); }"}, {});
+        REQUIRE(compiled.program);
+        return haptel::ir::print(compiled.program->module).find(" if ") != std::string::npos;
+    };
+    for (const char* choice : {"time > 0s ? uv.x : uv.y", "time > 0s ? -uv.x : 1.0", "time > 0s ? 2.0 : -uv.y"}) {
+        CAPTURE(choice);
+        CHECK(!branches(choice));
+    }
+    for (const char* choice :
+         {"time > 0s ? exp(uv.x) : uv.y", "time > 0s ? -exp(uv.x) : 1.0", "time > 0s ? uv.x : 1.0 / uv.y"}) {
+        CAPTURE(choice);
+        CHECK(branches(choice));
+    }
 }
 
 TEST_CASE("lower: a variable without a value is told as a mistake of the compiler's own, and read as 0")
