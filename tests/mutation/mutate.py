@@ -98,13 +98,23 @@ patterns += [
 ]
 
 
+class Found:
+    """A match in the blanked text, with the words of the text itself."""
+
+    def __init__(self, match, text):
+        self.match, self.text = match, text
+
+    def group(self, number):
+        return self.text[self.match.start(number):self.match.end(number)]
+
+
 def places_of(name):
     text = (root / name).read_text()
     code = code_of(text)
     found = []
     for kind, pattern, replace in patterns:
         for match in pattern.finditer(code):
-            before, after = text[match.start():match.end()], replace(match)
+            before, after = text[match.start():match.end()], replace(Found(match, text))
             head = code[code.rfind("\n", 0, match.start()) + 1:match.start()]
             declares = kind == "statement" and re.match(r"\s*(return|break|continue|using|friend|else|default)\b", before)
             if before == after or declares or re.match(r"\s*(static_assert|template|namespace|enum|case)\b", head):
