@@ -11,8 +11,9 @@
 // One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
 // sequence of poses. Everything is in the object's space, metres: transform the hand into it first.
 //
-// Where faces pierce each other without sharing edges (walls.h) up to three sheets at once hold the proxy. Known
-// limit: where a vertex lies within rounding on another sheet the proxy may rest before the nearest point for a tick.
+// Where faces pierce each other without sharing edges (intersecting_faces.h), up to three sheets at once hold the
+// proxy. Known limit: where a vertex lies within rounding on another sheet, the proxy may rest before the nearest point
+// for a tick.
 #pragma once
 
 #include "runtime/contact/proxy.h"

@@ -114,7 +114,7 @@ std::vector<Compiled> all_overloads()
         for (const BuiltinOverload& overload : builtin_overloads(name)) {
             if (overload.result.scalar != Scalar::float_) continue;
             const auto is_image = [](const ParameterInfo& parameter) { return parameter.type == image_type; };
-            if (std::ranges::any_of(overload.parameters, is_image)) continue; // ir_spline_test.cpp, image_test.cpp
+            if (std::ranges::any_of(overload.parameters, is_image)) continue; // spline_test.cpp, image_test.cpp
             const std::string source = source_of(overload);
             INFO(source);
             CompileResult result = compile({"builtin", source}, {});

@@ -184,7 +184,7 @@ TEST_CASE("folding: constants in any place give the same bits as the operation i
     const uint32_t words[] = {0, 1, 2, 5, 31, 33, 0x7fffffff, 0x80000000, 0xffffffff, 0xfffffffe};
     std::mt19937 random(7);
     for (const OpInfo& info : all_ops()) {
-        if (info.operands[0] == 'm') continue; // of images: ir_spline_test.cpp
+        if (info.operands[0] == 'm') continue; // of images: bounds/spline_test.cpp
         CAPTURE(info.name);
         for (int round = 0; round < 800; ++round) {
             Module module;

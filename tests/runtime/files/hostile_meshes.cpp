@@ -1,4 +1,4 @@
-// Mesh files that nobody means well with, as far as their readers go; contact_hostile.cpp has the meshes themselves.
+// Malformed mesh files, as far as their readers go; tests/runtime/surface/hostile.cpp has malformed meshes themselves.
 #include "runtime/files/mesh_file.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"

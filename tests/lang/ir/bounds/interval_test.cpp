@@ -83,7 +83,7 @@ TEST_CASE("intervals: every operation stays inside, whatever the operands hold")
     Sampler sampler(11);
     for (const OpInfo& info : all_ops()) {
         CAPTURE(info.name);
-        if (info.operands[0] == 'm') continue; // of images: ir_spline_test.cpp
+        if (info.operands[0] == 'm') continue; // of images: spline_test.cpp
         auto type_of = [](char kind) {
             return kind == 'i' ? Type::i32 : kind == 'u' ? Type::u32 : kind == 'b' ? Type::boolean : Type::real;
         };
