@@ -136,7 +136,7 @@ std::string why_it_ended(int status, const MeshReadLimits& limits)
     if (WTERMSIG(status) == SIGPROF)
         return "it came to no end in " + seconds(limits.processor_s) + " of processor time";
     if (WTERMSIG(status) == SIGALRM) return "it came to no end in " + seconds(limits.wall_s);
-    if (WTERMSIG(status) == SIGKILL) return "it was ended from outside, perhaps for want of memory";
+    if (WTERMSIG(status) == SIGKILL) return "it was killed, perhaps because memory ran out";
     return std::string("it crashed (") + strsignal(WTERMSIG(status)) + ")";
 }
 

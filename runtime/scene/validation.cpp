@@ -78,7 +78,7 @@ void validate(const Vibration& vibration, double rate_hz, Findings& findings)
 
 void validate(const ProbeSettings& probe, Findings& findings)
 {
-    if (!one_of(probe.kind, ProbeKind::gripper)) return findings.add("`kind` is none that there is");
+    if (!one_of(probe.kind, ProbeKind::gripper)) return findings.add("unknown `kind`");
     const std::size_t before = findings.count();
     probe_fields(probe, findings.ranges());
     if (probe.has_tail()) probe_length_field(probe, findings.ranges());
@@ -116,7 +116,7 @@ void validate(const SceneObject& object, const Scene& scene, const ProbeSettings
 
 void validate(const Region& region, double rate_hz, Findings& findings)
 {
-    if (!one_of(region.shape, RegionShape::box)) return findings.add("`shape` is none that there is");
+    if (!one_of(region.shape, RegionShape::box)) return findings.add("unknown `shape`");
     validate(region.placement, findings);
     const std::size_t before = findings.count();
     if (region.shape != RegionShape::space)
@@ -256,7 +256,7 @@ std::string validate(const Scene* scene, const HandSettings& hand)
     Findings findings;
     findings.part("servo");
     servo_fields(scene->servo, findings.ranges());
-    if (!one_of(scene->servo.force.model, ForceModel::lateral)) findings.add("`force_model` is none that there is");
+    if (!one_of(scene->servo.force.model, ForceModel::lateral)) findings.add("unknown `force_model`");
     if (findings.count() > 0) return findings.text(); // the rate is what other figures are compared with
 
     findings.part("hand");

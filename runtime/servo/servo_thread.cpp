@@ -115,7 +115,7 @@ bool ServoThread::over()
 {
     if (report_.state != ServoState::running) return true;
     if (static_cast<double>(periods_) >= periods_wanted_)
-        end(ServoState::finished, "the time asked for is over");
+        end(ServoState::finished, "stopped after the requested time");
     else if (stop_requested_.load(std::memory_order_relaxed))
         end(ServoState::stopped, "stopped on request");
     return report_.state != ServoState::running;

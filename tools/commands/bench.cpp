@@ -236,7 +236,7 @@ Command bench_command(CLI::App& app)
 {
     const auto options = std::make_shared<BenchOptions>();
     CLI::App* command = app.add_subcommand(
-        "bench", "Figures: compile times, accuracy, batches, math, servo ticks, how they scale and what they skip");
+        "bench", "Measure compile times, accuracy, batches, math, servo ticks, how they scale and what they skip");
     command
         ->add_option(
             "what", options->what,
@@ -248,7 +248,7 @@ Command bench_command(CLI::App& app)
     options->of_batch = {
         command->add_option("paths", options->paths, "batch: texture files, FILE:NAME, or folders [stdlib examples]")
             ->type_name("PATH"),
-        command->add_option("--points", options->points, "batch: so many at once")
+        command->add_option("--points", options->points, "batch: number of points")
             ->check(CLI::Range(1, 100'000'000))
             ->capture_default_str(),
         command->add_option("--precision", options->precision, "batch: f64, mixed or f32")

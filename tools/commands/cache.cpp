@@ -77,7 +77,7 @@ Command cache_command(CLI::App& app)
     CLI::App* command = app.add_subcommand("cache", "Machine code kept on disk: show, fill or empty it");
     command->add_flag("--prime", options->prime,
                       "Compile the standard library into it, as a build or installation does");
-    command->add_flag("--clear", options->clear, "Remove what is in it (before --prime)");
+    command->add_flag("--clear", options->clear, "Empty it (before --prime)");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel cache\n"
                            "  haptel cache --clear --prime\n"

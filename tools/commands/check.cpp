@@ -114,7 +114,7 @@ void CheckRun::fix(const std::string& path)
         fmt::print(stderr, "{}: {} fixed\n", path, mended.applied);
     }
     if (mended.left_out > 0)
-        fmt::print(stderr, "{}: {} left for you to mend: what is proposed would lead to more findings\n", path,
+        fmt::print(stderr, "{}: {} left for you to mend: the proposed fix would cause more findings\n", path,
                    mended.left_out);
 }
 
@@ -284,7 +284,7 @@ Command check_command(CLI::App& app)
 {
     const auto options = std::make_shared<CheckOptions>();
     CLI::App* command =
-        app.add_subcommand("check", "What is wrong with texture files, and how high their textures get");
+        app.add_subcommand("check", "Find mistakes in texture files; say how high, steep and smooth textures are");
     command->add_option("files", options->files, "Texture files")->type_name("FILE");
     add_length(*command, "--box", options->box_m, "Side of the cube round the origin that bounds are for [0.2m]");
     add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
@@ -299,11 +299,11 @@ Command check_command(CLI::App& app)
                NumberRange::positive)
         ->type_name("SHARE");
     command->add_flag("--strict", options->strict, "Warnings are errors");
-    command->add_flag("--fix", options->fix, "Write what the compiler proposes into the files");
-    options->explain = command->add_option("--explain", options->code, "What a code means; without CODE all are listed")
+    command->add_flag("--fix", options->fix, "Apply the proposed fixes to the files");
+    options->explain = command->add_option("--explain", options->code, "Explain a code; without CODE list all")
                            ->expected(0, 1)
                            ->type_name("[CODE]");
-    command->add_flag("--cost", options->cost, "What each line costs at worst, the dearest first");
+    command->add_flag("--cost", options->cost, "Worst-case cost of each line, the most expensive first");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel check rock.haptel\n"
                            "  haptel check --strict examples/textures/*.haptel\n"

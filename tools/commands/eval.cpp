@@ -227,8 +227,9 @@ Command eval_command(CLI::App& app)
         ->check(CLI::IsMember({"jit", "interpreter", "oracle"}))
         ->capture_default_str();
     command
-        ->add_option("--precision", options->precision,
-                     "Of the code: f64; mixed: f64 where a place within a cell rests on it, else f32; f32")
+        ->add_option(
+            "--precision", options->precision,
+            "Precision of the code: f64; mixed: f64 where the place within a cell depends on it, else f32; f32")
         ->check(CLI::IsMember({"f64", "mixed", "f32"}))
         ->capture_default_str();
     command->add_flag("--json", options->json, "One JSON object on standard output")->needs(at);

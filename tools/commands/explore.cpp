@@ -156,14 +156,13 @@ void add_seconds(CLI::App& command, double& seconds)
 Command explore_command(CLI::App& app)
 {
     const auto options = std::make_shared<ExploreOptions>();
-    CLI::App* command =
-        app.add_subcommand("explore", "Feel a scene: servo, device and textures that follow their files");
+    CLI::App* command = app.add_subcommand("explore", "Explore a scene with a device; textures follow their files");
     command->add_option("scene", options->scene, "Scene file (TOML)")->required()->type_name("SCENE.toml");
     add_seconds(*command, options->seconds);
     command
-        ->add_option(
-            "--device", options->devices,
-            fmt::format("Instead of the scene's, once for each of them: {}", fmt::join(device::device_names(), ", ")))
+        ->add_option("--device", options->devices,
+                     fmt::format("Device in place of the scene's; repeat for several: {}",
+                                 fmt::join(device::device_names(), ", ")))
         ->type_name("TEXT")
         ->allow_extra_args(false);
     command->add_option("--clock", options->clock, "virtual: as fast as possible, the same forces on every run")

@@ -53,7 +53,7 @@ ExitCode format_file(const std::string& path, const FormatOptions& options)
 Command fmt_command(CLI::App& app)
 {
     const auto options = std::make_shared<FormatOptions>();
-    CLI::App* command = app.add_subcommand("fmt", "Texture files in the one style, with all their comments");
+    CLI::App* command = app.add_subcommand("fmt", "Lay texture files out in the one style; comments stay");
     command->add_option("files", options->files, "Texture files")->required()->type_name("FILE");
     command->add_flag("--check", options->check, "Write nothing; exit 1 if a file would change");
     command->add_flag("--stdout", options->to_stdout, "Print the formatted text and leave the files alone");

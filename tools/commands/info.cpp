@@ -141,7 +141,8 @@ ExitCode show_file(const InfoOptions& options)
 Command info_command(CLI::App& app)
 {
     const auto options = std::make_shared<InfoOptions>();
-    CLI::App* command = app.add_subcommand("info", "What a function does, what a file's textures are, what there is");
+    CLI::App* command = app.add_subcommand(
+        "info", "Explain a function or list a file's textures; without an argument list all functions");
     command->add_option("what", options->what, "A function, or a texture file; without it all functions are listed")
         ->type_name("NAME|FILE[:TEXTURE]");
     command->add_flag("--json", options->json, "One JSON object on standard output");

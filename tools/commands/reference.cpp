@@ -114,7 +114,8 @@ void add_library_file(const stdlib::LibraryFile& file, std::vector<Entry>& entri
 std::string Entry::summary() const
 {
     const std::string doc = in_one_line(overloads.front().doc);
-    const size_t end = doc.find(". ");
+    size_t end = doc.find(". ");
+    while (end != std::string::npos && end > 0 && doc[end - 1] == '.') end = doc.find(". ", end + 1); // 0 .. 1
     return end == std::string::npos ? doc : doc.substr(0, end + 1);
 }
 

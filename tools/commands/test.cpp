@@ -118,7 +118,7 @@ Command test_command(CLI::App& app)
 {
     const auto options = std::make_shared<TestOptions>();
     CLI::App* command =
-        app.add_subcommand("test", "Check textures against a 113-bit oracle and its differences, for authors and CI");
+        app.add_subcommand("test", "Compare textures with a 113-bit oracle and with finite differences");
     command->add_option("paths", options->paths, "Texture files, FILE:NAME, or folders of them")
         ->required()
         ->type_name("PATH");
@@ -129,7 +129,7 @@ Command test_command(CLI::App& app)
     command->add_option("--points", options->points, "Points per texture")
         ->check(CLI::Range(1, 10'000'000))
         ->capture_default_str();
-    command->add_option("--seed", options->seed, "Of the points")->capture_default_str();
+    command->add_option("--seed", options->seed, "Seed of the points")->capture_default_str();
     command->add_flag("--json", options->json, "One JSON object on standard output");
     command->add_option("--junit", options->junit, "Report for continuous integration")->type_name("FILE");
     set_examples(*command, "  haptel test rock.haptel\n"

@@ -54,7 +54,7 @@ std::string to_table(const std::vector<bench::TickRow>& rows)
            "touched: triangles that the servo reads for a tick, the ones ahead included; stepped: at p99, those "
            "without\n"
            "the ones ahead: delivered by trees, and stepped on by proxies until the force was sent\n"
-           "of all times what reading the clock takes is taken off\n";
+           "the time of reading the clock is subtracted from all times\n";
 }
 
 std::string to_csv(const std::vector<bench::TickRow>& rows)

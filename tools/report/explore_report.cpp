@@ -4,6 +4,7 @@
 #include "runtime/render/renderer.h"
 
 #include <algorithm>
+#include <cmath>
 #include <fmt/format.h>
 #include <utility>
 
@@ -144,19 +145,20 @@ std::string lines_of(const HandOutcome& hand, const ExploreOutcome& outcome)
                                      servo.degraded.without_effects, servo.degraded.without_textures,
                                      servo.degraded.without_force));
     if (servo.waiting_ticks > 0)
-        line("waited", fmt::format("{} ticks for a small force, with none on the hand", servo.waiting_ticks));
+        line("waited", fmt::format("{} ticks without force, until it was small", servo.waiting_ticks));
     line("force", fmt::format("rms {:.3f} N, largest {:.3f} N", servo.force_rms_n, servo.force_max_n));
     if (servo.grip_force_max_n > 0)
         line("grip", fmt::format("rms {:.3f} N, largest {:.3f} N", servo.grip_force_rms_n, servo.grip_force_max_n));
-    line("energy", fmt::format("{:.3g} J given to the hand", servo.energy_j));
+    line("energy",
+         fmt::format("{:.3g} J {} the hand", std::abs(servo.energy_j), servo.energy_j < 0 ? "taken from" : "given to"));
     line("tick", percentiles_text(servo.tick_ns));
     if (servo.wake_late_ns.count() > 0) line("woke late", percentiles_text(servo.wake_late_ns));
     line("textures", fmt::format("{} compiled, {} reloads", outcome.textures_compiled, servo.reloads));
     if (servo.scenes_swapped > 0) line("scenes", fmt::format("{} took the place of the first", servo.scenes_swapped));
     const runtime::SkippedStages& skipped = servo.skipped;
     line("skipped",
-         fmt::format("collision in {} ticks, texture in {}, octaves in {}, mapping in {}; {} looks at objects "
-                     "out of reach",
+         fmt::format("collision in {} ticks, texture in {}, octaves in {}, mapping in {}; objects out of reach {} "
+                     "times",
                      skipped.free_space, skipped.texture, skipped.octaves, skipped.mapping, skipped.objects));
     if (servo.allocations_in_tick) line("allocations", fmt::format("{} in ticks", *servo.allocations_in_tick));
     if (servo.faults > 0) line("faults", fmt::format("in {} ticks: {}", servo.faults, faults_text(servo.fault_bits)));

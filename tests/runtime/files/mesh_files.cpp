@@ -116,7 +116,7 @@ TEST_CASE("a reader that crashes, stops, never ends or takes all memory ends alo
                   {60, 0.05}) == "it came to no end in 0.05 s");
     CHECK(gave_up([](const std::string&) -> MeshFileResult {
               std::raise(SIGKILL), for_ever();
-          }).starts_with("it was ended from outside"));
+          }).starts_with("it was killed"));
     CHECK(gave_up([](const std::string&) -> MeshFileResult {
               throw std::bad_alloc();
           }).starts_with("it asked for more memory"));

@@ -49,7 +49,7 @@ const std::vector<Fault>& faults()
         {[](Scene& s) { s.servo.rate_hz = infinity; }, "servo: `rate_hz` must be from 10 to 100000, found inf"},
         {[](Scene& s) { s.servo.force_rise_s = -1; }, "servo: `force_rise_s` must be from 0 to 10, found -1"},
         {[](Scene& s) { s.servo.force.model = static_cast<ForceModel>(9); },
-         "servo: `force_model` is none that there is"},
+         "servo: unknown `force_model`"},
         {[](Scene& s) { s.probe = {ProbeKind::sphere, 0.1, 0}; },
          "probe: a sphere needs a radius: write `radius_m = 0.005`, or `kind = \"point\"`"},
         {[](Scene& s) { s.probe = {ProbeKind::sphere, 0.1, no_number}; },
@@ -58,7 +58,7 @@ const std::vector<Fault>& faults()
          "object 1 (`test object`): the probe's `radius_m` is larger than `test object`: at most the largest side of "
          "its "
          "box"},
-        {[](Scene& s) { s.probe.kind = static_cast<ProbeKind>(7); }, "probe: `kind` is none that there is"},
+        {[](Scene& s) { s.probe.kind = static_cast<ProbeKind>(7); }, "probe: unknown `kind`"},
         {[](Scene& s) { s.objects[0].surface = nullptr; },
          "object 1 (`test object`): there is no surface: build_surface() says why"},
         {[](Scene& s) { s.objects[0].surface = std::make_shared<Surface>(); },

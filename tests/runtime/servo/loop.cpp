@@ -69,7 +69,7 @@ TEST_CASE("a run on the virtual clock reports what was felt")
     auto seen = std::make_shared<ScriptedDevice::Seen>();
     const ServoReport report = run(std::make_unique<ScriptedDevice>(stroke, seen), as_fast_as_possible(2), &records);
     CHECK(report.state == ServoState::finished);
-    CHECK(report.stop_reason == "the time asked for is over");
+    CHECK(report.stop_reason == "stopped after the requested time");
     CHECK(report.seconds == 2);
     CHECK(report.rate_hz == 1000);
     CHECK(report.ticks == 2000);

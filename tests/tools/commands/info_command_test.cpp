@@ -55,6 +55,7 @@ TEST_CASE("info: lists every documented function of the library and every built-
     }
     for (const char* name : {"sin", "smoothstep", "transpose", "detach"})
         CHECK(contains(ran.out, "\n  " + std::string(name) + " "));
+    CHECK(!contains(ran.out, "..\n")); // a sentence does not end within "0 .. 1"
     const Json all = Json::parse(run_command("info --json").out);
     size_t of_library = 0;
     for (const Json& entry : all["functions"]) of_library += entry["group"] != "built in";
