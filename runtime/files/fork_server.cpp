@@ -294,7 +294,8 @@ ForkedProcess::~ForkedProcess()
 bool ForkedProcess::answers_within(std::chrono::milliseconds time) const
 {
     pollfd end{answer_, POLLIN, 0};
-    return poll(&end, 1, static_cast<int>(time.count())) != 0;
+    const int ready = poll(&end, 1, static_cast<int>(time.count()));
+    return ready > 0 || (ready < 0 && errno != EINTR); // a signal is no answer: who waits may want to stop
 }
 
 std::optional<int> ForkedProcess::wait()

@@ -110,6 +110,8 @@ private:
                 break;
         }
         at_ = std::min(at_ + (long_one ? 3 : 1), text_.size());
+        // Up to two quotes before the three that end it are its own.
+        for (int own = 0; long_one && own < 2 && at_ < text_.size() && text_[at_] == quote; ++own) ++at_;
     }
 
     std::string_view text_;

@@ -59,7 +59,7 @@ std::optional<runtime::LoadedScene> load(const ExploreOptions& options, ExploreT
         return opened;
     };
     Steps steps;
-    const runtime::Loading loading{[&](std::string_view doing) { steps.show(doing); }, &interrupted};
+    const runtime::Loading loading{[&](std::string_view doing) { steps.show(doing); }};
     runtime::LoadedScene loaded = runtime::load_scene(options.scene, textures.resolver(), devices, &surfaces, loading);
     fmt::print(stderr, "{}", loaded.diagnostics);
     if (!loaded.scene || loaded.hands.empty()) return std::nullopt;
@@ -87,15 +87,15 @@ runtime::ServoOptions servo_options(const ExploreOptions& options)
 
 ExitCode explore(const ExploreOptions& options)
 {
-    interrupted = false;
-    std::signal(SIGINT, on_interrupt);
-    std::signal(SIGTERM, on_interrupt);
-    if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN); // nohup: the terminal may go
-
     ExploreTextures textures;
     runtime::SurfaceCache surfaces;
     std::optional<runtime::LoadedScene> read = load(options, textures, surfaces);
     if (!read) return ExitCode::findings;
+    // Until here a signal ends the program as it ends any: nothing is felt yet, and nothing half written.
+    interrupted = false;
+    std::signal(SIGINT, on_interrupt);
+    std::signal(SIGTERM, on_interrupt);
+    if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN); // nohup: the terminal may go
     runtime::LoadedScene& loaded = *read;
     textures.watch(*loaded.scene);
     ExploreHands hands(std::move(loaded.scene), std::move(loaded.hands), servo_options(options), options.out);

@@ -174,6 +174,23 @@ TEST_CASE("Ctrl-C is not for who reads meshes; a server that somebody ended is s
     }));
 }
 
+TEST_CASE("a signal is no answer: who waits may look whether it is to stop")
+{
+    const auto before = std::signal(SIGUSR1, [](int) {});
+    const ForkedProcess silent([](const std::string&, int) { pause(); }, "");
+    std::atomic<bool> is_heard = false;
+    std::thread sender([&, waiting = pthread_self()] {
+        while (!is_heard) { // until it falls into the wait
+            pthread_kill(waiting, SIGUSR1);
+            std::this_thread::sleep_for(1ms);
+        }
+    });
+    CHECK_FALSE(silent.answers_within(60s));
+    is_heard = true;
+    sender.join();
+    std::signal(SIGUSR1, before);
+}
+
 TEST_CASE("a program that ignores the ends of its children still reads meshes, and hears of a crash")
 {
     CHECK(in_a_copy([] {

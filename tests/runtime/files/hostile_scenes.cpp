@@ -54,6 +54,11 @@ TEST_CASE("keys and brackets that nest without end are refused where they pass t
     CHECK(contains(diagnostics_of("a = " + repeated("[", 300'000)), deep));
     CHECK(contains(diagnostics_of("a = " + repeated("{a.a=", 300'000)), deep));
     CHECK(contains(diagnostics_of(repeated(" . ", 300'000)), deep));
+    for (const char quote : {'"', '\''}) // quotes before the three that end a text are its own
+        for (const size_t closing : {3, 4, 5}) {
+            const std::string text = std::string(3, quote) + "x" + std::string(closing, quote);
+            CHECK(contains(diagnostics_of("a = [" + text + ", {a" + repeated(".a", 300'000) + " = 1}]\n"), deep));
+        }
 }
 
 TEST_CASE("what stands in strings and comments is not deep, and neither are many keys beside each other")

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fmt/format.h>
@@ -310,6 +311,19 @@ TEST_CASE("an interrupt ends the run cleanly, with its report")
                                 "timeout -s KILL 30 sh '" + script + "'");
     CHECK(ran.code == 0);
     CHECK(json_of(ran)["state"] == "stopped");
+}
+
+TEST_CASE("explore: a signal ends it at once while its scene is loaded")
+{
+    const Folder folder;
+    std::string elements = "ply\nformat ascii 1.0\n"; // which takes its reader many seconds
+    for (int i = 0; i < 200'000; ++i) elements += "element e" + std::to_string(i) + " 1\nproperty float x\n";
+    folder.write("slow.ply", elements + "end_header\n");
+    const std::string scene = folder.write("slow.toml", "[[object]]\nmesh = \"slow.ply\"\n");
+    const std::string script = folder.write("end.sh", "\"$@\" & sleep 0.5; kill -TERM $!; wait $!\n");
+    const Ran ran = run_command("explore '" + scene + "' --clock virtual --seconds 0.1", "sh '" + script + "'");
+    CHECK(ran.code == 128 + SIGTERM);
+    CHECK(!contains(ran.err, "error"));
 }
 
 TEST_CASE("a scene that is no file is refused, never waited for")
