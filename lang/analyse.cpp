@@ -95,41 +95,35 @@ std::string what_of(const ir::Cause& cause, const SourceSet& sources)
 void report(const ir::Undefined& found, Diagnostics& diagnostics)
 {
     using Why = ir::Undefined::Why;
-    if (found.why == ir::Undefined::Why::not_looked_at) {
-        diagnostics.warning(found.span, "domain", "whether this is finite was not found out",
-                            "it takes too many operations to look at: fewer trips of its loops would tell");
-        return;
-    }
-    if (!found.op) {
-        diagnostics.warning(
-            found.span, "domain", "a constant here is not a finite number",
-            "a division by 0, or a function outside of where it is defined, was computed once and for all");
-        return;
-    }
-    const std::string name = name_of(*found.op), where = shown(found.operand);
-    if (found.why == Why::pole && *found.op == Op::div) {
-        diagnostics.warning(
-            found.span, "division", "this may divide by zero: the divisor lies in " + where,
-            "add a small constant, or keep it away from 0 with max(); where it is 0 the height counts as 0");
-        return;
-    }
-    const auto say = [&](const std::string& what, const char* hint) {
-        diagnostics.warning(found.span, "domain", what + ": its argument lies in " + where, hint);
+    const auto warn = [&](WarningCode code, const std::string& message, const char* hint) {
+        diagnostics.warning(found.span, code, message, hint);
     };
+    if (found.why == Why::not_looked_at)
+        return warn("domain", "whether this is finite was not found out",
+                    "it takes too many operations to look at: fewer trips of its loops would tell");
+    if (!found.op)
+        return warn("domain", "a constant here is not a finite number",
+                    "a division by 0, or a function outside of where it is defined, was computed once and for all");
+    const std::string name = name_of(*found.op), operand = shown(found.operand);
+    const std::string where = ": its argument lies in " + operand;
     switch (found.why) {
     case Why::not_looked_at: return;
     case Why::pole:
-        return say(name + " may be infinite",
-                   "keep it away from there, with max() or clamp(); else the height counts as 0");
+        if (*found.op == Op::div)
+            return warn(
+                "division", "this may divide by zero: the divisor lies in " + operand,
+                "add a small constant, or keep it away from 0 with max(); where it is 0 the height counts as 0");
+        return warn("domain", name + " may be infinite" + where,
+                    "keep it away from there, with max() or clamp(); else the height counts as 0");
     case Why::domain:
-        return say(name + " may be not a number",
-                   "keep it where the function is defined, with clamp(), max() or abs(); else the height counts as 0");
+        return warn("domain", name + " may be not a number" + where,
+                    "keep it where the function is defined, with clamp(), max() or abs(); else the height counts as 0");
     case Why::overflow:
-        return say(name + " may be larger than any number",
-                   "keep it small, with clamp() or min(); else the height counts as 0");
+        return warn("domain", name + " may be larger than any number" + where,
+                    "keep it small, with clamp() or min(); else the height counts as 0");
     case Why::derivative:
-        return say("the derivative of " + name + " may be not finite",
-                   "keep it away from there, with clamp() or max(); else the gradient counts as 0");
+        return warn("domain", "the derivative of " + name + " may be not finite" + where,
+                    "keep it away from there, with clamp() or max(); else the gradient counts as 0");
     }
 }
 
@@ -154,9 +148,8 @@ void report_scales(const ir::Texture& texture, std::span<const ir::Interval> sca
     size_t next = 0;
     for (uint32_t bit = 0; bit < std::size(names); ++bit) {
         if (!(texture.writes >> bit & 1)) continue;
-        const ir::Interval& scale = scales[next];
-        const Span span = next < texture.output_spans.size() ? texture.output_spans[next] : texture.span;
-        ++next;
+        const Span span = texture.output_spans[next];
+        const ir::Interval& scale = scales[next++];
         const bool is_negative = scale.is_finite(); // else that is worse
         if (is_negative && scale.minimum >= 0) continue;
         const std::string what = scale.is_empty() ? "is not a number" : "lies in " + shown(scale);
