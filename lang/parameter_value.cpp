@@ -36,14 +36,7 @@ ParameterValue fail(std::string error, std::string hint = {})
     return {0, std::move(error), std::move(hint)};
 }
 
-ParameterValue read_boolean(std::string_view text)
-{
-    if (text == "true") return {1};
-    if (text == "false") return {0};
-    return fail("expected true or false, found '" + printable(text) + "'");
-}
-
-ParameterValue read_whole(std::string_view text, bool negative, const Number& number, const ir::Parameter& parameter)
+ParameterValue read_whole(std::string_view text, double value, const Number& number, const ir::Parameter& parameter)
 {
     const bool is_signed = parameter.type == ir::Type::i32;
     const double low = std::fmax(parameter.minimum, is_signed ? -2147483648.0 : 0.0);
@@ -51,17 +44,16 @@ ParameterValue read_whole(std::string_view text, bool negative, const Number& nu
     const std::string range = "a whole number in " + shortest(low) + " .. " + shortest(high);
     if (number.kind == Number::Kind::real || !number.unit.empty())
         return fail("expected " + range + ", found '" + printable(text) + "'");
-    const double value = negative ? -number.value : number.value;
     if (value < low || value > high) return fail(printable(text) + " is outside its range: expected " + range);
     return {value == 0 ? 0 : value};
 }
 
-ParameterValue read_real(std::string_view text, bool negative, const Number& number, const ir::Parameter& parameter)
+ParameterValue read_real(std::string_view text, double value, const Number& number, const ir::Parameter& parameter)
 {
     if (!number.unit.empty() && si_unit(number.unit) != parameter.unit)
         return fail("expected " + expected_number(parameter.unit) + ", found '" + printable(text) + "'");
-    ParameterValue read{negative ? -number.value : number.value};
-    if (read.value < parameter.minimum || read.value > parameter.maximum)
+    ParameterValue read{value};
+    if (value < parameter.minimum || value > parameter.maximum)
         read.warning = printable(text) + " is outside of its range " + shortest(parameter.minimum) + " .. " +
                        shortest(parameter.maximum) + (parameter.unit.empty() ? "" : " " + parameter.unit);
     return read;
@@ -74,7 +66,9 @@ ParameterValue parse_value(std::string_view text, const ir::Parameter& parameter
     text = trimmed(text);
     if (parameter.type == ir::Type::image) // whoever reads files knows more
         return text.empty() ? fail("expected the name of a picture's file") : ParameterValue{};
-    if (parameter.type == ir::Type::boolean) return read_boolean(text);
+    if (parameter.type == ir::Type::boolean)
+        return text == "true" || text == "false" ? ParameterValue{text == "true" ? 1.0 : 0.0}
+                                                 : fail("expected true or false, found '" + printable(text) + "'");
     const bool has_sign = !text.empty() && (text[0] == '-' || text[0] == '+');
     std::string digits(text.substr(has_sign));
     const size_t blank = digits.find_first_of(" \t"); // "60 um"
@@ -83,9 +77,9 @@ ParameterValue parse_value(std::string_view text, const ir::Parameter& parameter
     if (!number.error.empty())
         return fail(number.code == "unknown-unit" ? number.error : number.error + ", found '" + printable(text) + "'",
                     number.hint);
-    const bool negative = has_sign && text[0] == '-';
-    return parameter.type == ir::Type::real ? read_real(text, negative, number, parameter)
-                                            : read_whole(text, negative, number, parameter);
+    const double value = has_sign && text[0] == '-' ? -number.value : number.value;
+    return parameter.type == ir::Type::real ? read_real(text, value, number, parameter)
+                                            : read_whole(text, value, number, parameter);
 }
 
 } // namespace haptel::lang
