@@ -19,18 +19,25 @@ namespace {
 
 constexpr uint32_t import_max = 256; // files
 
-std::string quoted_path(const std::string& path)
-{
-    return "\"" + printable(path) + "\"";
-}
-
 // Main file, its imports and theirs; parsed, with who imports whom.
-class Files {
-public:
-    Files(const CompileOptions& compile_options, SourceSet& all_sources, Diagnostics& sink)
-        : options(compile_options), sources(all_sources), diagnostics(sink)
-    {
-    }
+struct Files {
+    const CompileOptions& options;
+    SourceSet& sources;
+    Diagnostics& diagnostics;
+
+    std::vector<CheckFile> files = {}; // by Span::file
+    std::vector<std::string> names = {};
+    Names named = {}; // in any of them
+
+    struct Edge {
+        uint32_t from, to;
+        Span span;
+    };
+    std::vector<Edge> edges = {};
+    std::map<std::string, uint32_t, std::less<>> by_name = {};
+    std::set<std::pair<uint32_t, std::string>> asked = {}; // by file and path: what is imported again is not read again
+    size_t token_count = 0;                                // of all files
+    size_t text_bytes = 0; // read for imports, again where a path is written in another way
 
     void load(SourceFile main)
     {
@@ -38,19 +45,8 @@ public:
         // Breadth first; `files` grows as we go. Files are known by the name the loader gives them.
         for (uint32_t file = 0; file < files.size(); ++file)
             for (size_t i = 0; i < files[file].tree.imports.size() && !diagnostics.full(); ++i) import(file, i);
-        for (uint32_t file = 0; file < files.size(); ++file) names.push_back(sources.file(file).name);
         report_cycles();
     }
-
-    std::vector<CheckFile> files; // by Span::file
-    std::vector<std::string> names;
-    Names named; // in any of them
-
-private:
-    struct Edge {
-        uint32_t from, to;
-        Span span;
-    };
 
     uint32_t add(SourceFile file)
     {
@@ -60,6 +56,7 @@ private:
         for (const PlacedToken& token : tokens.tokens)
             if (token.kind == Token::name) named.insert(sources.text({index, token.begin, token.end}));
         files.push_back({parse(sources, index, std::move(tokens), diagnostics), {}});
+        names.push_back(sources.file(index).name);
         by_name.emplace(sources.file(index).name, index);
         return index;
     }
@@ -74,7 +71,7 @@ private:
         std::optional<SourceFile>& text = found.file;
         if (!text) {
             const std::string why = found.why.empty() ? "" : ": " + found.why;
-            diagnostics.error(import.span, "missing-import", "cannot read " + quoted_path(import.path) + why,
+            diagnostics.error(import.span, "missing-import", "cannot read \"" + printable(import.path) + "\"" + why,
                               found.hint.empty() ? "the path is relative to the file that imports" : found.hint);
             return;
         }
@@ -104,9 +101,9 @@ private:
                 if (from.test(over)) from |= leads[over];
         for (const Edge& edge : edges) {
             if (edge.to != edge.from && !leads[edge.to].test(edge.from)) continue;
+            // Breadth first from where the edge leads; by file, the one that it was reached from.
             std::vector<uint32_t> reached{edge.to}, reached_from(files.size(), UINT32_MAX);
-            for (size_t i = 0; i < reached.size() && reached_from[edge.from] == UINT32_MAX && reached[0] != edge.from;
-                 ++i)
+            for (size_t i = 0; i < reached.size(); ++i)
                 for (uint32_t next : files[reached[i]].imported)
                     if (next != edge.to && reached_from[next] == UINT32_MAX) {
                         reached_from[next] = reached[i];
@@ -122,22 +119,7 @@ private:
             return; // the others are the same cycle, or wait
         }
     }
-
-    const CompileOptions& options;
-    SourceSet& sources;
-    Diagnostics& diagnostics;
-    std::map<std::string, uint32_t, std::less<>> by_name;
-    std::set<std::pair<uint32_t, std::string>> asked; // by file and path: what is imported again is not read again
-    size_t token_count = 0;                           // of all files
-    size_t text_bytes = 0;                            // read for imports, again where a path is written in another way
-    std::vector<Edge> edges;
 };
-
-bool holds_nothing(const CheckFile& file)
-{
-    const ast::File& tree = file.tree;
-    return tree.imports.empty() && tree.constants.empty() && tree.functions.empty() && tree.textures.empty();
-}
 
 // With this library; where it is null, with what the files name of it, which is put there.
 CompileResult compile(const SourceFile& main, const CompileOptions& options,
@@ -145,7 +127,7 @@ CompileResult compile(const SourceFile& main, const CompileOptions& options,
 {
     CompileResult result;
     if (library) result.diagnostics = library->diagnostics;
-    Files files(options, result.sources, result.diagnostics);
+    Files files{options, result.sources, result.diagnostics};
     files.load(main);
     result.files = std::move(files.names);
     if (!library) {
@@ -155,37 +137,36 @@ CompileResult compile(const SourceFile& main, const CompileOptions& options,
     if (library) result.sources.share(library->sources);
 
     Diagnostics& diagnostics = result.diagnostics;
-    if (holds_nothing(files.files.front()) && !diagnostics.has_errors())
+    const ast::File& tree = files.files.front().tree;
+    const bool is_empty =
+        tree.imports.empty() && tree.constants.empty() && tree.functions.empty() && tree.textures.empty();
+    if (is_empty && !diagnostics.has_errors())
         diagnostics.warning({}, "empty-file", "expected a texture, found an empty file",
                             "the smallest one is: texture flat() { return 0.0; }");
     const CheckedProgram checked = check(result.sources, std::move(files.files), library, diagnostics);
     if (!options.only_texture.empty()) {
         std::vector<std::string_view> names;
         for (const CheckedTexture& texture : checked.textures) names.push_back(texture.tree->name.text);
-        if (std::find(names.begin(), names.end(), options.only_texture) == names.end()) {
-            Diagnostic& reported = diagnostics.error(
-                {}, "unknown-texture", "this file has no texture '" + printable(options.only_texture) + "'");
-            if (const auto nearest = nearest_name(options.only_texture, names); !nearest.empty())
-                reported.hint = "did you mean '" + std::string(nearest) + "'?";
-        }
+        const std::string_view nearest = nearest_name(options.only_texture, names);
+        if (std::ranges::find(names, options.only_texture) == names.end())
+            diagnostics.error({}, "unknown-texture",
+                              "this file has no texture '" + printable(options.only_texture) + "'",
+                              nearest.empty() ? "" : "did you mean '" + std::string(nearest) + "'?");
     }
     if (!diagnostics.has_errors() && diagnostics.reports() > 0) // never: what is not said follows from what is
         diagnostics.error({}, "internal-error", "the compiler found a mistake and did not say which");
     if (!diagnostics.has_errors()) check_dimensions(result.sources, checked, diagnostics);
+    ir::Module module;
     if (!diagnostics.has_errors()) {
-        auto program = std::make_shared<Program>();
-        program->module = lower(checked, options.only_texture, diagnostics);
-        const std::string broken = diagnostics.has_errors() ? std::string{} : ir::verify(program->module);
+        module = lower(checked, options.only_texture, diagnostics);
+        const std::string broken = diagnostics.has_errors() ? "" : ir::verify(module);
         if (!broken.empty()) // a mistake of ours; the program must not run all the same
             diagnostics.error({}, "internal-error",
                               "the compiler made a program that does not pass its own check: " + broken);
-        if (options.strict) diagnostics.make_warnings_errors();
-        if (!diagnostics.has_errors()) {
-            program->sources = result.sources;
-            result.program = std::move(program);
-        }
     }
     if (options.strict) diagnostics.make_warnings_errors();
+    if (!diagnostics.has_errors())
+        result.program = std::make_shared<Program>(Program{result.sources, std::move(module)});
     diagnostics.sort_by_place();
     return result;
 }
