@@ -11,19 +11,16 @@ namespace haptel::jit {
 struct Picture {
     // Rows from the lowest up. Whole numbers of a file without a sign: 0 to 1, with a sign: -1 to 1; real ones as they
     // are. A colour counts by its brightness, transparency not at all.
-    std::vector<double> gray;
+    std::vector<double> gray = {};
     int64_t width = 0, height = 0;
     double levels = 0;       // steps from 0 to 1 that the file's whole numbers can take, 255 of 8 bits; 0: real numbers
     bool has_blocks = false; // coded as JPEG codes: in blocks of 8 x 8 texels, not exactly
-    std::string error, hint; // why there is none; the former empty: there is one
+    std::string error = {}, hint = {}; // why there is none; the former empty: there is one
 };
 
 // Bytes are anybody's: what is no picture, damaged or cut off is an error in words and never more.
 Picture read_picture(std::string_view bytes); // of any of the kinds below, by its first bytes
 
-bool is_pnm(std::string_view bytes);
-bool is_tiff(std::string_view bytes);
-bool is_exr(std::string_view bytes);
 Picture read_pnm(std::string_view bytes); // PGM, PPM
 Picture read_tiff(std::string_view bytes);
 Picture read_exr(std::string_view bytes);
@@ -33,9 +30,6 @@ Picture no_picture(std::string error, std::string hint = {});
 
 // Asked before memory is taken for texels. Empty: no error yet, and a picture of that size, all 0.
 Picture picture_of(int64_t width, int64_t height);
-
-// The largest side and number of texels that a picture may have.
-int64_t picture_side_max();
 
 inline double brightness(double red, double green, double blue)
 {

@@ -1,38 +1,17 @@
 #include "jit/picture/picture.h"
+#include "lang/ir/bounds/spline_image.h"
 
 #include <OpenEXR/ImfChannelList.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
-#include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfStdIO.h>
 
-#include <cstring>
 #include <exception>
-#include <stdexcept>
 
 namespace haptel::jit {
 
 namespace {
-
-class Bytes final : public Imf::IStream {
-public:
-    explicit Bytes(std::string_view bytes) : IStream("picture"), bytes_(bytes) {}
-
-    bool read(char to[], int count) override
-    {
-        if (count < 0 || at_ > bytes_.size() || static_cast<uint64_t>(count) > bytes_.size() - at_)
-            throw std::runtime_error("the file ends too early");
-        std::memcpy(to, bytes_.data() + at_, static_cast<size_t>(count));
-        at_ += static_cast<uint64_t>(count);
-        return at_ < bytes_.size();
-    }
-    uint64_t tellg() override { return at_; }
-    void seekg(uint64_t at) override { at_ = at; }
-
-private:
-    std::string_view bytes_;
-    uint64_t at_ = 0;
-};
 
 // The channels that make the brightness: Y, or R, G and B, or the only one.
 std::vector<std::string> channels_of(const Imf::ChannelList& channels)
@@ -69,29 +48,24 @@ Picture read(Imf::InputFile& file)
     file.setFrameBuffer(frame);
     file.readPixels(window.min.y, window.max.y);
 
-    for (size_t i = 0; i < count; ++i) {
-        const size_t row = i / static_cast<size_t>(width), column = i % static_cast<size_t>(width);
-        const auto to = (static_cast<size_t>(height) - 1 - row) * static_cast<size_t>(width) + column;
-        made.gray[to] = names.size() == 1 ? static_cast<double>(texels[i])
-                                          : brightness(texels[i], texels[count + i], texels[2 * count + i]);
-    }
+    const float* from = texels.data();
+    for (int64_t row = height; row-- > 0;) // files begin at the top
+        for (int64_t column = 0; column < width; ++column, ++from)
+            made.gray[static_cast<size_t>(row * width + column)] =
+                names.size() == 1 ? static_cast<double>(*from) : brightness(*from, from[count], from[2 * count]);
     return made;
 }
 
 } // namespace
 
-bool is_exr(std::string_view bytes)
-{
-    return bytes.starts_with("\x76\x2f\x31\x01");
-}
-
 Picture read_exr(std::string_view bytes)
 try {
     // Of the process, but always the same: the library takes memory for its tables before it can be asked for the size.
-    const int side = static_cast<int>(picture_side_max());
+    constexpr int side = ir::SplineImage::side_max;
     Imf::Header::setMaxImageSize(side, side);
     Imf::Header::setMaxTileSize(side, side);
-    Bytes stream(bytes);
+    Imf::StdISStream stream;
+    stream.str(std::string(bytes));
     Imf::InputFile file(stream, 0);
     return read(file);
 } catch (const std::exception& problem) {
