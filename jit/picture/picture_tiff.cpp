@@ -8,7 +8,9 @@
 #include <cstdarg>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <memory>
+#include <utility>
 
 namespace haptel::jit {
 
@@ -43,16 +45,6 @@ toff_t seek(thandle_t handle, toff_t offset, int from)
     return source.at;
 }
 
-tmsize_t write_nothing(thandle_t, void*, tmsize_t)
-{
-    return 0;
-}
-
-int close_nothing(thandle_t)
-{
-    return 0;
-}
-
 toff_t size_of(thandle_t handle)
 {
     return static_cast<Source*>(handle)->bytes.size();
@@ -69,11 +61,6 @@ int listen(TIFF*, void* source, const char*, const char* format, va_list argumen
     return 1; // told: no handler of the process need be
 }
 
-int ignore(TIFF*, void*, const char*, const char*, va_list)
-{
-    return 1;
-}
-
 using Tiff = std::unique_ptr<TIFF, void (*)(TIFF*)>;
 
 Tiff open(Source& source)
@@ -82,7 +69,10 @@ Tiff open(Source& source)
                                                                                TIFFOpenOptionsFree);
     TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), memory_max);
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), listen, &source);
+    const auto ignore = [](TIFF*, void*, const char*, const char*, va_list) { return 1; };
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), ignore, nullptr);
+    const auto write_nothing = [](thandle_t, void*, tmsize_t) -> tmsize_t { return 0; };
+    const auto close_nothing = [](thandle_t) { return 0; };
     return {TIFFClientOpenExt("picture", "rm", &source, read_bytes, write_nothing, seek, close_nothing, size_of,
                               nullptr, nullptr, options.get()),
             TIFFClose};
@@ -90,9 +80,9 @@ Tiff open(Source& source)
 
 struct Layout {
     uint32_t width = 0, height = 0;
-    uint16_t bits = 1, samples = 1, format = SAMPLEFORMAT_UINT, planes = PLANARCONFIG_CONTIG, meaning = 0,
-             orientation = ORIENTATION_TOPLEFT;
-    bool has_meaning = false, tiled = false;
+    uint16_t bits = 1, samples = 1, format = SAMPLEFORMAT_UINT, planes = PLANARCONFIG_CONTIG,
+             meaning = PHOTOMETRIC_MINISBLACK, orientation = ORIENTATION_TOPLEFT;
+    bool tiled = false;
 
     explicit Layout(TIFF* tiff) : tiled(TIFFIsTiled(tiff) != 0)
     {
@@ -103,7 +93,7 @@ struct Layout {
         TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &format);
         TIFFGetFieldDefaulted(tiff, TIFFTAG_PLANARCONFIG, &planes);
         TIFFGetFieldDefaulted(tiff, TIFFTAG_ORIENTATION, &orientation);
-        has_meaning = TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &meaning) != 0;
+        TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &meaning);
         if (format == SAMPLEFORMAT_VOID) format = SAMPLEFORMAT_UINT;
     }
     // Steps from 0 to 1 of what is read; 0: real numbers.
@@ -114,119 +104,94 @@ struct Layout {
         return std::exp2(format == SAMPLEFORMAT_INT ? bits - 1 : bits) - 1;
     }
     bool is_real() const { return format == SAMPLEFORMAT_IEEEFP; }
-    bool is_rgb() const { return has_meaning && meaning == PHOTOMETRIC_RGB && samples >= 3; }
+    bool is_rgb() const { return meaning == PHOTOMETRIC_RGB && samples >= 3; }
     // The file's rows are the picture's columns.
-    bool is_turned() const { return orientation >= ORIENTATION_LEFTTOP && orientation <= ORIENTATION_LEFTBOT; }
+    bool is_turned() const { return orientation >= ORIENTATION_LEFTTOP; }
     // Where in the picture, whose rows begin at the bottom, a pixel of the file belongs.
     size_t place(size_t row, size_t column) const
     {
-        const bool from_right = orientation == ORIENTATION_TOPRIGHT || orientation == ORIENTATION_BOTRIGHT,
-                   from_bottom = orientation == ORIENTATION_BOTRIGHT || orientation == ORIENTATION_BOTLEFT;
-        const bool turned_from_right = orientation == ORIENTATION_RIGHTTOP || orientation == ORIENTATION_RIGHTBOT,
-                   turned_from_bottom = orientation == ORIENTATION_RIGHTBOT || orientation == ORIENTATION_LEFTBOT;
+        // ORIENTATION_TOPLEFT, TOPRIGHT, BOTRIGHT, BOTLEFT, and the same of rows and columns that change places
+        const int way = (orientation - 1) % 4;
+        const bool from_right = way == 1 || way == 2, from_bottom = way == 2 || way == 3;
+        size_t across = width, down = height;
         if (is_turned()) {
-            const size_t x = turned_from_right ? height - 1 - row : row;
-            return (turned_from_bottom ? column : width - 1 - column) * height + x;
+            std::swap(row, column);
+            std::swap(across, down);
         }
-        const size_t x = from_right ? width - 1 - column : column;
-        return (from_bottom ? row : height - 1 - row) * width + x;
+        return (from_bottom ? row : down - 1 - row) * across + (from_right ? across - 1 - column : column);
     }
     // Whether the samples are read as they are, all their bits.
     bool is_plain() const
     {
         const bool whole =
             (format == SAMPLEFORMAT_UINT || format == SAMPLEFORMAT_INT) && (bits == 8 || bits == 16 || bits == 32);
-        const bool gray = !has_meaning || meaning == PHOTOMETRIC_MINISBLACK || meaning == PHOTOMETRIC_MINISWHITE;
+        const bool gray = meaning == PHOTOMETRIC_MINISBLACK || meaning == PHOTOMETRIC_MINISWHITE;
         return samples >= 1 && (whole || (is_real() && (bits == 16 || bits == 32 || bits == 64))) && (gray || is_rgb());
     }
 };
 
 template <class Number>
-Number bits_at(const std::byte* at)
+Number number_at(const std::byte* at)
 {
     Number value;
     std::memcpy(&value, at, sizeof value);
     return value;
 }
 
-template <class Number>
-double number_at(const std::byte* at, double unit)
+// 0 to 1, or -1 to 1 with a sign.
+template <class Whole>
+double share_at(const std::byte* at)
 {
-    return static_cast<double>(bits_at<Number>(at)) / unit;
+    return static_cast<double>(number_at<Whole>(at)) / std::numeric_limits<Whole>::max();
 }
 
 double sample_at(const Layout& layout, const std::byte* at)
 {
+    if (layout.is_real())
+        return layout.bits == 16   ? static_cast<double>(imath_half_to_float(number_at<uint16_t>(at)))
+               : layout.bits == 32 ? static_cast<double>(number_at<float>(at))
+                                   : number_at<double>(at);
     const bool is_signed = layout.format == SAMPLEFORMAT_INT;
-    if (layout.is_real()) {
-        switch (layout.bits) {
-        case 16: return static_cast<double>(imath_half_to_float(bits_at<uint16_t>(at)));
-        case 32: return number_at<float>(at, 1);
-        default: return number_at<double>(at, 1);
-        }
-    }
-    switch (layout.bits) {
-    case 8: return is_signed ? number_at<int8_t>(at, INT8_MAX) : number_at<uint8_t>(at, UINT8_MAX);
-    case 16: return is_signed ? number_at<int16_t>(at, INT16_MAX) : number_at<uint16_t>(at, UINT16_MAX);
-    default: return is_signed ? number_at<int32_t>(at, INT32_MAX) : number_at<uint32_t>(at, UINT32_MAX);
-    }
+    if (layout.bits == 8) return is_signed ? share_at<int8_t>(at) : share_at<uint8_t>(at);
+    if (layout.bits == 16) return is_signed ? share_at<int16_t>(at) : share_at<uint16_t>(at);
+    return is_signed ? share_at<int32_t>(at) : share_at<uint32_t>(at);
 }
 
-// A block of the file, a row or a tile: `planes` of them side by side where colours are stored apart.
-struct Block {
-    std::vector<std::byte> bytes;
-    size_t plane_size;
-    const Layout& layout;
-
-    double gray(size_t pixel) const
-    {
-        const size_t size = layout.bits / 8;
-        const bool apart = layout.planes == PLANARCONFIG_SEPARATE;
-        const auto sample = [&](size_t i) {
-            return sample_at(layout, bytes.data() +
-                                         (apart ? i * plane_size + pixel * size : (pixel * layout.samples + i) * size));
-        };
-        if (layout.is_rgb()) return brightness(sample(0), sample(1), sample(2));
-        const double value = sample(0);
-        const bool inverted = layout.has_meaning && layout.meaning == PHOTOMETRIC_MINISWHITE && !layout.is_real();
-        return inverted ? 1 - value : value;
-    }
-};
-
-// Reads block by block: `read(plane, to)` one of them, `put(block)` uses it.
-template <class Read>
-bool fill(Block& block, Read&& read)
-{
-    const uint16_t planes = block.layout.planes == PLANARCONFIG_SEPARATE && block.layout.is_rgb() ? 3 : 1;
-    for (uint16_t plane = 0; plane < planes; ++plane)
-        if (!read(plane, block.bytes.data() + plane * block.plane_size)) return false;
-    return true;
-}
-
+// Block by block, a row or a tile: several of them side by side where colours are stored apart.
 bool read_plain(TIFF* tiff, const Layout& layout, Picture& made)
 {
     uint32_t across = layout.width, down = 1;
-    if (layout.tiled) {
-        if (!TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &across) || !TIFFGetField(tiff, TIFFTAG_TILELENGTH, &down))
-            return false;
-    }
-    const tmsize_t size = layout.tiled ? TIFFTileSize(tiff) : TIFFScanlineSize(tiff);
-    const uint64_t pixel_bytes =
-        uint64_t{layout.bits} / 8 * (layout.planes == PLANARCONFIG_SEPARATE ? 1u : layout.samples);
-    if (across < 1 || down < 1 || size < 1 || size > memory_max / 3) return false;
-    if (static_cast<uint64_t>(size) < uint64_t{across} * down * pixel_bytes) return false;
-    Block block{std::vector<std::byte>(3 * static_cast<size_t>(size)), static_cast<size_t>(size), layout};
+    if (layout.tiled &&
+        (!TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &across) || !TIFFGetField(tiff, TIFFTAG_TILELENGTH, &down)))
+        return false;
+    const tmsize_t bytes = layout.tiled ? TIFFTileSize(tiff) : TIFFScanlineSize(tiff);
+    if (across < 1 || down < 1 || bytes < 1 || bytes > memory_max / 3) return false;
+    const bool is_apart = layout.planes == PLANARCONFIG_SEPARATE;
+    const auto plane_size = static_cast<size_t>(bytes);
+    const size_t sample_size = layout.bits / 8, pixel_size = sample_size * (is_apart ? 1 : layout.samples);
+    if (plane_size < uint64_t{across} * down * pixel_size) return false;
+    const uint16_t planes = is_apart && layout.is_rgb() ? 3 : 1;
+    const bool is_inverted = layout.meaning == PHOTOMETRIC_MINISWHITE && !layout.is_real();
+    std::vector<std::byte> block(planes * plane_size);
+    const auto gray = [&](size_t pixel) {
+        const auto sample = [&](size_t i) {
+            return sample_at(layout, block.data() + pixel * pixel_size + i * (is_apart ? plane_size : sample_size));
+        };
+        if (layout.is_rgb()) return brightness(sample(0), sample(1), sample(2));
+        return is_inverted ? 1 - sample(0) : sample(0);
+    };
 
     for (uint32_t top = 0; top < layout.height; top += down)
         for (uint32_t left = 0; left < layout.width; left += across) {
-            const bool whole = fill(block, [&](uint16_t plane, std::byte* to) {
-                return layout.tiled ? TIFFReadTile(tiff, to, left, top, 0, plane) >= 0
-                                    : TIFFReadScanline(tiff, to, top, plane) >= 0;
-            });
-            if (!whole) return false;
+            for (uint16_t plane = 0; plane < planes; ++plane) {
+                std::byte* const to = block.data() + plane * plane_size;
+                const tmsize_t got =
+                    layout.tiled ? TIFFReadTile(tiff, to, left, top, 0, plane) : TIFFReadScanline(tiff, to, top, plane);
+                if (got < 0) return false;
+            }
             for (uint32_t y = 0; y < std::min(down, layout.height - top); ++y)
                 for (uint32_t x = 0; x < std::min(across, layout.width - left); ++x)
-                    made.gray[layout.place(top + y, left + x)] = block.gray(size_t{y} * across + x);
+                    made.gray[layout.place(top + y, left + x)] = gray(size_t{y} * across + x);
         }
     return true;
 }
@@ -245,13 +210,6 @@ bool read_converted(TIFF* tiff, const Layout& layout, Picture& made)
 }
 
 } // namespace
-
-bool is_tiff(std::string_view bytes)
-{
-    using namespace std::string_view_literals;
-    const std::string_view head = bytes.substr(0, 4);
-    return head == "II*\0"sv || head == "MM\0*"sv || head == "II+\0"sv || head == "MM\0+"sv;
-}
 
 Picture read_tiff(std::string_view bytes)
 {
