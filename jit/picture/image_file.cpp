@@ -5,7 +5,10 @@
 #include "jit/picture/picture.h"
 #include "lang/text/diagnostic.h"
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <mutex>
@@ -44,6 +47,17 @@ struct Known {
     PictureGrain grain = {};
 };
 
+// A finger at rest feels an edge of 0.85 um on a smooth plate (Johansson and LaMotte 1983, Tactile detection thresholds
+// for a single asperity on an otherwise smooth surface).
+constexpr double felt_edge_m = 1e-6;
+
+std::string micrometres(double height_m)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2g um", height_m * 1e6);
+    return text;
+}
+
 std::shared_ptr<const ir::SplineImage> image_of(double texel)
 {
     std::string error;
@@ -66,21 +80,6 @@ ImageFile read_image(const std::string& path, const std::string& folder)
     const std::string shown = lang::printable(path);
     std::error_code fault;
     const fs::path file = image_file(path, folder);
-    const auto refuse = [&](const input::Refused& refused) {
-        switch (refused.refusal) {
-        case input::Refusal::missing:
-            return fail("there is no file '" + shown + "'", "it was looked for at " + lang::printable(file.string()) +
-                                                                "; a scene's pictures lie beside the scene");
-        case input::Refusal::unreadable: return fail("'" + shown + "' " + refused.why, "may you read it?");
-        case input::Refusal::none:
-        case input::Refusal::folder:
-        case input::Refusal::not_regular:
-        case input::Refusal::too_large: break;
-        }
-        return fail("'" + shown + "' " + refused.why);
-    };
-    const input::Refused look = input::look_at_regular_file(file, image_bytes_max);
-    if (look.refusal != input::Refusal::none) return refuse(look);
     const uintmax_t size = fs::file_size(file, fault);
     const auto written = fs::last_write_time(file, fault);
 
@@ -91,9 +90,17 @@ ImageFile read_image(const std::string& path, const std::string& folder)
     if (image && known.size == size && known.written == written && known.read > written + tick_longest)
         return {image, {}, {}, known.grain};
     const auto now = fs::file_time_type::clock::now();
-    const input::FileBytes read = input::read_regular_file(file, image_bytes_max);
-    if (read.refused.refusal != input::Refusal::none) return refuse(read.refused);
-    const std::string& bytes = read.bytes;
+    const auto [bytes, refused] = input::read_regular_file(file, image_bytes_max);
+    switch (refused.refusal) {
+    case input::Refusal::none: break;
+    case input::Refusal::missing:
+        return fail("there is no file '" + shown + "'", "it was looked for at " + lang::printable(file.string()) +
+                                                            "; a scene's pictures lie beside the scene");
+    case input::Refusal::unreadable: return fail("'" + shown + "' " + refused.why, "may you read it?");
+    case input::Refusal::folder:
+    case input::Refusal::not_regular:
+    case input::Refusal::too_large: return fail("'" + shown + "' " + refused.why);
+    }
     const ContentHash content = content_hash(bytes);
     ImageFile made = image && known.content == content ? ImageFile{image, {}, {}, known.grain} : decode(bytes, shown);
     known = {written, now, size, content, made.image, made.grain};
@@ -110,6 +117,30 @@ const ir::SplineImage& white_image()
 {
     static const auto image = image_of(1);
     return *image;
+}
+
+PictureGrain grain_of(const Picture& picture)
+{
+    const auto [darkest, brightest] = std::minmax_element(picture.gray.begin(), picture.gray.end());
+    if (darkest == picture.gray.end()) return {};
+    const double low = *darkest, high = *brightest;
+    const bool has_shades = std::ranges::any_of(picture.gray, [&](double gray) { return low < gray && gray < high; });
+    return {has_shades && picture.levels > 0 ? 1 / picture.levels : 0, picture.has_blocks};
+}
+
+std::vector<GrainNote> grain_notes(const PictureGrain& grain, const std::string& shown, double white_m)
+{
+    std::vector<GrainNote> notes;
+    const double step_m = white_m * grain.level;
+    if (std::isfinite(step_m) && step_m > felt_edge_m)
+        notes.push_back({"'" + shown + "' has " + std::to_string(std::lround(1 / grain.level) + 1) +
+                             " levels, so heights go in steps of " + micrometres(step_m) +
+                             "; a hand feels edges from about " + micrometres(felt_edge_m) + " on",
+                         "a file of 16 bits or of real numbers has no steps that can be felt"});
+    if (grain.has_blocks)
+        notes.push_back({"'" + shown + "' is coded in blocks of 8 x 8 texels, whose borders may be felt as a grid",
+                         "use a PNG, TIFF or EXR made from the original; written anew, this one keeps its blocks"});
+    return notes;
 }
 
 } // namespace haptel::jit
