@@ -1,7 +1,5 @@
 #include "jit/check/check_code.h"
 
-#include "jit/check/check_continuity.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -40,14 +38,12 @@ double loop_integral_m(const TextureBinding& binding, const CheckPoints& points,
 double central_difference(const TextureBinding& binding, const CheckPoints& points, const haptel_point& point,
                           size_t axis, double step_m)
 {
-    double ends[2][3];
-    for (int end = 0; end < 2; ++end) {
-        std::copy(point.p, point.p + 3, ends[end]);
-        ends[end][axis] += end ? step_m : -step_m;
-    }
+    haptel_point below = point, above = point;
+    below.p[axis] -= step_m;
+    above.p[axis] += step_m;
     const double rise_m =
-        sample_at(binding, points.at(ends[1])).height_m - sample_at(binding, points.at(ends[0])).height_m;
-    return rise_m / (ends[1][axis] - ends[0][axis]);
+        sample_at(binding, points.at(above.p)).height_m - sample_at(binding, points.at(below.p)).height_m;
+    return rise_m / (above.p[axis] - below.p[axis]);
 }
 
 // Distance of the gradient from the nearest of differences at steps between 2^-10 and 2^-30 of the box: one of them
@@ -66,6 +62,82 @@ double difference_error(const TextureBinding& binding, const CheckPoints& points
     return best;
 }
 
+constexpr int paths = 400;
+constexpr int halvings = 26, halvings_before = 13; // of a path; by then what is smooth looks straight
+constexpr double rounding = 1e-9;                  // of the largest values met
+
+double distance(const double (&a)[3], const double (&b)[3])
+{
+    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+// How heights and gradients change along short paths: class, slope and curvature as measured.
+class Paths {
+public:
+    Paths(const TextureBinding& texture, const CheckPoints& where) : binding(texture), points(where) {}
+
+    uint64_t too_steep = 0, too_curved = 0;
+    uint32_t roughest = HAPTEL_CONTINUITY_C1;
+
+    void follow(uint64_t index)
+    {
+        const haptel_point first = points.random(2 * index), second = points.random(2 * index + 1);
+        double end[3]; // 1/32 of the box away: far enough to meet a kink, near enough to meet about one
+        for (size_t i = 0; i < 3; ++i) end[i] = first.p[i] + (second.p[i] - first.p[i]) / 32;
+        for (bool by_height : {true, false}) halve(touch(first.p), touch(end), by_height);
+    }
+
+private:
+    struct Touch {
+        haptel_point point;
+        haptel_sample sample;
+    };
+    const TextureBinding& binding;
+    const CheckPoints& points;
+    double largest_height = 0, largest_gradient = 0;
+
+    Touch touch(const double (&p_m)[3])
+    {
+        const haptel_point point = points.at(p_m);
+        const haptel_sample sample = sample_at(binding, point);
+        const double slope = distance(sample.gradient, {});
+        too_steep += slope > binding.facts.slope_max * (1 + rounding);
+        largest_height = std::max(largest_height, std::fabs(sample.height_m));
+        largest_gradient = std::max(largest_gradient, slope);
+        return {point, sample};
+    }
+
+    // Into the half with the greater change, again and again: at a jump or kink the change stays, else it is halved.
+    void halve(Touch a, Touch b, bool by_height)
+    {
+        const auto change = [by_height](const Touch& one, const Touch& other) {
+            return by_height ? std::fabs(one.sample.height_m - other.sample.height_m)
+                             : distance(one.sample.gradient, other.sample.gradient);
+        };
+        double before = 0;
+        for (int i = 0; i < halvings; ++i) {
+            double p_m[3];
+            for (size_t k = 0; k < 3; ++k) p_m[k] = a.point.p[k] / 2 + b.point.p[k] / 2;
+            const Touch middle = touch(p_m);
+            if (i == halvings_before) before = change(a, b);
+            (change(a, middle) > change(middle, b) ? b : a) = middle;
+        }
+        const double left = change(a, b);
+        const double size = by_height ? largest_height : largest_gradient;
+        if (left > 0.4 * before && left > 100 * rounding * size)
+            roughest = std::min<uint32_t>(roughest, by_height ? HAPTEL_CONTINUITY_JUMP : HAPTEL_CONTINUITY_C0);
+        const bool is_promised = binding.facts.continuity == HAPTEL_CONTINUITY_C1;
+        const double reach = distance(a.point.p, b.point.p) * binding.facts.curvature_max_per_m;
+        too_curved += is_promised && distance(a.sample.gradient, b.sample.gradient) >
+                                         reach * (1 + rounding) + rounding * largest_gradient;
+    }
+};
+
+const char* name_of(uint32_t continuity)
+{
+    return continuity == HAPTEL_CONTINUITY_JUMP ? "jump" : continuity == HAPTEL_CONTINUITY_C0 ? "C0" : "C1";
+}
+
 } // namespace
 
 void expect_at_most(GradientCheck& check, std::string_view what, double found, double allowed)
@@ -74,6 +146,16 @@ void expect_at_most(GradientCheck& check, std::string_view what, double found, d
     char numbers[96];
     std::snprintf(numbers, sizeof numbers, ": %.3g, at most %.3g is allowed", found, allowed);
     check.failures.push_back(std::string(what) + numbers);
+}
+
+double greater(double a, double b)
+{
+    return std::isnan(a) || std::isnan(b) ? HUGE_VAL : std::max(a, b);
+}
+
+double relative(double error, double largest)
+{
+    return largest > 0 ? error / largest : error;
 }
 
 void check_code(GradientCheck& check, const TextureBinding& binding, const CheckPoints& points)
@@ -90,7 +172,17 @@ void check_code(GradientCheck& check, const TextureBinding& binding, const Check
     expect_at_most(check, "points where height or gradient is not finite (edges and huge coordinates included)",
                    static_cast<double>(check.not_finite), 0);
     expect_at_most(check, "points where the height leaves its bounds", static_cast<double>(check.bounds_exceeded), 0);
-    check_continuity(check, binding, points);
+
+    Paths all(binding, points);
+    for (uint64_t i = 0; i < paths; ++i) all.follow(i);
+    check.continuity_measured = all.roughest;
+    check.bounds_exceeded += all.too_steep + all.too_curved;
+    expect_at_most(check, "places along paths where the slope leaves its bound", static_cast<double>(all.too_steep), 0);
+    expect_at_most(check, "paths along which the gradient changes faster than its bound",
+                   static_cast<double>(all.too_curved), 0);
+    if (all.roughest < binding.facts.continuity)
+        check.failures.push_back(std::string("the class is said to be ") + name_of(binding.facts.continuity) +
+                                 ", measured is " + name_of(all.roughest));
 }
 
 GradientCheck check_gradient(const TextureBinding& binding, const CheckBox& box, uint32_t count, uint64_t seed)
@@ -111,8 +203,7 @@ GradientCheck check_gradient(const TextureBinding& binding, const CheckBox& box,
         std::copy(point.p, point.p + 3, check.worst_point_m);
     }
     // Differences do not tell a kink from a mistake: where they never agree is taken for kinks as long as that is rare.
-    if (largest > 0)
-        for (double& error : errors) error /= largest;
+    for (double& error : errors) error = relative(error, largest);
     const auto agrees = [](double error) { return error <= tolerance; };
     const auto disagree = count - static_cast<uint32_t>(std::count_if(errors.begin(), errors.end(), agrees));
     const bool rare = disagree <= kinks_share_max * count;

@@ -68,20 +68,14 @@ std::vector<haptel_point> CheckPoints::edges() const
     for (double size : {1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9, 1e15, 1e18}) values.insert(values.end(), {size, -size});
     std::vector<haptel_point> points;
     const auto add = [&](double x, double y, double z) {
-        haptel_point& point = points.emplace_back(haptel_point{});
-        const double p[3] = {x, y, z};
-        std::copy(p, p + 3, point.p);
-        point.n[2] = 1;
-        for (size_t i = 0; i < 2; ++i) point.uv[i] = p[i];
+        points.push_back({.p = {x, y, z}, .n = {0, 0, 1}, .uv = {x, y}, .time_s = 0, .n_dp = {}, .uv_dp = {}});
     };
     for (double x : values)
         for (double y : values)
             for (double z : values) add(x, y, z);
-    for (int corner = 0; corner < 8; ++corner) {
-        double p[3];
-        for (size_t i = 0; i < 3; ++i) p[i] = (corner >> i) & 1 ? box.maximum_m[i] : box.minimum_m[i];
-        add(p[0], p[1], p[2]);
-    }
+    for (double x : {box.minimum_m[0], box.maximum_m[0]})
+        for (double y : {box.minimum_m[1], box.maximum_m[1]})
+            for (double z : {box.minimum_m[2], box.maximum_m[2]}) add(x, y, z);
     return points;
 }
 

@@ -1,7 +1,7 @@
-// A point and a block as the interpreter takes them, for any real type.
+// A texture, a point and a block as the interpreter takes them, for any real type.
 #pragma once
 
-#include "lang/abi/abi.h"
+#include "jit/texture/texture.h"
 #include "lang/ir/run/interpret.h"
 
 #include <array>
@@ -30,19 +30,18 @@ void set_block(ir::EntryInputs<T>& inputs, const ir::Texture& texture, const voi
     inputs.parameters.clear();
     inputs.images.clear();
     for (const ir::Parameter& parameter : texture.parameters) {
-        const char* place = static_cast<const char*>(block) + parameter.offset;
-        double real = 0;
-        uint32_t word = 0;
-        inputs.images.push_back(nullptr);
-        if (parameter.type == ir::Type::image) std::memcpy(&inputs.images.back(), place, sizeof(haptel_image*));
-        std::memcpy(parameter.type == ir::Type::real ? static_cast<void*>(&real) : &word, place,
-                    parameter.type == ir::Type::real ? sizeof real : sizeof word);
+        const auto read = [place = static_cast<const char*>(block) + parameter.offset](auto value) {
+            std::memcpy(&value, place, sizeof value);
+            return value;
+        };
+        const bool is_image = parameter.type == ir::Type::image;
+        inputs.images.push_back(is_image ? read(static_cast<const haptel_image*>(nullptr)) : nullptr);
         switch (parameter.type) {
-        case ir::Type::real: inputs.parameters.emplace_back(T(real)); break;
+        case ir::Type::real: inputs.parameters.emplace_back(T(read(double()))); break;
         case ir::Type::i32:
-        case ir::Type::u32: inputs.parameters.emplace_back(word); break;
-        case ir::Type::boolean: inputs.parameters.emplace_back(word != 0); break;
-        case ir::Type::image: inputs.parameters.emplace_back(word); break; // read from inputs.images
+        case ir::Type::u32: inputs.parameters.emplace_back(read(uint32_t())); break;
+        case ir::Type::boolean: inputs.parameters.emplace_back(read(uint32_t()) != 0); break;
+        case ir::Type::image: inputs.parameters.emplace_back(uint32_t()); break; // read from inputs.images
         }
     }
 }
@@ -58,5 +57,25 @@ auto material_outputs(const ir::Texture& texture, const Results& results)
         if (texture.writes >> bit & 1) outputs[bit] = results[next++].real;
     return outputs;
 }
+
+// The texture of a binding of this program.
+template <typename T>
+struct InterpretedTexture {
+    InterpretedTexture(const CompiledProgram& program, const TextureBinding& binding)
+        : texture(program.source_of(*program.find(binding.texture->name))), interpreter(program.module())
+    {
+        set_block(inputs, texture, binding.block);
+    }
+    std::span<const ir::Slot<T>> run(uint32_t function) { return interpreter.run(function, {}, &inputs); }
+    std::span<const ir::Slot<T>> height_gradient(const haptel_point& point)
+    {
+        set_point(inputs, point);
+        return run(texture.height_gradient);
+    }
+
+    const ir::Texture& texture;
+    ir::Interpreter<T> interpreter;
+    ir::EntryInputs<T> inputs;
+};
 
 } // namespace haptel::jit
