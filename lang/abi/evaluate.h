@@ -12,6 +12,45 @@
 
 namespace haptel {
 
+// At most `most` points and their samples, as the arrays of a batch entry.
+template <std::size_t most>
+class SampleArrays {
+public:
+    // Only the numbers that `reads` (HAPTEL_READS_*) names.
+    void set(std::span<const haptel_point> points, uint32_t reads)
+    {
+        const auto kind_of = [](std::size_t real) { // of the doubles of haptel_point, as the bits of `reads` count them
+            return real < 3 ? 0 : real < 6 ? 1 : real < 8 ? 2 : real < 9 ? 3 : real < 18 ? 1 : 2;
+        };
+        static_assert(HAPTEL_READS_NORMAL == 1 << 1 && HAPTEL_READS_UV == 1 << 2 && HAPTEL_READS_TIME == 1 << 3);
+        for (std::size_t real = 0; real < reals; ++real) {
+            if (!(reads >> kind_of(real) & 1)) continue;
+            const char* place = reinterpret_cast<const char*>(points.data()) + real * sizeof(double);
+            for (std::size_t i = 0; i < points.size(); ++i, place += sizeof(haptel_point))
+                std::memcpy(&inputs[real][i], place, sizeof(double));
+        }
+    }
+    void run(haptel_batch_entry* entry, std::size_t count, const void* block)
+    {
+        const double* arrays[reals];
+        for (std::size_t i = 0; i < reals; ++i) arrays[i] = inputs[i];
+        haptel_points from;
+        static_assert(sizeof from == sizeof arrays);
+        std::memcpy(&from, arrays, sizeof from);
+        const haptel_samples to{outputs[0], {outputs[1], outputs[2], outputs[3]}, outputs[4], outputs[5], faults};
+        entry(&from, count, block, &to);
+    }
+    haptel_sample sample(std::size_t i) const
+    {
+        return {outputs[0][i], {outputs[1][i], outputs[2][i], outputs[3][i]}, outputs[4][i], outputs[5][i], faults[i]};
+    }
+
+private:
+    static constexpr std::size_t reals = sizeof(haptel_point) / sizeof(double);
+    double inputs[reals][most], outputs[6][most];
+    uint32_t faults[most];
+};
+
 // samples[i] becomes what height_gradient says of points[i], bit for bit; as many samples as points. Several threads
 // may evaluate one binding. A texture without batches is asked point by point.
 inline void evaluate(const TextureBinding& binding, std::span<const haptel_point> points,
@@ -22,33 +61,13 @@ inline void evaluate(const TextureBinding& binding, std::span<const haptel_point
         for (std::size_t i = 0; i < points.size(); ++i) texture.height_gradient(&points[i], binding.block, &samples[i]);
         return;
     }
-    constexpr std::size_t group = 256, reals = sizeof(haptel_point) / sizeof(double); // fits the nearest cache
-    static_assert(sizeof(haptel_points) == reals * sizeof(double*));
-    double inputs[reals][group], outputs[6][group];
-    uint32_t faults[group];
-    const double* arrays[reals];
-    for (std::size_t i = 0; i < reals; ++i) arrays[i] = inputs[i];
-    haptel_points from;
-    std::memcpy(&from, arrays, sizeof from);
-    const haptel_samples to{outputs[0], {outputs[1], outputs[2], outputs[3]}, outputs[4], outputs[5], faults};
-
-    const bool is_read[] = {(texture.reads & HAPTEL_READS_POINT) != 0, (texture.reads & HAPTEL_READS_NORMAL) != 0,
-                            (texture.reads & HAPTEL_READS_UV) != 0, (texture.reads & HAPTEL_READS_TIME) != 0};
-    const auto kind_of = [](std::size_t real) { // of the doubles of haptel_point: p, n, uv, time, n_dp, uv_dp
-        return real < 3 ? 0 : real < 6 ? 1 : real < 8 ? 2 : real < 9 ? 3 : real < 18 ? 1 : 2;
-    };
+    constexpr std::size_t group = 256; // fits the nearest cache
+    SampleArrays<group> arrays;
     for (std::size_t first = 0; first < points.size(); first += group) {
-        const std::size_t count = std::min(group, points.size() - first);
-        for (std::size_t real = 0; real < reals; ++real) {
-            if (!is_read[kind_of(real)]) continue;
-            const char* place = reinterpret_cast<const char*>(&points[first]) + real * sizeof(double);
-            for (std::size_t i = 0; i < count; ++i, place += sizeof(haptel_point))
-                std::memcpy(&inputs[real][i], place, sizeof(double));
-        }
-        texture.height_gradient_batch(&from, count, binding.block, &to);
-        for (std::size_t i = 0; i < count; ++i)
-            samples[first + i] = {
-                outputs[0][i], {outputs[1][i], outputs[2][i], outputs[3][i]}, outputs[4][i], outputs[5][i], faults[i]};
+        const std::span<const haptel_point> some = points.subspan(first, std::min(group, points.size() - first));
+        arrays.set(some, texture.reads);
+        arrays.run(texture.height_gradient_batch, some.size(), binding.block);
+        for (std::size_t i = 0; i < some.size(); ++i) samples[first + i] = arrays.sample(i);
     }
 }
 

@@ -1,10 +1,12 @@
 // Text to textures: what the C interface says, bindings, the resolver, and code that goes when its program goes.
 #include "jit/check/oracle.h"
 #include "jit/texture/resolver.h"
+#include "lang/abi/evaluate.h"
 #include "tests/jit/codegen/samples.h"
 #include "tests/support/folder.h"
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <random>
 #include <thread>
@@ -293,6 +295,50 @@ TEST_CASE("many programs, from several threads, each its own")
     for (std::thread& thread : threads) thread.join();
     CHECK(wrong == 0);
     CHECK(jit::programs_alive() == before);
+}
+
+TEST_CASE("a binding says whether its footprint takes detail away")
+{
+    const auto program = compiled("texture rock() { return 60um * fbm(p / 1mm, 5); } texture flat() { return 1mm; }");
+    const auto is_band_limited = [&](const char* name, double footprint_m) {
+        TextureRequest request = request_over(0.05);
+        request.footprint_m = footprint_m;
+        return jit::make_binding(program, name, request).binding.value().band_limited;
+    };
+    CHECK(is_band_limited("rock", 1e-3));
+    CHECK_FALSE(is_band_limited("rock", 1e-9));
+    CHECK_FALSE(is_band_limited("rock", 0));
+    CHECK_FALSE(is_band_limited("flat", 1e-3));
+}
+
+TEST_CASE("many points at once have the bits of one after the other, whichever inputs a texture reads")
+{
+    jit::TextureOptions options;
+    options.entries = jit::Entries::both_and_batches;
+    options.precision = jit::Precision::f64;
+    std::mt19937_64 random(7);
+    std::vector<haptel_point> points(300); // more than one group of them
+    for (haptel_point& point : points) {
+        double numbers[sizeof(haptel_point) / sizeof(double)];
+        for (double& number : numbers) number = std::uniform_real_distribution<double>(-1, 1)(random);
+        std::memcpy(&point, numbers, sizeof point);
+    }
+    for (const char* height : {"sin(p.x) * p.y + p.z", "n.x * n.y + n.z * n.z", "uv.x * uv.y", "sin(time)",
+                               "sin(p.z + time) * n.y + uv.x * n.z"}) {
+        CAPTURE(height);
+        const auto made = jit::compile_texture(std::string("texture t() { return ") + height + "; }", options);
+        REQUIRE(made.program);
+        const auto bound = jit::make_binding(made.program, "t", request_over(2), jit::Unbounded::allowed);
+        REQUIRE(bound.binding);
+        std::vector<haptel_sample> samples(points.size());
+        evaluate(*bound.binding, points, samples);
+        for (size_t i = 0; i < points.size(); ++i) {
+            haptel_sample one{};
+            bound.binding->texture->height_gradient(&points[i], bound.binding->block, &one);
+            CHECK(samples[i].height_m == one.height_m);
+            for (size_t k = 0; k < 3; ++k) CHECK(samples[i].gradient[k] == one.gradient[k]);
+        }
+    }
 }
 
 TEST_CASE("a texture too slow for the servo of its request is refused with the figure, from its first binding on")
