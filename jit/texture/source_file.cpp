@@ -3,6 +3,7 @@
 #include "input/regular_file.h"
 #include "lang/text/diagnostic.h"
 #include "lang/text/near_name.h"
+#include "lang/text/number.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -43,26 +44,22 @@ std::string did_you_mean(const fs::path& path)
 bool is_name(std::string_view text)
 {
     const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-    if (text.empty() || !is_letter(text[0])) return false;
-    for (char c : text)
-        if (!is_letter(c) && !(c >= '0' && c <= '9')) return false;
-    return true;
+    return !text.empty() && is_letter(text[0]) &&
+           std::ranges::all_of(text, [&](char c) { return is_letter(c) || lang::is_digit(c); });
 }
 
 // With the error as a clause of its own: "it is a pipe".
 SourceText read(const std::string& path)
 {
     input::FileBytes file = input::read_regular_file(path, source_bytes_max);
-    const std::string error = "it " + file.refused.why;
-    switch (file.refused.refusal) {
-    case input::Refusal::none: return {std::move(file.bytes), {}, {}};
-    case input::Refusal::missing: return {{}, error, did_you_mean(path)};
-    case input::Refusal::folder: return {{}, error, "name a texture file inside it: FILE.haptel"};
-    case input::Refusal::too_large: return {{}, error, "no texture is as large: is it the right file?"};
-    case input::Refusal::not_regular:
-    case input::Refusal::unreadable: return {{}, error, {}};
-    }
-    return {{}, error, {}};
+    const input::Refusal refusal = file.refused.refusal;
+    if (refusal == input::Refusal::none) return {std::move(file.bytes), {}, {}};
+    return {{},
+            "it " + file.refused.why,
+            refusal == input::Refusal::missing     ? did_you_mean(path)
+            : refusal == input::Refusal::folder    ? "name a texture file inside it: FILE.haptel"
+            : refusal == input::Refusal::too_large ? "no texture is as large: is it the right file?"
+                                                   : ""};
 }
 
 } // namespace
