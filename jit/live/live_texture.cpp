@@ -2,7 +2,6 @@
 
 #include "jit/live/compile_thread.h"
 #include "jit/picture/image_file.h"
-#include "jit/texture/call_time.h"
 #include "jit/texture/source_file.h"
 #include "lang/parameter_value.h"
 
@@ -173,11 +172,7 @@ void LiveTexture::Client::make_and_publish(const CompiledTextures& compiled)
     const TextureRequest fitting = request_for(*compiled.program, said);
     TextureResult result = make_binding(compiled.program, reference.texture, fitting);
     said += about_file(reference.file, result.diagnostics);
-    if (!result.binding) return report(std::move(said));
-    if (const std::string slow = too_slow(*compiled.program, *result.binding, request); !slow.empty())
-        return report(
-            said +
-            about_file(reference.file, "error: " + slow + "; the old texture stays\n  hint: fewer octaves or terms\n"));
+    if (!result.binding) return report(said + about_file(reference.file, "note: the old texture stays"));
     callbacks.publish(std::move(*result.binding));
     report(std::move(said));
 }

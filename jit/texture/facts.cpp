@@ -4,8 +4,12 @@
 #include "lang/ir/cost.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <limits>
+#include <random>
 
 namespace haptel::jit {
 
@@ -38,19 +42,6 @@ ir::BoundsBox anywhere()
     return box;
 }
 
-uint32_t abi_continuity(ir::Continuity continuity)
-{
-    switch (continuity) {
-    case ir::Continuity::unknown: return HAPTEL_CONTINUITY_UNKNOWN;
-    case ir::Continuity::jump: return HAPTEL_CONTINUITY_JUMP;
-    case ir::Continuity::c0: return HAPTEL_CONTINUITY_C0;
-    case ir::Continuity::c1:
-    case ir::Continuity::c2:
-    case ir::Continuity::smooth: return HAPTEL_CONTINUITY_C1;
-    }
-    return HAPTEL_CONTINUITY_UNKNOWN;
-}
-
 uint32_t operations_max(const ir::Module& module, const ir::Texture& texture)
 {
     const uint32_t entry = texture.height_gradient != UINT32_MAX ? texture.height_gradient : texture.height;
@@ -60,7 +51,11 @@ uint32_t operations_max(const ir::Module& module, const ir::Texture& texture)
 haptel_facts facts(const ir::Module& module, const ir::Texture& texture, const ir::BoundsBox& box, uint32_t evaluations)
 {
     const ir::TextureBounds bounds = ir::texture_bounds(module, texture, box, evaluations);
-    const uint32_t continuity = abi_continuity(bounds.continuity);
+    constexpr auto number = [](ir::Continuity of) { return static_cast<uint32_t>(of); };
+    static_assert(number(ir::Continuity::jump) == HAPTEL_CONTINUITY_JUMP &&
+                  number(ir::Continuity::c0) == HAPTEL_CONTINUITY_C0 &&
+                  number(ir::Continuity::c1) == HAPTEL_CONTINUITY_C1);
+    const uint32_t continuity = std::min<uint32_t>(number(bounds.continuity), HAPTEL_CONTINUITY_C1);
     return {bounds.height.minimum,
             bounds.height.maximum,
             bounds.slope_max,
@@ -71,13 +66,10 @@ haptel_facts facts(const ir::Module& module, const ir::Texture& texture, const i
 
 } // namespace
 
-haptel_facts no_facts(const ir::Module& module, const ir::Texture& texture)
+haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& texture, bool are_wanted)
 {
-    return {-infinity, infinity, infinity, infinity, HAPTEL_CONTINUITY_UNKNOWN, operations_max(module, texture)};
-}
-
-haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& texture)
-{
+    if (!are_wanted)
+        return {-infinity, infinity, infinity, infinity, HAPTEL_CONTINUITY_UNKNOWN, operations_max(module, texture)};
     ir::BoundsBox box = anywhere();
     for (const ir::Parameter& parameter : texture.parameters)
         box.parameters.push_back(parameter.type == ir::Type::boolean ? Interval{0, 1}
@@ -111,6 +103,117 @@ haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture
     for (double value : values) box.parameters.push_back({value, value});
     box.images.assign(images.begin(), images.end());
     return facts(module, texture, box, evaluations_over_box);
+}
+
+namespace {
+
+// Share of a servo's period that one texture's call may take; the rest is contact, force, device, and reserve.
+constexpr double share_of_period_max = 0.2;
+
+// Points of a request's object, the same for the same request.
+class RandomPoints {
+public:
+    explicit RandomPoints(const TextureRequest& of) : request(of) {}
+
+    haptel_point next()
+    {
+        haptel_point point{};
+        double length = 0;
+        for (size_t k = 0; k < 3; ++k) {
+            point.p[k] = between(request.box_minimum_m[k], request.box_maximum_m[k], 1);
+            point.n[k] = share() - 0.5;
+            length += point.n[k] * point.n[k];
+        }
+        for (double& n : point.n) n /= std::sqrt(length);
+        for (size_t k = 0; k < 2; ++k) {
+            point.uv[k] = between(request.uv.minimum[k], request.uv.maximum[k], 1);
+            for (size_t j = 0; j < 3; ++j)
+                point.uv_dp[k][j] = between(request.uv.dp_minimum[k][j], request.uv.dp_maximum[k][j], 100);
+        }
+        return point;
+    }
+
+private:
+    double share() { return static_cast<double>(random() >> 11) * 0x1p-53; }
+    // Somewhere between two figures; between 0 and another where they are not known.
+    double between(double minimum, double maximum, double otherwise)
+    {
+        if (!std::isfinite(minimum) || !std::isfinite(maximum)) return share() * otherwise;
+        return minimum + share() * (maximum - minimum);
+    }
+
+    const TextureRequest& request;
+    std::mt19937_64 random{1};
+};
+
+// Of one call of height_gradient, over 1000 calls, or fewer where they take more than a tenth of a second together.
+double median_call_s(const TextureBinding& binding, const TextureRequest& request)
+{
+    constexpr size_t calls_max = 1000, calls_min = 11;
+    constexpr double patience_s = 0.1;
+    using Clock = std::chrono::steady_clock;
+    RandomPoints points(request);
+    std::vector<double> times_s;
+    times_s.reserve(calls_max);
+    for (double spent_s = 0; times_s.size() < calls_max && (spent_s < patience_s || times_s.size() < calls_min);) {
+        const haptel_point point = points.next();
+        haptel_sample sample;
+        const auto start = Clock::now();
+        binding.texture->height_gradient(&point, binding.block, &sample);
+        times_s.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+        spent_s += times_s.back();
+    }
+    const auto middle = times_s.begin() + static_cast<std::ptrdiff_t>(times_s.size() / 2);
+    std::nth_element(times_s.begin(), middle, times_s.end());
+    return *middle;
+}
+
+std::string microseconds(double seconds)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g us", seconds * 1e6);
+    return text;
+}
+
+} // namespace
+
+bool is_band_limited(const TextureBinding& binding, const TextureRequest& request)
+{
+    if (!(binding.texture->reads & HAPTEL_READS_FOOTPRINT) || request.footprint_m == 0 ||
+        !binding.texture->height_gradient)
+        return false;
+    std::vector<uint64_t> block((binding.texture->block_size + 7) / 8);
+    std::memcpy(block.data(), binding.block, binding.texture->block_size);
+    constexpr double none_m = 0;
+    std::memcpy(reinterpret_cast<char*>(block.data()) + offsetof(haptel_block_head, footprint_m), &none_m,
+                sizeof none_m);
+    // Textures that are too slow for a servo shall not be slow to refuse.
+    const uint64_t operations = std::max<uint64_t>(binding.facts.operations_max, 1);
+    const uint64_t places = std::clamp<uint64_t>(20'000'000 / operations, 1, 32);
+    RandomPoints points(request);
+    for (uint64_t i = 0; i < places; ++i) {
+        const haptel_point point = points.next();
+        haptel_sample with = {}, without = {};
+        binding.texture->height_gradient(&point, binding.block, &with);
+        binding.texture->height_gradient(&point, block.data(), &without);
+        if (with.height_m != without.height_m) return true;
+    }
+    return false;
+}
+
+std::string too_slow(const CompiledProgram& program, const TextureBinding& binding, const TextureRequest& request)
+{
+    if (request.servo_period_s <= 0 || !binding.texture->height_gradient) return {};
+    const double most_s = share_of_period_max * request.servo_period_s;
+    double call_s = median_call_s(binding, request);
+    if (call_s > most_s && !program.is_optimised()) {
+        program.optimise();
+        call_s = median_call_s(binding, request);
+    }
+    if (call_s <= most_s) return {};
+    return std::string("texture '") + binding.texture->name + "' takes " + microseconds(call_s) +
+           " per call (median), more than the " + microseconds(most_s) + " that a servo period of " +
+           microseconds(request.servo_period_s) + " leaves for it";
 }
 
 } // namespace haptel::jit

@@ -1,25 +1,31 @@
-// What is proven about a texture, as the C interface carries it.
+// What is known of a texture: proven, as the C interface carries it; and seen, by calls at random places of an object.
 #pragma once
 
-#include "lang/abi/abi.h"
-#include "lang/abi/texture_binding.h"
+#include "jit/texture/texture.h"
 #include "lang/ir/bounds/spline_image.h"
-#include "lang/ir/ir.h"
 
 #include <span>
+#include <string>
 
 namespace haptel::jit {
 
-// For every point and all values within the parameters' ranges.
-haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& texture);
-
-// Nothing is known, but for the operations: their count costs nothing.
-haptel_facts no_facts(const ir::Module& module, const ir::Texture& texture);
+// For every point and all values within the parameters' ranges. Where they are not wanted, nothing is known but the
+// operations: their count costs nothing.
+haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& texture, bool are_wanted);
 
 // For points of the box, these values and images (by Texture::parameters, SI), this footprint, and normals and mesh
 // coordinates as the request knows them.
 haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,
                             std::span<const ir::SplineImage* const> images, const haptel_block_head& head,
                             const TextureRequest& request);
+
+// True if the height of the binding, made for this request, is another one without its footprint at any of up to
+// 32 places: octaves are faded or left out.
+bool is_band_limited(const TextureBinding& binding, const TextureRequest& request);
+
+// Why this binding of that program, made for this request, is too slow for the request's servo, with the figure
+// measured; empty: it is not, or no servo waits for it. Code is optimised before it is refused. Faults the code's and
+// the block's pages in on the way.
+std::string too_slow(const CompiledProgram& program, const TextureBinding& binding, const TextureRequest& request);
 
 } // namespace haptel::jit

@@ -1,6 +1,5 @@
 #include "jit/texture/resolver.h"
 
-#include "jit/texture/call_time.h"
 #include "jit/texture/source_file.h"
 
 namespace haptel::jit {
@@ -13,11 +12,6 @@ TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache, Unbounded unb
         std::string said = compiled->rendered();
         if (!compiled->program) return {std::nullopt, std::move(said)};
         TextureResult result = make_binding(compiled->program, reference.texture, request, unbounded);
-        if (const std::string slow = result.binding ? too_slow(*compiled->program, *result.binding, request) : "";
-            !slow.empty())
-            return {std::nullopt, said + about_file(reference.file, "error: " + slow +
-                                                                        "\n  hint: fewer octaves or terms, or a lower "
-                                                                        "rate_hz\n")};
         result.diagnostics = said + about_file(reference.file, result.diagnostics);
         return result;
     };

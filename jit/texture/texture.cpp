@@ -2,10 +2,8 @@
 
 #include "jit/texture/facts.h"
 #include "jit/texture/source_file.h"
-#include "lang/ir/verify.h"
 #include "stdlib/stdlib.h"
 
-#include <algorithm>
 #include <atomic>
 #include <future>
 
@@ -18,15 +16,12 @@ constexpr char with_gradient = '\'', of_many = '*';
 
 haptel_parameter described(const ir::Parameter& parameter)
 {
-    uint32_t type = HAPTEL_FLOAT;
-    switch (parameter.type) {
-    case ir::Type::real: type = HAPTEL_FLOAT; break;
-    case ir::Type::i32: type = HAPTEL_INT; break;
-    case ir::Type::u32: type = HAPTEL_UINT; break;
-    case ir::Type::boolean: type = HAPTEL_BOOL; break;
-    case ir::Type::image: type = HAPTEL_IMAGE; break;
-    }
-    return {parameter.name.c_str(), parameter.unit.c_str(), parameter.doc.c_str(), type,
+    using ir::Type;
+    constexpr auto number = [](Type type) { return static_cast<uint32_t>(type); };
+    static_assert(number(Type::real) == HAPTEL_FLOAT && number(Type::i32) == HAPTEL_INT &&
+                  number(Type::u32) == HAPTEL_UINT && number(Type::boolean) == HAPTEL_BOOL &&
+                  number(Type::image) == HAPTEL_IMAGE);
+    return {parameter.name.c_str(), parameter.unit.c_str(), parameter.doc.c_str(), number(parameter.type),
             parameter.offset,       parameter.value,        parameter.minimum,     parameter.maximum};
 }
 
@@ -54,12 +49,10 @@ std::vector<EntryPoint> entry_points(const ir::Module& module, const TextureOpti
 
 lang::CompileOptions language_options(const TextureOptions& options)
 {
-    lang::CompileOptions language;
+    lang::CompileOptions language{{}, options.load_import, options.only_texture};
     if (options.standard_library)
         for (const stdlib::LibraryFile& file : stdlib::library())
             language.library.push_back({std::string(file.name), std::string(file.text)});
-    language.load_import = options.load_import;
-    language.only_texture = options.only_texture;
     return language;
 }
 
@@ -75,9 +68,8 @@ CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, s
         for (const ir::Parameter& parameter : texture.parameters) list.push_back(described(parameter));
         table.push_back({HAPTEL_ABI_VERSION, sizeof(haptel_texture), texture.reads, texture.writes, texture.block_size,
                          static_cast<uint32_t>(list.size()), texture.name.c_str(), list.data(),
-                         has_facts ? facts_over_ranges(module(), texture) : no_facts(module(), texture),
-                         code->entry(texture.name), code->entry(texture.name + with_gradient),
-                         code->batch_entry(texture.name + of_many),
+                         facts_over_ranges(module(), texture, has_facts), code->entry(texture.name),
+                         code->entry(texture.name + with_gradient), code->batch_entry(texture.name + of_many),
                          code->batch_entry(texture.name + with_gradient + of_many)});
     }
 }
@@ -92,8 +84,8 @@ void CompiledProgram::optimise() const
 
 const haptel_texture* CompiledProgram::find(std::string_view name) const
 {
-    const auto found =
-        std::find_if(table.begin(), table.end(), [&](const haptel_texture& texture) { return texture.name == name; });
+    if (name.empty()) return table.size() == 1 ? table.data() : nullptr;
+    const auto found = std::ranges::find(table, name, &haptel_texture::name);
     return found == table.end() ? nullptr : &*found;
 }
 
@@ -102,48 +94,28 @@ const ir::Texture& CompiledProgram::source_of(const haptel_texture& texture) con
     return module().textures[static_cast<size_t>(&texture - table.data())];
 }
 
-namespace {
-
-// Beside the front end of the first text: neither needs the other.
-std::future<void> start_engine_once()
-{
-    static std::atomic<bool> has_begun{false};
-    if (has_begun.exchange(true)) return {};
-    return std::async(std::launch::async, [] { engine_name(); });
-}
-
-} // namespace
-
 TextureOptions servo_options()
 {
-    TextureOptions options;
-    options.entries = Entries::height_gradient;
-    options.effort = Effort::draft;
-    options.iterations_in_lanes = true;
-    return options;
+    return {.entries = Entries::height_gradient, .effort = Effort::draft, .iterations_in_lanes = true};
 }
 
 CompiledTextures compile_texture(std::string_view text, const TextureOptions& options)
 {
-    const std::future<void> starting = start_engine_once();
+    // The engine starts beside the front end of the first text: neither needs the other.
+    static std::atomic<bool> has_begun{false};
+    const std::future<void> starting =
+        has_begun.exchange(true) ? std::future<void>() : std::async(std::launch::async, [] { engine_name(); });
     lang::CompileResult checked = lang::compile({options.name, std::string(text)}, language_options(options));
     CompiledTextures result{nullptr, std::move(checked.diagnostics), std::move(checked.sources),
                             std::move(checked.files)};
     if (!checked.program) return result;
-    // lang has verified it too; a servo trusts whoever hands out the pointer.
-    std::string fault = ir::verify(checked.program->module);
     std::vector<EntryPoint> entries = entry_points(checked.program->module, options);
-    CodeResult code;
-    if (fault.empty()) {
-        code = compile_code(checked.program->module, entries, {options.effort, options.kernels});
-        fault = code.error;
-    }
-    if (!fault.empty()) {
-        result.diagnostics.error({}, "no-code", "no machine code could be made: " + fault);
-        return result;
-    }
-    result.program = std::make_shared<CompiledProgram>(std::move(checked.program), std::move(entries),
-                                                       std::move(code.code), options.facts_over_ranges);
+    CodeResult code = compile_code(checked.program->module, entries, {options.effort, options.kernels});
+    if (code.code)
+        result.program = std::make_shared<CompiledProgram>(std::move(checked.program), std::move(entries),
+                                                           std::move(code.code), options.facts_over_ranges);
+    else
+        result.diagnostics.error({}, "no-code", "no machine code could be made: " + code.error);
     return result;
 }
 

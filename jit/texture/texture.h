@@ -9,6 +9,7 @@
 #include "lang/abi/texture_binding.h"
 #include "lang/compile.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -29,7 +30,7 @@ public:
     // In the order of the source. Their facts hold over the parameters' ranges and any point; where they were not asked
     // for, all but operations_max say that nothing is known.
     std::span<const haptel_texture> textures() const { return table; }
-    // Null if there is none of that name.
+    // Null if there is none of that name; an empty one finds the only texture.
     const haptel_texture* find(std::string_view name) const;
 
     // What the texture was compiled from, for evaluators other than code.
@@ -82,6 +83,10 @@ struct CompiledTextures {
     std::vector<std::string> files; // the text's own name, then its imports
 
     std::string rendered(bool color = false) const { return lang::render(diagnostics.all(), sources, color); }
+    bool has_finding(std::string_view code) const
+    {
+        return std::ranges::find(diagnostics.all(), code, &lang::Diagnostic::code) != diagnostics.all().end();
+    }
 };
 
 CompiledTextures compile_texture(std::string_view text, const TextureOptions& options = {});
@@ -96,7 +101,7 @@ enum class Unbounded : uint8_t { refused, allowed };
 
 // One texture of a program (empty name: its only one) with the request's parameters, box and footprint; the request's
 // reference is not looked at. Refused, with a message that says how to mend it: a name that does not exist, a value
-// that does not fit, a height that is not bounded over the box.
+// that does not fit, a height that is not bounded over the box, a call that takes too long for the request's servo.
 TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program, std::string_view texture,
                            const TextureRequest& request, Unbounded unbounded = Unbounded::refused);
 
