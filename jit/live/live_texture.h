@@ -2,12 +2,11 @@
 //
 // All live textures of a process share one compile thread: it watches the files, compiles, times the result and calls
 // back; the servo never waits for it. A file that is broken, gone, half written or too slow leaves the old texture in
-// the hand and is reported (too slow: for the request's servo, jit/texture/call_time.h). Parameter values survive by
-// name and type: one that does not fit the new text is set aside and comes back when it fits again.
+// the hand and is reported (too slow: for the request's servo). Parameter values survive by name and type: one that
+// does not fit the new text is set aside and comes back when it fits again.
 #pragma once
 
-#include "jit/texture/program_cache.h"
-#include "lang/abi/texture_binding.h"
+#include "jit/texture/resolver.h"
 
 #include <functional>
 #include <memory>

@@ -1,14 +1,35 @@
-// The resolver that compiles: what the runtime's scenes ask for textures.
+// The resolver that compiles: what the runtime's scenes ask for textures. Texture files are compiled once per process,
+// known by path and content. Only height_gradient becomes code: a draft, which becomes fast code in the background.
 #pragma once
 
-#include "jit/texture/program_cache.h"
-#include "lang/abi/texture_binding.h"
+#include "jit/texture/texture.h"
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
 
 namespace haptel::jit {
 
+class ProgramCache {
+public:
+    // The file as it is on disk now: compiled if it or an import of it has changed since it was asked for last. Any
+    // thread; one compiles at a time.
+    std::shared_ptr<const CompiledTextures> load(const std::string& path);
+
+    // What load() gave last for this path, without a look at the disk; null: it was never asked for.
+    std::shared_ptr<const CompiledTextures> known(const std::string& path);
+
+    // The one of this process.
+    static const std::shared_ptr<ProgramCache>& shared();
+
+private:
+    std::mutex mutex;
+    std::map<std::string, std::shared_ptr<const CompiledTextures>> newest; // by path
+};
+
 // Resolves "PATH.haptel:NAME", or "PATH.haptel" where the file holds one texture. The result's diagnostics start with
-// the file's name; warnings stand beside a binding. A texture that is too slow for the request's servo is refused with
-// the figure. Any thread.
+// the file's name; warnings stand beside a binding. Any thread.
 TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache = ProgramCache::shared(),
                               Unbounded unbounded = Unbounded::refused);
 

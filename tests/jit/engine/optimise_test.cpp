@@ -1,6 +1,5 @@
 // Quick code becomes fast code in the background: the same pointers, the same bits, at any moment.
-#include "jit/texture/background_optimiser.h"
-#include "jit/texture/program_cache.h"
+#include "jit/texture/resolver.h"
 #include "tests/jit/codegen/samples.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"
