@@ -14,16 +14,6 @@ namespace {
 constexpr uint32_t ended = IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE | IN_ATTRIB;
 constexpr uint32_t folder_events = ended | IN_CREATE | IN_MODIFY | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
 
-// The file as named and, where it is a link, the file behind it.
-std::set<fs::path> places_of(const std::string& file)
-{
-    std::error_code error;
-    std::set<fs::path> places = {fs::absolute(file, error).lexically_normal()};
-    const fs::path target = fs::canonical(file, error);
-    if (!error) places.insert(target);
-    return places;
-}
-
 } // namespace
 
 FileWatch::FileWatch() : inotify(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {}
@@ -37,25 +27,20 @@ void FileWatch::watch(const std::set<std::string>& files)
 {
     if (inotify < 0) return;
     std::map<std::string, std::set<std::string>> wanted; // file names by folder
-    for (const std::string& file : files)
-        for (const fs::path& place : places_of(file)) wanted[place.parent_path()].insert(place.filename());
-
-    for (auto folder = folders.begin(); folder != folders.end();) {
-        if (!wanted.contains(folder->first)) {
-            inotify_rm_watch(inotify, folder->second);
-            folder = folders.erase(folder);
-        } else {
-            ++folder;
-        }
+    for (const std::string& file : files) {
+        std::error_code error;
+        // The file as named and, where it is a link, the file behind it; empty: there is none.
+        for (const fs::path& place : {fs::absolute(file, error).lexically_normal(), fs::canonical(file, error)})
+            if (!place.empty()) wanted[place.parent_path()].insert(place.filename());
     }
     std::map<int, std::set<std::string>> names_by_number;
     for (auto& [folder, names] : wanted) {
         // Adding a folder that is watched already returns its number; a folder made anew gets a new one.
         const int number = inotify_add_watch(inotify, folder.c_str(), folder_events);
-        if (number < 0) continue;
-        folders[folder] = number;
-        names_by_number[number].merge(names); // two paths may lead to one folder, which has one number
+        if (number >= 0) names_by_number[number].merge(names); // two paths may lead to one folder, which has one number
     }
+    for (const auto& [number, names] : names_by_watch)
+        if (!names_by_number.contains(number)) inotify_rm_watch(inotify, number);
     names_by_watch = std::move(names_by_number);
 }
 

@@ -34,8 +34,7 @@ public:
 
 private:
     int inotify = -1;
-    std::map<std::string, int> folders;                  // by path, watch descriptor
-    std::map<int, std::set<std::string>> names_by_watch; // file names of interest
+    std::map<int, std::set<std::string>> names_by_watch; // file names of interest, by a folder's watch descriptor
 };
 
 } // namespace haptel::jit

@@ -1,47 +1,169 @@
 #include "jit/live/live_texture.h"
 
-#include "jit/live/compile_thread.h"
+#include "jit/live/file_watch.h"
 #include "jit/picture/image_file.h"
 #include "jit/texture/source_file.h"
 #include "lang/parameter_value.h"
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <mutex>
 #include <optional>
+#include <poll.h>
+#include <set>
+#include <sys/eventfd.h>
+#include <thread>
+#include <unistd.h>
 #include <vector>
 
 namespace haptel::jit {
 
 namespace {
 
+using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
-// Between deleting the old file and making the new one, some editors take a while.
-constexpr auto absence_forgiven = std::chrono::milliseconds(500);
 
-bool is_unreadable(const CompiledTextures& compiled)
-{
-    const auto& findings = compiled.diagnostics.all();
-    return std::any_of(findings.begin(), findings.end(),
-                       [](const lang::Diagnostic& finding) { return finding.code == "unreadable-file"; });
-}
+// After the last sign that a file is complete: an editor's rename and what belongs to it are over by then.
+constexpr auto settle_after_written = 10ms;
+// After a write without an end: the writer is at work, or keeps the file open.
+constexpr auto settle_after_writing = 150ms;
+constexpr auto settle_longest = 1s; // since the first sign, however many follow
+// Looks at the files unasked: for what inotify does not tell, and for folders that were not there.
+constexpr auto unasked = 1s;
+// Between deleting the old file and making the new one, some editors take a while.
+constexpr auto absence_forgiven = 500ms;
+
+struct UsedPicture {
+    std::string file;
+    std::shared_ptr<const ir::SplineImage> image; // null: it cannot be read
+    bool operator==(const UsedPicture&) const = default;
+};
+
+// The one thread that compiles for live textures: waits for files to change and tells its clients.
+class CompileThread {
+public:
+    struct Place {
+        std::mutex at_work;            // held during an update
+        std::function<void()> update;  // looks whether files have changed, and acts; throws nothing. Null: no more
+        std::set<std::string> watched; // files, as of the last update
+    };
+
+    // The one of this process; it ends with its last owner.
+    static std::shared_ptr<CompileThread> shared()
+    {
+        static std::mutex mutex;
+        static std::weak_ptr<CompileThread> current;
+        const std::lock_guard lock(mutex);
+        std::shared_ptr<CompileThread> thread = current.lock();
+        if (!thread) current = thread = std::make_shared<CompileThread>();
+        return thread;
+    }
+
+    CompileThread() : thread([this](const std::stop_token& stop) { run(stop); }) {}
+    ~CompileThread()
+    {
+        thread.request_stop();
+        wake();
+        thread.join();
+        close(wake_event);
+    }
+
+    // Any thread, from within an update too. It keeps the place for as long as somebody else does.
+    void add(const std::shared_ptr<Place>& place)
+    {
+        {
+            const std::lock_guard lock(places_mutex);
+            places.push_back(place);
+        }
+        wake();
+    }
+    // Update soon, without a change of a file.
+    void wake()
+    {
+        const uint64_t one = 1;
+        [[maybe_unused]] const ssize_t written = write(wake_event, &one, sizeof one);
+    }
+
+private:
+    void run(const std::stop_token& stop)
+    {
+        std::optional<Clock::time_point> first_change;
+        Clock::time_point due = Clock::now();
+        while (!stop.stop_requested()) {
+            const bool is_woken = wait(due);
+            const FileWatch::Change change = watch.take();
+            const auto now = Clock::now();
+            if (change != FileWatch::Change::none) {
+                if (!first_change) first_change = now;
+                const auto settled = change == FileWatch::Change::written ? settle_after_written : settle_after_writing;
+                due = std::min(now + settled, *first_change + settle_longest);
+            }
+            if (now < due && (!is_woken || first_change)) continue;
+            update_clients();
+            first_change.reset();
+            due = Clock::now() + unasked;
+        }
+    }
+
+    // True: woken by wake().
+    bool wait(Clock::time_point until)
+    {
+        const auto left = std::chrono::ceil<std::chrono::milliseconds>(until - Clock::now());
+        pollfd descriptors[] = {{wake_event, POLLIN, 0}, {watch.descriptor(), POLLIN, 0}};
+        poll(descriptors, 2, static_cast<int>(std::max<int64_t>(left.count(), 0)));
+        uint64_t count = 0;
+        return read(wake_event, &count, sizeof count) == sizeof count;
+    }
+
+    // Of those that there are at the start: who is added meanwhile wakes the thread anew.
+    void update_clients()
+    try {
+        std::unique_lock lock(places_mutex);
+        std::erase_if(places, [](const auto& place) { return place.use_count() == 1; });
+        const std::vector<std::shared_ptr<Place>> all = places;
+        lock.unlock();
+        std::set<std::string> files;
+        for (const auto& place : all) {
+            const std::lock_guard at_work(place->at_work);
+            if (!place->update) continue;
+            place->update();
+            files.insert(place->watched.begin(), place->watched.end());
+        }
+        watch.watch(files);
+    } catch (...) {
+        // No memory for the list of files: the watch is as it was, and this is tried again in a moment.
+    }
+
+    FileWatch watch;
+    const int wake_event = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+    std::mutex places_mutex; // never held while a client is at work: it may add others
+    std::vector<std::shared_ptr<Place>> places;
+    std::jthread thread;
+};
 
 } // namespace
 
-class LiveTexture::Client final : public CompileThread::Client {
+class LiveTexture::Client {
 public:
-    Client(TextureRequest asked, LiveCallbacks called, LiveOptions chosen)
+    Client(TextureRequest asked, LiveCallbacks called, LiveOptions options)
         : request(std::move(asked))
         , reference(split_reference(request.reference))
         , callbacks(std::move(called))
-        , options(std::move(chosen))
-        , in_hand(options.cache->known(reference.file))
+        , cache(std::move(options.cache))
+        , in_hand(cache->known(reference.file))
         , thread(CompileThread::shared())
     {
         if (in_hand && in_hand->program) pictures_in_hand = pictures_of(*in_hand->program);
-        thread->add(this);
+        place->watched = {reference.file};
+        place->update = [this] { update(); };
+        thread->add(place);
     }
-    ~Client() override { thread->remove(this); }
+    ~Client()
+    {
+        const std::lock_guard lock(place->at_work); // waits while there is an update
+        place->update = nullptr;
+    }
 
     void set_parameter(std::string name, std::string value)
     {
@@ -52,154 +174,136 @@ public:
         thread->wake();
     }
 
-    void update() override;
-    void failed(std::string_view why) override
-    {
-        report(lang::printable(reference.file) + ": error: this edit could not be taken up: " + std::string(why) +
-               "; the old texture stays\n");
-    }
-    std::set<std::string> files() const override { return watched; }
-
 private:
-    TextureRequest request;
-    const TextureReference reference;
-    const LiveCallbacks callbacks;
-    const LiveOptions options;
+    // True if a value was set. The newest value of a name counts.
+    bool take_edits()
+    {
+        const std::lock_guard lock(edits_mutex);
+        for (auto& edit : edits) {
+            std::erase_if(request.parameters, [&](const auto& known) { return known.first == edit.first; });
+            request.parameters.push_back(std::move(edit));
+        }
+        return !std::exchange(edits, {}).empty();
+    }
 
-    std::shared_ptr<const CompiledTextures> in_hand; // what was looked at last; broken ones too
-    std::shared_ptr<const CompiledTextures> usable;  // the last one that has a program
-    struct Picture {
-        std::string file;
-        std::shared_ptr<const ir::SplineImage> image; // null: it cannot be read
-        bool operator==(const Picture&) const = default;
-    };
-    std::vector<Picture> pictures_in_hand; // as of the last look
-    std::optional<Clock::time_point> absent_since;
-    std::string reported; // the last report, not to be repeated
-    std::set<std::string> watched = {reference.file};
+    // As they are on disk now; read only where that is not what is in use.
+    std::vector<UsedPicture> pictures_of(const CompiledProgram& program) const
+    {
+        std::vector<UsedPicture> pictures;
+        const haptel_texture* texture = program.find(reference.texture);
+        if (!texture) return pictures;
+        for (const ir::Parameter& parameter : program.source_of(*texture).parameters)
+            for (const auto& [name, value] : request.parameters)
+                if (parameter.type == ir::Type::image && name == parameter.name)
+                    pictures.push_back({image_file(value, request.folder), read_image(value, request.folder).image});
+        return pictures;
+    }
 
-    std::mutex edits_mutex;
-    std::vector<std::pair<std::string, std::string>> edits;
+    // Whether what is gone may be about to come back.
+    bool is_forgiven(bool is_absent)
+    {
+        if (!is_absent) {
+            absent_since.reset();
+            return false;
+        }
+        if (!absent_since) absent_since = Clock::now();
+        return Clock::now() - *absent_since < absence_forgiven;
+    }
 
-    const std::shared_ptr<CompileThread> thread;
+    // The request without values that do not fit this program; each is noted.
+    TextureRequest request_for(const CompiledProgram& program, std::string& notes) const
+    {
+        TextureRequest fitting = request;
+        const haptel_texture* texture = program.find(reference.texture);
+        if (!texture) return fitting; // make_binding says so
+        const std::vector<ir::Parameter>& known = program.source_of(*texture).parameters;
+        std::erase_if(fitting.parameters, [&](const auto& parameter) {
+            const auto& [name, value] = parameter;
+            const auto found = std::ranges::find(known, name, &ir::Parameter::name);
+            const std::string fault =
+                found == known.end() ? "there is no such parameter now" : lang::parse_value(value, *found).error;
+            if (!fault.empty())
+                notes += lang::printable(reference.file) + ": note: the value " + lang::printable(value) + " of '" +
+                         lang::printable(name) + "' is set aside: " + fault + "\n";
+            return !fault.empty();
+        });
+        return fitting;
+    }
 
-    bool take_edits();
-    const haptel_texture* texture_in(const CompiledProgram& program) const;
-    std::vector<Picture> pictures_of(const CompiledProgram& program) const;
-    bool is_forgiven(bool is_absent);
-    TextureRequest request_for(const CompiledProgram& program, std::string& notes) const;
-    void make_and_publish(const CompiledTextures& compiled);
+    void make_and_publish(const CompiledTextures& compiled)
+    {
+        std::string said = compiled.rendered();
+        const TextureRequest fitting = request_for(*compiled.program, said);
+        TextureResult result = make_binding(compiled.program, reference.texture, fitting);
+        said += about_file(reference.file, result.diagnostics);
+        if (!result.binding) return report(said + about_file(reference.file, "note: the old texture stays"));
+        callbacks.publish(std::move(*result.binding));
+        report(std::move(said));
+    }
+
     void report(std::string text)
     {
         if (text == reported) return;
-        reported = text;
-        if (callbacks.report && !text.empty()) callbacks.report(text);
+        reported = std::move(text);
+        if (callbacks.report && !reported.empty()) callbacks.report(reported);
     }
-};
 
-// True if a value was set. The newest value of a name counts.
-bool LiveTexture::Client::take_edits()
-{
-    const std::lock_guard lock(edits_mutex);
-    const bool any = !edits.empty();
-    for (auto& [name, value] : edits) {
-        auto known = std::find_if(request.parameters.begin(), request.parameters.end(),
-                                  [&, &sought = name](const auto& parameter) { return parameter.first == sought; });
-        if (known == request.parameters.end())
-            request.parameters.emplace_back(std::move(name), std::move(value));
-        else
-            known->second = std::move(value);
-    }
-    edits.clear();
-    return any;
-}
-
-// Null: the program has no such texture.
-const haptel_texture* LiveTexture::Client::texture_in(const CompiledProgram& program) const
-{
-    return reference.texture.empty() && program.textures().size() == 1 ? &program.textures()[0]
-                                                                       : program.find(reference.texture);
-}
-
-// As they are on disk now; read only where that is not what is in use.
-std::vector<LiveTexture::Client::Picture> LiveTexture::Client::pictures_of(const CompiledProgram& program) const
-{
-    std::vector<Picture> pictures;
-    const haptel_texture* texture = texture_in(program);
-    if (!texture) return pictures;
-    for (const ir::Parameter& parameter : program.source_of(*texture).parameters)
-        for (const auto& [name, value] : request.parameters)
-            if (parameter.type == ir::Type::image && name == parameter.name)
-                pictures.push_back({image_file(value, request.folder), read_image(value, request.folder).image});
-    return pictures;
-}
-
-// Whether what is gone may be about to come back.
-bool LiveTexture::Client::is_forgiven(bool is_absent)
-{
-    if (!is_absent) {
-        absent_since.reset();
-        return false;
-    }
-    if (!absent_since) absent_since = Clock::now();
-    return Clock::now() - *absent_since < absence_forgiven;
-}
-
-// The request without values that do not fit this program; each is noted.
-TextureRequest LiveTexture::Client::request_for(const CompiledProgram& program, std::string& notes) const
-{
-    TextureRequest fitting = request;
-    const haptel_texture* texture = texture_in(program);
-    if (!texture) return fitting; // make_binding says so
-    const std::vector<ir::Parameter>& known = program.source_of(*texture).parameters;
-    std::erase_if(fitting.parameters, [&, &file = reference.file](const auto& parameter) {
-        const auto& [name, value] = parameter;
-        const auto found = std::find_if(known.begin(), known.end(),
-                                        [&, &sought = name](const ir::Parameter& one) { return one.name == sought; });
-        const std::string fault =
-            found == known.end() ? "there is no such parameter now" : lang::parse_value(value, *found).error;
-        if (!fault.empty())
-            notes += lang::printable(file) + ": note: the value " + lang::printable(value) + " of '" +
-                     lang::printable(name) + "' is set aside: " + fault + "\n";
-        return !fault.empty();
-    });
-    return fitting;
-}
-
-void LiveTexture::Client::make_and_publish(const CompiledTextures& compiled)
-{
-    std::string said = compiled.rendered();
-    const TextureRequest fitting = request_for(*compiled.program, said);
-    TextureResult result = make_binding(compiled.program, reference.texture, fitting);
-    said += about_file(reference.file, result.diagnostics);
-    if (!result.binding) return report(said + about_file(reference.file, "note: the old texture stays"));
-    callbacks.publish(std::move(*result.binding));
-    report(std::move(said));
-}
-
-void LiveTexture::Client::update()
-{
-    const bool edited = take_edits();
-    const auto compiled = options.cache->load(reference.file);
-    watched.insert(compiled->files.begin(), compiled->files.end());
-    watched.insert(reference.file);
-    if (compiled->program) {
-        std::vector<Picture> pictures = pictures_of(*compiled->program);
-        for (const Picture& picture : pictures) watched.insert(picture.file);
-        const bool is_absent =
-            std::any_of(pictures.begin(), pictures.end(), [](const Picture& picture) { return !picture.image; });
+    void follow()
+    {
+        const bool edited = take_edits();
+        const auto compiled = cache->load(reference.file);
+        place->watched.insert(compiled->files.begin(), compiled->files.end());
+        if (!compiled->program) {
+            in_hand = compiled;
+            if (edited && usable) make_and_publish(*usable); // a slider works on while the file is broken
+            if (!is_forgiven(compiled->has_finding("unreadable-file"))) report(compiled->rendered());
+            return;
+        }
+        std::vector<UsedPicture> pictures = pictures_of(*compiled->program);
+        for (const UsedPicture& picture : pictures) place->watched.insert(picture.file);
+        const bool is_absent = std::ranges::find(pictures, nullptr, &UsedPicture::image) != pictures.end();
         if (is_forgiven(is_absent) && !edited && compiled == in_hand) return;
         const bool changed = compiled != in_hand || pictures != pictures_in_hand;
         in_hand = usable = compiled;
         pictures_in_hand = std::move(pictures);
         if (changed || edited) make_and_publish(*usable);
-        return;
     }
-    in_hand = compiled;
-    if (edited && usable) make_and_publish(*usable); // a slider works on while the file is broken
-    if (is_forgiven(is_unreadable(*compiled))) return;
-    report(compiled->rendered());
-}
+
+    void failed(std::string_view why) noexcept
+    try {
+        report(lang::printable(reference.file) + ": error: this edit could not be taken up: " + std::string(why) +
+               "; the old texture stays\n");
+    } catch (...) {
+        // Not even telling went well.
+    }
+
+    // Nothing that happens here may end the thread, and with it the process and the force in somebody's hand.
+    void update() noexcept
+    try {
+        follow();
+    } catch (const std::exception& problem) {
+        failed(problem.what());
+    } catch (...) {
+        failed("for a reason that has no words");
+    }
+
+    TextureRequest request;
+    const TextureReference reference;
+    const LiveCallbacks callbacks;
+    const std::shared_ptr<ProgramCache> cache;
+
+    std::shared_ptr<const CompiledTextures> in_hand; // what was looked at last; broken ones too
+    std::shared_ptr<const CompiledTextures> usable;  // the last one that has a program
+    std::vector<UsedPicture> pictures_in_hand;       // as of the last look
+    std::optional<Clock::time_point> absent_since;
+    std::string reported; // the last report, not to be repeated
+
+    std::mutex edits_mutex;
+    std::vector<std::pair<std::string, std::string>> edits;
+
+    const std::shared_ptr<CompileThread> thread;
+    const std::shared_ptr<CompileThread::Place> place = std::make_shared<CompileThread::Place>();
+};
 
 LiveTexture::LiveTexture(TextureRequest request, LiveCallbacks callbacks, LiveOptions options)
     : client(std::make_unique<Client>(std::move(request), std::move(callbacks), std::move(options)))
