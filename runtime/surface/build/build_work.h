@@ -7,6 +7,7 @@
 
 #include "runtime/surface/loading.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -15,12 +16,13 @@ namespace haptel::runtime {
 
 class BuildWork {
 public:
-    // A look takes ten to fifty nanoseconds. Scanned and modelled meshes take twenty to forty for each triangle.
-    static constexpr std::size_t looks_min = 40'000'000, looks_per_triangle = 120;
+    // A look takes about twenty nanoseconds. Scanned and modelled meshes take twenty to forty for each triangle. The
+    // fans that close a cylinder of 8000 sides take 130 million, as each of their edges comes near all of them.
+    static constexpr std::size_t looks_min = 150'000'000, looks_per_triangle = 120;
 
     // `loading` may be null, else it is to outlive this.
     explicit BuildWork(std::size_t triangles, const Loading* loading = nullptr)
-        : looks_max_(looks_min + looks_per_triangle * triangles), loading_(loading)
+        : looks_max_(std::max(looks_min, looks_per_triangle * triangles)), loading_(loading)
     {
     }
 

@@ -16,6 +16,9 @@ namespace {
 // 1e-6 of the object's size: what six decimal digits, or single precision, cannot tell apart.
 constexpr double crack = 2097152;
 
+// What a corner that a border comes near takes, in looks: it comes from memory where there are millions.
+constexpr size_t looks_per_corner = 3;
+
 struct BorderEdge {
     uint32_t face, edge;
 };
@@ -44,63 +47,78 @@ std::vector<BorderEdge> border_edges(const std::vector<Face>& faces)
     return borders;
 }
 
-// Vertices in a tree of halves, to ask which lie in a box.
+// Vertices in a tree of halves, to ask which lie in a box. A half is parted across its widest side: of vertices in a
+// line or a plane that leaves as few to look at as of those in space.
 class VerticesInBox {
 public:
-    VerticesInBox(const std::vector<glm::dvec3>& positions, std::vector<uint32_t> vertices)
-        : positions_(positions), order_(std::move(vertices))
+    VerticesInBox(const std::vector<glm::dvec3>& positions, const std::vector<uint32_t>& vertices)
     {
-        build(0, order_.size(), 0);
+        nodes_.reserve(vertices.size());
+        for (uint32_t vertex : vertices) nodes_.push_back({positions[vertex], vertex, 0});
+        build(0, nodes_.size());
     }
 
     template <class Visit>
     void visit(const glm::dvec3& minimum, const glm::dvec3& maximum, Visit&& visit_one) const
     {
-        visit(0, order_.size(), 0, minimum, maximum, visit_one);
+        visit(0, nodes_.size(), minimum, maximum, visit_one);
     }
 
     // At least all that come within `reach` of the segment, and of others not many.
     template <class Visit>
     void visit_near(const glm::dvec3& from, const glm::dvec3& to, double reach, Visit&& visit_one) const
     {
-        near(0, order_.size(), 0, from, to - from, 0, 1, 2 * reach, visit_one); // twice: whatever rounding does
+        near(0, nodes_.size(), from, to - from, 0, 1, 2 * reach, visit_one); // twice: whatever rounding does
     }
 
 private:
-    void build(size_t begin, size_t end, int axis)
+    struct Node { // with its position: to follow an index to it costs most of the time
+        glm::dvec3 at;
+        uint32_t vertex;
+        int axis;
+    };
+
+    void build(size_t begin, size_t end)
     {
         if (end - begin < 2) return;
+        glm::dvec3 minimum = nodes_[begin].at, maximum = minimum;
+        for (size_t k = begin + 1; k < end; ++k) {
+            minimum = glm::min(minimum, nodes_[k].at);
+            maximum = glm::max(maximum, nodes_[k].at);
+        }
+        const glm::dvec3 size = maximum - minimum;
+        const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
         const size_t middle = begin + (end - begin) / 2;
-        std::nth_element(order_.begin() + long(begin), order_.begin() + long(middle), order_.begin() + long(end),
-                         [&](uint32_t a, uint32_t b) {
-                             const double x = positions_[a][axis], y = positions_[b][axis];
-                             return x != y ? x < y : a < b;
+        std::nth_element(nodes_.begin() + long(begin), nodes_.begin() + long(middle), nodes_.begin() + long(end),
+                         [&](const Node& a, const Node& b) {
+                             const double x = a.at[axis], y = b.at[axis];
+                             return x != y ? x < y : a.vertex < b.vertex;
                          });
-        build(begin, middle, (axis + 1) % 3);
-        build(middle + 1, end, (axis + 1) % 3);
+        nodes_[middle].axis = axis;
+        build(begin, middle);
+        build(middle + 1, end);
     }
 
     template <class Visit>
-    void visit(size_t begin, size_t end, int axis, const glm::dvec3& minimum, const glm::dvec3& maximum,
-               Visit& visit_one) const
+    void visit(size_t begin, size_t end, const glm::dvec3& minimum, const glm::dvec3& maximum, Visit& visit_one) const
     {
         if (begin >= end) return;
         const size_t middle = begin + (end - begin) / 2;
-        const glm::dvec3& p = positions_[order_[middle]];
-        if (minimum[axis] <= p[axis]) visit(begin, middle, (axis + 1) % 3, minimum, maximum, visit_one);
-        if (glm::all(glm::lessThanEqual(minimum, p)) && glm::all(glm::lessThanEqual(p, maximum)))
-            visit_one(order_[middle]);
-        if (maximum[axis] >= p[axis]) visit(middle + 1, end, (axis + 1) % 3, minimum, maximum, visit_one);
+        const auto& [p, vertex, axis] = nodes_[middle];
+        if (minimum[axis] <= p[axis]) visit(begin, middle, minimum, maximum, visit_one);
+        if (glm::all(glm::lessThanEqual(minimum, p)) && glm::all(glm::lessThanEqual(p, maximum))) visit_one(vertex, p);
+        if (maximum[axis] >= p[axis]) visit(middle + 1, end, minimum, maximum, visit_one);
     }
 
     // As far as the segment goes on a side of a vertex, with `reach` more on either side of the plane between.
     template <class Visit>
-    void near(size_t begin, size_t end, int axis, const glm::dvec3& from, const glm::dvec3& along, double first,
-              double last, double reach, Visit& visit_one) const
+    void near(size_t begin, size_t end, const glm::dvec3& from, const glm::dvec3& along, double first, double last,
+              double reach, Visit& visit_one) const
     {
         if (begin >= end || !(first <= last)) return;
         const size_t middle = begin + (end - begin) / 2;
-        const double from_plane = positions_[order_[middle]][axis] - from[axis], slope = along[axis];
+        const auto& [p, vertex, axis] = nodes_[middle];
+        const double from_plane = p[axis] - from[axis], slope = along[axis];
         // Where the segment is up to `reach` above the plane, and down to `reach` below it.
         double below_first = first, below_last = last, above_first = first, above_last = last;
         if (slope != 0) {
@@ -111,13 +129,12 @@ private:
             if (from_plane < -reach) below_last = first - 1;
             if (from_plane > reach) above_last = first - 1;
         }
-        near(begin, middle, (axis + 1) % 3, from, along, below_first, below_last, reach, visit_one);
-        visit_one(order_[middle]);
-        near(middle + 1, end, (axis + 1) % 3, from, along, above_first, above_last, reach, visit_one);
+        near(begin, middle, from, along, below_first, below_last, reach, visit_one);
+        visit_one(vertex, p);
+        near(middle + 1, end, from, along, above_first, above_last, reach, visit_one);
     }
 
-    const std::vector<glm::dvec3>& positions_;
-    std::vector<uint32_t> order_;
+    std::vector<Node> nodes_;
 };
 
 class CrackFiller {
@@ -140,9 +157,9 @@ public:
         for (uint32_t corner : corners_) {
             if (work_.over()) return 0;
             uint32_t first = corner;
-            near.visit(at(corner) - crack, at(corner) + crack, [&](uint32_t other) {
+            near.visit(at(corner) - crack, at(corner) + crack, [&](uint32_t other, const glm::dvec3& there) {
                 work_.spend();
-                if (other < first && becomes[other] == other && glm::distance(at(corner), at(other)) <= crack &&
+                if (other < first && becomes[other] == other && glm::distance(at(corner), there) <= crack &&
                     !std::binary_search(joined.begin(), joined.end(), std::pair(other, corner)))
                     first = other;
             });
@@ -204,9 +221,9 @@ private:
         const uint32_t tip = surface_.faces[border.face].vertex[previous(border.edge)];
         const double length = glm::length(along);
         share = 1;
-        corners.visit_near(a, b, crack, [&](uint32_t candidate) {
-            work_.spend();
-            const glm::dvec3 beside = at(candidate) - a;
+        corners.visit_near(a, b, crack, [&](uint32_t candidate, const glm::dvec3& there) {
+            work_.spend(looks_per_corner);
+            const glm::dvec3 beside = there - a;
             const double way = glm::dot(beside, along) / length;
             if (candidate == tip || way <= crack || way >= length - crack || way / length >= share ||
                 glm::length(beside - way / length * along) > crack)
