@@ -23,9 +23,7 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg, const Loading* 
 {
     SurfaceResult result;
     auto surface = std::make_shared<Surface>();
-    // Where joining gives up, much is left that cuts each other.
-    constexpr size_t left_by_joining = 2'000'000;
-    BuildWork work(mesh.triangles.size() + (mesh.origins.empty() ? 0 : left_by_joining), loading);
+    BuildWork work(mesh.triangles.size(), loading);
     work.begin("which of its vertices are one");
     if (!repair(mesh, *surface, result.report)) {
         const std::string warning = result.report.warning();
@@ -34,7 +32,7 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg, const Loading* 
     }
     close_cracks(*surface, result.report, work);
     if (!surface->origins.empty() && !work.over()) {
-        BuildWork joining(mesh.triangles.size(), loading); // has limits of its own, too, and leaves what is beyond them
+        BuildWork joining = BuildWork::of_joining(loading); // imprinting has limits of its own, too
         imprint(*surface, result.error, joining);
         if (joining.over()) result.error = joining.error();
         if (!result.error.empty()) return result;

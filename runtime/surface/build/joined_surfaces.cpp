@@ -117,7 +117,7 @@ std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surface
         MeshReport report;
         std::string error;
         if (!repair(placed_together(surfaces, near), together, report)) continue;
-        BuildWork work(triangles, loading);
+        BuildWork work = BuildWork::of_joining(loading);
         Groups meeting(near.size());
         for (const auto& [one, other] : meeting_parts(together, error, work)) meeting.unite(one, other);
         if (work.over()) error = work.error();
