@@ -22,7 +22,7 @@ public:
             outlines.emplace_back(*sources, file, lex(*sources, file, of_lexer));
         }
         for (size_t file = 0; file < outlines.size(); ++file) {
-            const std::vector<Outline::Part>& parts = outlines[file].parts();
+            const std::vector<Outline::Part>& parts = outlines[file].parts;
             is_wanted.emplace_back(parts.size());
             for (size_t part = 0; part < parts.size(); ++part) {
                 is_wanted[file][part] = parts[part].names.empty(); // it must be a mistake, to be told
@@ -51,7 +51,7 @@ public:
             for (const auto& [file, part] : found.mapped()) {
                 if (is_wanted[file][part]) continue;
                 is_wanted[file][part] = has_grown = true;
-                const auto mentioned = outlines[file].mentions(outlines[file].parts()[part]);
+                const auto mentioned = outlines[file].mentions(outlines[file].parts[part]);
                 to_see.insert(to_see.end(), mentioned.begin(), mentioned.end());
             }
         }

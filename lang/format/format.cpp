@@ -47,204 +47,187 @@ private:
     {
         for (size_t i = from; i + 1 < pieces.size();) {
             if (pieces[i].kind == Token::semicolon) return i + 1;
-            const bool bracket = pieces[i].kind == Token::left_paren || pieces[i].kind == Token::left_brace;
-            i = bracket ? behind_bracket(i) : i + 1;
+            i = opens(pieces[i].kind) ? behind_bracket(i) : i + 1;
         }
         return pieces.size() - 1;
     }
 
-    void top_level();
-    void parameters(size_t opener, size_t end);
-    void block(size_t indent);
-    void rest_of_block(size_t indent);
-    void statement(size_t indent);
-    void controlled(size_t indent);
-    void simple(size_t indent);
-    void table(size_t begin, size_t end, size_t indent);
-    void elements(size_t begin, size_t end, size_t indent);
+    void top_level()
+    {
+        size_t opener = at;
+        while (pieces[opener].kind != Token::left_paren && pieces[opener].kind != Token::semicolon) ++opener;
+        const bool has_body = kind() != Token::kw_import && kind() != Token::kw_const &&
+                              pieces[opener].kind == Token::left_paren &&
+                              pieces[behind_bracket(opener)].kind == Token::left_brace;
+        if (!has_body) return simple(0);
+        page.blank_line();
+        const size_t end = behind_bracket(opener);
+        const bool begins_list = end > opener + 2 && pieces[opener + 1].begins_line;
+        if (kind() == Token::kw_texture && (begins_list || !fits(part(at, end), 0))) {
+            put(at, opener + 1, 0);
+            parameters(opener, end);
+        } else {
+            put(at, end, 0);
+        }
+        at = end;
+        block(0);
+        if (kind() != Token::semicolon) page.blank_line();
+    }
+
+    // Those of a texture, one per line, the ranges below one another.
+    void parameters(size_t opener, size_t end)
+    {
+        struct Parameter {
+            size_t begin, end, range; // range: of its "in", or `end`
+        };
+        std::vector<Parameter> all;
+        size_t longest = 0;
+        for (size_t i = opener + 1; i < end; i = all.back().end) {
+            Parameter one{i, i, end};
+            while (one.end < end && pieces[one.end].kind != Token::comma) {
+                if (pieces[one.end].kind == Token::kw_in && one.range == end && one.end > i) one.range = one.end;
+                one.end = opens(pieces[one.end].kind) ? behind_bracket(one.end) : one.end + 1;
+            }
+            one.end = std::min(one.end + 1, end); // the comma
+            one.range = std::min(one.range, one.end);
+            if (one.range < one.end) longest = std::max(longest, columns_of(part(one.begin, one.range)));
+            all.push_back(one);
+        }
+        page.begin_list();
+        for (const auto& [first, last, range] : all) {
+            if (range < last) {
+                pieces[range].lead = longest - columns_of(part(first, range));
+                if (!fits(part(first, last), step)) pieces[range].lead = 0;
+            }
+            put(first, last, step);
+        }
+        page.end_list();
+    }
+
+    // From '{' on.
+    void block(size_t indent)
+    {
+        put(at, at + 1, indent);
+        ++at;
+        rest_of_block(indent);
+        put(at, at + 1, indent);
+        ++at;
+    }
+
+    // Behind '{', to before '}'.
+    void rest_of_block(size_t indent)
+    {
+        while (kind() != Token::right_brace && kind() != Token::end) statement(indent + step);
+        pieces[at].blank_above = false;
+        page.put_above(pieces[at], indent + step); // they belong to what stands above
+        pieces[at].above.clear();
+    }
+
+    void statement(size_t indent)
+    {
+        if (kind() == Token::left_brace)
+            block(indent);
+        else if (kind() == Token::kw_if || kind() == Token::kw_for)
+            controlled(indent);
+        else
+            simple(indent);
+    }
+
+    // if and for: the brace in the line of the head, a single statement too where there is room.
+    void controlled(size_t indent)
+    {
+        for (size_t begin = at;;) { // of the line, "} else" included
+            const bool may_have_else = kind() != Token::kw_for;
+            if (kind() == Token::kw_else) ++at;
+            const bool last = kind() != Token::kw_if && may_have_else;
+            if (!last) at = behind_bracket(at + 1);
+            if (kind() == Token::left_brace) {
+                put(begin, at + 1, indent);
+                ++at;
+                rest_of_block(indent);
+                begin = at++;
+            } else {
+                pieces[at].begins_statement = true;
+                const size_t end = behind_statement(at);
+                const bool nests = kind() == Token::kw_if || kind() == Token::kw_for;
+                if (!nests && fits(part(begin, end), indent)) {
+                    put(begin, end, indent);
+                    at = end;
+                } else {
+                    put(begin, at, indent);
+                    statement(indent + step);
+                }
+                begin = at;
+            }
+            const bool goes_on = may_have_else && !last && kind() == Token::kw_else;
+            const bool breaks = goes_on && (!pieces[at].above.empty() || (at > 0 && !pieces[at - 1].trailing.empty()));
+            if (begin < at && (!goes_on || breaks)) {
+                put(begin, at, indent);
+                begin = at;
+            }
+            if (!goes_on) return;
+        }
+    }
+
+    void simple(size_t indent)
+    {
+        const bool is_idle = kind() == Token::semicolon && at > 0 && pieces[at - 1].kind == Token::right_brace &&
+                             pieces[at - 1].trailing.empty() && pieces[at].above.empty() && !pieces[at].has_comment;
+        if (is_idle) { // "};", as after a struct
+            page.append(pieces[at++]);
+            if (indent == 0) page.blank_line();
+            return;
+        }
+        const size_t end = std::max(behind_statement(at), at + 1);
+        table(at, end, indent);
+        at = end;
+    }
+
+    // A statement, with the elements of its tables on lines of their own where it does not fit one line.
+    void table(size_t begin, size_t end, size_t indent)
+    {
+        for (;;) {
+            size_t opener = begin + (pieces[begin].kind == Token::right_brace ? 1 : 0);
+            while (opener < end && pieces[opener].kind != Token::left_brace) ++opener;
+            if (opener == end) return put(begin, end, indent);
+            const bool in_rows = pieces[opener + 1].begins_line;
+            if (!in_rows && fits(part(begin, end), indent)) return put(begin, end, indent);
+            const size_t closer = behind_bracket(opener) - 1;
+            put(begin, opener + 1, indent);
+            elements(opener + 1, closer, indent + step);
+            begin = closer;
+        }
+    }
+
+    // In the rows of the author if all fit, else as many in a line as fit. A row begins with an element: a line end
+    // between the arguments of a call may be the formatter's own.
+    void elements(size_t begin, size_t end, size_t indent)
+    {
+        std::vector<size_t> rows{begin};
+        for (size_t i = begin; i < end;) {
+            if (i > begin && pieces[i].begins_line && pieces[i - 1].kind == Token::comma) rows.push_back(i);
+            i = opens(pieces[i].kind) ? behind_bracket(i) : i + 1;
+        }
+        rows.push_back(end);
+        bool all_fit = true;
+        for (size_t r = 0; r + 1 < rows.size(); ++r) all_fit = all_fit && fits(part(rows[r], rows[r + 1]), indent);
+        if (!all_fit) rows = {begin, end};
+        for (size_t r = 0; r + 1 < rows.size(); ++r) page.put(part(rows[r], rows[r + 1]), indent, 0);
+    }
 
     std::vector<Piece> pieces;
     size_t at = 0;
     Page page;
 };
 
-void Formatter::top_level()
-{
-    size_t opener = at;
-    while (pieces[opener].kind != Token::left_paren && pieces[opener].kind != Token::semicolon) ++opener;
-    const bool has_body = kind() != Token::kw_import && kind() != Token::kw_const &&
-                          pieces[opener].kind == Token::left_paren &&
-                          pieces[behind_bracket(opener)].kind == Token::left_brace;
-    if (!has_body) return simple(0);
-    page.blank_line();
-    const size_t end = behind_bracket(opener);
-    bool broken = kind() == Token::kw_texture && !fits(part(at, end), 0);
-    if (kind() == Token::kw_texture && end > opener + 2) broken = broken || pieces[opener + 1].begins_line;
-    if (broken) {
-        put(at, opener + 1, 0);
-        parameters(opener, end);
-    } else {
-        put(at, end, 0);
-    }
-    at = end;
-    block(0);
-    if (kind() != Token::semicolon) page.blank_line();
-}
-
-// Those of a texture, one per line, the ranges below one another.
-void Formatter::parameters(size_t opener, size_t end)
-{
-    struct Parameter {
-        size_t begin, end, range; // range: of its "in", or `end`
-        size_t before_range;      // columns
-    };
-    std::vector<Parameter> all;
-    size_t longest = 0;
-    for (size_t i = opener + 1; i < end;) {
-        Parameter one{i, i, end, 0};
-        while (one.end < end && pieces[one.end].kind != Token::comma) {
-            if (pieces[one.end].kind == Token::kw_in && one.range == end && one.end > i) one.range = one.end;
-            const Token here = pieces[one.end].kind;
-            one.end = here == Token::left_paren || here == Token::left_bracket ? behind_bracket(one.end) : one.end + 1;
-        }
-        one.end = std::min(one.end + 1, end); // the comma
-        one.range = std::min(one.range, one.end);
-        const auto value = part(one.begin, one.range);
-        for (size_t k = 0; k < value.size(); ++k)
-            one.before_range += width_of(value[k].text) + (k > 0 && is_spaced(value, k) ? 1 : 0);
-        if (one.range < one.end) longest = std::max(longest, one.before_range);
-        i = one.end;
-        all.push_back(one);
-    }
-    page.begin_list();
-    for (const Parameter& one : all) {
-        std::vector<size_t> lead(one.end - one.begin, 0);
-        if (one.range < one.end) lead[one.range - one.begin] = longest - one.before_range;
-        if (!fits(part(one.begin, one.end), step, lead)) lead.clear();
-        page.put(part(one.begin, one.end), step, lead);
-    }
-    page.end_list();
-}
-
-// From '{' on.
-void Formatter::block(size_t indent)
-{
-    put(at, at + 1, indent);
-    ++at;
-    rest_of_block(indent);
-    put(at, at + 1, indent);
-    ++at;
-}
-
-// Behind '{', to before '}'.
-void Formatter::rest_of_block(size_t indent)
-{
-    while (kind() != Token::right_brace && kind() != Token::end) statement(indent + step);
-    pieces[at].blank_above = false;
-    page.put_above(pieces[at], indent + step); // they belong to what stands above
-    pieces[at].above.clear();
-}
-
-void Formatter::statement(size_t indent)
-{
-    if (kind() == Token::left_brace)
-        block(indent);
-    else if (kind() == Token::kw_if || kind() == Token::kw_for)
-        controlled(indent);
-    else
-        simple(indent);
-}
-
-// if and for: the brace in the line of the head, a single statement too where there is room.
-void Formatter::controlled(size_t indent)
-{
-    for (size_t begin = at;;) { // of the line, "} else" included
-        const bool may_have_else = kind() != Token::kw_for;
-        if (kind() == Token::kw_else) ++at;
-        const bool last = kind() != Token::kw_if && may_have_else;
-        if (!last) at = behind_bracket(at + 1);
-        if (kind() == Token::left_brace) {
-            put(begin, at + 1, indent);
-            ++at;
-            rest_of_block(indent);
-            begin = at++;
-        } else {
-            pieces[at].begins_statement = true;
-            const size_t end = behind_statement(at);
-            const bool nests = kind() == Token::kw_if || kind() == Token::kw_for;
-            if (!nests && fits(part(begin, end), indent)) {
-                put(begin, end, indent);
-                at = end;
-            } else {
-                put(begin, at, indent);
-                pieces[at].begins_statement = false;
-                statement(indent + step);
-            }
-            begin = at;
-        }
-        const bool goes_on = may_have_else && !last && kind() == Token::kw_else;
-        const bool breaks = goes_on && (!pieces[at].above.empty() || (at > 0 && !pieces[at - 1].trailing.empty()));
-        if (begin < at && (!goes_on || breaks)) {
-            put(begin, at, indent);
-            begin = at;
-        }
-        if (!goes_on) return;
-    }
-}
-
-void Formatter::simple(size_t indent)
-{
-    const bool is_idle = kind() == Token::semicolon && at > 0 && pieces[at - 1].kind == Token::right_brace &&
-                         pieces[at - 1].trailing.empty() && pieces[at].above.empty() && !pieces[at].has_comment;
-    if (is_idle) { // "};", as after a struct
-        page.append(pieces[at++]);
-        if (indent == 0) page.blank_line();
-        return;
-    }
-    const size_t end = std::max(behind_statement(at), at + 1);
-    table(at, end, indent);
-    at = end;
-}
-
-// A statement, with the elements of its tables on lines of their own where it does not fit one line.
-void Formatter::table(size_t begin, size_t end, size_t indent)
-{
-    for (;;) {
-        size_t opener = begin + (pieces[begin].kind == Token::right_brace ? 1 : 0);
-        while (opener < end && pieces[opener].kind != Token::left_brace) ++opener;
-        if (opener == end) return put(begin, end, indent);
-        const bool in_rows = pieces[opener + 1].begins_line;
-        if (!in_rows && fits(part(begin, end), indent)) return put(begin, end, indent);
-        const size_t closer = behind_bracket(opener) - 1;
-        put(begin, opener + 1, indent);
-        elements(opener + 1, closer, indent + step);
-        begin = closer;
-    }
-}
-
-// In the rows of the author if all fit, else as many in a line as fit. A row begins with an element: a line end between
-// the arguments of a call may be the formatter's own.
-void Formatter::elements(size_t begin, size_t end, size_t indent)
-{
-    std::vector<size_t> rows{begin};
-    for (size_t i = begin; i < end;) {
-        if (i > begin && pieces[i].begins_line && pieces[i - 1].kind == Token::comma) rows.push_back(i);
-        i = opens(pieces[i].kind) ? behind_bracket(i) : i + 1;
-    }
-    rows.push_back(end);
-    bool all_fit = true;
-    for (size_t r = 0; r + 1 < rows.size(); ++r) all_fit = all_fit && fits(part(rows[r], rows[r + 1]), indent);
-    if (!all_fit) rows = {begin, end};
-    for (size_t r = 0; r + 1 < rows.size(); ++r) page.put(part(rows[r], rows[r + 1]), indent, {}, 0);
-}
-
 } // namespace
 
 std::optional<std::string> format(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics)
 {
-    parse(sources, file, diagnostics);
+    const TokenList list = lex(sources, file, diagnostics);
+    parse(sources, file, list, diagnostics);
     if (diagnostics.has_errors()) return std::nullopt;
-    return Formatter(pieces_of(sources.file(file).text, lex(sources, file, diagnostics).tokens)).run();
+    return Formatter(pieces_of(sources.file(file).text, list.tokens)).run();
 }
 
 } // namespace haptel::lang

@@ -11,9 +11,9 @@ class Page {
 public:
     static constexpr size_t width = 100, step = 4; // columns
 
-    // `pieces` as one logical line, broken where it is longer than the page. `lead`: spaces before a piece beyond the
-    // usual one, by its index; may be shorter. `hang`: how much deeper lines go on that stand in no bracket.
-    void put(std::span<const Piece> pieces, size_t indent, const std::vector<size_t>& lead = {}, size_t hang = step);
+    // `pieces` as one logical line, broken where it is longer than the page. `hang`: how much deeper lines go on that
+    // stand in no bracket.
+    void put(std::span<const Piece> pieces, size_t indent, size_t hang = step);
     // At the end of the last line, which has no comment.
     void append(const Piece& piece);
     // Comments on lines of their own, and the empty line below them.
@@ -30,8 +30,7 @@ private:
     struct Line {
         std::string text; // with its indent
         std::string trailing;
-        bool aligned = false; // in a list, where the column is known
-        size_t gap = 1;       // spaces before the trailing comment
+        size_t comment_column = 0; // where the trailing comment begins, at least; 0: not known yet
     };
     void align_runs();
 
@@ -39,10 +38,9 @@ private:
     size_t list_begin = 0;
 };
 
-// Columns of `pieces` in one line; nothing if comments break it.
-bool fits(std::span<const Piece> pieces, size_t indent, const std::vector<size_t>& lead = {});
-
-// Whether a space stands between piece `i` (> 0) and the one before.
-bool is_spaced(std::span<const Piece> pieces, size_t i);
+// Whether one line of the page has room for `pieces`, and no comment breaks it.
+bool fits(std::span<const Piece> pieces, size_t indent);
+// Of `pieces` in one line.
+size_t columns_of(std::span<const Piece> pieces);
 
 } // namespace haptel::lang

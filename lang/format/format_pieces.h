@@ -18,6 +18,7 @@ struct Piece {
     std::string text;          // with comments that stand before it in its line
     std::vector<Remark> above; // comments on lines of their own
     std::string trailing;      // comments behind it that end its line
+    size_t lead = 0;           // spaces before it beyond the usual one
     bool blank_above = false;  // an empty line right above the token
     bool begins_line = false;
     bool has_comment = false;      // in its text
@@ -26,10 +27,6 @@ struct Piece {
 
 // Ends with Token::end, which may have comments above it.
 std::vector<Piece> pieces_of(std::string_view text, const std::vector<PlacedToken>& tokens);
-
-// Whether a token is a bracket of any kind.
-bool opens(Token kind);
-bool closes(Token kind);
 
 // Columns that a line of UTF-8 takes.
 size_t width_of(std::string_view text);

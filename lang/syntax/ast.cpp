@@ -5,7 +5,7 @@ namespace haptel::lang::ast {
 std::vector<const Expression*> operands_of(const Expression& e)
 {
     std::vector<const Expression*> operands;
-    const auto add = [&](const ExpressionPtr& operand) { operands.push_back(operand.get()); };
+    const auto add = [&](const auto&... operand) { (operands.push_back(operand.get()), ...); };
     const auto add_all = [&](const std::vector<ExpressionPtr>& list) {
         for (const ExpressionPtr& operand : list) add(operand);
     };
@@ -14,15 +14,8 @@ std::vector<const Expression*> operands_of(const Expression& e)
     if (auto call = std::get_if<CallExpression>(&e.node)) add_all(call->arguments);
     if (auto grad = std::get_if<GradCall>(&e.node)) add_all(grad->arguments);
     if (auto list = std::get_if<BraceList>(&e.node)) add_all(list->elements);
-    if (auto index = std::get_if<Index>(&e.node)) {
-        add(index->object);
-        add(index->index);
-    }
-    if (auto choice = std::get_if<Conditional>(&e.node)) {
-        add(choice->condition);
-        add(choice->when_true);
-        add(choice->when_false);
-    }
+    if (auto index = std::get_if<Index>(&e.node)) add(index->object, index->index);
+    if (auto choice = std::get_if<Conditional>(&e.node)) add(choice->condition, choice->when_true, choice->when_false);
     if (auto chain = std::get_if<Chain>(&e.node)) {
         add(chain->first);
         for (const Chain::Link& link : chain->rest) add(link.operand);

@@ -15,10 +15,11 @@ enum class ForeignKind {
     declaration, // at the top of a file
 };
 
+// Words with one meaning.
 struct ForeignWord {
     ForeignKind kind;
-    std::string_view word;
-    // What it is read as; empty: nothing is near enough. Of a function it may be a whole expression,
+    std::string_view words; // with a space between
+    // What they are read as; empty: nothing is near enough. Of a function it may be a whole expression,
     // "clamp($1, 0.0, 1.0)", of its arguments.
     std::string_view replacement;
     std::string_view hint; // what to write instead

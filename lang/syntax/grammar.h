@@ -13,10 +13,15 @@ namespace haptel::lang {
 
 // A type that stands for each of some: a function whose parameters name it is read once for each.
 inline constexpr std::string_view any_size = "vecN", sizes_of_any[] = {"vec2", "vec3"};
+inline constexpr std::string_view own_types[] = {"float", "int",  "uint", "bool", "vec2",  "vec3",
+                                                 "vec4",  "mat2", "mat3", "mat4", "image", "void"};
+bool is_own_type(std::string_view word);
+// Those of other languages too.
+bool is_type_word(std::string_view word);
 
 class Grammar : private TokenCursor {
 public:
-    Grammar(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink);
+    using TokenCursor::TokenCursor;
 
     ast::File parse_file();         // parser.cpp
     ir::Facts parse_facts(Span at); // parse_facts.cpp; the tokens are those of one "@facts" line
@@ -38,8 +43,10 @@ private:
     void function_or_variable(ast::File& result);
     bool takes_any_size() const;
     void function_of_each_size(ast::File& result);
-    void function(ast::File& result, ast::TypeName result_type, ast::Name name, size_t doc_token);
+    void function(ast::File& result);
     ast::FunctionParameter function_parameter();
+    template <class Parameter>
+    void parameters(std::vector<Parameter>& into, Parameter (Grammar::*read)(), bool may_end_in_comma);
     void function_signature(ast::FunctionParameter& parameter);
 
     // parse_statement.cpp
@@ -53,13 +60,11 @@ private:
     ast::StatementPtr assignment_or_expression();
     void declarations(Statements& into);
     void declaration_list(Statements& into);
-    ast::Declaration declarator(bool is_const, ast::TypeName type);
-    ast::ExpressionPtr initializer();
     bool at_declaration() const;
     bool is_used_as_name() const;
     bool at_top_level_start() const;
 
-    // parse_head.cpp
+    // parse_recovery.cpp: heads
     void close_head(Span opener);
     ast::StatementPtr body_of(std::string_view what);
     bool ends_parameter(Span opener);
@@ -69,11 +74,11 @@ private:
     bool body_follows() const;
     bool statements_follow() const;
 
-    // parse_recovery.cpp
+    // parse_recovery.cpp: statements
     void find_footing();
     void forget(std::span<ast::StatementPtr> statements);
+    void forget(ast::FunctionParameter& parameter) { parameter.type = {}; }
     void forget(ast::TextureParameter& parameter);
-    ast::ExpressionPtr unknown_value(const ast::Expression& read);
     void note_unread(size_t first_position);
     ast::Damage take_damage(uint32_t mistakes_before, ast::StatementPtr& body);
 
@@ -84,27 +89,25 @@ private:
     ast::ExpressionPtr unary();
     ast::ExpressionPtr postfix();
     ast::ExpressionPtr primary();
-    ast::ExpressionPtr behind_stray_operator();
     ast::ExpressionPtr number();
     ast::ExpressionPtr brace_list();
-
-    // parse_call.cpp
     ast::ExpressionPtr name_or_call();
     ast::ExpressionPtr grad_call(Span first);
-    std::vector<ast::ExpressionPtr> arguments(Span opener);
+    std::vector<ast::ExpressionPtr> arguments();
     ast::ExpressionPtr array_constructor(ast::Name type);
 
     // parse_foreign.cpp
     void skip_foreign_qualifiers();
     void skip_type_arguments();
-    void skip_foreign_declaration(const ForeignWord& word);
-    void skip_global_in_or_out();
+    void skip_foreign_declaration(std::string message, std::string_view hint);
     void foreign_statement(const ForeignWord& word, Statements& into);
     void read_misspelt_keyword();
     void read_misspelt_in();
-    Token foreign_operator();
+    void read_foreign_operator();
     ast::ExpressionPtr cast();
     ast::ExpressionPtr method_call(ast::ExpressionPtr object);
+
+    std::string not_in_haptel() const { return "there is no '" + std::string(text()) + "' in Haptel"; }
 
     // In a function that is written for vectors of any size, that of the size being read.
     std::string_view text(size_t ahead = 0) const
@@ -116,12 +119,26 @@ private:
     // Small rules that all share, parse_declaration.cpp and parse_facts.cpp
     ast::TypeName type_name();
     void array_suffix(ast::TypeName& type);
-    std::optional<ast::Name> name(std::string_view what); // reports if there is none
+    ast::Name name(std::string_view what); // empty, and reported, where there is none
+    ast::Name name_after(const ast::TypeName& type);
     std::string doc_before(size_t token_index, std::optional<ir::Facts>* facts);
     template <class Node>
-    ast::ExpressionPtr make(Span where, Node node);
+    static ast::ExpressionPtr make(Span where, Node node)
+    {
+        auto made = std::make_unique<ast::Expression>();
+        made->span = where;
+        made->node = std::move(node);
+        return made;
+    }
     template <class Node>
-    ast::StatementPtr make_statement(Span where, Node node);
+    static ast::StatementPtr make_statement(Span where, Node node)
+    {
+        auto made = std::make_unique<ast::Statement>();
+        made->span = where;
+        made->node = std::move(node);
+        return made;
+    }
+    static ast::ExpressionPtr unknown(Span where) { return make(where, ast::ErrorExpression{}); }
 
     // Of the function or texture that is being read:
     std::string_view one_size;                 // what `any_size` stands for; empty: nothing
@@ -130,27 +147,5 @@ private:
     bool is_misshapen = false;                 // its braces do not fit
     bool has_stray_brace = false;              // nor can they: one was found where none can stand
 };
-
-bool is_own_type(std::string_view word);
-// Those of other languages too.
-bool is_type_word(std::string_view word);
-
-template <class Node>
-ast::ExpressionPtr Grammar::make(Span where, Node node)
-{
-    auto result = std::make_unique<ast::Expression>();
-    result->span = where;
-    result->node = std::move(node);
-    return result;
-}
-
-template <class Node>
-ast::StatementPtr Grammar::make_statement(Span where, Node node)
-{
-    auto result = std::make_unique<ast::Statement>();
-    result->span = where;
-    result->node = std::move(node);
-    return result;
-}
 
 } // namespace haptel::lang

@@ -35,13 +35,13 @@ bool is_scalar_number(Type type)
     return type.is_numeric() && type.is_scalar();
 }
 
-// Of two numbers; int and uint do not mix.
-std::optional<Type> common_number(Type left, Type right)
+// Of two numbers, which become one type; int and uint do not mix.
+std::optional<OperatorTypes> numbers(Type left, Type right, bool are_compared)
 {
     if (!is_scalar_number(left) || !is_scalar_number(right)) return std::nullopt;
-    if (left == right) return left;
-    if (left == float_type || right == float_type) return float_type;
-    return std::nullopt;
+    if (left != right && left != float_type && right != float_type) return std::nullopt;
+    const Type common = left == right ? left : float_type;
+    return OperatorTypes{common, common, are_compared ? bool_type : common};
 }
 
 std::optional<OperatorTypes> arithmetic(Type left, Type right)
@@ -50,19 +50,12 @@ std::optional<OperatorTypes> arithmetic(Type left, Type right)
     if (!left.is_scalar() && left == right) return OperatorTypes{left, right, left};
     if (!left.is_scalar() && is_scalar_number(right)) return OperatorTypes{left, float_type, left};
     if (!right.is_scalar() && is_scalar_number(left)) return OperatorTypes{float_type, right, right};
-    if (auto common = common_number(left, right)) return OperatorTypes{*common, *common, *common};
-    return std::nullopt;
+    return numbers(left, right, false);
 }
 
 std::optional<OperatorTypes> both(bool fits, Type operands, Type result)
 {
     return fits ? std::optional(OperatorTypes{operands, operands, result}) : std::nullopt;
-}
-
-std::optional<OperatorTypes> comparison(Type left, Type right)
-{
-    auto common = common_number(left, right);
-    return both(common.has_value(), common.value_or(float_type), bool_type);
 }
 
 } // namespace
@@ -80,12 +73,12 @@ std::optional<OperatorTypes> operator_types(ast::BinaryOp op, Type left, Type ri
     case less:
     case less_equal:
     case greater:
-    case greater_equal: return comparison(left, right);
+    case greater_equal: return numbers(left, right, true);
     case equal:
     case not_equal:
         if (left == right && !left.is_array() && (left == bool_type || !left.is_scalar()))
             return OperatorTypes{left, right, bool_type};
-        return comparison(left, right);
+        return numbers(left, right, true);
     case logical_and:
     case logical_or:
     case logical_xor: return both(left == bool_type && right == bool_type, bool_type, bool_type);

@@ -5,22 +5,6 @@
 #include <utility>
 
 namespace haptel::lang {
-namespace {
-
-int step_of(Token kind)
-{
-    switch (kind) {
-    case Token::left_paren:
-    case Token::left_bracket:
-    case Token::left_brace: return 1;
-    case Token::right_paren:
-    case Token::right_bracket:
-    case Token::right_brace: return -1;
-    default: return 0;
-    }
-}
-
-} // namespace
 
 // A part ends at the ';' or, but for constants, at the '}' that stands in no bracket. Where brackets do not fit, parts
 // are few and long.
@@ -31,16 +15,17 @@ Outline::Outline(const SourceSet& sources, uint32_t file, TokenList tokens)
     int64_t depth = 0;
     for (size_t i = 0; list.tokens[i].kind != Token::end; ++i) {
         const PlacedToken& token = list.tokens[i];
-        depth += step_of(token.kind);
+        if (opens(token.kind)) ++depth;
+        if (closes(token.kind)) --depth;
         if (depth != 0) continue;
         if (token.kind == Token::name && !is_own_type(text_of(token))) part.names.push_back(text_of(token));
         const bool is_constant = list.tokens[part.begin].kind == Token::kw_const;
         if (token.kind != Token::semicolon && (token.kind != Token::right_brace || is_constant)) continue;
         part.end = i + 1;
-        all.push_back(std::exchange(part, {i + 1, 0, {}}));
+        parts.push_back(std::exchange(part, {i + 1, 0, {}}));
     }
     part.end = list.tokens.size() - 1;
-    if (part.begin < part.end) all.push_back(std::move(part));
+    if (part.begin < part.end) parts.push_back(std::move(part));
 }
 
 std::vector<std::string_view> Outline::mentions(const Part& part) const
@@ -55,9 +40,9 @@ TokenList Outline::tokens_of(const std::vector<bool>& wanted) const
 {
     TokenList some;
     auto doc = list.docs.begin();
-    for (size_t i = 0; i < all.size(); ++i) {
+    for (size_t i = 0; i < parts.size(); ++i) {
         if (!wanted[i]) continue;
-        const Part& part = all[i];
+        const Part& part = parts[i];
         while (doc != list.docs.end() && doc->before_token < part.begin) ++doc;
         for (; doc != list.docs.end() && doc->before_token < part.end; ++doc)
             some.docs.push_back(

@@ -19,7 +19,7 @@ public:
         size_t begin = 0, end = 0;
         std::vector<std::string_view> names; // declared here; some that are only read at the top may be among them
     };
-    const std::vector<Part>& parts() const { return all; } // in the order of the text; nothing stands between them
+    std::vector<Part> parts; // in the order of the text; nothing stands between them
     std::vector<std::string_view> mentions(const Part& part) const; // every name in it
 
     // The tokens of some parts, as of a file that holds nothing else: `wanted` by part. Places stay what they were.
@@ -28,7 +28,6 @@ public:
 private:
     std::string_view text;
     TokenList list;
-    std::vector<Part> all;
 
     std::string_view text_of(const PlacedToken& token) const
     {

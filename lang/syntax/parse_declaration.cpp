@@ -9,9 +9,7 @@ using namespace ast;
 
 bool is_own_type(std::string_view word)
 {
-    constexpr std::string_view words[] = {"float", "int",  "uint", "bool", "vec2",  "vec3",
-                                          "vec4",  "mat2", "mat3", "mat4", "image", "void"};
-    return word == any_size || std::find(std::begin(words), std::end(words), word) != std::end(words);
+    return word == any_size || std::ranges::find(own_types, word) != std::end(own_types);
 }
 
 bool is_type_word(std::string_view word)
@@ -19,17 +17,21 @@ bool is_type_word(std::string_view word)
     return is_own_type(word) || foreign_word(ForeignKind::type, word);
 }
 
-std::optional<Name> Grammar::name(std::string_view what)
+Name Grammar::name(std::string_view what)
 {
-    if (at(Token::name)) {
-        Name result{std::string(text()), span()};
-        advance();
-        return result;
-    }
-    const std::string word = kind() >= Token::kw_texture ? std::string(text()) : std::string();
+    Name result{std::string(text()), span()};
+    if (accept(Token::name)) return result;
+    const bool is_word = kind() >= Token::kw_texture;
     Diagnostic& reported = error(span(), "syntax", "expected a name " + std::string(what) + found());
-    if (!word.empty()) reported.hint = "'" + word + "' is a word of the language and cannot be a name";
-    return std::nullopt;
+    if (is_word) reported.hint = "'" + result.text + "' is a word of the language and cannot be a name";
+    return {};
+}
+
+Name Grammar::name_after(const TypeName& type)
+{
+    if (at(Token::star) || at(Token::ampersand))
+        error(span(), "no-pointers", "there are no pointers or references in Haptel");
+    return name("after '" + type.base.text + "'");
 }
 
 // type = name ["[" [expression] "]"]
@@ -37,9 +39,8 @@ TypeName Grammar::type_name()
 {
     TypeName type;
     skip_foreign_qualifiers();
-    std::optional<Name> base = name("of a type");
-    if (!base) return type;
-    type.base = std::move(*base);
+    type.base = name("of a type");
+    if (type.base.text.empty()) return type;
     if (const ForeignWord* foreign = foreign_word(ForeignKind::type, type.base.text)) {
         Diagnostic& reported = diagnostics.error(type.base.span, "foreign-word",
                                                  "'" + type.base.text + "' is not a type of Haptel", foreign->hint);
@@ -63,7 +64,6 @@ void Grammar::array_suffix(TypeName& type)
             type.base.text.clear(); // of no type: nothing more is said about it
         }
         const Nesting nesting(*this, Nesting::bracket);
-        if (nesting.too_deep()) return skip_brackets();
         advance();
         type.is_array = true;
         type.array_size.reset();
@@ -107,7 +107,7 @@ void Grammar::constants(File& result)
         if (!declaration.initializer && !lost) {
             diagnostics.error(declaration.name.span, "syntax",
                               "expected '=' and the value of the constant '" + declaration.name.text + "'");
-            declaration.initializer = make(declaration.name.span, ErrorExpression{});
+            declaration.initializer = unknown(declaration.name.span);
         }
         result.constants.push_back({std::move(declaration), statement->span});
     }
@@ -117,20 +117,14 @@ void Grammar::constants(File& result)
 // variable = type name ...         is reported: only constants are global
 void Grammar::function_or_variable(File& result)
 {
-    const Span first = span();
-    const size_t first_token = position;
     if (kind(1) == Token::name && kind(2) != Token::left_paren && !body_follows()) {
-        diagnostics.error(first, "global-variable", "a variable of a whole file must be constant",
+        diagnostics.error(span(), "global-variable", "a variable of a whole file must be constant",
                           "write 'const' before it, or make it a parameter of the texture");
         constants(result);
         if (!result.constants.empty()) result.constants.back().declaration.is_const = true;
-        return;
+    } else {
+        takes_any_size() ? function_of_each_size(result) : function(result);
     }
-    if (one_size.empty() && takes_any_size()) return function_of_each_size(result);
-    TypeName type = type_name();
-    if (type.base.text.empty()) stand_again();
-    std::optional<Name> function_name = lost ? std::nullopt : name("after '" + type.base.text + "'");
-    if (function_name) function(result, std::move(type), std::move(*function_name), first_token);
 }
 
 // At a function: whether a type of its parameters is `any_size`.
@@ -140,13 +134,9 @@ bool Grammar::takes_any_size() const
     while (kind(ahead) == Token::name || kind(ahead) == Token::left_bracket || kind(ahead) == Token::right_bracket)
         ++ahead; // its result and name
     if (kind(ahead) != Token::left_paren) return false;
-    for (uint32_t open = 0;; ++ahead) {
-        const Token here = kind(ahead);
-        if (here == Token::left_paren) ++open;
-        if (here == Token::right_paren && --open == 0) return false;
-        if (here == Token::left_brace || here == Token::semicolon || here == Token::end) return false;
-        if (here == Token::name && text(ahead) == any_size && kind(ahead - 1) != Token::name) return true;
-    }
+    for (const size_t end = closer_ahead(ahead, list.tokens.size()); ahead < end; ++ahead)
+        if (kind(ahead) == Token::name && text(ahead) == any_size && kind(ahead - 1) != Token::name) return true;
+    return false;
 }
 
 // Each is a function of its own from here on. A mistake is found in each, and told once, since it is at one place.
@@ -158,45 +148,55 @@ void Grammar::function_of_each_size(File& result)
         begin_declaration();
         if (size != sizes_of_any[0]) stand_again();
         one_size = size;
-        function_or_variable(result);
+        function(result);
     }
     one_size = {};
 }
 
-void Grammar::function(File& result, TypeName result_type, Name function_name, size_t doc_token)
+// The rest of a head behind '(': [parameter {"," parameter} [","]] ")"
+template <class Parameter>
+void Grammar::parameters(std::vector<Parameter>& into, Parameter (Grammar::*read)(), bool may_end_in_comma)
+{
+    const Span opener = previous_span();
+    if (!at(Token::right_paren) && !at(Token::left_brace)) {
+        do {
+            const size_t first_position = position;
+            into.push_back((this->*read)());
+            if (ends_parameter(opener)) continue;
+            forget(into.back());
+            is_head_damaged = true;
+            find_next_parameter(first_position);
+        } while (next_parameter() && !(may_end_in_comma && at(Token::right_paren)));
+    }
+    close_head(opener);
+}
+
+void Grammar::function(File& result)
 {
     Function made;
-    made.doc = doc_before(doc_token, &made.facts);
-    if (function_name.text == "grad") {
-        diagnostics.error(function_name.span, "reserved-name", "'grad' is the derivative of functions",
+    const size_t first_token = position;
+    made.result = type_name();
+    const Span first = made.result.base.span;
+    if (made.result.base.text.empty()) stand_again();
+    if (lost) return;
+    made.name = name_after(made.result);
+    if (made.name.text.empty()) return;
+    made.doc = doc_before(first_token, &made.facts);
+    if (made.name.text == "grad")
+        diagnostics.error(made.name.span, "reserved-name", "'grad' is the derivative of functions",
                           "choose another name");
-    }
-    const Span first = result_type.base.span;
-    made.result = std::move(result_type);
-    made.name = std::move(function_name);
     const uint32_t mistakes_before = mistakes;
-    const Span opener = span();
     if (expect(Token::left_paren, "after the name of the function")) {
-        const bool takes_void = text() == "void" && kind(1) == Token::right_paren;
-        if (takes_void) advance();
-        if (!at(Token::right_paren) && !at(Token::left_brace)) {
-            do {
-                const size_t first_position = position;
-                made.parameters.push_back(function_parameter());
-                if (ends_parameter(opener)) continue;
-                is_head_damaged = true;
-                find_next_parameter(first_position);
-            } while (next_parameter());
-        }
-        close_head(opener);
+        if (text() == "void" && kind(1) == Token::right_paren) advance();
+        parameters(made.parameters, &Grammar::function_parameter, false);
     }
-    if (lost && !made.parameters.empty()) made.parameters.back().type = {};
     is_head_damaged |= lost;
     if (at(Token::semicolon) && !lost) {
         advance();
-        Diagnostic& reported = diagnostics.warning(
-            since(first), "prototype", "functions may stand in any order: a prototype does nothing", "leave it out");
-        reported.fix = FixIt{since(first), ""};
+        diagnostics
+            .warning(since(first), "prototype", "functions may stand in any order: a prototype does nothing",
+                     "leave it out")
+            .fix = FixIt{since(first), ""};
         return;
     }
     made.body = body_of("the function '" + made.name.text + "'");
@@ -220,13 +220,8 @@ FunctionParameter Grammar::function_parameter()
     }
     parameter.type = type_name();
     if (lost) return parameter;
-    if (at(Token::star) || at(Token::ampersand)) {
-        error(span(), "no-pointers", "there are no pointers or references in Haptel");
-        return parameter;
-    }
-    std::optional<Name> declared = name("after '" + parameter.type.base.text + "'");
-    if (!declared) return parameter;
-    parameter.name = std::move(*declared);
+    parameter.name = name_after(parameter.type);
+    if (parameter.name.text.empty()) return parameter;
     array_suffix(parameter.type);
     if (at(Token::left_paren)) function_signature(parameter);
     parameter.span = since(first);
@@ -263,28 +258,14 @@ void Grammar::texture(File& result)
     const Span first = span();
     const uint32_t mistakes_before = mistakes;
     advance();
-    std::optional<Name> texture_name = name("after 'texture'");
-    if (!texture_name) return;
-    made.name = std::move(*texture_name);
-    const Span opener = span();
+    made.name = name("after 'texture'");
+    if (made.name.text.empty()) return;
     if (at(Token::left_brace)) {
         diagnostics.error(made.name.span, "syntax", "expected '(' after the name of the texture",
                           "write 'texture " + made.name.text + "()' if it has no parameters");
     } else if (expect(Token::left_paren, "after the name of the texture")) {
-        if (!at(Token::right_paren) && !at(Token::left_brace)) {
-            do {
-                if (at(Token::right_paren)) break; // a comma behind the last parameter
-                const size_t first_position = position;
-                TextureParameter parameter = texture_parameter();
-                if (!ends_parameter(opener)) {
-                    forget(parameter);
-                    is_head_damaged = true;
-                    find_next_parameter(first_position);
-                }
-                if (!parameter.name.text.empty()) made.parameters.push_back(std::move(parameter));
-            } while (next_parameter());
-        }
-        close_head(opener);
+        parameters(made.parameters, &Grammar::texture_parameter, true);
+        std::erase_if(made.parameters, [](const TextureParameter& one) { return one.name.text.empty(); });
     } else {
         return;
     }
@@ -301,29 +282,27 @@ TextureParameter Grammar::texture_parameter()
     const Span first = span();
     parameter.doc = doc_before(position, nullptr);
     parameter.is_output = accept(Token::kw_out);
-    if (const ForeignWord* foreign = foreign_word(ForeignKind::declaration, text());
-        foreign && kind(1) == Token::name) {
-        diagnostics.error(span(), "foreign-word", "there is no '" + std::string(text()) + "' in Haptel",
-                          "leave it out");
+    if (foreign_word(ForeignKind::declaration, text()) && kind(1) == Token::name) {
+        diagnostics.error(span(), "foreign-word", not_in_haptel(), "leave it out");
         advance();
     }
     parameter.type = type_name();
     if (lost) return parameter;
-    std::optional<Name> declared = name("after '" + parameter.type.base.text + "'");
-    if (!declared) return parameter;
-    parameter.name = std::move(*declared);
+    parameter.name = name_after(parameter.type);
+    if (parameter.name.text.empty()) return parameter;
     array_suffix(parameter.type);
     const bool needs_default = !parameter.is_output && parameter.type.base.text != "image";
     if (accept(Token::assign)) {
         parameter.value = expression();
-    } else if (needs_default && !lost && !is_type_word(parameter.type.base.text)) {
-        parameter.value = make(parameter.name.span, ErrorExpression{}); // of no type: enough is said
     } else if (needs_default && !lost) {
-        diagnostics.error(
-            parameter.name.span, "missing-default", "the parameter '" + parameter.name.text + "' needs a default value",
-            "for example " + parameter.type.base.text + " " + parameter.name.text + " = 1.0 in 0.0 .. 10.0");
-        parameter.value = make(parameter.name.span, ErrorExpression{});
-        lost = !at(Token::kw_in) && !at(Token::comma) && !at(Token::right_paren); // "float depth 1mm": enough is said
+        parameter.value = unknown(parameter.name.span);
+        if (is_type_word(parameter.type.base.text)) { // else enough is said
+            diagnostics.error(parameter.name.span, "missing-default",
+                              "the parameter '" + parameter.name.text + "' needs a default value",
+                              "for example " + parameter.type.base.text + " " + parameter.name.text +
+                                  " = 1.0 in 0.0 .. 10.0");
+            lost = !at(Token::kw_in) && !at(Token::comma) && !at(Token::right_paren); // "float depth 1mm"
+        }
     }
     read_misspelt_in();
     if (!lost && accept(Token::kw_in)) {
@@ -335,7 +314,7 @@ TextureParameter Grammar::texture_parameter()
             error(span(), "range", "expected '..' and the upper end of the range" + found(),
                   "a range is written 0.2mm .. 5mm");
         }
-        if (!parameter.maximum) parameter.maximum = make(previous_span(), ErrorExpression{});
+        if (!parameter.maximum) parameter.maximum = unknown(previous_span());
     }
     parameter.span = since(first);
     return parameter;

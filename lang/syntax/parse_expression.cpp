@@ -27,16 +27,12 @@ ExpressionPtr Grammar::conditional()
     if (!at(Token::question)) return condition;
     const Span question = span();
     const Nesting nesting(*this, Nesting::bracket);
-    if (nesting.too_deep()) {
-        skip_to({Token::comma});
-        return make(condition->span, ErrorExpression{});
-    }
     advance();
     ExpressionPtr when_true = expression();
     if (!accept(Token::colon)) {
         error(span(), "syntax", "expected ':' and a value for when the condition is false" + found())
             .related.push_back({question, "for this '?'"});
-        return make(since(condition->span), ErrorExpression{});
+        return unknown(since(condition->span));
     }
     ExpressionPtr when_false = conditional();
     const Span whole = join(condition->span, when_false->span);
@@ -48,23 +44,19 @@ ExpressionPtr Grammar::binary(int lowest_precedence)
 {
     ExpressionPtr left = unary();
     for (;;) {
-        foreign_operator();
+        read_foreign_operator();
         const Operator* first = operator_of(kind());
         if (!first || first->precedence < lowest_precedence) return left;
         Chain chain{std::move(left), {}};
         Span whole = chain.first->span;
         const Nesting nesting(*this, Nesting::operand);
-        if (nesting.too_deep()) {
-            skip_to({Token::comma});
-            return make(whole, ErrorExpression{});
-        }
         for (const Operator* next = first; next && next->precedence == first->precedence; next = operator_of(kind())) {
             const Span op_span = span();
             advance();
             ExpressionPtr operand = binary(first->precedence + 1);
             whole = join(whole, operand->span);
             chain.rest.push_back({next->op, op_span, std::move(operand)});
-            foreign_operator();
+            read_foreign_operator();
         }
         left = make(whole, std::move(chain));
     }
@@ -74,41 +66,29 @@ ExpressionPtr Grammar::binary(int lowest_precedence)
 ExpressionPtr Grammar::unary()
 {
     if (at(Token::name) && text() == "not" && (kind(1) == Token::name || kind(1) == Token::left_paren))
-        foreign_operator();
-    const auto prefix = [&]() -> std::optional<UnaryOp> {
-        if (at(Token::minus)) return UnaryOp::negate;
-        if (at(Token::plus)) return UnaryOp::plus;
-        if (at(Token::bang)) return UnaryOp::logical_not;
-        if (at(Token::tilde)) return UnaryOp::bit_not;
-        return std::nullopt;
-    }();
-    if (!prefix) return postfix();
+        read_foreign_operator();
+    constexpr std::pair<Token, UnaryOp> prefixes[] = {{Token::minus, UnaryOp::negate},
+                                                      {Token::plus, UnaryOp::plus},
+                                                      {Token::bang, UnaryOp::logical_not},
+                                                      {Token::tilde, UnaryOp::bit_not}};
+    const auto prefix = std::ranges::find(prefixes, kind(), &std::pair<Token, UnaryOp>::first);
+    if (prefix == std::end(prefixes)) return postfix();
     const Span first = span();
     const Nesting nesting(*this, Nesting::bracket);
-    if (nesting.too_deep()) {
-        skip_to({Token::comma});
-        return make(first, ErrorExpression{});
-    }
     advance();
     ExpressionPtr operand = unary();
     const Span whole = join(first, operand->span);
-    return make(whole, Unary{*prefix, std::move(operand)});
+    return make(whole, Unary{prefix->second, std::move(operand)});
 }
 
 // postfix = primary {"." name | "[" expression "]"}
 ExpressionPtr Grammar::postfix()
 {
     ExpressionPtr object = primary();
-    const uint32_t depth_before = depth;
+    Nesting nesting(*this, 0);
     bool is_member = false; // as it stands, not in parentheses
     while (at(Token::dot) || at(Token::left_bracket) || at(Token::left_paren) || at(Token::arrow)) {
-        depth += Nesting::bracket;
-        if (depth > Nesting::limit) {
-            report_too_deep();
-            skip_to({Token::comma});
-            object = make(object->span, ErrorExpression{});
-            break;
-        }
+        nesting.deepen(Nesting::bracket);
         if (at(Token::left_bracket)) {
             const Span opener = span();
             advance();
@@ -123,24 +103,19 @@ ExpressionPtr Grammar::postfix()
         } else if (at(Token::left_paren)) {
             error(span(), "not-callable", "only a name can be called",
                   "for a constant table write: const float A[3] = {1.0, 2.0, 3.0};");
-            const Span opener = span();
             advance();
-            arguments(opener);
-            object = make(since(object->span), ErrorExpression{});
+            arguments();
+            object = unknown(since(object->span));
         } else {
             if (at(Token::arrow))
                 error(span(), "no-pointers", "there are no pointers in Haptel", "write '.' to take components: q.xy");
             advance();
-            std::optional<Name> member = name("after '.': components such as x or xyz");
+            Name member = name("after '.': components such as x or xyz");
             const Span whole = since(object->span);
-            is_member = member.has_value();
-            if (member)
-                object = make(whole, Member{std::move(object), std::move(*member)});
-            else
-                object = make(whole, ErrorExpression{});
+            is_member = !member.text.empty();
+            object = is_member ? make(whole, Member{std::move(object), std::move(member)}) : unknown(whole);
         }
     }
-    depth = depth_before;
     return object;
 }
 
@@ -150,17 +125,10 @@ ExpressionPtr Grammar::primary()
     const Span first = span();
     if (at(Token::number)) return number();
     if (at(Token::name)) return name_or_call();
-    if (at(Token::kw_true) || at(Token::kw_false)) {
-        const bool value = at(Token::kw_true);
-        advance();
-        return make(first, BoolLiteral{value});
-    }
+    if (accept(Token::kw_true)) return make(first, BoolLiteral{true});
+    if (accept(Token::kw_false)) return make(first, BoolLiteral{false});
     if (at(Token::left_paren)) {
         const Nesting nesting(*this, Nesting::bracket);
-        if (nesting.too_deep()) {
-            skip_brackets();
-            return make(first, ErrorExpression{});
-        }
         const Token behind = kind(3);
         if (kind(1) == Token::name && kind(2) == Token::right_paren && is_type_word(text(1)) &&
             (behind == Token::name || behind == Token::number || behind == Token::left_paren))
@@ -170,7 +138,7 @@ ExpressionPtr Grammar::primary()
         if (at(Token::comma) && !lost) {
             error(span(), "syntax", "expected ')', found ','", "a vector is made by its constructor: vec3(x, y, z)");
             skip_to({Token::right_paren});
-            inner = unknown_value(*inner);
+            inner = unknown(inner->span);
         }
         close(Token::right_paren, first);
         inner->span = since(first);
@@ -179,46 +147,33 @@ ExpressionPtr Grammar::primary()
     if (at(Token::invalid)) {
         advance();
         lost = true;
-        return make(first, ErrorExpression{});
-    }
-    if (at(Token::plus_plus) || at(Token::minus_minus)) {
-        error(first, "assignment-in-expression",
-              "'" + std::string(text()) + "' is a statement of its own, not part of an expression",
-              "write it on a line before");
-        return behind_stray_operator();
+        return unknown(first);
     }
     if (at(Token::left_brace)) {
         error(first, "syntax", "braces may only stand behind '=' of a constant table");
         has_stray_brace = true;
-        skip_brackets();
-        return make(since(first), ErrorExpression{});
+        skip_braces();
+        return unknown(since(first));
     }
-    if (at(Token::ampersand) || at(Token::star)) {
-        const bool is_power = at(Token::star) && position > 0 && list.tokens[position - 1].kind == Token::star;
-        if (is_power)
+    const bool is_step = at(Token::plus_plus) || at(Token::minus_minus);
+    if (is_step || at(Token::ampersand) || at(Token::star)) {
+        if (is_step)
+            error(first, "assignment-in-expression",
+                  "'" + std::string(text()) + "' is a statement of its own, not part of an expression",
+                  "write it on a line before");
+        else if (at(Token::star) && previous_kind() == Token::star)
             error(join(previous_span(), first), "foreign-word", "there is no '**' in Haptel",
                   "a power is pow(x, y), a square x * x");
         else
             error(first, "no-pointers", "expected an expression" + found() + "; there are no pointers in Haptel");
-        return behind_stray_operator();
+        const Nesting nesting(*this, Nesting::bracket);
+        advance();
+        return unary(); // which may be sound
     }
     Diagnostic& reported = error(first, "expected-expression", "expected an expression" + found());
     if (at(Token::kw_texture) && kind(1) == Token::left_paren)
         reported.hint = foreign_word(ForeignKind::function, "texture2D")->hint;
-    return make(first, ErrorExpression{});
-}
-
-// After the report of an operator that cannot stand here: the operand may be sound.
-ExpressionPtr Grammar::behind_stray_operator()
-{
-    const Span where = span();
-    const Nesting nesting(*this, Nesting::bracket);
-    if (nesting.too_deep()) {
-        skip_to({Token::comma});
-        return make(where, ErrorExpression{});
-    }
-    advance();
-    return unary();
+    return unknown(first);
 }
 
 ExpressionPtr Grammar::number()
@@ -230,7 +185,7 @@ ExpressionPtr Grammar::number()
         if (!lost) diagnostics.error(where, read.code, std::move(read.error), read.hint);
         list.tokens[position - 1].kind = Token::invalid; // who knows what was glued together
         ++mistakes;
-        return make(where, ErrorExpression{});
+        return unknown(where);
     }
     return make(where, NumberLiteral{read.kind, read.value, read.integer, std::string(read.unit),
                                      std::string(sources.text(where))});
@@ -242,10 +197,6 @@ ExpressionPtr Grammar::brace_list()
     const Span opener = span();
     BraceList list_of;
     const Nesting nesting(*this, Nesting::bracket);
-    if (nesting.too_deep()) {
-        skip_brackets();
-        return make(since(opener), ErrorExpression{});
-    }
     advance();
     while (!at(Token::right_brace) && !at(Token::end)) {
         if (at(Token::left_brace)) {
@@ -253,7 +204,7 @@ ExpressionPtr Grammar::brace_list()
                   "write the rows one behind the other and index by row * columns + column");
             const Span inner = span();
             brace_list();
-            list_of.elements.push_back(make(since(inner), ErrorExpression{}));
+            list_of.elements.push_back(unknown(since(inner)));
         } else {
             list_of.elements.push_back(expression());
         }
@@ -266,6 +217,78 @@ ExpressionPtr Grammar::brace_list()
     close(Token::right_brace, opener, true);
     list_of.is_damaged |= lost;
     return make(since(opener), std::move(list_of));
+}
+
+// name_or_call = name | name "(" [expression {"," expression}] ")" | grad_call
+ExpressionPtr Grammar::name_or_call()
+{
+    Name callee = name("");
+    if (at(Token::left_bracket) && is_own_type(callee.text)) return array_constructor(std::move(callee));
+    if (at(Token::less) && is_own_type(callee.text)) skip_type_arguments();
+    if (!at(Token::left_paren)) return make(callee.span, NameExpression{callee.text});
+    if (callee.text == "grad") return grad_call(callee.span);
+
+    advance();
+    std::vector<ExpressionPtr> values = arguments();
+    return make(since(callee.span), CallExpression{std::move(callee), std::move(values)});
+}
+
+// The rest of a call behind '(': [expression {"," expression}] ")"
+std::vector<ExpressionPtr> Grammar::arguments()
+{
+    std::vector<ExpressionPtr> result;
+    const Span opener = previous_span();
+    const Nesting nesting(*this, Nesting::bracket);
+    if (accept(Token::right_paren)) return result;
+    do result.push_back(expression());
+    while (accept(Token::comma));
+    if (!close(Token::right_paren, opener, true) || lost)
+        result.push_back(unknown(span())); // nobody knows how many were meant
+    return result;
+}
+
+// grad_call = "grad" "(" function ")" "(" expression {"," expression} ")"     function = name | "grad" "(" function ")"
+// Behind "grad". Anything else in the first brackets is an ordinary call of a function named grad, for the checker.
+ExpressionPtr Grammar::grad_call(Span first)
+{
+    GradCall call;
+    advance();
+    size_t ahead = 0;
+    for (; kind(ahead) == Token::name && text(ahead) == "grad" && kind(ahead + 1) == Token::left_paren; ahead += 2)
+        ++call.order;
+    bool closed = kind(ahead) == Token::name;
+    for (uint32_t i = 1; i <= call.order; ++i) closed = closed && kind(ahead + i) == Token::right_paren;
+    if (!closed) {
+        std::vector<ExpressionPtr> values = arguments();
+        if (!accept(Token::left_paren)) return make(since(first), CallExpression{{"grad", first}, std::move(values)});
+        if (call.order == 1) // else the innermost has said it
+            error(first, "grad", "grad takes the name of a function",
+                  "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)");
+        arguments();
+        return unknown(since(first));
+    }
+    call.function = {std::string(sources.text(span(ahead))), span(ahead)};
+    advance(ahead + 1 + call.order);
+    if (!accept(Token::left_paren)) {
+        error(since(first), "grad", "the derivative of a function is a function: expected its arguments" + found(),
+              "write grad(" + call.function.text + ")(q)");
+        return unknown(since(first));
+    }
+    call.arguments = arguments();
+    return make(since(first), std::move(call));
+}
+
+// array_constructor = type "[" [expression] "]" "(" expression {"," expression} ")"        Behind the type's name.
+ExpressionPtr Grammar::array_constructor(Name type)
+{
+    BraceList made;
+    const Span first = type.span;
+    made.type.emplace();
+    made.type->base = std::move(type);
+    array_suffix(*made.type);
+    if (!expect(Token::left_paren, "and the elements of the array")) return unknown(since(first));
+    made.elements = arguments();
+    return make(since(first), std::move(made));
 }
 
 } // namespace haptel::lang

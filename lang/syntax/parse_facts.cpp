@@ -21,44 +21,32 @@ std::string_view without_slashes(std::string_view line)
     return line;
 }
 
-bool is_facts(std::string_view line)
-{
-    const size_t first = line.find_first_not_of(" \t");
-    return first != std::string_view::npos && line.substr(first).starts_with(marker);
-}
-
 } // namespace
 
 // The doc lines that stand right above the token, without slashes. A blank line separates them from what is further up.
 std::string Grammar::doc_before(size_t token_index, std::optional<ir::Facts>* facts)
 {
-    const auto before = [](const DocLine& line, size_t index) { return line.before_token < index; };
-    const auto first = std::lower_bound(list.docs.begin(), list.docs.end(), token_index, before);
-    auto last = first;
-    while (last != list.docs.end() && last->before_token == token_index) ++last;
+    const auto first = std::ranges::lower_bound(list.docs, token_index, {}, &DocLine::before_token);
+    const auto last = std::ranges::upper_bound(list.docs, token_index, {}, &DocLine::before_token);
     auto begin = last;
-    while (begin != first) {
-        if (begin != last) {
-            const Span gap{file, (begin - 1)->span.end, begin->span.begin};
-            const std::string_view between = sources.text(gap);
-            if (std::count(between.begin(), between.end(), '\n') > 1) break;
-        }
-        --begin;
-    }
+    const auto is_set_apart = [&] {
+        const std::string_view between = sources.text({file, (begin - 1)->span.end, begin->span.begin});
+        return std::ranges::count(between, '\n') > 1;
+    };
+    while (begin != first && (begin == last || !is_set_apart())) --begin;
     std::string doc;
     for (auto line = begin; line != last; ++line) {
-        const std::string_view words = without_slashes(sources.text(line->span));
-        if (is_facts(words)) {
+        const std::string_view whole = sources.text(line->span);
+        const size_t words = whole.find_first_not_of(" \t", 3); // behind the slashes
+        if (words != std::string_view::npos && whole.substr(words).starts_with(marker)) {
             if (!facts) continue;
-            const std::string_view whole = sources.text(line->span);
-            const auto skipped = static_cast<uint32_t>(whole.find(marker));
-            const Span where{file, line->span.begin + skipped, line->span.end};
+            const Span where{file, line->span.begin + static_cast<uint32_t>(words), line->span.end};
             const Span inside{file, where.begin + static_cast<uint32_t>(marker.size()), where.end};
             *facts = Grammar(sources, file, lex(sources, inside, diagnostics), diagnostics).parse_facts(where);
             continue;
         }
         if (!doc.empty()) doc += '\n';
-        doc += words;
+        doc += without_slashes(whole);
     }
     return doc;
 }

@@ -17,11 +17,9 @@ void Grammar::skip_foreign_qualifiers()
                                         (kind(2) == Token::left_bracket && is_type_word(text(1))) ||
                                         kind(2) == Token::less || kind(1) == Token::kw_const;
         if (!word || !stands_before_type) return; // "flat x": a type that is misspelt
-        Diagnostic& reported = diagnostics.error(span(), "foreign-word",
-                                                 "there is no '" + std::string(text()) + "' in Haptel", word->hint);
-        reported.fix = word->replacement.empty() ? FixIt{{file, span().begin, span(1).begin}, ""}
-                                                 : FixIt{span(), std::string(word->replacement)};
-        ++mistakes;
+        slip(span(), "foreign-word", not_in_haptel(), word->hint).fix =
+            word->replacement.empty() ? FixIt{{file, span().begin, span(1).begin}, ""}
+                                      : FixIt{span(), std::string(word->replacement)};
         advance();
     }
 }
@@ -31,14 +29,12 @@ void Grammar::skip_type_arguments()
 {
     if (!at(Token::less) || kind(1) != Token::name || kind(2) != Token::greater) return;
     const Span whole = join(span(), span(2));
-    Diagnostic& reported =
-        diagnostics.error(whole, "foreign-word", "types take no arguments in angle brackets",
-                          "write float, vec3, mat3 ...; precision is chosen when the texture is compiled");
+    Diagnostic& reported = slip(whole, "foreign-word", "types take no arguments in angle brackets",
+                                "write float, vec3, mat3 ...; precision is chosen when the texture is compiled");
     const ForeignWord* argument = foreign_word(ForeignKind::type, text(1));
     const bool is_real = text(1) == "float" || (argument && argument->replacement == "float");
     if (is_real) reported.fix = FixIt{whole, ""};
-    ++mistakes;
-    for (int i = 0; i < 3; ++i) advance();
+    advance(3);
 }
 
 // "retrun 1.0;": a word that nothing else explains is read as the keyword it resembles.
@@ -51,11 +47,10 @@ void Grammar::read_misspelt_keyword()
         {"return", Token::kw_return}, {"if", Token::kw_if},       {"else", Token::kw_else},
         {"for", Token::kw_for},       {"break", Token::kw_break}, {"const", Token::kw_const}};
     // Between a name that is misspelt and a type that is, the nearer decides.
-    std::vector<std::string_view> words{"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4"};
+    std::vector<std::string_view> words(std::begin(own_types), std::end(own_types));
     for (const auto& [word, token] : keywords) words.push_back(word);
     const auto [meant, is_only] = near_name(text(), words);
-    const auto keyword = std::find_if(std::begin(keywords), std::end(keywords),
-                                      [&, name = meant](const auto& known) { return known.first == name; });
+    const auto keyword = std::ranges::find(keywords, meant, &std::pair<std::string_view, Token>::first);
     if (keyword == std::end(keywords) || foreign_word(ForeignKind::statement, text())) return;
     // What follows must be able to follow the keyword, and be no use of a name.
     const Token next = kind(1), then = keyword->second;
@@ -68,10 +63,8 @@ void Grammar::read_misspelt_keyword()
                                 next == Token::minus || next == Token::kw_true || next == Token::kw_false;
     if (!fits) return;
     Diagnostic& reported =
-        diagnostics.error(span(), "syntax", "expected a statement, found '" + std::string(text()) + "'",
-                          "did you mean '" + std::string(meant) + "'?");
+        slip(span(), "syntax", "expected a statement" + found(), "did you mean '" + std::string(meant) + "'?");
     if (is_only) reported.fix = FixIt{span(), std::string(meant)};
-    ++mistakes;
     list.tokens[position].kind = then;
 }
 
@@ -82,25 +75,20 @@ void Grammar::read_misspelt_in()
     if (lost || !is_word || nearest_name(text(), {"in"}).empty()) return;
     const Span word = span();
     list.tokens[position].kind = Token::kw_in;
-    Diagnostic& reported = error(word, "syntax", "expected 'in', ',' or ')'" + found(), "did you mean 'in'?");
-    reported.fix = FixIt{word, "in"};
+    error(word, "syntax", "expected 'in', ',' or ')'" + found(), "did you mean 'in'?").fix = FixIt{word, "in"};
     lost = false;
 }
 
-// "a and b"; nothing but an operator can stand here. `name` where there is none.
-Token Grammar::foreign_operator()
+// "a and b"; nothing but an operator can stand here.
+void Grammar::read_foreign_operator()
 {
     const ForeignWord* word = at(Token::name) ? foreign_word(ForeignKind::operation, text()) : nullptr;
-    if (!word || lost) return Token::name;
-    Diagnostic& reported =
-        diagnostics.error(span(), "foreign-word", "there is no '" + std::string(text()) + "' in Haptel", word->hint);
-    reported.fix = FixIt{span(), std::string(word->replacement)};
-    ++mistakes;
-    list.tokens[position].kind = word->word == "and"   ? Token::logical_and
-                                 : word->word == "or"  ? Token::logical_or
-                                 : word->word == "xor" ? Token::logical_xor
-                                                       : Token::bang;
-    return kind();
+    if (!word || lost) return;
+    slip(span(), "foreign-word", not_in_haptel(), word->hint).fix = FixIt{span(), std::string(word->replacement)};
+    list.tokens[position].kind = word->replacement == "&&"   ? Token::logical_and
+                                 : word->replacement == "||" ? Token::logical_or
+                                 : word->replacement == "^^" ? Token::logical_xor
+                                                             : Token::bang;
 }
 
 // "(float)x", at the opening bracket.
@@ -108,14 +96,12 @@ ExpressionPtr Grammar::cast()
 {
     const Span first = span();
     Name type{std::string(text(1)), span(1)};
-    for (int i = 0; i < 3; ++i) advance();
+    advance(3);
     ExpressionPtr operand = unary();
     const Span whole = since(first);
     const std::string written = type.text + "(" + std::string(sources.text(operand->span)) + ")";
-    Diagnostic& reported = diagnostics.error(whole, "foreign-word", "a value is converted by the type's constructor",
-                                             "write " + printable(written));
-    reported.fix = FixIt{whole, written};
-    ++mistakes;
+    slip(whole, "foreign-word", "a value is converted by the type's constructor", "write " + printable(written)).fix =
+        FixIt{whole, written};
     std::vector<ExpressionPtr> arguments;
     arguments.push_back(std::move(operand));
     return make(whole, CallExpression{std::move(type), std::move(arguments)});
@@ -124,45 +110,33 @@ ExpressionPtr Grammar::cast()
 // "q.length()", at the bracket behind the member.
 ExpressionPtr Grammar::method_call(ExpressionPtr object)
 {
-    const Span first = object->span, opener = span();
+    const Span first = object->span;
     Member& member = std::get<Member>(object->node);
     std::string written = member.member.text + "(" + std::string(sources.text(member.object->span));
     Name callee = std::move(member.member);
     std::vector<ExpressionPtr> values;
     values.push_back(std::move(member.object));
     advance();
-    for (ExpressionPtr& argument : arguments(opener)) {
+    for (ExpressionPtr& argument : arguments()) {
         written += ", " + std::string(sources.text(argument->span));
         values.push_back(std::move(argument));
     }
     const Span whole = since(first);
-    if (!lost) {
+    if (!lost)
         diagnostics.error(whole, "not-callable", "values have no functions of their own",
                           "write " + printable(written + ")")); // GLSL's q.length() counts components
-    }
     ++mistakes;
     return make(whole, CallExpression{std::move(callee), std::move(values)});
 }
 
-// "in vec2 uv;" at the top of a file.
-void Grammar::skip_global_in_or_out()
+// "struct S {...};", "uniform float x;", "in vec2 uv;": says what to write, skips the whole.
+void Grammar::skip_foreign_declaration(std::string message, std::string_view hint)
 {
-    error(span(), "foreign-word", "a file has no inputs and outputs of its own",
-          at(Token::kw_in) ? "the point of contact is p, its normal n, its mesh coordinates uv"
-                           : "a texture returns its height: return 1mm;");
-    skip_to({});
-    accept(Token::semicolon);
-    lost = false;
-}
-
-// "struct S {...};", "uniform float x;": says what to write, skips the whole.
-void Grammar::skip_foreign_declaration(const ForeignWord& word)
-{
-    error(span(), "foreign-word", "there is no '" + std::string(word.word) + "' in Haptel", word.hint);
+    error(span(), "foreign-word", std::move(message), hint);
     advance();
     skip_to({Token::left_brace});
-    if (at(Token::left_brace)) skip_brackets();
-    while (at(Token::name)) advance(); // "struct S {...} s;"
+    if (at(Token::left_brace)) skip_braces();
+    while (at(Token::name) && !on_new_line()) advance(); // "struct S {...} s;"
     accept(Token::semicolon);
     lost = false;
 }
@@ -171,22 +145,25 @@ void Grammar::skip_foreign_declaration(const ForeignWord& word)
 // run, is still read for its own mistakes.
 void Grammar::foreign_statement(const ForeignWord& word, Statements& into)
 {
-    error(span(), "foreign-word", "there is no '" + std::string(word.word) + "' in Haptel", word.hint);
+    error(span(), "foreign-word", not_in_haptel(), word.hint);
+    const bool is_do = text() == "do", is_loop = is_do || text() == "while";
     advance();
-    const bool is_loop = word.word == "while" || word.word == "do";
     const Span head = since(span());
-    if (at(Token::left_paren)) skip_brackets();
+    if (at(Token::left_paren)) {
+        advance(closer_ahead(0));
+        accept(Token::right_paren);
+    }
     if (is_loop) {
         lost = false;
         If::Arm arm;
-        arm.condition = make(head, ErrorExpression{});
+        arm.condition = unknown(head);
         arm.body = single_statement("the loop's head");
         If loop;
         loop.arms.push_back(std::move(arm));
         into.push_back(make_statement(since(head), std::move(loop)));
-        if (word.word == "do" && at(Token::name) && text() == "while") advance(), skip_to({});
+        if (is_do && at(Token::name) && text() == "while") advance(), skip_to({});
     } else if (at(Token::left_brace)) {
-        skip_brackets();
+        skip_braces();
     } else {
         skip_to({Token::colon}); // "case 1:", "default:", "continue;"
         accept(Token::colon);

@@ -8,17 +8,6 @@ namespace haptel::lang {
 
 using namespace ast;
 
-namespace {
-
-bool begins_expression(Token token)
-{
-    constexpr Token starts[] = {Token::name,  Token::number, Token::kw_true, Token::kw_false, Token::left_paren,
-                                Token::minus, Token::plus,   Token::bang,    Token::tilde,    Token::invalid};
-    return std::find(std::begin(starts), std::end(starts), token) != std::end(starts);
-}
-
-} // namespace
-
 // statement = block | if | for | "break" ";" | return | declaration | assignment | ";"
 // Appends none, one, or, for "float a, b;", several.
 void Grammar::statement(Statements& into)
@@ -45,18 +34,15 @@ void Grammar::statement(Statements& into)
               "an 'if' with several statements needs braces around them");
         advance();
         into.push_back(single_statement("'else'"));
-    } else if (const ForeignWord* word = at(Token::name) ? foreign_word(ForeignKind::statement, text()) : nullptr;
-               word && !is_used_as_name()) {
+    } else if (const ForeignWord* word = foreign_word(ForeignKind::statement, text()); word && !is_used_as_name()) {
         foreign_statement(*word, into);
-    } else if (const ForeignWord* other = at(Token::name) ? foreign_word(ForeignKind::declaration, text()) : nullptr;
-               other && kind(1) == Token::name) {
-        skip_foreign_declaration(*other);
+    } else if (word = foreign_word(ForeignKind::declaration, text()); word && kind(1) == Token::name) {
+        skip_foreign_declaration(not_in_haptel(), word->hint);
     } else if (at_declaration()) {
         declarations(into);
     } else {
-        StatementPtr made = assignment_or_expression();
+        into.push_back(assignment_or_expression());
         if (!lost) expect_semicolon("the statement");
-        into.push_back(std::move(made));
     }
     if (lost) {
         find_footing();
@@ -79,16 +65,8 @@ bool Grammar::at_top_level_start() const
 {
     if (at_texture_or_import()) return true;
     if (kind() != Token::name || kind(1) != Token::name || kind(2) != Token::left_paren) return false;
-    size_t open = 0;
-    constexpr size_t longest_head = 1000; // tokens; keeps the whole parse linear
-    for (size_t ahead = 2; ahead < longest_head; ++ahead) {
-        const Token here = kind(ahead);
-        if (here == Token::left_paren) ++open;
-        if (here == Token::right_paren && --open == 0) return kind(ahead + 1) == Token::left_brace;
-        if (here == Token::end || here == Token::semicolon || here == Token::left_brace || here == Token::right_brace)
-            break;
-    }
-    return false;
+    const size_t closer = closer_ahead(2);
+    return kind(closer) == Token::right_paren && kind(closer + 1) == Token::left_brace;
 }
 
 // block = "{" {statement} "}"
@@ -96,10 +74,6 @@ StatementPtr Grammar::block()
 {
     const Span opener = span();
     const Nesting nesting(*this, Nesting::bracket);
-    if (nesting.too_deep()) {
-        skip_brackets();
-        return make_statement(since(opener), Scope{});
-    }
     advance();
     return rest_of_block(opener);
 }
@@ -128,15 +102,6 @@ StatementPtr Grammar::single_statement(std::string_view after)
         return make_statement(first, Scope{});
     }
     const Nesting nesting(*this, Nesting::bracket);
-    if (nesting.too_deep()) {
-        while (!at(Token::right_brace) && !at(Token::end) && !at_texture_or_import()) {
-            if (at(Token::left_brace))
-                skip_brackets();
-            else
-                advance();
-        }
-        return make_statement(first, Scope{});
-    }
     Scope scope;
     statement(scope.statements);
     if (scope.statements.size() == 1) return std::move(scope.statements.front());
@@ -148,10 +113,10 @@ StatementPtr Grammar::if_statement()
 {
     const Span first = span();
     If result;
-    for (bool conditional_arm = true; conditional_arm;) {
+    do {
         If::Arm arm;
-        conditional_arm = accept(Token::kw_if); // false behind the last "else"
-        if (conditional_arm) {
+        const bool has_condition = accept(Token::kw_if); // not behind the last "else"
+        if (has_condition) {
             const Span opener = span();
             const bool opened = expect(Token::left_paren, "after 'if'");
             arm.condition = expression();
@@ -159,12 +124,12 @@ StatementPtr Grammar::if_statement()
                 close(Token::right_paren, opener);
             else
                 accept(Token::right_paren);
-            if (lost) arm.condition = unknown_value(*arm.condition);
+            if (lost) arm.condition = unknown(arm.condition->span);
         }
-        arm.body = single_statement(conditional_arm ? "the condition" : "'else'");
+        arm.body = single_statement(has_condition ? "the condition" : "'else'");
         result.arms.push_back(std::move(arm));
-        if (!conditional_arm || !accept(Token::kw_else)) break;
-    }
+        if (!has_condition) break;
+    } while (accept(Token::kw_else));
     return make_statement(since(first), std::move(result));
 }
 
@@ -204,7 +169,7 @@ StatementPtr Grammar::for_statement()
     }
     if (lost) {
         if (loop.init) forget({&loop.init, 1});
-        if (loop.condition) loop.condition = unknown_value(*loop.condition);
+        if (loop.condition) loop.condition = unknown(loop.condition->span);
         note_unread(first_position);
     }
     loop.body = single_statement("the loop's head");
@@ -227,36 +192,33 @@ StatementPtr Grammar::return_statement()
 StatementPtr Grammar::assignment_or_expression()
 {
     const Span first = span();
-    const auto step_by_one = [&](ExpressionPtr target, bool up, Span op) {
-        const Span whole = since(first);
-        NumberLiteral one{NumberLiteral::Kind::integer, 1, 1, {}, "1"};
-        return make_statement(whole, Assignment{std::move(target), up ? BinaryOp::add : BinaryOp::subtract, op,
-                                                make(op, std::move(one))});
+    Assignment made;
+    const auto step = [&] { // "++" and "--"
+        if (!at(Token::plus_plus) && !at(Token::minus_minus)) return false;
+        made.op_span = span();
+        made.op = at(Token::plus_plus) ? BinaryOp::add : BinaryOp::subtract;
+        made.value = make(made.op_span, NumberLiteral{NumberLiteral::Kind::integer, 1, 1, {}, "1"});
+        advance();
+        return true;
     };
-    if (at(Token::plus_plus) || at(Token::minus_minus)) {
-        const Span op = span();
-        const bool up = at(Token::plus_plus);
-        advance();
-        return step_by_one(postfix(), up, op);
+    if (step()) {
+        made.target = postfix();
+        return make_statement(since(first), std::move(made));
     }
-    if (!begins_expression(kind())) error(first, "syntax", "expected a statement" + found());
-    ExpressionPtr target = conditional();
-    if (at(Token::plus_plus) || at(Token::minus_minus)) {
-        const Span op = span();
-        const bool up = at(Token::plus_plus);
-        advance();
-        return step_by_one(std::move(target), up, op);
-    }
+    constexpr Token starts[] = {Token::name,  Token::number, Token::kw_true, Token::kw_false, Token::left_paren,
+                                Token::minus, Token::plus,   Token::bang,    Token::tilde,    Token::invalid};
+    if (std::ranges::find(starts, kind()) == std::end(starts)) error(first, "syntax", "expected a statement" + found());
+    made.target = conditional();
     if (is_assignment(kind())) {
-        const Span op = span();
-        const auto operation = operation_in(kind());
+        made.op_span = span();
+        made.op = operation_in(kind());
         advance();
-        ExpressionPtr value = expression();
-        const Span whole = since(first);
-        return make_statement(whole, Assignment{std::move(target), operation, op, std::move(value)});
+        made.value = expression();
+    } else if (!step()) {
+        const Span whole = made.target->span;
+        return make_statement(whole, ExpressionStatement{std::move(made.target)});
     }
-    const Span whole = target->span;
-    return make_statement(whole, ExpressionStatement{std::move(target)});
+    return make_statement(since(first), std::move(made));
 }
 
 // A type is followed by a name: "vec3 q", "float[3] a", "const ...". A type's own word is enough ("float = 1" is a
@@ -267,20 +229,14 @@ bool Grammar::at_declaration() const
     if (!at(Token::name)) return false;
     if (kind(1) == Token::name) return true;
     if (kind(1) == Token::left_bracket) {
-        constexpr size_t longest_size = 1000; // tokens; keeps the whole parse linear
-        size_t ahead = 2;
-        for (size_t open = 1; open > 0 && ahead < longest_size; ++ahead) {
-            const Token here = kind(ahead);
-            if (here == Token::left_bracket) ++open;
-            if (here == Token::right_bracket) --open;
-            if (here == Token::end || here == Token::semicolon || here == Token::left_brace) return false;
-        }
-        return kind(ahead) == Token::name;
+        const size_t closer = closer_ahead(1);
+        return kind(closer) == Token::right_bracket && kind(closer + 1) == Token::name;
     }
     return is_own_type(text()) && kind(1) != Token::left_paren && kind(1) != Token::dot;
 }
 
 // declaration = ["const"] type declarator {"," declarator} ";"
+// declarator = name ["[" [expression] "]"] ["=" initializer]          initializer = expression | brace_list
 void Grammar::declarations(Statements& into)
 {
     declaration_list(into);
@@ -293,35 +249,13 @@ void Grammar::declaration_list(Statements& into)
     const bool is_const = accept(Token::kw_const);
     const TypeName type = type_name();
     do {
-        if (at(Token::star) || at(Token::ampersand)) {
-            error(span(), "no-pointers", "there are no pointers or references in Haptel");
-            return;
-        }
         const Span begin = into.empty() ? first : span();
-        Declaration made = declarator(is_const, type);
+        Declaration made{is_const, type, name_after(type), nullptr};
         if (made.name.text.empty()) return;
+        array_suffix(made.type);
+        if (accept(Token::assign)) made.initializer = at(Token::left_brace) ? brace_list() : expression();
         into.push_back(make_statement(since(begin), std::move(made)));
     } while (!lost && accept(Token::comma));
-}
-
-// declarator = name ["[" [expression] "]"] ["=" initializer]      The name is empty where there is none.
-Declaration Grammar::declarator(bool is_const, TypeName type)
-{
-    Declaration result;
-    result.is_const = is_const;
-    std::optional<Name> declared = name("after '" + type.base.text + "'");
-    if (!declared) return result;
-    result.name = std::move(*declared);
-    array_suffix(type);
-    result.type = std::move(type);
-    if (accept(Token::assign)) result.initializer = initializer();
-    return result;
-}
-
-// initializer = expression | brace_list
-ExpressionPtr Grammar::initializer()
-{
-    return at(Token::left_brace) ? brace_list() : expression();
 }
 
 } // namespace haptel::lang

@@ -19,15 +19,15 @@ File parse(const SourceSet& sources, uint32_t file, TokenList tokens, Diagnostic
     return Grammar(sources, file, std::move(tokens), diagnostics).parse_file();
 }
 
-Grammar::Grammar(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink)
-    : TokenCursor(all_sources, file_index, std::move(token_list), sink)
-{
-}
-
 // file = {import | constants | texture | function | ";"}
 File Grammar::parse_file()
 {
     File result;
+    const auto leave_unread = [&](size_t from) {
+        note_unread(from);
+        result.unread.merge(unread);
+        result.lacks_functions = true;
+    };
     while (!at(Token::end)) {
         begin_declaration();
         const size_t first_position = position;
@@ -41,22 +41,22 @@ File Grammar::parse_file()
         } else if (at(Token::kw_texture)) {
             texture(result);
         } else if ((at(Token::kw_in) || at(Token::kw_out)) && kind(1) == Token::name) {
-            skip_global_in_or_out();
-        } else if (at(Token::name)) {
-            strayed = !top_level_name(result);
+            skip_foreign_declaration("a file has no inputs and outputs of its own",
+                                     at(Token::kw_in)
+                                         ? "the point of contact is p, its normal n, its mesh coordinates uv"
+                                         : "a texture returns its height: return 1mm;");
         } else {
-            strayed = true;
+            strayed = !at(Token::name) || !top_level_name(result);
         }
         if (strayed) report_stray(result);
         if (lost) {
             find_top_level(strayed);
-            note_unread(first_position);
-            result.unread.merge(unread);
-            result.lacks_functions = true;
+            leave_unread(first_position);
             stand_again();
         }
         if (position == first_position) advance();
     }
+    if (given_up < position) leave_unread(given_up);
     return result;
 }
 
@@ -77,18 +77,17 @@ void Grammar::report_stray(File& result)
     if (!statement_like) return;
     reported.hint = "statements stand inside functions and textures; is there a '}' too many above?";
     // Then the body above has ended too early.
-    const auto spoil = [](auto& above) {
-        above.damage.any = true;
-        above.body = nullptr;
+    const uint32_t end_of_function = result.functions.empty() ? 0 : result.functions.back().span.end;
+    const uint32_t end_of_texture = result.textures.empty() ? 0 : result.textures.back().span.end;
+    const auto spoil_last = [&](auto& all) {
+        for (auto& above : all)
+            if (above.span.end == std::max(end_of_function, end_of_texture)) {
+                above.damage.any = true;
+                above.body = nullptr;
+            }
     };
-    const bool has_texture = !result.textures.empty(), has_function = !result.functions.empty();
-    const bool is_texture =
-        has_texture && (!has_function || result.functions.back().span.end < result.textures.back().span.end);
-    if (is_texture)
-        spoil(result.textures.back());
-    else if (has_function)
-        for (Function& function : result.functions) // of every size
-            if (function.span.begin == result.functions.back().span.begin) spoil(function);
+    spoil_last(result.functions); // of every size
+    spoil_last(result.textures);
 }
 
 // A name at the top: a function's type; or a slip. False if nothing at all can begin like this.
@@ -96,7 +95,7 @@ bool Grammar::top_level_name(File& result)
 {
     const ForeignWord* foreign = foreign_word(ForeignKind::declaration, text());
     if (foreign && foreign->replacement.empty()) {
-        skip_foreign_declaration(*foreign);
+        skip_foreign_declaration(not_in_haptel(), foreign->hint);
         return true;
     }
     std::string_view guess =
@@ -104,12 +103,10 @@ bool Grammar::top_level_name(File& result)
     if (foreign) guess = foreign->replacement;
     const bool follows = kind(1) == Token::name || (guess == "import" && kind(1) == Token::string);
     if (!guess.empty() && follows) {
-        const ErrorCode code = foreign ? ErrorCode("foreign-word") : ErrorCode("syntax");
-        Diagnostic& reported = diagnostics.error(
-            span(), code, "expected 'texture' or the type of a function, found '" + std::string(text()) + "'",
-            foreign ? std::string(foreign->hint) : "did you mean '" + std::string(guess) + "'?");
+        Diagnostic& reported = slip(span(), foreign ? ErrorCode("foreign-word") : ErrorCode("syntax"),
+                                    "expected 'texture' or the type of a function" + found(),
+                                    foreign ? foreign->hint : "did you mean '" + std::string(guess) + "'?");
         if (!foreign) reported.fix = FixIt{span(), std::string(guess)};
-        ++mistakes;
         if (guess == "const") list.tokens[position].kind = Token::kw_const;
         if (guess == "texture") list.tokens[position].kind = Token::kw_texture;
         guess == "texture" ? texture(result) : guess == "import" ? import_declaration(result) : constants(result);
@@ -127,7 +124,7 @@ bool Grammar::top_level_name(File& result)
 void Grammar::find_top_level(bool strayed)
 {
     uint32_t open_braces = 0;
-    if (!strayed && position > 0 && list.tokens[position - 1].kind == Token::right_brace) return;
+    if (!strayed && previous_kind() == Token::right_brace) return;
     for (; !at(Token::end) && !at_texture_or_import(); advance()) {
         if (at(Token::left_brace)) ++open_braces;
         const bool closes = at(Token::right_brace) && open_braces > 0 && --open_braces == 0;

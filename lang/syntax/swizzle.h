@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -21,12 +22,7 @@ struct Swizzle {
         for (uint8_t i = 0; i < size; ++i) bits = static_cast<uint8_t>(bits | 1u << component[i]);
         return bits;
     }
-    bool has_repeats() const
-    {
-        for (uint8_t i = 0; i < size; ++i)
-            if (std::find(component.begin(), component.begin() + i, component[i]) != component.begin() + i) return true;
-        return false;
-    }
+    bool has_repeats() const { return std::popcount(mask()) < size; }
 };
 
 inline std::optional<Swizzle> parse_swizzle(std::string_view letters)

@@ -4,42 +4,6 @@
 
 namespace haptel::lang {
 
-namespace {
-
-bool is_opener(Token kind)
-{
-    return kind == Token::left_paren || kind == Token::left_bracket || kind == Token::left_brace;
-}
-
-bool is_closer(Token kind)
-{
-    return kind == Token::right_paren || kind == Token::right_bracket || kind == Token::right_brace;
-}
-
-// Words that only ever begin something: a bracket left open does not reach across them.
-bool begins_anew(Token kind)
-{
-    constexpr Token beginnings[] = {Token::kw_if,    Token::kw_else,   Token::kw_for,
-                                    Token::kw_break, Token::kw_return, Token::end};
-    return std::find(std::begin(beginnings), std::end(beginnings), kind) != std::end(beginnings);
-}
-
-} // namespace
-
-TokenCursor::TokenCursor(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink)
-    : sources(all_sources)
-    , file(file_index)
-    , list(std::move(token_list))
-    , diagnostics(sink)
-    , line_end(sources.file(file).text.find_first_of("\r\n"))
-{
-}
-
-void TokenCursor::advance()
-{
-    if (position + 1 < list.tokens.size()) ++position;
-}
-
 bool TokenCursor::accept(Token wanted)
 {
     if (!at(wanted)) return false;
@@ -50,23 +14,20 @@ bool TokenCursor::accept(Token wanted)
 bool TokenCursor::expect(Token wanted, std::string_view where)
 {
     if (accept(wanted)) return true;
-    std::string message = "expected " + std::string(describe(wanted));
-    if (!where.empty()) message += " " + std::string(where);
-    error(span(), "syntax", message + found());
+    error(span(), "syntax", "expected " + std::string(describe(wanted)) + " " + std::string(where) + found());
     return false;
 }
 
-bool TokenCursor::expect_semicolon(std::string_view what)
+void TokenCursor::expect_semicolon(std::string_view what)
 {
-    if (accept(Token::semicolon)) return true;
+    if (accept(Token::semicolon)) return;
+    const std::string message = "expected ';' at the end of " + std::string(what);
     if (on_new_line() || at(Token::right_brace) || at(Token::end)) {
-        error(after_previous(), "syntax", "expected ';' at the end of " + std::string(what)).fix =
-            FixIt{after_previous(), ";"};
+        error(after_previous(), "syntax", message).fix = FixIt{after_previous(), ";"};
         stand_again(); // nothing else is wrong
-        return true;
+    } else {
+        error(span(), "syntax", message + found());
     }
-    error(span(), "syntax", "expected ';' at the end of " + std::string(what) + found());
-    return false;
 }
 
 void TokenCursor::report_unclosed(Token closer, Span opener, bool list_may_go_on)
@@ -76,7 +37,7 @@ void TokenCursor::report_unclosed(Token closer, Span opener, bool list_may_go_on
         return;
     }
     const Position opened = sources.position(file, opener.begin);
-    const bool same_line = opened.line == sources.position(file, span().begin).line;
+    const bool same_line = opened.line == sources.line_of(file, span().begin);
     std::string message =
         "expected " + std::string(list_may_go_on ? "',' or " : "") + std::string(describe(closer)) + " to close '" +
         std::string(sources.text(opener)) + "' at " +
@@ -94,36 +55,38 @@ bool TokenCursor::close(Token closer, Span opener, bool list_may_go_on)
     return accept(closer);
 }
 
-bool TokenCursor::beside_invalid() const
-{
-    return at(Token::invalid) || (position > 0 && list.tokens[position - 1].kind == Token::invalid);
-}
-
 void TokenCursor::stand_again()
 {
     lost = false;
-    footing = position;
+    footing_line = sources.line_of(file, previous_span().end);
 }
 
-// On the line where we stood again, or before it.
-bool TokenCursor::lingers(Span where)
+// Leaves the rest unread.
+void TokenCursor::give_up()
 {
-    if (footing == SIZE_MAX) return false;
-    const uint32_t from = footing > 0 ? list.tokens[footing - 1].end : 0;
-    if (line_end < from) line_end = sources.file(file).text.find_first_of("\r\n", from);
-    return where.begin <= line_end;
+    given_up = std::min(given_up, position);
+    position = list.tokens.size() - 1;
+    end_is_reported = true;
 }
 
 Diagnostic& TokenCursor::error(Span where, ErrorCode code, std::string message, std::string_view hint)
 {
-    const bool silent = lost || beside_invalid() || lingers(where) || (at(Token::end) && end_is_reported);
+    const bool beside_invalid = at(Token::invalid) || previous_kind() == Token::invalid;
+    const bool silent = lost || beside_invalid || (at(Token::end) && end_is_reported) ||
+                        sources.line_of(file, where.begin) <= footing_line;
     lost = true;
     ++mistakes;
     if (silent) return unheard = {};
     end_is_reported = at(Token::end);
     Diagnostic& reported = diagnostics.error(where, code, std::move(message), hint);
-    if (diagnostics.full()) position = list.tokens.size() - 1; // enough is said: run off the end
+    if (diagnostics.full()) give_up();
     return reported;
+}
+
+Diagnostic& TokenCursor::slip(Span where, ErrorCode code, std::string message, std::string_view hint)
+{
+    ++mistakes;
+    return diagnostics.error(where, code, std::move(message), hint);
 }
 
 bool TokenCursor::at_texture_or_import() const
@@ -134,7 +97,7 @@ bool TokenCursor::at_texture_or_import() const
 
 bool TokenCursor::on_new_line() const
 {
-    return sources.text({file, previous_span().end, span().begin}).find_first_of("\r\n") != std::string_view::npos;
+    return sources.line_of(file, previous_span().end) < sources.line_of(file, span().begin);
 }
 
 std::string TokenCursor::found() const
@@ -150,14 +113,14 @@ void TokenCursor::skip_to(std::initializer_list<Token> stops)
     uint32_t open = 0, open_braces = 0;
     for (;; advance()) {
         const Token here = kind();
-        if (begins_anew(here) && open_braces == 0 && (here == Token::end || on_new_line())) return;
+        if (is_statement_word(here) && open_braces == 0 && on_new_line()) return;
         if (here == Token::end || at_texture_or_import()) return;
         if (here == Token::semicolon && open_braces == 0) return;
         if (open == 0 && std::find(stops.begin(), stops.end(), here) != stops.end()) return;
-        if (is_opener(here)) {
+        if (opens(here)) {
             ++open;
             if (here == Token::left_brace) ++open_braces;
-        } else if (is_closer(here)) {
+        } else if (closes(here)) {
             if (open == 0) return;
             --open;
             if (here == Token::right_brace && open_braces > 0 && --open_braces == 0) open = 0;
@@ -165,32 +128,38 @@ void TokenCursor::skip_to(std::initializer_list<Token> stops)
     }
 }
 
-void TokenCursor::skip_brackets()
+void TokenCursor::skip_braces()
 {
-    const Token opener = kind();
-    const Token closer = opener == Token::left_paren     ? Token::right_paren
-                         : opener == Token::left_bracket ? Token::right_bracket
-                                                         : Token::right_brace;
-    uint32_t open = 0;
-    for (; !at(Token::end) && !at_texture_or_import(); advance()) {
-        if (at(opener)) ++open;
-        if (at(closer) && --open == 0) {
-            advance();
-            return;
-        }
-        if (at(Token::semicolon) && opener != Token::left_brace) return;
+    for (uint32_t open = 0; !at(Token::end) && !at_texture_or_import(); advance()) {
+        if (at(Token::left_brace)) ++open;
+        if (at(Token::right_brace) && --open == 0) return advance();
     }
 }
 
-TokenCursor::Nesting::Nesting(TokenCursor& owner, uint32_t weight_of_level) : cursor(owner), weight(weight_of_level)
+size_t TokenCursor::closer_ahead(size_t opener, size_t farthest) const
 {
-    cursor.depth += weight;
-    if (too_deep()) cursor.report_too_deep();
+    size_t open = 0, ahead = opener;
+    for (; ahead - opener < farthest; ++ahead) {
+        const Token here = kind(ahead);
+        if (opens(here)) ++open;
+        if (closes(here) && --open == 0) break;
+        if (here == Token::left_brace || here == Token::right_brace || here == Token::semicolon || here == Token::end)
+            break;
+    }
+    return ahead;
 }
 
-void TokenCursor::report_too_deep()
+size_t TokenCursor::first_ahead(std::initializer_list<Token> wanted) const
+{
+    size_t ahead = 0;
+    while (ahead < farthest_look && std::ranges::find(wanted, kind(ahead)) == wanted.end()) ++ahead;
+    return ahead;
+}
+
+void TokenCursor::refuse_to_nest()
 {
     error(span(), "too-deep", "this is nested more than 256 levels deep", "give parts of it names of their own");
+    give_up();
 }
 
 } // namespace haptel::lang

@@ -14,9 +14,13 @@
 namespace haptel::lang {
 
 class TokenCursor {
-protected:
-    TokenCursor(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink);
+public:
+    TokenCursor(const SourceSet& all_sources, uint32_t file_index, TokenList token_list, Diagnostics& sink)
+        : sources(all_sources), file(file_index), list(std::move(token_list)), diagnostics(sink)
+    {
+    }
 
+protected:
     Token kind(size_t ahead = 0) const { return token(ahead).kind; }
     bool at(Token wanted) const { return kind() == wanted; }
     const PlacedToken& token(size_t ahead = 0) const
@@ -24,18 +28,19 @@ protected:
         return list.tokens[std::min(position + ahead, list.tokens.size() - 1)];
     }
     Span span(size_t ahead = 0) const { return span_of(token(ahead)); }
+    Token previous_kind() const { return position > 0 ? list.tokens[position - 1].kind : Token::end; }
     Span previous_span() const { return position > 0 ? span_of(list.tokens[position - 1]) : Span{file, 0, 0}; }
     Span since(Span first) const { return join(first, previous_span()); } // from `first` to what was last taken
     Span after_previous() const { return {file, previous_span().end, previous_span().end}; }
     std::string_view text(size_t ahead = 0) const { return sources.text(span(ahead)); }
 
-    void advance();
+    void advance(size_t count = 1) { position = std::min(position + count, list.tokens.size() - 1); }
     bool accept(Token wanted);
-    // Takes `wanted`, or reports "expected ',' after the path, found 'x'" and takes nothing. `where` may be empty.
+    // Takes `wanted`, or reports "expected ',' after the path, found 'x'" and takes nothing.
     bool expect(Token wanted, std::string_view where);
     // Takes the ';' at the end of `what`, or reports it missing at the end of the line above rather than at the next
     // token.
-    bool expect_semicolon(std::string_view what);
+    void expect_semicolon(std::string_view what);
 
     // Takes the closing bracket that belongs to `opener`, skipping what stands before it if need be; reports what was
     // expected, at which line it was opened, and what was found. False if it is not in this statement.
@@ -44,6 +49,9 @@ protected:
 
     // Silent while lost and beside an invalid token; lost afterwards, and at the end of the file if enough is said.
     Diagnostic& error(Span where, ErrorCode code, std::string message, std::string_view hint = {});
+    // What is wrong and yet read as it was meant: never silent, nor lost afterwards.
+    Diagnostic& slip(Span where, ErrorCode code, std::string message, std::string_view hint);
+    void stand_again();        // no longer lost: what comes is read as it stands
     std::string found() const; // ", found 'x'"
     // "texture wood" or "import wood": never inside a body, so that a bracket left open does not reach across.
     bool at_texture_or_import() const;
@@ -52,25 +60,35 @@ protected:
     // Skips to the first of `stops` outside brackets opened on the way; stops at ';' (unless inside braces opened on
     // the way), at a closing bracket of the surroundings and at the end.
     void skip_to(std::initializer_list<Token> stops);
-    // At an opening bracket: skips to behind its closer.
-    void skip_brackets();
+    // At '{': skips to behind its '}'.
+    void skip_braces();
+
+    // How far any look ahead goes; keeps the whole parse linear.
+    static constexpr size_t farthest_look = 1000;
+    // Where the bracket that many tokens ahead is closed, or what stops the look for it: a brace, a ';', the end.
+    size_t closer_ahead(size_t opener, size_t farthest = farthest_look) const;
+    // Where the first of these stands.
+    size_t first_ahead(std::initializer_list<Token> wanted) const;
 
     // How deep the tree below the current place may become. A bracket or a nested statement weighs `bracket`, one
-    // operand of an operator `operand`: recursion over the tree is bounded by the sum.
+    // operand of an operator `operand`: recursion over the tree is bounded by the sum. What would be deeper is
+    // reported, and nothing behind it is read: the cursor is at the end, where nothing nests.
     class Nesting {
     public:
         static constexpr uint32_t operand = 1, bracket = 4, limit = 257 * bracket; // the outermost braces are no level
-        Nesting(TokenCursor& owner, uint32_t weight_of_level);
-        ~Nesting() { cursor.depth -= weight; }
+        Nesting(TokenCursor& owner, uint32_t weight) : cursor(owner), depth_before(owner.depth) { deepen(weight); }
+        ~Nesting() { cursor.depth = depth_before; }
         Nesting(const Nesting&) = delete;
         Nesting& operator=(const Nesting&) = delete;
-        bool too_deep() const { return cursor.depth > limit; } // reported
+        void deepen(uint32_t weight)
+        {
+            if ((cursor.depth += weight) > limit) cursor.refuse_to_nest();
+        }
 
     private:
         TokenCursor& cursor;
-        uint32_t weight;
+        uint32_t depth_before;
     };
-    void report_too_deep();
 
     const SourceSet& sources;
     const uint32_t file;
@@ -79,17 +97,23 @@ protected:
     size_t position = 0;
     uint32_t depth = 0;
     bool lost = false;
-    void stand_again();    // no longer lost: what comes is read as it stands
-    uint32_t mistakes = 0; // grows with every error, heard or not
+    uint32_t mistakes = 0;      // grows with every error, heard or not
+    size_t given_up = SIZE_MAX; // the first token that was not read because enough was said
 
 private:
     Span span_of(const PlacedToken& placed) const { return {file, placed.begin, placed.end}; }
-    bool beside_invalid() const;
-    bool lingers(Span where);
-    size_t footing = SIZE_MAX; // where we last stood again
-    size_t line_end;           // the first behind there, or behind an earlier footing on the same line
+    void refuse_to_nest();
+    void give_up();
+
+    uint32_t footing_line = 0; // where we last stood again; 0: nowhere yet
     bool end_is_reported = false;
     Diagnostic unheard;
 };
+
+// Words that only ever begin something: a bracket left open does not reach across them.
+constexpr bool is_statement_word(Token kind)
+{
+    return kind >= Token::kw_if && kind <= Token::kw_return;
+}
 
 } // namespace haptel::lang

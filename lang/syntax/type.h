@@ -52,6 +52,22 @@ inline constexpr Type mat(uint8_t size)
 // at run time costs a choice per element.
 inline constexpr uint32_t array_size_max = 64, array_components_max = 256;
 
-std::string to_string(Type type); // as written in source: "mat3", "vec3", "float[4]"
+// As written in source: "mat3", "vec3", "float[4]".
+inline std::string to_string(Type type)
+{
+    if (type.is_array()) return to_string(type.element()) + "[" + std::to_string(type.array_size) + "]";
+    if (type.is_matrix()) return "mat" + std::to_string(type.size);
+    if (type.is_vector()) return "vec" + std::to_string(type.size);
+    switch (type.scalar) {
+    case Scalar::error: return "<error>";
+    case Scalar::void_: return "void";
+    case Scalar::float_: return "float";
+    case Scalar::int_: return "int";
+    case Scalar::uint_: return "uint";
+    case Scalar::bool_: return "bool";
+    case Scalar::image_: return "image";
+    }
+    return {};
+}
 
 } // namespace haptel::lang

@@ -5,42 +5,33 @@
 
 namespace haptel::lang {
 
-namespace {
-
-constexpr size_t notice_limit = 200; // warnings and notes
-
-} // namespace
-
 Diagnostic& Diagnostics::error(Span span, ErrorCode code, std::string message, std::string_view hint)
 {
-    return add(Severity::error, span, code.string(), std::move(message), hint);
+    return add({Severity::error, code.string(), span, std::move(message), std::string(hint), {}, {}});
 }
 
 Diagnostic& Diagnostics::warning(Span span, WarningCode code, std::string message, std::string_view hint)
 {
-    return add(Severity::warning, span, code.string(), std::move(message), hint);
+    return add({Severity::warning, code.string(), span, std::move(message), std::string(hint), {}, {}});
 }
 
 Diagnostic& Diagnostics::note(Span span, NoteCode code, std::string message, std::string_view hint)
 {
-    return add(Severity::note, span, code.string(), std::move(message), hint);
+    return add({Severity::note, code.string(), span, std::move(message), std::string(hint), {}, {}});
 }
 
-Diagnostic& Diagnostics::add(Severity severity, Span span, std::string code, std::string message, std::string_view hint)
+Diagnostic& Diagnostics::add(Diagnostic diagnostic)
 {
-    Diagnostic diagnostic{severity, std::move(code), span, std::move(message), std::string(hint), {}, {}};
-    const bool is_error = severity == Severity::error;
+    constexpr size_t notice_limit = 200; // warnings and notes
+    const bool is_error = diagnostic.severity == Severity::error;
     if (is_error) ++report_count;
-    const auto same_place = [&](const Diagnostic& other) {
+    const auto is_same = [&, span = diagnostic.span](const Diagnostic& other) {
         if (other.span.file != span.file || other.span.begin != span.begin) return false;
         return is_error ? other.severity == Severity::error
                         : other.span.end == span.end && other.code == diagnostic.code;
     };
     const bool no_room = is_error ? full() : items.size() - error_count >= notice_limit;
-    if (no_room || std::any_of(items.begin(), items.end(), same_place)) {
-        scratch = std::move(diagnostic);
-        return scratch;
-    }
+    if (no_room || std::ranges::any_of(items, is_same)) return scratch = std::move(diagnostic);
     if (is_error) ++error_count;
     items.push_back(std::move(diagnostic));
     return items.back();
@@ -58,8 +49,7 @@ void Diagnostics::make_warnings_errors()
 void Diagnostics::sort_by_place()
 {
     const auto place = [](const Diagnostic& d) { return std::tuple(d.span.file, d.span.begin, d.span.end); };
-    std::stable_sort(items.begin(), items.end(),
-                     [&](const Diagnostic& a, const Diagnostic& b) { return place(a) < place(b); });
+    std::ranges::stable_sort(items, {}, place);
 }
 
 } // namespace haptel::lang

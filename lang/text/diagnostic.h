@@ -56,7 +56,7 @@ public:
     uint32_t error_limit = 50;
 
 private:
-    Diagnostic& add(Severity severity, Span span, std::string code, std::string message, std::string_view hint);
+    Diagnostic& add(Diagnostic diagnostic);
     std::vector<Diagnostic> items;
     Diagnostic scratch;
     uint32_t error_count = 0, report_count = 0;
@@ -64,7 +64,6 @@ private:
 
 // "file:line:col: error: message [code]", the source line, an underline of the whole span, related places, hint.
 // Always valid UTF-8 (other bytes are shown as U+FFFD); long lines are cut around the span. `color`: ANSI colours.
-std::string render(const Diagnostic& diagnostic, const SourceSet& sources, bool color = false);
 std::string render(const std::vector<Diagnostic>& diagnostics, const SourceSet& sources, bool color = false);
 
 } // namespace haptel::lang

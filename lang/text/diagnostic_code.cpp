@@ -21,9 +21,8 @@ std::span<const DiagnosticInfo> all_diagnostics()
 
 const DiagnosticInfo* find_diagnostic(std::string_view code)
 {
-    const auto found =
-        std::find_if(std::begin(infos), std::end(infos), [&](const auto& info) { return info.code == code; });
-    return found == std::end(infos) ? nullptr : &*found;
+    const auto found = std::ranges::find(infos, code, &DiagnosticInfo::code);
+    return found == std::end(infos) ? nullptr : found;
 }
 
 std::string_view name_of(Severity severity)

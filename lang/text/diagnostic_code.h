@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace haptel::lang {
 
@@ -25,28 +26,18 @@ const DiagnosticInfo* find_diagnostic(std::string_view code);
 // "error", "warning", "note"
 std::string_view name_of(Severity severity);
 
-namespace detail {
-
-struct ListedCode {
-    Severity severity;
-    std::string_view code;
-};
-inline constexpr ListedCode listed_codes[] = {
+inline constexpr std::pair<Severity, std::string_view> listed_codes[] = {
 #define DIAGNOSTIC(severity, code, ...) {Severity::severity, code},
 #include "lang/text/diagnostics.def"
 #undef DIAGNOSTIC
 };
-
-void this_code_is_not_in_diagnostics_def(); // never called: where the compiler says that it is, the code is not listed
-
-} // namespace detail
-
 constexpr bool is_listed(std::string_view code, Severity severity)
 {
-    for (const detail::ListedCode& listed : detail::listed_codes)
-        if (listed.code == code) return listed.severity == severity;
+    for (const auto& [listed_severity, listed] : listed_codes)
+        if (listed == code) return listed_severity == severity;
     return false;
 }
+void this_code_is_not_in_diagnostics_def(); // never called: where the compiler says that it is, the code is not listed
 
 // A listed code of that severity, made from a literal when the program is compiled.
 template <Severity severity>
@@ -54,7 +45,7 @@ class CodeOf {
 public:
     consteval CodeOf(const char* code) : text(code)
     {
-        if (!is_listed(code, severity)) detail::this_code_is_not_in_diagnostics_def();
+        if (!is_listed(code, severity)) this_code_is_not_in_diagnostics_def();
     }
     operator std::string_view() const { return text; }
     std::string string() const { return std::string(text); }

@@ -14,22 +14,6 @@ namespace {
 
 using Spelling = std::pair<Token, std::string_view>;
 
-constexpr Spelling symbols[] = {
-#define SYMBOL(name, spelling) {Token::name, spelling},
-#define KEYWORD(name, spelling)
-#include "lang/text/token.def"
-#undef SYMBOL
-#undef KEYWORD
-};
-
-constexpr Spelling keywords[] = {
-#define SYMBOL(name, spelling)
-#define KEYWORD(name, spelling) {Token::name, spelling},
-#include "lang/text/token.def"
-#undef SYMBOL
-#undef KEYWORD
-};
-
 // Characters that word processors and web pages put where ASCII was meant.
 struct Lookalike {
     char32_t character;
@@ -46,16 +30,19 @@ constexpr uint8_t index_of(char c)
     return static_cast<uint8_t>(c);
 }
 
+constexpr bool is_space(char c)
+{
+    return c == ' ' || (c >= '\t' && c <= '\r'); // '\n', '\v' and '\f' between them
+}
+
 bool is_name_start(char c)
 {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
 }
 constexpr auto name_parts = [] {
     std::array<bool, 256> is_part{};
-    for (char c = 'a'; c <= 'z'; ++c) is_part[index_of(c)] = true;
-    for (char c = 'A'; c <= 'Z'; ++c) is_part[index_of(c)] = true;
-    for (char c = '0'; c <= '9'; ++c) is_part[index_of(c)] = true;
-    is_part['_'] = true;
+    for (const char c : std::string_view("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_"))
+        is_part[index_of(c)] = true;
     return is_part;
 }();
 bool is_name_part(char c)
@@ -63,28 +50,32 @@ bool is_name_part(char c)
     return name_parts[index_of(c)];
 }
 
-// Spellings by their first character, so that a text is read at the speed of its bytes and not of the list.
-template <size_t count>
-struct ByFirstCharacter {
-    std::array<Spelling, count> spellings;
-    std::array<uint8_t, 256> begins{}, ends{};
-
-    constexpr explicit ByFirstCharacter(const Spelling (&listed)[count]) : spellings(std::to_array(listed))
-    {
-        for (size_t i = 1; i < count; ++i) // which of them comes first matters: as listed
-            for (size_t at = i; at > 0 && first(at) < first(at - 1); --at) std::swap(spellings[at], spellings[at - 1]);
-        for (size_t i = count; i-- > 0;) begins[first(i)] = static_cast<uint8_t>(i);
-        for (size_t i = 0; i < count; ++i) ends[first(i)] = static_cast<uint8_t>(i + 1);
-    }
-    constexpr uint8_t first(size_t i) const { return index_of(spellings[i].second[0]); }
-    std::span<const Spelling> with(char c) const
-    {
-        const uint8_t begin = begins[index_of(c)];
-        return std::span(spellings).subspan(begin, static_cast<size_t>(ends[index_of(c)] - begin));
-    }
-};
-constexpr ByFirstCharacter symbols_by_character(symbols);
-constexpr ByFirstCharacter keywords_by_character(keywords);
+// Of symbols and keywords; those with one first character stand in a row, the longest first.
+constexpr auto spellings = [] {
+    std::array all{
+#define SYMBOL(name, spelling) Spelling{Token::name, spelling},
+#define KEYWORD(name, spelling) Spelling{Token::name, spelling},
+#include "lang/text/token.def"
+#undef SYMBOL
+#undef KEYWORD
+    };
+    std::ranges::sort(all, [](const Spelling& a, const Spelling& b) {
+        return a.second[0] != b.second[0] ? a.second[0] < b.second[0] : a.second.size() > b.second.size();
+    });
+    return all;
+}();
+// Where those begin, so that a text is read at the speed of its bytes and not of the list.
+constexpr auto first_with = [] {
+    std::array<uint8_t, 257> first{};
+    for (const auto& [token, spelling] : spellings) ++first[index_of(spelling[0]) + 1u];
+    for (size_t c = 1; c < first.size(); ++c) first[c] = static_cast<uint8_t>(first[c] + first[c - 1]);
+    return first;
+}();
+std::span<const Spelling> spellings_with(char c)
+{
+    const size_t first = first_with[index_of(c)], end = first_with[index_of(c) + 1u];
+    return std::span(spellings).subspan(first, end - first);
+}
 
 class Lexer {
 public:
@@ -95,7 +86,6 @@ public:
 
     TokenList run()
     {
-        skip_byte_order_mark();
         list.tokens.reserve(std::min<size_t>(text.size() / 4, 1 << 16)); // as texts go
         while (at < text.size() && !diagnostics.full()) next();
         list.tokens.push_back({Token::end, size(), size()});
@@ -107,7 +97,7 @@ private:
     {
         const char c = text[at];
         const uint32_t begin = at;
-        if (c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f') {
+        if (is_space(c)) {
             ++at;
         } else if (c == '/' && peek(1) == '/') {
             line_comment();
@@ -161,27 +151,9 @@ private:
 
     static Token keyword_or_name(std::string_view word)
     {
-        for (const auto& [token, spelling] : keywords_by_character.with(word[0]))
+        for (const auto& [token, spelling] : spellings_with(word[0]))
             if (word == spelling) return token;
         return Token::name;
-    }
-
-    void skip_byte_order_mark()
-    {
-        if (at == 0 && text.starts_with("\xEF\xBB\xBF")) at = 3;
-        if (at == 0 && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))) {
-            diagnostics.error({file, 0, 2}, "not-text", "this file is UTF-16, expected UTF-8",
-                              "save it as UTF-8 in your editor");
-            give_up();
-        }
-    }
-
-    // The rest is not worth reading: silence the parser too.
-    void give_up()
-    {
-        const uint32_t begin = at;
-        at = size();
-        push(Token::invalid, begin);
     }
 
     void line_comment()
@@ -203,7 +175,8 @@ private:
         }
         diagnostics.error({file, at, at + 2}, "open-comment",
                           "this comment is never closed: expected '*/' before the end of the file");
-        give_up();
+        const uint32_t begin = std::exchange(at, size());
+        push(Token::invalid, begin); // silences the parser too
     }
 
     // number = (digit {digit} ["." {digit}] | "." digit {digit}) [("e" | "E") ["+" | "-"] digit {digit}] [suffix]
@@ -257,18 +230,18 @@ private:
             if (at < text.size() && text[at] == '\r' && peek(1) == '\n') ++at;
             if (at < text.size()) ++at;
         }
-        const bool define = text.substr(begin, word.end - begin) == "#define";
-        Diagnostic& found = diagnostics.error(word, "preprocessor", "Haptel has no preprocessor",
-                                              define ? "write a constant, \"const float WIDTH = 2mm;\", or a function"
-                                                     : "leave this line out");
-        const std::string_view ignored[] = {"#version", "#extension", "#pragma", "#line"}; // what changes nothing here
-        for (const std::string_view known : ignored)
-            if (text.substr(begin, word.end - begin) == known) found.fix = FixIt{span_from(begin), ""};
+        const std::string_view name = text.substr(begin, word.end - begin);
+        Diagnostic& found =
+            diagnostics.error(word, "preprocessor", "Haptel has no preprocessor",
+                              name == "#define" ? "write a constant, \"const float WIDTH = 2mm;\", or a function"
+                                                : "leave this line out");
+        if (name == "#version" || name == "#extension" || name == "#pragma" || name == "#line") // change nothing here
+            found.fix = FixIt{span_from(begin), ""};
     }
 
     bool symbol()
     {
-        for (const auto& [token, spelling] : symbols_by_character.with(text[at])) {
+        for (const auto& [token, spelling] : spellings_with(text[at])) {
             if (spelling.size() > 1 && !rest().starts_with(spelling)) continue;
             const uint32_t begin = at;
             at += static_cast<uint32_t>(spelling.size());
@@ -281,36 +254,30 @@ private:
     void unexpected()
     {
         const uint32_t begin = at;
-        if (text[at] == '\0') {
-            diagnostics.error({file, at, at + 1}, "not-text", "this is not text: found a zero byte");
-            give_up();
-            return;
-        }
         const CodePoint point = decode_utf8(text, at);
+        const bool is_text = point.value != invalid_code_point, is_ascii = point.value < 0x80;
         at += point.length;
         const Span first = span_from(begin);
-        for (const Lookalike& lookalike : lookalikes) {
-            if (point.value != lookalike.character) continue;
-            Diagnostic& found = diagnostics.error(
-                first, "unexpected-character",
-                point.value == 0xA0 ? "unexpected no-break space"
-                                    : "unexpected character '" + printable(text.substr(begin, point.length)) + "'",
-                lookalike.meant == " " ? "write an ordinary space" : "write " + std::string(lookalike.meant));
-            found.fix = FixIt{first, std::string(lookalike.meant)};
-            push(Token::invalid, begin);
-            return;
+        const std::string message = "unexpected character '" + printable(text.substr(begin, point.length)) + "'";
+        const auto lookalike = std::ranges::find(lookalikes, point.value, &Lookalike::character);
+        if (lookalike != std::end(lookalikes)) {
+            const bool is_space = lookalike->meant == " ";
+            diagnostics
+                .error(first, "unexpected-character", is_space ? "unexpected no-break space" : message,
+                       is_space ? "write an ordinary space" : "write " + std::string(lookalike->meant))
+                .fix = FixIt{first, std::string(lookalike->meant)};
+        } else {
+            // One report for a whole run: binary garbage and text in another script would drown the rest.
+            while (at < text.size() && static_cast<unsigned char>(text[at]) >= 0x80) ++at;
+            const bool is_quote = text[begin] == '\'' || text[begin] == '`';
+            if (is_text)
+                diagnostics.error(first, "unexpected-character", message,
+                                  is_quote    ? "strings are written with double quotes"
+                                  : !is_ascii ? "names are made of a-z, A-Z, 0-9 and _; anything may stand in comments"
+                                              : "");
+            else
+                diagnostics.error(first, "not-text", "this is not UTF-8 text");
         }
-        // One report for a whole run: binary garbage and text in another script would drown the rest.
-        while (at < text.size() && static_cast<unsigned char>(text[at]) >= 0x80) ++at;
-        std::string message = "unexpected character '" + printable(text.substr(begin, point.length)) + "'";
-        if (point.value == invalid_code_point) message = "this is not UTF-8 text";
-        Diagnostic& found = diagnostics.error(
-            first, point.value == invalid_code_point ? ErrorCode("not-text") : ErrorCode("unexpected-character"),
-            message);
-        if (point.value < 0x80)
-            found.hint = text[begin] == '\'' || text[begin] == '`' ? "strings are written with double quotes" : "";
-        else if (point.value != invalid_code_point)
-            found.hint = "names are made of a-z, A-Z, 0-9 and _; anything may stand in comments";
         push(Token::invalid, begin);
     }
 
@@ -326,23 +293,14 @@ private:
 std::optional<uint32_t> first_of_garbage(std::string_view text)
 {
     constexpr size_t tolerated = 16, one_in = 20;
-    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")) return std::nullopt; // the lexer knows better
-    static constexpr auto plain = [] { // characters that every text has
-        std::array<bool, 256> is_plain{};
-        for (char c = ' '; c < 127; ++c) is_plain[index_of(c)] = true;
-        is_plain['\n'] = true;
-        return is_plain;
-    }();
     size_t odd = 0;
     uint32_t first = 0;
     for (uint32_t at = 0; at < text.size();) {
-        while (at < text.size() && plain[index_of(text[at])]) ++at; // nearly all
+        while (at < text.size() && ((text[at] >= ' ' && text[at] < 127) || text[at] == '\n')) ++at; // nearly all
         if (at == text.size()) break;
-        const char c = text[at];
-        if (c == '\0') return odd > 0 ? first : at;
-        const bool is_control =
-            (c > 0 && c < ' ' && c != '\t' && c != '\n' && c != '\r' && c != '\v' && c != '\f') || c == 127;
+        if (text[at] == '\0') return odd > 0 ? first : at;
         const CodePoint point = decode_utf8(text, at);
+        const bool is_control = point.value < 0x80 && !is_space(text[at]);
         if ((is_control || point.value == invalid_code_point) && odd++ == 0) first = at;
         at += point.length;
     }
@@ -353,35 +311,32 @@ std::optional<uint32_t> first_of_garbage(std::string_view text)
 
 std::string_view describe(Token token)
 {
-    switch (token) {
-    case Token::end: return "the end of the file";
-    case Token::invalid: return "something unreadable";
-    case Token::name: return "a name";
-    case Token::number: return "a number";
-    case Token::string: return "a string";
-#define SYMBOL(name, spelling)                                                                                         \
-    case Token::name: return "'" spelling "'";
-#define KEYWORD(name, spelling) SYMBOL(name, spelling)
+    static constexpr std::string_view descriptions[] = {
+        "the end of the file", "something unreadable", "a name", "a number", "a string",
+#define SYMBOL(name, spelling) "'" spelling "'",
+#define KEYWORD(name, spelling) "'" spelling "'",
 #include "lang/text/token.def"
 #undef SYMBOL
 #undef KEYWORD
-    }
-    return {};
+    };
+    return descriptions[static_cast<size_t>(token)];
 }
 
 TokenList lex(const SourceSet& sources, uint32_t file, Diagnostics& diagnostics, size_t room)
 {
     const std::string& text = sources.file(file).text;
-    if (text.size() > text_bytes_max) {
-        diagnostics.error({file, 0, 0}, "too-large", "this file is larger than 64 MiB");
-        return {{{Token::invalid, 0, 0}, {Token::end, 0, 0}}, {}, 0};
-    }
-    if (const auto garbage = first_of_garbage(text)) {
-        diagnostics.error({file, *garbage, *garbage + 1}, "not-text", "this file is not text, expected UTF-8",
-                          "is it the right file, and saved as UTF-8?");
-        return {{{Token::invalid, *garbage, *garbage}, {Token::end, *garbage, *garbage}}, {}, 0};
-    }
-    return Lexer(text, {file, 0, static_cast<uint32_t>(text.size())}, diagnostics, room).run();
+    const auto refuse = [&](uint32_t begin, uint32_t end, ErrorCode code, const char* message, const char* hint) {
+        diagnostics.error({file, begin, end}, code, message, hint);
+        return TokenList{{{Token::invalid, begin, begin}, {Token::end, begin, begin}}, {}, 0};
+    };
+    if (text.size() > text_bytes_max) return refuse(0, 0, "too-large", "this file is larger than 64 MiB", "");
+    if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+        return refuse(0, 2, "not-text", "this file is UTF-16, expected UTF-8", "save it as UTF-8 in your editor");
+    if (const auto garbage = first_of_garbage(text))
+        return refuse(*garbage, *garbage + 1, "not-text", "this file is not text, expected UTF-8",
+                      "is it the right file, and saved as UTF-8?");
+    const uint32_t begin = text.starts_with("\xEF\xBB\xBF") ? 3 : 0; // behind a byte-order mark
+    return Lexer(text, {file, begin, static_cast<uint32_t>(text.size())}, diagnostics, room).run();
 }
 
 TokenList lex(const SourceSet& sources, Span part, Diagnostics& diagnostics)

@@ -24,6 +24,16 @@ enum class Token : uint8_t {
 #undef KEYWORD
 };
 
+// Whether a token is a bracket of any kind.
+constexpr bool opens(Token kind)
+{
+    return kind == Token::left_paren || kind == Token::left_bracket || kind == Token::left_brace;
+}
+constexpr bool closes(Token kind)
+{
+    return kind == Token::right_paren || kind == Token::right_bracket || kind == Token::right_brace;
+}
+
 // "';'", "'texture'", "a name": for messages.
 std::string_view describe(Token token);
 

@@ -7,7 +7,6 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <vector>
 
 namespace haptel::lang {
@@ -23,7 +22,6 @@ struct Unit {
 constexpr Unit units[] = {{"m", 0, "m"},   {"cm", -2, "m"},   {"mm", -3, "m"},   {"um", -6, "m"},
                           {"nm", -9, "m"}, {"rad", 0, "rad"}, {"deg", 0, "rad"}, {"s", 0, "s"},
                           {"ms", -3, "s"}, {"Hz", 0, "Hz"},   {"kHz", 3, "Hz"}};
-constexpr std::string_view unit_list = "units are m, cm, mm, um, nm, deg, rad, s, ms, Hz and kHz";
 
 // pi/180 = digits * 10^-51
 constexpr std::string_view degree_digits = "17453292519943295769236907684886127134428718885417";
@@ -45,24 +43,13 @@ Decimal times_degree(Decimal decimal)
         decimal.power += static_cast<int64_t>(decimal.digits.size() - digits_that_count);
         decimal.digits.resize(digits_that_count);
     }
-    const std::string& a = decimal.digits;
-    std::vector<int> product(a.size() + degree_digits.size(), 0); // least significant first
-    for (size_t i = 0; i < a.size(); ++i) {
-        int carry = 0;
-        size_t place = a.size() - 1 - i;
-        for (size_t j = degree_digits.size(); j-- > 0; ++place) {
-            const int sum = product[place] + (a[i] - '0') * (degree_digits[j] - '0') + carry;
-            product[place] = sum % 10;
-            carry = sum / 10;
-        }
-        for (; carry > 0; ++place) {
-            const int sum = product[place] + carry;
-            product[place] = sum % 10;
-            carry = sum / 10;
-        }
-    }
+    std::vector<int> product(decimal.digits.size() + degree_digits.size(), 0); // most significant first
+    for (size_t i = 0; i < decimal.digits.size(); ++i)
+        for (size_t j = 0; j < degree_digits.size(); ++j)
+            product[i + j + 1] += (decimal.digits[i] - '0') * (degree_digits[j] - '0');
+    for (size_t i = product.size(); i-- > 1; product[i] %= 10) product[i - 1] += product[i] / 10;
     Decimal result{{}, decimal.power + degree_power_of_ten};
-    for (size_t i = product.size(); i-- > 0;) result.digits += static_cast<char>('0' + product[i]);
+    for (const int digit : product) result.digits += static_cast<char>('0' + digit);
     return result;
 }
 
@@ -91,24 +78,29 @@ uint64_t read_digits(std::string_view digits, int base, std::string& error)
 Number read_hex(std::string_view text)
 {
     Number number;
-    number.kind = Number::Kind::integer;
     std::string_view digits = text.substr(2);
-    if (!digits.empty() && (digits.back() == 'u' || digits.back() == 'U')) {
-        number.kind = Number::Kind::unsigned_integer;
-        digits.remove_suffix(1);
-    }
+    const bool is_unsigned = digits.ends_with('u') || digits.ends_with('U');
+    if (is_unsigned) digits.remove_suffix(1);
+    number.kind = is_unsigned ? Number::Kind::unsigned_integer : Number::Kind::integer;
     number.integer = read_digits(digits, 16, number.error);
     number.value = static_cast<double>(number.integer);
     return number;
 }
 
-std::string with_guess(std::string_view suffix)
+const Unit* unit_named(std::string_view name)
 {
+    const auto found = std::ranges::find(units, name, &Unit::name);
+    return found == std::end(units) ? nullptr : found;
+}
+
+std::string hint_at_units(std::string_view suffix)
+{
+    if (suffix.starts_with("\xC2\xB5") || suffix.starts_with("\xCE\xBC")) return "write um for micrometres"; // both mu
     std::vector<std::string_view> names;
     for (const Unit& unit : units) names.push_back(unit.name);
-    const std::string_view guess = nearest_name(suffix, names);
-    return guess.empty() ? std::string(unit_list)
-                         : "did you mean '" + std::string(guess) + "'? " + std::string(unit_list);
+    const std::string guess(nearest_name(suffix, names));
+    return (guess.empty() ? "" : "did you mean '" + guess + "'? ") +
+           "units are m, cm, mm, um, nm, deg, rad, s, ms, Hz and kHz";
 }
 
 } // namespace
@@ -118,30 +110,30 @@ Number read_number(std::string_view text)
     if (text.starts_with("0x") || text.starts_with("0X")) return read_hex(text);
 
     Number number;
-    Decimal decimal;
     size_t at = 0;
     const auto peek = [&](size_t ahead = 0) { return at + ahead < text.size() ? text[at + ahead] : '\0'; };
-    while (is_digit(peek())) decimal.digits += text[at++];
-    const size_t whole_digits = decimal.digits.size();
-    bool real = false;
-    if (peek() == '.') {
-        real = true;
-        for (++at; is_digit(peek()); ++at) {
-            decimal.digits += text[at];
-            --decimal.power;
-        }
-    }
+    const auto take_digits = [&] {
+        const size_t begin = at;
+        while (is_digit(peek())) ++at;
+        return text.substr(begin, at - begin);
+    };
+    const std::string_view whole = take_digits();
+    bool is_real = peek() == '.';
+    if (is_real) ++at;
+    const std::string_view fraction = is_real ? take_digits() : std::string_view{};
+    Decimal decimal{std::string(whole) + std::string(fraction), -static_cast<int64_t>(fraction.size())};
     if (decimal.digits.empty()) {
         number.error = "expected a number";
         return number;
     }
     const size_t sign = peek(1) == '+' || peek(1) == '-' ? 1 : 0;
     if ((peek() == 'e' || peek() == 'E') && is_digit(peek(1 + sign))) {
-        real = true;
+        is_real = true;
         const bool negative = peek(1) == '-';
         int64_t exponent = 0;
-        for (at += 1 + sign; is_digit(peek()); ++at)
-            exponent = std::min<int64_t>(exponent * 10 + (text[at] - '0'), 1'000'000'000);
+        at += 1 + sign;
+        for (const char digit : take_digits())
+            exponent = std::min<int64_t>(exponent * 10 + (digit - '0'), 1'000'000'000);
         decimal.power += negative ? -exponent : exponent;
     }
 
@@ -152,32 +144,25 @@ Number read_number(std::string_view text)
         number.hint = "a thousandth is 1e-3";
         return number;
     }
-    const auto unit = std::find_if(std::begin(units), std::end(units), [&](const Unit& u) { return u.name == suffix; });
-    if (unit != std::end(units)) {
+    const bool is_unsigned = suffix == "u" || suffix == "U";
+    if (const Unit* unit = unit_named(suffix)) {
         number.unit = suffix;
         decimal.power += unit->power_of_ten;
-        number.value = round_to_f64(suffix == "deg" ? times_degree(std::move(decimal)) : decimal);
-    } else if (suffix.empty() || suffix == "u" || suffix == "U") {
-        const bool is_unsigned = !suffix.empty();
-        if (real && is_unsigned) number.error = "a number with a fraction or exponent cannot be unsigned";
-        if (!real) {
-            number.kind = is_unsigned ? Number::Kind::unsigned_integer : Number::Kind::integer;
-            number.integer = read_digits(decimal.digits, 10, number.error);
-            if (whole_digits > 1 && text[0] == '0') {
-                number.error = "a whole number does not start with 0";
-                number.hint = "there are no octal numbers; leave the 0 out";
-            }
+    } else if (is_unsigned && is_real) {
+        number.error = "a number with a fraction or exponent cannot be unsigned";
+    } else if (is_unsigned || (suffix.empty() && !is_real)) {
+        number.kind = is_unsigned ? Number::Kind::unsigned_integer : Number::Kind::integer;
+        number.integer = read_digits(decimal.digits, 10, number.error);
+        if (whole.size() > 1 && whole[0] == '0') {
+            number.error = "a whole number does not start with 0";
+            number.hint = "there are no octal numbers; leave the 0 out";
         }
-        number.value = round_to_f64(decimal);
-    } else if (suffix == "f" || suffix == "F" || suffix == "lf" || suffix == "LF") {
-        number.value = round_to_f64(decimal);
-    } else {
-        number.value = round_to_f64(decimal);
+    } else if (!suffix.empty() && suffix != "f" && suffix != "F" && suffix != "lf" && suffix != "LF") {
         number.code = "unknown-unit";
         number.error = "unknown unit '" + printable(suffix) + "'";
-        const bool micro = suffix.starts_with("\xC2\xB5") || suffix.starts_with("\xCE\xBC"); // the two Unicode letters
-        number.hint = micro ? "write um for micrometres" : with_guess(suffix);
+        number.hint = hint_at_units(suffix);
     }
+    number.value = round_to_f64(suffix == "deg" ? times_degree(decimal) : decimal);
     if (std::isinf(number.value)) {
         number.error = "this number is too large";
         number.value = std::numeric_limits<double>::max();
@@ -187,9 +172,8 @@ Number read_number(std::string_view text)
 
 std::string_view si_unit(std::string_view unit)
 {
-    for (const Unit& known : units)
-        if (known.name == unit) return known.si;
-    return {};
+    const Unit* known = unit_named(unit);
+    return known ? known->si : std::string_view{};
 }
 
 } // namespace haptel::lang

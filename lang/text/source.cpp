@@ -82,40 +82,38 @@ const SourceSet::Entry* SourceSet::find(uint32_t index) const
 std::string_view SourceSet::text(Span span) const
 {
     const Entry* entry = find(span.file);
-    if (!entry) return {};
-    const std::string& text = entry->file.text;
-    if (span.begin >= text.size() || span.end <= span.begin) return {};
-    return std::string_view(text).substr(span.begin, span.end - span.begin);
+    if (!entry || span.begin >= entry->file.text.size() || span.end <= span.begin) return {};
+    return std::string_view(entry->file.text).substr(span.begin, span.end - span.begin);
+}
+
+uint32_t SourceSet::line_of(uint32_t file, uint32_t byte) const
+{
+    const Entry* entry = find(file);
+    if (!entry) return 1;
+    const auto after = std::upper_bound(entry->line_starts.begin(), entry->line_starts.end(), byte);
+    return static_cast<uint32_t>(after - entry->line_starts.begin());
 }
 
 Position SourceSet::position(uint32_t file, uint32_t byte) const
 {
-    const Entry* found = find(file);
-    if (!found) return {};
-    const Entry& entry = *found;
-    const std::string_view text = entry.file.text;
-    byte = std::min(byte, static_cast<uint32_t>(text.size()));
-    const auto after = std::upper_bound(entry.line_starts.begin(), entry.line_starts.end(), byte);
-    uint32_t at = *(after - 1);
+    const Entry* entry = find(file);
+    if (!entry) return {};
+    const std::string_view text = entry->file.text;
+    Position position{line_of(file, byte), 1};
+    uint32_t at = entry->line_starts[position.line - 1];
     if (at == 0 && text.starts_with(byte_order_mark)) at = static_cast<uint32_t>(byte_order_mark.size());
-    Position position{static_cast<uint32_t>(after - entry.line_starts.begin()), 1};
-    while (at < byte) {
-        at += decode_utf8(text, at).length;
-        ++position.column;
-    }
+    for (; at < std::min<size_t>(byte, text.size()); ++position.column) at += decode_utf8(text, at).length;
     return position;
 }
 
 std::string_view SourceSet::line(uint32_t file, uint32_t line_number) const
 {
-    const Entry* found = find(file);
-    if (!found) return {};
-    const Entry& entry = *found;
-    if (line_number == 0 || line_number > entry.line_starts.size()) return {};
-    const uint32_t begin = entry.line_starts[line_number - 1];
-    const uint32_t end = line_number < entry.line_starts.size() ? entry.line_starts[line_number]
-                                                                : static_cast<uint32_t>(entry.file.text.size());
-    std::string_view line = std::string_view(entry.file.text).substr(begin, end - begin);
+    const Entry* entry = find(file);
+    if (!entry || line_number == 0 || line_number > entry->line_starts.size()) return {};
+    const uint32_t begin = entry->line_starts[line_number - 1];
+    const size_t end =
+        line_number < entry->line_starts.size() ? entry->line_starts[line_number] : entry->file.text.size();
+    std::string_view line = std::string_view(entry->file.text).substr(begin, end - begin);
     while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.remove_suffix(1);
     if (begin == 0 && line.starts_with(byte_order_mark)) line.remove_prefix(byte_order_mark.size());
     return line;

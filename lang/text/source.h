@@ -58,6 +58,7 @@ public:
     bool has(uint32_t index) const { return find(index) != nullptr; }
     const SourceFile& file(uint32_t index) const { return find(index)->file; } // which it has
     std::string_view text(Span span) const;
+    uint32_t line_of(uint32_t file, uint32_t byte) const; // its number
     Position position(uint32_t file, uint32_t byte) const;
     std::string_view line(uint32_t file, uint32_t line_number) const; // without its line end
 

@@ -86,6 +86,16 @@ TEST_CASE("nesting above 256 is one error, found at once; 256 is none")
     CHECK(only_code(statements(repeated("if (a) { b = 1; } else { ", 20'000) + repeated("}", 20'000))) == "too-deep");
 }
 
+TEST_CASE("what stands behind what nests too deep is not read, and may have declared any name")
+{
+    const Parsed parsed = parse_text("float f() { return " + repeated("(", 300) + "1" + repeated(")", 300) +
+                                     "; }\nfloat later() { return 1 1; }\nconst float A = 1.0;");
+    CHECK(only_code(parsed) == "too-deep");
+    CHECK(parsed.file.functions.at(0).damage.any);
+    CHECK(parsed.file.lacks_functions);
+    CHECK(parsed.file.unread.contains("A"));
+}
+
 TEST_CASE("long is not deep")
 {
     const Parsed chain = parse_text("float f() { return a" + repeated(" + b - c", 25'000) + "; }");

@@ -19,7 +19,7 @@ std::string rendered(std::string text, uint32_t begin, uint32_t end)
     diagnostic.code = "code";
     diagnostic.span = {0, begin, end};
     diagnostic.message = "message";
-    return render(diagnostic, one(std::move(text)));
+    return render({diagnostic}, one(std::move(text)));
 }
 
 } // namespace
@@ -83,7 +83,7 @@ TEST_CASE("no character that turns the direction of text is shown, wherever it s
         diagnostic.related.push_back({{0, 0, 1}, "note " + turn + "here"});
         SourceSet sources;
         sources.add({"t" + turn + ".haptel", "ab" + turn + "cd"});
-        const std::string shown = render(diagnostic, sources);
+        const std::string shown = render({diagnostic}, sources);
         CHECK(shown.find(turn) == std::string::npos);
         CHECK(shown.find("ab\uFFFDcd\n") != std::string::npos);
         CHECK(shown.find("message \uFFFDhere") != std::string::npos);
@@ -136,8 +136,8 @@ TEST_CASE("of a file without text only the place is shown")
     diagnostic.code = "unreadable-file";
     diagnostic.message = "cannot read this file";
     diagnostic.hint = "look";
-    CHECK(render(diagnostic, one("")) == "t.haptel:1:1: error: cannot read this file [unreadable-file]\n"
-                                         "     = hint: look\n");
+    CHECK(render({diagnostic}, one("")) == "t.haptel:1:1: error: cannot read this file [unreadable-file]\n"
+                                           "     = hint: look\n");
 }
 
 TEST_CASE("colour wraps label and underline and changes no text")
@@ -147,11 +147,11 @@ TEST_CASE("colour wraps label and underline and changes no text")
     diagnostic.code = "code";
     diagnostic.span = {0, 0, 1};
     diagnostic.message = "message";
-    std::string colored = render(diagnostic, one("a"), true);
+    std::string colored = render({diagnostic}, one("a"), true);
     CHECK(colored.find("\033[1;35mwarning: \033[0m") != std::string::npos);
     for (size_t at; (at = colored.find('\033')) != std::string::npos;)
         colored.erase(at, colored.find('m', at) - at + 1);
-    CHECK(colored == render(diagnostic, one("a"), false));
+    CHECK(colored == render({diagnostic}, one("a"), false));
 }
 
 TEST_CASE("the nearest name, if it is near enough")
