@@ -131,7 +131,7 @@ const ModuleEmitter::Function& ModuleEmitter::function(uint32_t index, const Sig
                                           [&](ir::Value value) { return from.type(value) == ir::Type::image; });
     reads_images ? made.code->setOnlyReadsMemory() : made.code->setDoesNotAccessMemory();
     made.code->setWillReturn();
-    const std::string kernel = kernels ? kernels->call({index, signature, form, plan.precision}) : "";
+    const std::string kernel = kernels ? kernels->call(index, signature, form, plan.precision) : "";
     if (kernel.empty()) {
         unfinished.push_back(&made);
     } else {

@@ -47,7 +47,6 @@ private:
     Engine();
     std::string start();
     CodeResult link(const Object& object, std::span<const EntryPoint> entries, Fetch& callees, CompileTimes& times);
-    std::vector<SharedCode::Function> called(const ir::Module& module, const KernelCalls& calls) const;
     std::string identity_of(const KernelCalls& calls, std::span<const EntryPoint> entries) const;
 
     std::string fault; // why there is no engine; empty: there is
@@ -56,7 +55,7 @@ private:
     Processor processor;
     Compilers compilers;
     Linker linker;
-    SharedCode shared{compilers, linker};
+    SharedCode shared{compilers, linker, target};
 };
 
 std::atomic<size_t> alive{0};
@@ -135,30 +134,14 @@ std::string Engine::identity_of(const KernelCalls& calls, std::span<const EntryP
     return text;
 }
 
-std::vector<SharedCode::Function> Engine::called(const ir::Module& module, const KernelCalls& calls) const
-{
-    std::vector<SharedCode::Function> functions;
-    for (const auto& [name, kernel] : calls.used())
-        functions.push_back(
-            {name, name, [&, &symbol = name, &wanted = kernel](llvm::LLVMContext& context, Effort effort) {
-                 return generate_kernel(module, symbol, wanted, processor, context, effort == Effort::draft);
-             }});
-    for (const auto& [name, form] : calls.used_elementary())
-        functions.push_back(
-            {name, name + ";" + target, [&symbol = name, &wanted = form](llvm::LLVMContext& context, Effort) {
-                 return generate_elementary(symbol, wanted, context);
-             }});
-    return functions;
-}
-
 void Engine::prepare_kernels(const ir::Module& module, std::span<const EntryPoint> entries)
 {
     if (!fault.empty()) return;
-    KernelCalls calls(module, target);
+    KernelCalls calls(module, processor, target);
     llvm::LLVMContext context;
     generate(module, entries, processor, context, &calls, true);
     Addresses unused;
-    Fetch(shared, called(module, calls), kernel_effort_max).finish(unused);
+    Fetch(shared, calls.used(), kernel_effort_max).finish(unused);
 }
 
 // With what the object calls. An object from disk that cannot be linked leaves no code and no error.
@@ -192,7 +175,7 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     if (!fault.empty()) return {nullptr, fault};
     CompileTimes times;
     Stopwatch stopwatch;
-    KernelCalls calls(module, target);
+    KernelCalls calls(module, processor, target);
     const std::string identity = identity_of(calls, entries);
     const auto generate_for = [&](Effort effort, llvm::LLVMContext& context) {
         const bool has_kernels = options.kernels && effort != Effort::full;
@@ -202,7 +185,7 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
         return generated;
     };
     const auto callees_for = [&](Effort effort) {
-        return Fetch(shared, called(module, calls), std::min(effort, kernel_effort_max));
+        return Fetch(shared, calls.used(), std::min(effort, kernel_effort_max));
     };
     Object object;
     if (options.kernels) object = found_object(identity, options.effort);
