@@ -21,7 +21,7 @@ Object found_object(const std::string& identity, Effort effort)
     for (Effort kept : {Effort::full, Effort::quick, Effort::draft})
         if (kept >= effort)
             if (std::optional<std::string> found = ObjectCache::shared().load(key_of(identity, kept)))
-                return {std::move(*found), {}, kept, true};
+                return {std::move(*found), {}, kept};
     return {};
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "jit/codegen/kernels.h"
-#include "jit/engine/compilers.h"
 #include "jit/engine/linker.h"
+#include "jit/engine/machine_code.h"
 
 #include <atomic>
 #include <future>
