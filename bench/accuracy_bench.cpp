@@ -140,7 +140,7 @@ private:
         made.row.texture = which.name;
         made.row.method = method;
         made.row.precision = precision;
-        made.row.level = jit::isa_name();
+        made.row.level = jit::engine_info().isa;
         made.row.lane_form = "one";
         made.point = point;
         made.block = block;
@@ -179,7 +179,7 @@ private:
             if (!texture.height_gradient_batch) continue;
             made = as_batch(std::move(made), texture.height_gradient_batch);
             made.row.lane_form = "points";
-            made.row.lanes = jit::batch_lanes();
+            made.row.lanes = jit::engine_info().batch_lanes;
             made.height_batch = texture.height_batch;
             contenders.push_back(std::move(made));
         }

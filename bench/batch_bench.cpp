@@ -104,7 +104,7 @@ std::vector<BatchRow> bench_batch(const std::vector<BatchTexture>& textures, con
     for (const BatchTexture& texture : textures)
         for (const unsigned threads : options.threads) {
             const Measured& times = measured[rows.size()];
-            rows.push_back({texture.name, jit::batch_lanes(), threads, summary(times.with_gradient_ns),
+            rows.push_back({texture.name, jit::engine_info().batch_lanes, threads, summary(times.with_gradient_ns),
                             summary(times.height_only_ns)});
         }
     return rows;

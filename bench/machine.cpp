@@ -25,7 +25,8 @@ Machine this_machine()
 #else
     const char* const compiler = "g++ " __VERSION__;
 #endif
-    return {cpu_name(), std::thread::hardware_concurrency(), jit::isa_name(), compiler, HAPTEL_FLAGS, HAPTEL_COMMIT};
+    return {cpu_name(),   std::thread::hardware_concurrency(), jit::engine_info().isa, compiler, HAPTEL_FLAGS,
+            HAPTEL_COMMIT};
 }
 
 } // namespace haptel::bench

@@ -175,7 +175,7 @@ std::vector<MathRow> bench_math(bool quick, const std::function<void(double)>& p
     const std::vector<Op> ops = ir::elementary_ops();
     for (const Op op : ops) {
         progress(0.5 * static_cast<double>(rows.size()) / static_cast<double>(ops.size()));
-        rows.push_back({std::string(ir::op_info(op).name), jit::batch_lanes(), ir::traits(op).ulp, {}, {}});
+        rows.push_back({std::string(ir::op_info(op).name), jit::engine_info().batch_lanes, ir::traits(op).ulp, {}, {}});
         measure_errors(rows.back(), op, quick ? 500 : 20'000);
         measured.emplace_back(op, *code[0], *code[1]);
     }

@@ -1,6 +1,7 @@
 #include "jit/codegen/codegen.h"
 
 #include "jit/codegen/codegen_function.h"
+#include "jit/codegen/codegen_math.h"
 #include "jit/codegen/kernels.h"
 #include "lang/abi/abi.h"
 
@@ -29,133 +30,102 @@ std::vector<Output> outputs_of(const EntryPoint& entry, size_t faults_alone)
     for (size_t i = 0; i < 3; ++i)
         outputs.push_back({offsetof(haptel_sample, gradient) + i * sizeof(double),
                            offsetof(haptel_samples, gradient) + i * sizeof(double*), 1 + i});
-    outputs.push_back({offsetof(haptel_sample, stiffness_scale), offsetof(haptel_samples, stiffness_scale), {}});
-    outputs.push_back({offsetof(haptel_sample, friction_scale), offsetof(haptel_samples, friction_scale), {}});
     size_t next = 5;
-    for (uint32_t bit = 0; bit < 2; ++bit)
-        if (entry.texture->writes >> bit & 1) outputs[5 + bit].yield = next++;
+    const auto written = [&](uint32_t bit) {
+        return entry.texture->writes >> bit & 1 ? std::optional(next++) : std::nullopt;
+    };
+    outputs.push_back(
+        {offsetof(haptel_sample, stiffness_scale), offsetof(haptel_samples, stiffness_scale), written(0)});
+    outputs.push_back({offsetof(haptel_sample, friction_scale), offsetof(haptel_samples, friction_scale), written(1)});
     return outputs;
 }
 
-class EntryEmitter {
-public:
-    EntryEmitter(ModuleEmitter& owner, const EntryPoint& point)
-        : module(owner)
-        , entry(point)
-        , source(owner.source.functions[function_of(point)])
-        , outputs(outputs_of(point, source.body.yields.size() - 1))
-    {
+ValueForms forms_of(ModuleEmitter& module, const EntryPoint& entry, const std::vector<Output>& outputs)
+{
+    const size_t count = module.source.functions[function_of(entry)].body.yields.size();
+    Signature signature;
+    signature.wide_results.resize(count);
+    if (entry.kind == EntryPoint::Kind::height) {
+        signature.needed_results.resize(count);
+        for (const Output& output : outputs) signature.needed_results[*output.yield] = true;
     }
+    return module.forms(function_of(entry), signature);
+}
 
-    void one_point()
-    {
-        llvm::Function& function = declare({pointer(), pointer(), pointer()}, 1);
-        llvm::BasicBlock::Create(context(), "", &function);
-        const ValueForms forms = entry_forms();
-        FunctionEmitter emitter(module, source, function, forms,
-                                {.points = function.getArg(0), .block = function.getArg(1), .texture = entry.texture});
-        const std::vector<Value*> yields = emitter.body(results({}));
-        llvm::IRBuilder<>& builder = emitter.at_end();
-        for (const Output& output : outputs)
-            builder.CreateStore(result(output, yields), place(builder, function.getArg(2), output.offset));
-        builder.CreateRetVoid();
+// A haptel_entry, or a haptel_batch_entry; the last argument is what is written.
+llvm::Function& declare(llvm::Module& module, const EntryPoint& entry)
+{
+    llvm::LLVMContext& context = module.getContext();
+    std::vector<llvm::Type*> arguments(3, llvm::PointerType::getUnqual(context));
+    if (entry.lanes == LaneForm::points) arguments.insert(arguments.begin() + 1, llvm::Type::getInt64Ty(context));
+    auto* const function =
+        llvm::Function::Create(llvm::FunctionType::get(llvm::Type::getVoidTy(context), arguments, false),
+                               llvm::GlobalValue::ExternalLinkage, symbol_of(entry), module);
+    function->setDoesNotThrow();
+    for (llvm::Argument& argument : function->args()) {
+        if (!argument.getType()->isPointerTy()) continue;
+        argument.addAttr(llvm::Attribute::NoAlias);
+        argument.addAttr(llvm::Attribute::NoCapture);
+        if (argument.getArgNo() + 1 < arguments.size()) argument.addAttr(llvm::Attribute::ReadOnly);
     }
+    return *function;
+}
 
-    // A loop over groups of lanes, the last of which may be short.
-    void batch()
-    {
-        llvm::Type* index_type = llvm::Type::getInt64Ty(context());
-        llvm::Function& function = declare({pointer(), index_type, pointer(), pointer()}, 2);
-        llvm::BasicBlock* before = llvm::BasicBlock::Create(context(), "", &function);
-        llvm::BasicBlock* head = llvm::BasicBlock::Create(context(), "points", &function);
-        llvm::BasicBlock* after = llvm::BasicBlock::Create(context(), "done", &function);
-        llvm::BasicBlock* group = llvm::BasicBlock::Create(context(), "group", &function);
-        Value* const count = function.getArg(1);
+// To an array that may be absent.
+void store_lanes(llvm::IRBuilder<>& builder, Value* values, Value* array_place, Value* first, Value* is_there)
+{
+    const uint32_t lanes = llvm::cast<llvm::FixedVectorType>(values->getType())->getNumElements();
+    llvm::Function* const function = builder.GetInsertBlock()->getParent();
+    Value* const array = builder.CreateLoad(builder.getPtrTy(), array_place);
+    llvm::BasicBlock* const wanted = llvm::BasicBlock::Create(builder.getContext(), "wanted", function);
+    llvm::BasicBlock* const next = llvm::BasicBlock::Create(builder.getContext(), "next", function);
+    builder.CreateCondBr(builder.CreateIsNull(array), next, wanted);
+    builder.SetInsertPoint(wanted);
+    llvm::Type* const element = values->getType()->getScalarType();
+    ask_ahead(builder, element, array, first, lanes, true);
+    builder.CreateMaskedStore(values, builder.CreateInBoundsGEP(element, array, first),
+                              llvm::Align(element->getPrimitiveSizeInBits() / 8), is_there);
+    builder.CreateBr(next);
+    builder.SetInsertPoint(next);
+}
 
-        llvm::IRBuilder<> outside(before);
-        outside.CreateBr(head);
-        outside.SetInsertPoint(head);
-        llvm::PHINode* first = outside.CreatePHI(index_type, 2);
-        first->addIncoming(outside.getInt64(0), before);
-        outside.CreateCondBr(outside.CreateICmpULT(first, count), group, after);
-        outside.SetInsertPoint(after);
-        outside.CreateRetVoid();
+// One point; or a loop over groups of lanes, the last of which may be short.
+void write_entry(ModuleEmitter& module, const EntryPoint& entry)
+{
+    const bool is_batch = entry.lanes == LaneForm::points;
+    const ir::Function& source = module.source.functions[function_of(entry)];
+    const std::vector<Output> outputs = outputs_of(entry, source.body.yields.size() - 1);
+    const ValueForms forms = forms_of(module, entry, outputs);
+    llvm::Function& function = declare(module.target, entry);
+    llvm::Argument *const points = function.getArg(0), *const samples = function.arg_end() - 1,
+                          *const block = samples - 1;
+    llvm::IRBuilder<> builder(llvm::BasicBlock::Create(function.getContext(), "", &function));
 
-        outside.SetInsertPoint(group);
-        llvm::Type* indices = llvm::FixedVectorType::get(index_type, module.lanes);
-        Value* index =
-            outside.CreateAdd(outside.CreateVectorSplat(module.lanes, first), outside.CreateStepVector(indices));
-        Value* is_there = outside.CreateICmpULT(index, outside.CreateVectorSplat(module.lanes, count));
-        const ValueForms forms = entry_forms();
-        FunctionEmitter emitter(module, source, function, forms,
-                                {function.getArg(0), function.getArg(2), entry.texture, first, is_there});
-        const std::vector<Value*> yields = emitter.body(results({.in_lanes = true}));
-        llvm::IRBuilder<>& builder = emitter.at_end();
-        for (const Output& output : outputs)
-            store_lanes(builder, result(output, yields), place(builder, function.getArg(3), output.array_offset), first,
-                        is_there);
-        first->addIncoming(builder.CreateAdd(first, builder.getInt64(module.lanes)), builder.GetInsertBlock());
-        builder.CreateBr(head);
-    }
-
-private:
-    ModuleEmitter& module;
-    const EntryPoint& entry;
-    const ir::Function& source;
-    const std::vector<Output> outputs;
-
-    llvm::LLVMContext& context() { return module.target.getContext(); }
-    llvm::Type* pointer() { return llvm::PointerType::getUnqual(context()); }
-    ValueForms entry_forms()
-    {
-        Signature signature;
-        signature.wide_results.resize(source.body.yields.size());
-        signature.needed_results.resize(source.body.yields.size());
-        for (const Output& output : outputs)
-            if (output.yield) signature.needed_results[*output.yield] = true;
-        if (entry.kind == EntryPoint::Kind::height_gradient) signature.needed_results.clear();
-        return module.forms(function_of(entry), signature);
-    }
-    std::vector<Form> results(Form form) const { return std::vector(source.body.yields.size(), form); }
-
-    // The last argument is what is written.
-    llvm::Function& declare(std::vector<llvm::Type*> arguments, unsigned block)
-    {
-        auto* type = llvm::FunctionType::get(llvm::Type::getVoidTy(context()), arguments, false);
-        auto* function =
-            llvm::Function::Create(type, llvm::GlobalValue::ExternalLinkage, symbol_of(entry), module.target);
-        function->setDoesNotThrow();
-        for (unsigned i : {0u, block, block + 1}) {
-            function->addParamAttr(i, llvm::Attribute::NoAlias);
-            function->addParamAttr(i, llvm::Attribute::NoCapture);
+    const auto write = [&](Value* first, Value* is_there) {
+        FunctionEmitter emitter(module, builder, forms, {points, block, entry.texture, first, is_there});
+        const Values yields = emitter.body(std::vector<Form>(source.body.yields.size(), {.in_lanes = is_batch}));
+        for (const Output& output : outputs) {
+            Value* const result = output.yield ? yields[*output.yield] : llvm::ConstantFP::get(yields[0]->getType(), 1);
+            if (is_batch)
+                store_lanes(builder, result, at_offset(builder, samples, output.array_offset), first, is_there);
+            else
+                builder.CreateStore(result, at_offset(builder, samples, output.offset));
         }
-        for (unsigned i : {0u, block}) function->addParamAttr(i, llvm::Attribute::ReadOnly);
-        return *function;
-    }
-    Value* place(llvm::IRBuilder<>& builder, Value* base, size_t offset)
-    {
-        return builder.CreateConstInBoundsGEP1_64(builder.getInt8Ty(), base, offset);
-    }
-    Value* result(const Output& output, const std::vector<Value*>& yields)
-    {
-        return output.yield ? yields[*output.yield] : llvm::ConstantFP::get(yields[0]->getType(), 1);
-    }
-    // To an array that may be absent.
-    void store_lanes(llvm::IRBuilder<>& builder, Value* lanes, Value* array_place, Value* first, Value* is_there)
-    {
-        Value* array = builder.CreateLoad(pointer(), array_place);
-        llvm::BasicBlock* wanted = llvm::BasicBlock::Create(context(), "wanted", builder.GetInsertBlock()->getParent());
-        llvm::BasicBlock* next = llvm::BasicBlock::Create(context(), "next", builder.GetInsertBlock()->getParent());
-        builder.CreateCondBr(builder.CreateIsNull(array), next, wanted);
-        builder.SetInsertPoint(wanted);
-        llvm::Type* element = lanes->getType()->getScalarType();
-        ask_ahead(builder, element, array, first, module.lanes, true);
-        builder.CreateMaskedStore(lanes, builder.CreateInBoundsGEP(element, array, first),
-                                  llvm::Align(element->getPrimitiveSizeInBits() / 8), is_there);
-        builder.CreateBr(next);
-        builder.SetInsertPoint(next);
-    }
-};
+    };
+    const auto write_group = [&](Value* first, const Values&) {
+        llvm::Type* const indices = llvm::FixedVectorType::get(builder.getInt64Ty(), module.lanes);
+        Value* const index =
+            builder.CreateAdd(builder.CreateVectorSplat(module.lanes, first), builder.CreateStepVector(indices));
+        Value* const count = builder.CreateVectorSplat(module.lanes, function.getArg(1));
+        write(first, builder.CreateICmpULT(index, count));
+        return Values{};
+    };
+    if (is_batch)
+        repeat(builder, function.getArg(1), module.lanes, {}, write_group);
+    else
+        write(nullptr, nullptr);
+    builder.CreateRetVoid();
+}
 
 } // namespace
 
@@ -182,8 +152,7 @@ std::unique_ptr<llvm::Module> generate(const ir::Module& module, std::span<const
             emitters.try_emplace(form, module, *generated, processor, entry.lanes, entry.precision, kernels, is_draft)
                 .first->second;
         if (!kernels && entry.lanes == LaneForm::points) emitter.called_by_batches = worth_a_kernel(module);
-        entry.lanes == LaneForm::points ? EntryEmitter(emitter, entry).batch()
-                                        : EntryEmitter(emitter, entry).one_point();
+        write_entry(emitter, entry);
     }
     for (auto& [form, emitter] : emitters) emitter.finish();
     if (kernels)

@@ -9,12 +9,17 @@
 
 #include "jit/codegen/codegen_module.h"
 
-#include <functional>
 #include <map>
 #include <set>
 #include <vector>
 
 namespace haptel::jit {
+
+using Values = llvm::SmallVector<llvm::Value*, 4>;
+
+// for (number = 0; number < count; number += step) values = body(number, values), `initial` at first. Returns the last.
+Values repeat(llvm::IRBuilder<>& builder, llvm::Value* count, uint32_t step, const Values& initial,
+              llvm::function_ref<Values(llvm::Value* number, const Values& values)> body);
 
 // What an entry reads from; null in other functions.
 struct EntryArguments {
@@ -27,58 +32,60 @@ struct EntryArguments {
 
 class FunctionEmitter {
 public:
-    // Writes to the end of `to`'s last block.
-    FunctionEmitter(ModuleEmitter& owner, const ir::Function& from, llvm::Function& to, const ValueForms& value_forms,
+    // Writes where the builder stands.
+    FunctionEmitter(ModuleEmitter& owner, llvm::IRBuilder<>& to, const ValueForms& value_forms,
                     const EntryArguments& entry = {});
 
     void define(ir::Value value, llvm::Value* made) { values[value.index] = made; }
     // The function's results in those forms.
-    std::vector<llvm::Value*> body(const std::vector<Form>& results) { return block(source.body, results); }
-    llvm::IRBuilder<>& at_end() { return builder; }
+    Values body(const std::vector<Form>& results) { return block(source.body, results); }
 
 private:
     ModuleEmitter& module;
     const ir::Function& source;
-    llvm::Function& target;
     ValueForms forms; // those in force: a split loop takes values out of lanes
     const EntryArguments arguments;
-    llvm::IRBuilder<> builder;
+    llvm::IRBuilder<>& builder;
     std::vector<llvm::Value*> values;             // by ir::Value::index
     std::vector<const ir::Instruction*> products; // likewise: what multiplied them
     std::set<const ir::Instruction*> done;        // ahead of their blocks
 
     llvm::Value* value(ir::Value used); // poison if no result needs it
-    bool is_needed(const ir::Instruction& made) const;
     llvm::Value* value(ir::Value used, Form wanted);
+    bool is_needed(const ir::Instruction& made) const;
     llvm::Value* rounded(llvm::Value* real, bool to_single);
     bool computes_in_singles(const ir::Instruction& made) const;
-    const ir::Instruction* product_to_fuse(ir::Value operand, bool in_singles) const;
-    bool fuse(const ir::Instruction& made, ir::Op op, bool in_singles);
+    llvm::Value* fused(const ir::Instruction& made, ir::Op op, bool in_singles);
     llvm::Type* type(ir::Value of) { return module.type(source.type(of), forms[of]); }
-    llvm::BasicBlock* new_block(const char* name);
-    llvm::Value* at_offset(llvm::Value* base, size_t offset);
 
-    std::vector<llvm::Value*> block(const ir::Block& from, const std::vector<Form>& yields);
-    void emit(const ir::Instruction& made);
-    void emit(const ir::Instruction& made, const ir::Operation& operation);
-    void emit(const ir::Instruction& made, const ir::RealConstant& constant);
-    void emit(const ir::Instruction& made, const ir::IntConstant& constant);
-    void emit(const ir::Instruction& made, const ir::BoolConstant& constant);
-    void emit(const ir::Instruction& made, const ir::ReadInput& read);
-    void emit(const ir::Instruction& made, const ir::ReadParameter& read);
-    void emit(const ir::Instruction& made, const ir::ReadTable& read);
-    void emit(const ir::Instruction& made, const ir::Call& call);
-    void emit(const ir::Instruction& made, const ir::PointDerivative& derivative);
-    void emit(const ir::Instruction& made, const ir::If& choice);
-    void emit(const ir::Instruction& made, const ir::For& loop);
-    void emit_in_lanes(const ir::Instruction& made, const ir::Block& body, const LaneLoop& loop);
-    void emit_in_order(const ir::Instruction& made, const ir::Block& body, const LaneLoop& loop);
-    void repeat(llvm::Value* count, const std::function<void(llvm::PHINode*)>& body);
+    Values block(const ir::Block& from, const std::vector<Form>& yields);
+    void emit_rest(const ir::Block& from); // what is not done yet
     void emit_ahead(const std::vector<const ir::Instruction*>& instructions);
-    void emit_one_by_one(const ir::Block& body, const LaneLoop& loop, llvm::Value* count,
-                         std::vector<llvm::Value*>& carried);
-    void take_out_of_lanes(const ir::Block& block, std::map<uint32_t, llvm::AllocaInst*>& rooms);
-    void take_out_of_lanes(ir::Value used, std::map<uint32_t, llvm::AllocaInst*>& rooms);
+    void emit(const ir::Instruction& made);
+
+    // The results.
+    Values emit(const ir::Instruction& made, const ir::Operation& operation);
+    Values emit(const ir::Instruction&, const ir::RealConstant& constant)
+    {
+        return {llvm::ConstantFP::get(builder.getDoubleTy(), constant.value)};
+    }
+    Values emit(const ir::Instruction&, const ir::IntConstant& constant) { return {builder.getInt32(constant.bits)}; }
+    Values emit(const ir::Instruction&, const ir::BoolConstant& constant) { return {builder.getInt1(constant.value)}; }
+    Values emit(const ir::Instruction&, const ir::PointDerivative&) { return {}; } // in no program that is verified
+    Values emit(const ir::Instruction& made, const ir::ReadInput& read);
+    Values emit(const ir::Instruction& made, const ir::ReadParameter& read);
+    Values emit(const ir::Instruction& made, const ir::ReadTable& read);
+    Values emit(const ir::Instruction& made, const ir::Call& call);
+    Values emit(const ir::Instruction& made, const ir::If& choice);
+    Values emit(const ir::Instruction& made, const ir::For& loop);
+
+    Values emit_in_lanes(const ir::Instruction& made, const ir::Block& body, const LaneLoop& loop);
+    Values emit_in_order(const ir::Instruction& made, const ir::Block& body, const LaneLoop& loop);
+    Values emit_one_by_one(const ir::Block& body, const LaneLoop& loop, llvm::Value* count, Values carried);
+    using Rooms = std::map<uint32_t, llvm::AllocaInst*>; // by value: where its lanes lie in memory
+    void take_out_of_lanes(const ir::Block& block, Rooms& rooms);
+    void take_out_of_lanes(ir::Value used, Rooms& rooms);
+    llvm::AllocaInst* room_for(llvm::Type* element, uint32_t count);
 };
 
 } // namespace haptel::jit

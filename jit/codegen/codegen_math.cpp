@@ -1,11 +1,13 @@
 #include "jit/codegen/codegen_math.h"
 
-#include "jit/codegen/codegen_number.h"
 #include "lang/ir/elementary.h"
 #include "lang/ir/elementary_functions.h"
 #include "lang/ir/op_info.h"
+#include "lang/math/elementary_number.h"
+#include "lang/math/turn_polynomials.h"
 
 #include <llvm/IR/MDBuilder.h>
+#include <span>
 #include <string>
 
 namespace haptel::jit {
@@ -14,106 +16,119 @@ namespace {
 
 using llvm::Value;
 
-constexpr llvm::StringLiteral prefix = "haptel_e.";
-
 uint32_t lanes_of(llvm::Type* type)
 {
     const auto* vector = llvm::dyn_cast<llvm::FixedVectorType>(type);
     return vector ? vector->getNumElements() : 1;
 }
 
-std::string symbol_of(const ElementaryForm& form)
-{
-    return prefix.str() + std::string(ir::op_info(form.op).name) +
-           (form.is_single ? ".f32"
-            : form.narrows ? ".f32.f64"
-                           : ".f64") +
-           "x" + std::to_string(form.lanes);
-}
+// ---- a number of lang/math/elementary_*.h that is code: each step appends the instruction that does it, for one point
+// or in every lane of a vector
 
-llvm::Function& declare(llvm::Module& module, const std::string& symbol, const ElementaryForm& form)
-{
-    if (llvm::Function* known = module.getFunction(symbol)) return *known;
-    llvm::LLVMContext& context = module.getContext();
-    const auto type = [&](bool is_single) -> llvm::Type* {
-        llvm::Type* scalar = is_single ? llvm::Type::getFloatTy(context) : llvm::Type::getDoubleTy(context);
-        return form.lanes > 1 ? llvm::FixedVectorType::get(scalar, form.lanes) : scalar;
-    };
-    const std::vector<llvm::Type*> operands(ir::op_info(form.op).arity, type(form.is_single));
-    auto* function =
-        llvm::Function::Create(llvm::FunctionType::get(type(form.is_single || form.narrows), operands, false),
-                               llvm::GlobalValue::ExternalLinkage, symbol, module);
-    function->setCallingConv(llvm::CallingConv::Fast);
-    function->setDoesNotThrow();
-    function->setDoesNotAccessMemory();
-    function->setWillReturn();
-    return *function;
-}
+struct CodeTruth {
+    llvm::IRBuilder<>* builder;
+    Value* value;
+};
+
+// A word for each number, of its width.
+class CodeWord {
+public:
+    CodeWord(llvm::IRBuilder<>& to, Value* made) : builder(&to), value(made) {}
+
+    friend CodeWord operator+(CodeWord a, uint64_t b) { return a.held(a.builder->CreateAdd(a.value, a.word(b))); }
+    friend CodeWord operator&(CodeWord a, uint64_t b) { return a.held(a.builder->CreateAnd(a.value, a.word(b))); }
+    friend CodeWord operator|(CodeWord a, uint64_t b) { return a.held(a.builder->CreateOr(a.value, a.word(b))); }
+    friend CodeWord operator^(CodeWord a, CodeWord b) { return a.held(a.builder->CreateXor(a.value, b.value)); }
+    friend CodeWord operator<<(CodeWord a, int count)
+    {
+        return a.held(a.builder->CreateShl(a.value, a.word(static_cast<uint64_t>(count))));
+    }
+    friend CodeWord operator>>(CodeWord a, int count)
+    {
+        return a.held(a.builder->CreateLShr(a.value, a.word(static_cast<uint64_t>(count))));
+    }
+    friend CodeTruth is_set(CodeWord a) { return {a.builder, a.builder->CreateICmpNE(a.value, a.word(0))}; }
+    Value* code() const { return value; }
+
+private:
+    llvm::IRBuilder<>* builder;
+    Value* value;
+
+    CodeWord held(Value* made) const { return {*builder, made}; }
+    Value* word(uint64_t bits) const { return llvm::ConstantInt::get(value->getType(), bits); }
+};
 
 template <typename F>
-Value* applied(llvm::IRBuilder<>& builder, ir::Op op, llvm::Function& function)
-{
-    llvm::Argument *first = function.arg_begin(), *last = function.arg_end() - 1;
-    return ir::elementary::apply(op, Code<F>(builder, first), Code<F>(builder, last)).code();
-}
+class Code {
+public:
+    using Float = F;
+    static constexpr bool is_single = sizeof(F) == sizeof(float);
 
-void write_body(llvm::Function& function, const ElementaryForm& form)
-{
-    llvm::IRBuilder<> builder(llvm::BasicBlock::Create(function.getContext(), "", &function));
-    Value* value = form.narrows
-                       ? ir::elementary::apply_to_angle(form.op, Code<double>(builder, function.getArg(0))).code()
-                   : form.is_single ? applied<float>(builder, form.op, function)
-                                    : applied<double>(builder, form.op, function);
-    builder.CreateRet(value);
-}
+    Code(llvm::IRBuilder<>& to, Value* made) : builder(&to), value(made) {}
+    Code(double constant_number) : number(constant_number) {} // becomes code beside one that is
 
-} // namespace
+    friend Code operator+(Code a, Code b) { return made(a, b, &llvm::IRBuilder<>::CreateFAdd); }
+    friend Code operator-(Code a, Code b) { return made(a, b, &llvm::IRBuilder<>::CreateFSub); }
+    friend Code operator*(Code a, Code b) { return made(a, b, &llvm::IRBuilder<>::CreateFMul); }
+    friend Code operator/(Code a, Code b) { return made(a, b, &llvm::IRBuilder<>::CreateFDiv); }
+    friend Code operator-(Code a) { return a.held(a.builder->CreateFNeg(a.value)); }
+    friend CodeTruth operator<(Code a, Code b) { return compared(a, b, llvm::CmpInst::FCMP_OLT); }
+    friend CodeTruth operator>(Code a, Code b) { return compared(a, b, llvm::CmpInst::FCMP_OGT); }
+    friend CodeTruth operator==(Code a, Code b) { return compared(a, b, llvm::CmpInst::FCMP_OEQ); }
 
-Value* call_elementary(llvm::IRBuilder<>& builder, ir::Op op, std::span<Value* const> operands, llvm::Type* result)
-{
-    const bool is_single = operands[0]->getType()->getScalarType()->isFloatTy();
-    const ElementaryForm form{op, is_single, ir::takes_angle(op) && result->isFloatTy() && !is_single,
-                              lanes_of(operands[0]->getType())};
-    llvm::Function& function = declare(*builder.GetInsertBlock()->getModule(), symbol_of(form), form);
-    llvm::CallInst* call = builder.CreateCall(&function, llvm::ArrayRef(operands.data(), operands.size()));
-    call->setCallingConv(llvm::CallingConv::Fast);
-    return call;
-}
-
-ElementaryForms elementary_calls(const llvm::Module& module)
-{
-    ElementaryForms found;
-    for (const llvm::Function& function : module) {
-        llvm::StringRef name = function.getName();
-        if (!function.isDeclaration() || !name.consume_front(prefix)) continue;
-        const std::optional<ir::Op> op = ir::op_named(std::string_view(name.split('.').first));
-        llvm::Type* operand = function.getArg(0)->getType();
-        const bool is_single = operand->getScalarType()->isFloatTy();
-        const bool narrows = !is_single && function.getReturnType()->getScalarType()->isFloatTy();
-        found[function.getName().str()] = {*op, is_single, narrows, lanes_of(operand)};
+    friend Code abs(Code a) { return a.held(a.builder->CreateUnaryIntrinsic(llvm::Intrinsic::fabs, a.value)); }
+    friend Code sqrt(Code a) { return a.held(a.builder->CreateUnaryIntrinsic(llvm::Intrinsic::sqrt, a.value)); }
+    friend Code select(CodeTruth condition, Code a, Code b)
+    {
+        return a.held(a.builder->CreateSelect(condition.value, a.value, b.value));
     }
-    return found;
-}
+    friend Code constant(Code like, double number) { return like.held(llvm::ConstantFP::get(like.type(), number)); }
 
-void write_elementary(llvm::Module& module)
-{
-    for (const auto& [symbol, form] : elementary_calls(module)) {
-        llvm::Function& function = *module.getFunction(symbol);
-        function.setLinkage(llvm::GlobalValue::InternalLinkage);
-        if (form.lanes > 1) function.addFnAttr(llvm::Attribute::NoInline); // it fills the registers by itself
-        write_body(function, form);
+    friend CodeWord bits(Code a)
+    {
+        llvm::Type* const words = a.type()->getWithNewType(a.builder->getIntNTy(ir::elementary::Format<F>::width));
+        return {*a.builder, a.builder->CreateBitCast(a.value, words)};
     }
-}
+    friend Code with_bits(Code like, CodeWord bits)
+    {
+        return like.held(like.builder->CreateBitCast(bits.code(), like.type()));
+    }
 
-std::unique_ptr<llvm::Module> generate_elementary(const std::string& symbol, const ElementaryForm& form,
-                                                  llvm::LLVMContext& context)
-{
-    auto module = std::make_unique<llvm::Module>(symbol, context);
-    write_body(declare(*module, symbol, form), form);
-    return module;
-}
+    friend Code<float> narrow(Code a) { return {*a.builder, a.builder->CreateFPTrunc(a.value, a.as_float())}; }
+    friend Code<double> widen(Code a) { return {*a.builder, a.builder->CreateFPExt(a.value, a.as_double())}; }
 
-// As a call through memory: it is a hundred times as long as the rest, whatever the lanes.
+    llvm::IRBuilder<>& at() const { return *builder; }
+    Value* code() const { return value; }
+
+private:
+    llvm::IRBuilder<>* builder = nullptr; // null: a constant on its way
+    Value* value = nullptr;
+    double number = 0;
+
+    llvm::Type* type() const { return value->getType(); }
+    llvm::Type* as_float() const { return type()->getWithNewType(builder->getFloatTy()); }
+    llvm::Type* as_double() const { return type()->getWithNewType(builder->getDoubleTy()); }
+    Code held(Value* result) const { return {*builder, result}; }
+    static void complete(Code& a, Code& b)
+    {
+        if (!a.value) a = constant(b, a.number);
+        if (!b.value) b = constant(a, b.number);
+    }
+    template <typename Create>
+    static Code made(Code a, Code b, Create create)
+    {
+        complete(a, b);
+        return a.held((a.builder->*create)(a.value, b.value, "", nullptr));
+    }
+    static CodeTruth compared(Code a, Code b, llvm::CmpInst::Predicate predicate)
+    {
+        complete(a, b);
+        return {a.builder, a.builder->CreateFCmp(predicate, a.value, b.value)};
+    }
+};
+
+// The rare branch: where any lane needs it all are reduced, and those that do not keep what they had. As a call through
+// memory: it is a hundred times as long as the rest, whatever the lanes.
 void reduce_where(CodeTruth condition, Code<double> a, ir::elementary::Angle<Code<double>>& angle)
 {
     llvm::IRBuilder<>& builder = a.at();
@@ -154,6 +169,143 @@ void reduce_where(CodeTruth condition, Code<double> a, ir::elementary::Angle<Cod
         phi->addIncoming(chosen[i], huge);
         *parts[i] = Code<double>(builder, phi);
     }
+}
+
+// ---- functions
+
+constexpr llvm::StringLiteral prefix = "haptel_e.";
+
+struct ElementaryForm {
+    ir::Op op{};
+    bool is_single = false; // the operands
+    bool narrows = false;   // an angle in f64 to f32
+    uint32_t lanes = 1;
+};
+
+llvm::Function& declare(llvm::Module& module, const ElementaryForm& form)
+{
+    const std::string symbol = prefix.str() + std::string(ir::op_info(form.op).name) +
+                               (form.is_single ? ".f32"
+                                : form.narrows ? ".f32.f64"
+                                               : ".f64") +
+                               "x" + std::to_string(form.lanes);
+    if (llvm::Function* known = module.getFunction(symbol)) return *known;
+    llvm::LLVMContext& context = module.getContext();
+    const auto type = [&](bool is_single) -> llvm::Type* {
+        llvm::Type* scalar = is_single ? llvm::Type::getFloatTy(context) : llvm::Type::getDoubleTy(context);
+        return form.lanes > 1 ? llvm::FixedVectorType::get(scalar, form.lanes) : scalar;
+    };
+    const std::vector<llvm::Type*> operands(ir::op_info(form.op).arity, type(form.is_single));
+    auto* function =
+        llvm::Function::Create(llvm::FunctionType::get(type(form.is_single || form.narrows), operands, false),
+                               llvm::GlobalValue::ExternalLinkage, symbol, module);
+    function->setCallingConv(llvm::CallingConv::Fast);
+    function->setDoesNotThrow();
+    function->setDoesNotAccessMemory();
+    function->setWillReturn();
+    return *function;
+}
+
+// Of a function that was declared so and has no body; nothing of any other.
+std::optional<ElementaryForm> form_of(const llvm::Function& function)
+{
+    llvm::StringRef name = function.getName();
+    if (!function.isDeclaration() || !name.consume_front(prefix)) return {};
+    llvm::Type* const operand = function.getArg(0)->getType();
+    const bool is_single = operand->getScalarType()->isFloatTy();
+    const bool narrows = !is_single && function.getReturnType()->getScalarType()->isFloatTy();
+    return ElementaryForm{*ir::op_named(std::string_view(name.split('.').first)), is_single, narrows,
+                          lanes_of(operand)};
+}
+
+template <typename F>
+Value* applied(llvm::IRBuilder<>& builder, ir::Op op, llvm::Function& function)
+{
+    llvm::Argument *first = function.arg_begin(), *last = function.arg_end() - 1;
+    return ir::elementary::apply(op, Code<F>(builder, first), Code<F>(builder, last)).code();
+}
+
+void write_body(llvm::Function& function, const ElementaryForm& form)
+{
+    llvm::IRBuilder<> builder(llvm::BasicBlock::Create(function.getContext(), "", &function));
+    Value* value = form.narrows
+                       ? ir::elementary::apply_to_angle(form.op, Code<double>(builder, function.getArg(0))).code()
+                   : form.is_single ? applied<float>(builder, form.op, function)
+                                    : applied<double>(builder, form.op, function);
+    builder.CreateRet(value);
+}
+
+template <typename F>
+Value* turn(llvm::IRBuilder<>& builder, bool is_sine, Value* whole_way, bool fuses)
+{
+    using R = Code<F>;
+    llvm::Type* const element = R::is_single ? builder.getFloatTy() : builder.getDoubleTy();
+    const R way(builder, builder.CreateFPCast(whole_way, whole_way->getType()->getWithNewType(element)));
+    const R distance = abs(way);
+    const CodeTruth is_behind_quarter = distance > R(0.25);
+    const R folded = select(is_behind_quarter, R(0.5) - distance, distance);
+    const CodeTruth is_near_quarter = folded > R(0.125);
+    const R to_quarter = select(is_near_quarter, R(0.25) - folded, folded);
+    const R square = to_quarter * to_quarter;
+    const auto times_and = [&](R a, R b, double number) {
+        const R c = constant(a, number);
+        if (!fuses) return a * b + c;
+        return R(builder,
+                 builder.CreateIntrinsic(llvm::Intrinsic::fma, {a.code()->getType()}, {a.code(), b.code(), c.code()}));
+    };
+    const auto polynomial = [&](std::span<const double> coefficients) {
+        R sum = constant(square, coefficients.back());
+        for (size_t i = coefficients.size() - 1; i-- > 0;) sum = times_and(sum, square, coefficients[i]);
+        return sum;
+    };
+    using namespace ir::turn;
+    const R sine = to_quarter * (R::is_single ? polynomial(sine_f32) : polynomial(sine_f64));
+    const R cosine = times_and(square, R::is_single ? polynomial(cosine_f32) : polynomial(cosine_f64), 1);
+    if (is_sine)
+        return builder.CreateBinaryIntrinsic(llvm::Intrinsic::copysign, select(is_near_quarter, cosine, sine).code(),
+                                             way.code());
+    const R size = select(is_near_quarter, sine, cosine);
+    return select(is_behind_quarter, -size, size).code();
+}
+
+} // namespace
+
+Value* call_elementary(llvm::IRBuilder<>& builder, ir::Op op, llvm::ArrayRef<Value*> operands, llvm::Type* result)
+{
+    const bool is_single = operands[0]->getType()->getScalarType()->isFloatTy();
+    const bool narrows = ir::takes_angle(op) && result->isFloatTy() && !is_single;
+    llvm::Function& function =
+        declare(*builder.GetInsertBlock()->getModule(), {op, is_single, narrows, lanes_of(operands[0]->getType())});
+    llvm::CallInst* call = builder.CreateCall(&function, operands);
+    call->setCallingConv(llvm::CallingConv::Fast);
+    return call;
+}
+
+Value* emit_turn(llvm::IRBuilder<>& builder, ir::Op op, Value* way, llvm::Type* result, bool fuses)
+{
+    const bool is_sine = op == ir::Op::sinturn;
+    return result->isFloatTy() ? turn<float>(builder, is_sine, way, fuses) : turn<double>(builder, is_sine, way, false);
+}
+
+FunctionsApart elementary_calls(const llvm::Module& module)
+{
+    FunctionsApart found;
+    for (const llvm::Function& function : module)
+        if (const std::optional<ElementaryForm> form = form_of(function))
+            found[function.getName().str()] = [form = *form](llvm::Module& alone, bool) {
+                write_body(declare(alone, form), form);
+            };
+    return found;
+}
+
+void write_elementary(llvm::Module& module)
+{
+    for (llvm::Function& function : module)
+        if (const std::optional<ElementaryForm> form = form_of(function)) {
+            function.setLinkage(llvm::GlobalValue::InternalLinkage);
+            if (form->lanes > 1) function.addFnAttr(llvm::Attribute::NoInline); // it fills the registers by itself
+            write_body(function, *form);
+        }
 }
 
 } // namespace haptel::jit

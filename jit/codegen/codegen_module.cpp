@@ -6,8 +6,6 @@
 #include "lang/ir/dead_code.h"
 
 #include <algorithm>
-#include <iterator>
-#include <utility>
 
 namespace haptel::jit {
 
@@ -19,19 +17,21 @@ bool any(const std::vector<bool>& flags)
 }
 
 // A loop that is not split, and all of whose sums are f64.
-bool can_be_ordered(const ValueForms& forms, const LaneLoops::value_type& found)
+bool can_be_ordered(const ValueForms& forms, const ir::For& loop, const LaneLoop& in_lanes)
 {
-    const auto& [loop, in_lanes] = found;
-    const std::vector<ir::Value>& parameters = loop->body[0].parameters;
     bool can = in_lanes.waits.empty();
-    for (size_t i = 0; i < in_lanes.carried.size(); ++i) {
-        const bool is_single = forms.is_varying(parameters[i + 1]) && !forms.is_wide(parameters[i + 1]);
-        can = can && !(in_lanes.carried[i].kind == Carried::Kind::sum && is_single);
-    }
+    for (size_t i = 0; i < in_lanes.carried.size(); ++i)
+        can =
+            can && !(in_lanes.carried[i].kind == Carried::Kind::sum && forms.is_single(loop.body[0].parameters[i + 1]));
     return can;
 }
 
 } // namespace
+
+llvm::Value* at_offset(llvm::IRBuilder<>& builder, llvm::Value* base, size_t offset)
+{
+    return builder.CreateConstInBoundsGEP1_64(builder.getInt8Ty(), base, offset);
+}
 
 // Beyond the array's end nothing is fetched, and nothing is wrong.
 void ask_ahead(llvm::IRBuilder<>& builder, llvm::Type* element, llvm::Value* array, llvm::Value* first, uint32_t lanes,
@@ -64,21 +64,6 @@ llvm::Type* ModuleEmitter::type(ir::Type type, Form held)
     return nullptr;
 }
 
-llvm::GlobalVariable* ModuleEmitter::table(uint32_t index, bool is_single)
-{
-    llvm::GlobalVariable*& made = tables[{index, is_single}];
-    if (made) return made;
-    const ir::Table& table = source.tables[index];
-    llvm::LLVMContext& context = target.getContext();
-    const std::vector<float> singles(table.reals.begin(), table.reals.end());
-    llvm::Constant* cells = table.element != ir::Type::real ? llvm::ConstantDataArray::get(context, table.words)
-                            : is_single                     ? llvm::ConstantDataArray::get(context, singles)
-                                                            : llvm::ConstantDataArray::get(context, table.reals);
-    made = new llvm::GlobalVariable(target, cells->getType(), true, llvm::GlobalValue::InternalLinkage, cells);
-    made->setUnnamedAddr(llvm::GlobalValue::UnnamedAddr::Global);
-    return made;
-}
-
 const std::vector<bool>& ModuleEmitter::needed_values(uint32_t index, const std::vector<bool>& results)
 {
     const std::pair key{index, results};
@@ -95,10 +80,9 @@ const std::vector<bool>& ModuleEmitter::needed_values(uint32_t index, const std:
 ValueForms ModuleEmitter::forms(uint32_t index, const Signature& signature)
 {
     const ir::Function& from = source.functions[index];
-    ValueForms made{from, varying_values(from, signature.arguments),
-                    {},   plan.wide_values(index, signature.wide_results),
-                    {},   {},
-                    {},   {}};
+    ValueForms made{.function = from,
+                    .varies = varying_values(from, signature.arguments),
+                    .wide = plan.wide_values(index, signature.wide_results)};
     if (!signature.needed_results.empty()) made.needed = needed_values(index, signature.needed_results);
     if (form == LaneForm::points) {
         made.in_lanes = made.varies;
@@ -106,22 +90,10 @@ ValueForms ModuleEmitter::forms(uint32_t index, const Signature& signature)
     }
     if (form == LaneForm::iterations && !any(signature.in_lanes) && !any(signature.in_order))
         made.loops = lane_loops(from, made.varies);
-    for (auto loop = made.loops.begin(); is_draft && loop != made.loops.end();)
-        if (const auto next = std::next(loop); can_be_ordered(made, *loop))
-            made.ordered.insert(made.loops.extract(std::exchange(loop, next)));
-        else
-            loop = next;
-    made.in_lanes = varying_iterations(from, signature.in_lanes, made.loops);
-    made.in_order = varying_iterations(from, signature.in_order, made.ordered);
+    for (auto& [loop, in_lanes] : made.loops) in_lanes.is_ordered = is_draft && can_be_ordered(made, *loop, in_lanes);
+    made.in_lanes = varying_iterations(from, signature.in_lanes, made.loops, false);
+    made.in_order = varying_iterations(from, signature.in_order, made.loops, true);
     return made;
-}
-
-// The results of a function vary together.
-Form ModuleEmitter::result(const Key& key, size_t i) const
-{
-    const ir::Function& of = source.functions[key.first];
-    const bool is_real = of.type(of.body.yields[i]) == ir::Type::real;
-    return {any(key.second.in_lanes), is_real && any(key.second.arguments) && !key.second.wide_results[i]};
 }
 
 std::string Signature::text() const
@@ -137,16 +109,19 @@ std::string Signature::text() const
 
 const ModuleEmitter::Function& ModuleEmitter::function(uint32_t index, const Signature& signature)
 {
-    const auto [place, is_new] = functions.try_emplace({index, signature});
-    Function& made = place->second;
-    if (!is_new) return made;
+    Function& made = functions[{index, signature}];
+    if (made.code) return made;
     const ir::Function& from = source.functions[index];
     made.forms = std::make_shared<const ValueForms>(forms(index, signature));
     std::vector<llvm::Type*> parameters, results;
     for (ir::Value parameter : from.parameters)
         parameters.push_back(type(from.type(parameter), (*made.forms)[parameter]));
-    for (size_t i = 0; i < from.body.yields.size(); ++i)
-        results.push_back(type(from.type(from.body.yields[i]), result(place->first, i)));
+    for (size_t i = 0; i < from.body.yields.size(); ++i) { // they vary together
+        const ir::Type yielded = from.type(from.body.yields[i]);
+        const bool is_wide = yielded != ir::Type::real || !any(signature.arguments) || signature.wide_results[i];
+        made.results.push_back({any(signature.in_lanes), !is_wide});
+        results.push_back(type(yielded, made.results[i]));
+    }
     llvm::Type* returned = results.size() == 1 ? results[0] : llvm::StructType::get(target.getContext(), results);
     made.code = llvm::Function::Create(llvm::FunctionType::get(returned, parameters, false),
                                        llvm::GlobalValue::InternalLinkage, from.name, target);
@@ -156,9 +131,9 @@ const ModuleEmitter::Function& ModuleEmitter::function(uint32_t index, const Sig
                                           [&](ir::Value value) { return from.type(value) == ir::Type::image; });
     reads_images ? made.code->setOnlyReadsMemory() : made.code->setDoesNotAccessMemory();
     made.code->setWillReturn();
-    const std::string kernel = kernels ? kernels->call({index, signature, form, plan.precision}) : "";
+    const std::string kernel = kernels ? kernels->call(index, signature, form, plan.precision) : "";
     if (kernel.empty()) {
-        unfinished.push_back(place);
+        unfinished.push_back(&made);
     } else {
         made.code->setLinkage(llvm::GlobalValue::ExternalLinkage);
         made.code->setName(kernel);
@@ -170,26 +145,17 @@ const ModuleEmitter::Function& ModuleEmitter::function(uint32_t index, const Sig
 void ModuleEmitter::finish()
 {
     while (!unfinished.empty()) {
-        const auto next = unfinished.back();
+        const auto& [code, forms, results] = *unfinished.back();
         unfinished.pop_back();
-        write_body(next->first, next->second);
+        llvm::IRBuilder<> builder(llvm::BasicBlock::Create(target.getContext(), "", code));
+        FunctionEmitter emitter(*this, builder, *forms);
+        for (unsigned i = 0; i < code->arg_size(); ++i) emitter.define(forms->function.parameters[i], code->getArg(i));
+        const Values yields = emitter.body(results);
+        if (yields.size() == 1)
+            builder.CreateRet(yields[0]);
+        else
+            builder.CreateAggregateRet(yields.data(), static_cast<unsigned>(yields.size()));
     }
-}
-
-void ModuleEmitter::write_body(const Key& key, const Function& function)
-{
-    const ir::Function& from = source.functions[key.first];
-    llvm::BasicBlock::Create(target.getContext(), "", function.code);
-    FunctionEmitter emitter(*this, from, *function.code, *function.forms);
-    for (size_t i = 0; i < from.parameters.size(); ++i)
-        emitter.define(from.parameters[i], function.code->getArg(static_cast<unsigned>(i)));
-    std::vector<Form> results;
-    for (size_t i = 0; i < from.body.yields.size(); ++i) results.push_back(result(key, i));
-    const std::vector<llvm::Value*> yields = emitter.body(results);
-    if (yields.size() == 1)
-        emitter.at_end().CreateRet(yields[0]);
-    else
-        emitter.at_end().CreateAggregateRet(yields.data(), static_cast<unsigned>(yields.size()));
 }
 
 } // namespace haptel::jit

@@ -34,21 +34,23 @@ struct Signature {
 // Of one function, by ir::Value::index.
 struct ValueForms {
     const ir::Function& function;
-    std::vector<bool> varies, in_lanes, wide;
-    LaneLoops loops;            // whose iterations are lanes
-    LaneLoops ordered;          // whose iterations follow one another, with the bits of lanes
-    std::vector<bool> in_order; // what differs between these iterations
-    std::vector<bool> needed;   // empty: everything
+    std::vector<bool> varies = {}, in_lanes = {}, wide = {};
+    std::vector<bool> needed = {};   // empty: everything
+    LaneLoops loops = {};            // whose iterations are lanes, or have the bits of lanes
+    std::vector<bool> in_order = {}; // what differs between the iterations of those that are ordered
 
     bool is_varying(ir::Value value) const { return varies[value.index]; }
     bool is_wide(ir::Value value) const { return wide[value.index]; }
     bool is_needed(ir::Value value) const { return needed.empty() || needed[value.index]; }
-    Form operator[](ir::Value value) const
+    bool is_single(ir::Value value) const
     {
-        const bool is_real = function.type(value) == ir::Type::real;
-        return {in_lanes[value.index], is_real && is_varying(value) && !is_wide(value)};
+        return function.type(value) == ir::Type::real && is_varying(value) && !is_wide(value);
     }
+    Form operator[](ir::Value value) const { return {in_lanes[value.index], is_single(value)}; }
 };
+
+// A field of a structure.
+llvm::Value* at_offset(llvm::IRBuilder<>& builder, llvm::Value* base, size_t offset);
 
 // Asks for the memory that these lanes of an array will be in, `points_ahead` later: to read, or to write.
 void ask_ahead(llvm::IRBuilder<>& builder, llvm::Type* element, llvm::Value* array, llvm::Value* first, uint32_t lanes,
@@ -74,14 +76,20 @@ public:
     struct Function {
         llvm::Function* code = nullptr;
         std::shared_ptr<const ValueForms> forms;
+        std::vector<Form> results;
     };
     // Its body follows with the next finish().
     const Function& function(uint32_t index, const Signature& signature);
     void finish();
 
     ValueForms forms(uint32_t index, const Signature& signature);
-    llvm::GlobalVariable* table(uint32_t index, bool is_single);
     llvm::Type* type(ir::Type type, Form held);
+
+    // The cells of a constant table, reals in f32 where `is_single`.
+    llvm::GlobalVariable* table(uint32_t index, bool is_single);
+    // Those at `index`, a vector of i32, each in range. A small table stays in registers and is permuted where the
+    // processor can; any other is gathered from memory.
+    llvm::Value* read_in_lanes(llvm::IRBuilder<>& builder, uint32_t table, llvm::Value* index, bool is_single);
 
     bool fuses() const { return plan.precision != Precision::f64 && processor.fuses; }
 
@@ -98,19 +106,15 @@ public:
 private:
     static constexpr uint32_t iteration_lanes = 8; // more loops have fewer iterations than have more
 
-    using Key = std::pair<uint32_t, Signature>;
-    using Functions = std::map<Key, Function>;
     const PrecisionPlan plan;
     KernelCalls* const kernels; // null: everything is written
     const bool is_draft;
-    Functions functions;
-    std::vector<Functions::const_iterator> unfinished;
+    std::map<std::pair<uint32_t, Signature>, Function> functions;
+    std::vector<const Function*> unfinished;
     std::map<std::pair<uint32_t, bool>, llvm::GlobalVariable*> tables;
     std::map<std::pair<uint32_t, std::vector<bool>>, std::vector<bool>> needs; // by function and results: by value
 
     const std::vector<bool>& needed_values(uint32_t index, const std::vector<bool>& results);
-    Form result(const Key& key, size_t i) const;
-    void write_body(const Key& key, const Function& function);
 };
 
 } // namespace haptel::jit

@@ -1,9 +1,10 @@
-#include "jit/codegen/codegen_table.h"
+// Constant tables, and how all lanes read them at once.
+#include "jit/codegen/codegen_module.h"
 
 #include <algorithm>
 #include <bit>
+#include <llvm/Analysis/VectorUtils.h>
 #include <llvm/IR/IntrinsicsX86.h>
-#include <numeric>
 
 namespace haptel::jit {
 
@@ -26,17 +27,17 @@ public:
     {
         const bool is_real = table.element == ir::Type::real;
         const bool fits_bytes = !is_real && table.size() <= 256 &&
-                                std::all_of(table.words.begin(), table.words.end(), [](uint32_t w) { return w < 256; });
+                                std::ranges::all_of(table.words, [](uint32_t word) { return word < 256; });
         if (module.lanes > 16) return nullptr;
         if (fits_bytes && module.processor.permutes_bytes) return of_lanes(from_bytes());
         if (!module.processor.permutes_words) return nullptr;
         if (is_real && !is_single) return from_doubles();
         if (table.size() > chunks_max * 32) return nullptr;
-        return of_lanes(
-            is_real ? builder.CreateBitCast(from_pairs<uint32_t>(llvm::Intrinsic::x86_avx512_vpermi2var_d_512,
-                                                                 bits_of_singles(), padded()),
-                                            llvm::FixedVectorType::get(builder.getFloatTy(), 16))
-                    : from_pairs<uint32_t>(llvm::Intrinsic::x86_avx512_vpermi2var_d_512, table.words, padded()));
+        if (!is_real) return of_lanes(from_pairs(permute_words, table.words, padded()));
+        std::vector<uint32_t> bits;
+        for (double real : table.reals) bits.push_back(std::bit_cast<uint32_t>(static_cast<float>(real)));
+        return of_lanes(builder.CreateBitCast(from_pairs(permute_words, bits, padded()),
+                                              llvm::FixedVectorType::get(builder.getFloatTy(), 16)));
     }
     Value* gathered(llvm::GlobalVariable* cells, llvm::Type* element)
     {
@@ -52,110 +53,97 @@ private:
     const ir::Table& table;
     Value* const index;
 
-    std::vector<uint32_t> bits_of_singles() const
+    static constexpr llvm::Intrinsic::ID permute_words = llvm::Intrinsic::x86_avx512_vpermi2var_d_512;
+
+    // Of a vector's elements `count` from `first` on, then some that do not matter.
+    Value* part(Value* of, unsigned first, unsigned count, unsigned padding = 0)
     {
-        std::vector<uint32_t> bits;
-        for (double real : table.reals) bits.push_back(std::bit_cast<uint32_t>(static_cast<float>(real)));
-        return bits;
+        return builder.CreateShuffleVector(of, llvm::createSequentialMask(first, count, padding));
     }
-    // Fewer lanes than words of a register are its first; what the others hold does not matter.
-    Value* padded()
-    {
-        std::vector<int> order(16, llvm::PoisonMaskElem);
-        std::iota(order.begin(), order.begin() + module.lanes, 0);
-        return module.lanes == 16 ? index : builder.CreateShuffleVector(index, order);
-    }
-    Value* of_lanes(Value* padded_cells)
-    {
-        if (module.lanes == 16) return padded_cells;
-        std::vector<int> order(module.lanes);
-        std::iota(order.begin(), order.end(), 0);
-        return builder.CreateShuffleVector(padded_cells, order);
-    }
-    // Is this bit of each lane's index set?
-    Value* has_bit(Value* of, uint64_t bit)
-    {
-        Value* masked = builder.CreateAnd(of, llvm::ConstantInt::get(of->getType(), bit));
-        return builder.CreateICmpNE(masked, llvm::Constant::getNullValue(of->getType()));
-    }
-    // Of `choices`, a power of two of them, the one that the index's bits from `bit` upwards name.
-    Value* chosen(std::vector<Value*> choices, Value* of, uint64_t bit)
-    {
-        for (; choices.size() > 1; bit *= 2, choices.resize(choices.size() / 2)) {
-            Value* const upper = has_bit(of, bit);
-            for (size_t i = 0; i < choices.size(); i += 2)
-                choices[i / 2] = builder.CreateSelect(upper, choices[i + 1], choices[i]);
-        }
-        return choices[0];
-    }
-    // Each pair of registers is permuted by the index's lowest bits; its higher ones say which pair has the cell. What
-    // has no cell yet keeps its index, as the instruction does that permutes under a mask: no blending.
-    template <typename Cell, typename Source>
-    Value* from_pairs(llvm::Intrinsic::ID permute, const std::vector<Source>& cells, Value* of)
+    // Fewer lanes than words of a register are its first.
+    Value* padded() { return module.lanes == 16 ? index : part(index, 0, module.lanes, 16 - module.lanes); }
+    Value* of_lanes(Value* cells) { return module.lanes == 16 ? cells : part(cells, 0, module.lanes); }
+    // A pair of registers, permuted by the index's lowest bits.
+    template <typename Cell>
+    Value* from_pair(llvm::Intrinsic::ID permute, const Cell* cells, Value* of)
     {
         constexpr size_t width = register_bytes / sizeof(Cell);
-        std::vector<Cell> held(cells.begin(), cells.end());
-        const size_t pairs = (held.size() + 2 * width - 1) / (2 * width);
-        held.resize(pairs * 2 * width);
-        Value* const pair_of = builder.CreateLShr(of, std::countr_zero(2 * width));
-        Value* found = of;
-        llvm::Type* found_type = nullptr;
-        for (size_t i = 0; i < pairs; ++i) {
-            const llvm::ArrayRef<Cell> pair(held.data() + i * 2 * width, 2 * width);
-            Value* low = llvm::ConstantDataVector::get(builder.getContext(), pair.take_front(width));
-            Value* high = llvm::ConstantDataVector::get(builder.getContext(), pair.take_back(width));
-            Value* read = builder.CreateIntrinsic(permute, {}, {low, found, high});
-            found_type = read->getType();
-            if (pairs == 1) return read;
-            Value* is_here = builder.CreateICmpEQ(pair_of, llvm::ConstantInt::get(of->getType(), i));
+        Value* low = llvm::ConstantDataVector::get(builder.getContext(), llvm::ArrayRef(cells, width));
+        Value* high = llvm::ConstantDataVector::get(builder.getContext(), llvm::ArrayRef(cells + width, width));
+        return builder.CreateIntrinsic(permute, {}, {low, of, high});
+    }
+    // The index's higher bits say which pair has the cell. What has no cell yet keeps its index, as the instruction
+    // does that permutes under a mask: no blending.
+    template <typename Cell>
+    Value* from_pairs(llvm::Intrinsic::ID permute, std::vector<Cell> cells, Value* of)
+    {
+        constexpr size_t pair_size = 2 * register_bytes / sizeof(Cell);
+        cells.resize((cells.size() + pair_size - 1) / pair_size * pair_size);
+        Value* const pair_of = builder.CreateLShr(of, std::countr_zero(pair_size));
+        Value *found = of, *read = nullptr;
+        for (size_t first = 0; first < cells.size(); first += pair_size) {
+            read = from_pair(permute, cells.data() + first, found);
+            if (cells.size() == pair_size) return read;
+            Value* is_here = builder.CreateICmpEQ(pair_of, llvm::ConstantInt::get(of->getType(), first / pair_size));
             found = builder.CreateSelect(is_here, builder.CreateBitCast(read, of->getType()), found);
         }
-        return builder.CreateBitCast(found, found_type);
+        return builder.CreateBitCast(found, read->getType());
     }
     // A byte each: the lowest of a lane's four is its cell, the others are noise.
     Value* from_bytes()
     {
-        std::vector<uint8_t> cells(256);
-        std::copy(table.words.begin(), table.words.end(), cells.begin());
-        if (table.size() <= 128) cells.resize(128);
+        std::vector<uint8_t> cells(table.words.begin(), table.words.end());
+        cells.resize(cells.size() <= 128 ? 128 : 256);
         Value* const at = padded();
-        Value* bytes = builder.CreateBitCast(at, llvm::FixedVectorType::get(builder.getInt8Ty(), register_bytes));
-        std::vector<Value*> choices;
-        for (size_t first = 0; first < cells.size(); first += 128) {
-            const llvm::ArrayRef<uint8_t> pair(cells.data() + first, 128);
-            Value* low = llvm::ConstantDataVector::get(builder.getContext(), pair.take_front(64));
-            Value* high = llvm::ConstantDataVector::get(builder.getContext(), pair.take_back(64));
-            Value* read =
-                builder.CreateIntrinsic(llvm::Intrinsic::x86_avx512_vpermi2var_qi_512, {}, {low, bytes, high});
-            choices.push_back(builder.CreateBitCast(read, at->getType()));
+        Value* const bytes = builder.CreateBitCast(at, llvm::FixedVectorType::get(builder.getInt8Ty(), register_bytes));
+        const auto read = [&](size_t first) {
+            constexpr auto permute = llvm::Intrinsic::x86_avx512_vpermi2var_qi_512;
+            return builder.CreateBitCast(from_pair(permute, cells.data() + first, bytes), at->getType());
+        };
+        Value* found = read(0);
+        if (cells.size() > 128) {
+            Value* const upper = builder.CreateAnd(at, llvm::ConstantInt::get(at->getType(), 128));
+            found = builder.CreateSelect(builder.CreateIsNotNull(upper), read(128), found);
         }
-        return builder.CreateAnd(chosen(std::move(choices), at, 128), llvm::ConstantInt::get(at->getType(), 255));
+        return builder.CreateAnd(found, llvm::ConstantInt::get(at->getType(), 255));
     }
     // Sixteen lanes are two registers.
     Value* from_doubles()
     {
         if (table.size() > chunks_max * 8 || module.lanes % 8 != 0) return nullptr;
-        std::vector<int> order(module.lanes);
-        std::iota(order.begin(), order.end(), 0);
-        std::vector<Value*> parts;
-        for (size_t first = 0; first < order.size(); first += 8) {
-            Value* wide = builder.CreateZExt(builder.CreateShuffleVector(index, llvm::ArrayRef(order).slice(first, 8)),
-                                             llvm::FixedVectorType::get(builder.getInt64Ty(), 8));
-            parts.push_back(from_pairs<double>(llvm::Intrinsic::x86_avx512_vpermi2var_pd_512, table.reals, wide));
-        }
-        return parts.size() == 1 ? parts[0] : builder.CreateShuffleVector(parts[0], parts[1], order);
+        const auto read = [&](unsigned first) {
+            constexpr auto permute = llvm::Intrinsic::x86_avx512_vpermi2var_pd_512;
+            Value* const lanes = module.lanes == 8 ? index : part(index, first, 8);
+            llvm::Type* const wide = llvm::FixedVectorType::get(builder.getInt64Ty(), 8);
+            return from_pairs(permute, table.reals, builder.CreateZExt(lanes, wide));
+        };
+        return module.lanes == 8 ? read(0)
+                                 : builder.CreateShuffleVector(read(0), read(8), llvm::createSequentialMask(0, 16, 0));
     }
 };
 
 } // namespace
 
-llvm::Value* read_in_lanes(ModuleEmitter& module, llvm::IRBuilder<>& builder, uint32_t table, llvm::Value* index,
-                           bool is_single)
+llvm::GlobalVariable* ModuleEmitter::table(uint32_t index, bool is_single)
 {
-    const ir::Table& source = module.source.tables[table];
-    TableReader reader(module, builder, source, index);
+    llvm::GlobalVariable*& made = tables[{index, is_single}];
+    if (made) return made;
+    const ir::Table& table = source.tables[index];
+    llvm::LLVMContext& context = target.getContext();
+    const std::vector<float> singles(table.reals.begin(), table.reals.end());
+    llvm::Constant* cells = table.element != ir::Type::real ? llvm::ConstantDataArray::get(context, table.words)
+                            : is_single                     ? llvm::ConstantDataArray::get(context, singles)
+                                                            : llvm::ConstantDataArray::get(context, table.reals);
+    made = new llvm::GlobalVariable(target, cells->getType(), true, llvm::GlobalValue::InternalLinkage, cells);
+    made->setUnnamedAddr(llvm::GlobalValue::UnnamedAddr::Global);
+    return made;
+}
+
+Value* ModuleEmitter::read_in_lanes(llvm::IRBuilder<>& builder, uint32_t from, Value* index, bool is_single)
+{
+    TableReader reader(*this, builder, source.tables[from], index);
     if (Value* permuted = reader.permuted(is_single)) return permuted;
-    return reader.gathered(module.table(table, is_single), module.type(source.element, {false, is_single}));
+    return reader.gathered(table(from, is_single), type(source.tables[from].element, {false, is_single}));
 }
 
 } // namespace haptel::jit

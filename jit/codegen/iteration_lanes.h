@@ -42,6 +42,7 @@ struct LaneLoop {
     // instructions that do not, also of branches whose other instructions do.
     std::vector<bool> waits;
     std::vector<const ir::Instruction*> side_by_side;
+    bool is_ordered = false; // a draft: the iterations follow one another all the same, with the bits of lanes
 };
 using LaneLoops = std::map<const ir::For*, LaneLoop>;
 

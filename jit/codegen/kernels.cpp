@@ -1,5 +1,7 @@
 #include "jit/codegen/kernels.h"
 
+#include "jit/codegen/codegen_math.h"
+
 #include <algorithm>
 
 namespace haptel::jit {
@@ -9,61 +11,60 @@ namespace {
 // Instructions with those of all calls: what is smaller costs more to call than to compile again.
 constexpr size_t size_min = 60;
 
-struct Extent {
-    size_t size = 0;
-    bool is_library = true; // it and all that it calls
-};
-
 } // namespace
 
 // Callees stand before their callers.
 std::vector<bool> worth_a_kernel(const ir::Module& module)
 {
-    std::vector<Extent> extents;
+    std::vector<size_t> sizes;
+    std::vector<bool> are_library; // with all that they call
     std::vector<bool> worth;
     for (const ir::Function& function : module.functions) {
-        Extent extent;
-        extent.is_library = function.is_library;
+        size_t size = 0;
+        bool is_library = function.is_library;
         ir::for_each_instruction(function.body, [&](const ir::Instruction& made) {
-            ++extent.size;
+            ++size;
             const auto* call = std::get_if<ir::Call>(&made.kind);
             if (!call) return;
-            extent.size = std::min(extent.size + extents[call->function].size, size_min); // enough is enough
-            extent.is_library = extent.is_library && extents[call->function].is_library;
+            size = std::min(size + sizes[call->function], size_min); // enough is enough
+            is_library = is_library && are_library[call->function];
         });
-        worth.push_back(extent.is_library && extent.size >= size_min);
-        extents.push_back(extent);
+        sizes.push_back(size);
+        are_library.push_back(is_library);
+        worth.push_back(is_library && size >= size_min);
     }
     return worth;
 }
 
-KernelCalls::KernelCalls(const ir::Module& module, std::string of_target)
-    : target(std::move(of_target)), hashes(function_hashes(module)), is_worth_it(worth_a_kernel(module))
+KernelCalls::KernelCalls(const ir::Module& of, const Processor& of_target, std::string named)
+    : module(of)
+    , processor(of_target)
+    , target(std::move(named))
+    , hashes(function_hashes(of))
+    , is_worth_it(worth_a_kernel(of))
 {
 }
 
-std::string KernelCalls::call(Kernel kernel)
+std::string KernelCalls::call(uint32_t function, const Signature& signature, LaneForm lanes, Precision precision)
 {
-    if (!is_worth_it[kernel.function]) return {};
-    std::string text = to_text(hashes[kernel.function]) + kernel.signature.text();
-    for (uint32_t number : {static_cast<uint32_t>(kernel.lanes), static_cast<uint32_t>(kernel.precision)})
-        text += std::to_string(number) + ";";
-    std::string name = "haptel_k" + to_text(content_hash(text + target));
-    kernels.try_emplace(name, std::move(kernel));
+    if (!is_worth_it[function]) return {};
+    const std::string text = to_text(hashes[function]) + signature.text() + std::to_string(static_cast<int>(lanes)) +
+                             ";" + std::to_string(static_cast<int>(precision)) + ";" + target;
+    const std::string name = "haptel_k" + to_text(content_hash(text));
+    functions.try_emplace(name, [=, &from = module, &of = processor](llvm::Module& alone, bool is_draft) {
+        ModuleEmitter emitter(from, alone, of, lanes, precision, nullptr, is_draft);
+        llvm::Function* const code = emitter.function(function, signature).code;
+        code->setLinkage(llvm::GlobalValue::ExternalLinkage);
+        code->setName(name);
+        emitter.finish();
+        write_elementary(alone);
+    });
     return name;
 }
 
-std::unique_ptr<llvm::Module> generate_kernel(const ir::Module& module, const std::string& name, const Kernel& kernel,
-                                              const Processor& processor, llvm::LLVMContext& context, bool is_draft)
+void KernelCalls::note(const llvm::Module& made)
 {
-    auto generated = std::make_unique<llvm::Module>(name, context);
-    ModuleEmitter emitter(module, *generated, processor, kernel.lanes, kernel.precision, nullptr, is_draft);
-    llvm::Function* code = emitter.function(kernel.function, kernel.signature).code;
-    code->setLinkage(llvm::GlobalValue::ExternalLinkage);
-    code->setName(name);
-    emitter.finish();
-    write_elementary(*generated);
-    return generated;
+    functions.merge(elementary_calls(made));
 }
 
 } // namespace haptel::jit

@@ -6,11 +6,10 @@
 // the user's is a few calls. A program with kernels gives the bits of one without: they are the same operations.
 #pragma once
 
-#include "jit/codegen/codegen.h"
-#include "jit/codegen/codegen_math.h"
 #include "jit/codegen/codegen_module.h"
 #include "jit/codegen/content_hash.h"
 
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -20,39 +19,31 @@ namespace haptel::jit {
 // By index: library functions, with all that they call, that are long enough to be called.
 std::vector<bool> worth_a_kernel(const ir::Module& module);
 
-struct Kernel {
-    uint32_t function; // of the module that calls it
-    Signature signature;
-    LaneForm lanes;
-    Precision precision;
-};
+// By symbol, what writes a function into a module that is otherwise empty. Any thread.
+using FunctionsApart = std::map<std::string, std::function<void(llvm::Module& alone, bool is_draft)>>;
 
-// The kernels that one program calls, found while its code is generated.
+// The functions compiled apart that one program calls, found while its code is generated.
 class KernelCalls {
 public:
-    // `target` names processor and compiler: code for another one has other names.
-    KernelCalls(const ir::Module& module, std::string target);
+    // `target` names processor and compiler: code for another one has other names. Module and processor must outlive
+    // what is used().
+    KernelCalls(const ir::Module& module, const Processor& processor, std::string target);
 
     // The name to call it by, which is then one of used(); empty: it becomes part of the program.
-    std::string call(Kernel kernel);
-    const std::map<std::string, Kernel>& used() const { return kernels; }
-
+    std::string call(uint32_t function, const Signature& signature, LaneForm lanes, Precision precision);
     // Elementary functions are compiled apart likewise (jit/codegen/codegen_math.h): those that the program calls.
-    void note(const llvm::Module& made) { elementary.merge(elementary_calls(made)); }
-    const ElementaryForms& used_elementary() const { return elementary; }
+    void note(const llvm::Module& made);
+    const FunctionsApart& used() const { return functions; }
 
     const ContentHash& hash_of(uint32_t function) const { return hashes[function]; }
 
 private:
+    const ir::Module& module;
+    const Processor& processor;
     const std::string target;
     const std::vector<ContentHash> hashes; // by function
-    std::vector<bool> is_worth_it;         // likewise
-    std::map<std::string, Kernel> kernels; // by name
-    ElementaryForms elementary;
+    const std::vector<bool> is_worth_it;   // likewise
+    FunctionsApart functions;
 };
-
-// A module with that kernel alone, under its name.
-std::unique_ptr<llvm::Module> generate_kernel(const ir::Module& module, const std::string& name, const Kernel& kernel,
-                                              const Processor& processor, llvm::LLVMContext& context, bool is_draft);
 
 } // namespace haptel::jit

@@ -78,42 +78,28 @@ private:
     // ---- sizes
     void measure(const ir::Block& block)
     {
-        for (const ir::Instruction& made : block.instructions)
-            std::visit([&](const auto& kind) { measure(made, kind); }, made.kind);
+        for (const ir::Instruction& made : block.instructions) {
+            for (const ir::Block& inner : ir::blocks_of(made)) measure(inner);
+            for (size_t i = 0; i < made.results.size(); ++i) bounds[made.results[i].index] = bound_of_result(made, i);
+        }
     }
-    template <typename Kind>
-    void measure(const ir::Instruction&, const Kind&)
+    double bound_of_result(const ir::Instruction& made, size_t i) const
     {
-    }
-    void measure(const ir::Instruction& made, const ir::RealConstant& constant)
-    {
-        bounds[made.results[0].index] = std::fabs(constant.value);
-    }
-    void measure(const ir::Instruction& made, const ir::Operation& operation)
-    {
-        std::vector<double> of;
-        for (ir::Value operand : made.operands) of.push_back(bounds[operand.index]);
-        bounds[made.results[0].index] = bound_of(operation.op, of);
-    }
-    void measure(const ir::Instruction& made, const ir::ReadTable& read)
-    {
+        if (const auto* constant = std::get_if<ir::RealConstant>(&made.kind)) return std::fabs(constant->value);
+        if (const auto* call = std::get_if<ir::Call>(&made.kind)) return callees[call->function].result_bounds[i];
+        if (const auto* choice = std::get_if<ir::If>(&made.kind))
+            return std::fmax(bounds[choice->arms[0].yields[i].index], bounds[choice->arms[1].yields[i].index]);
+        if (const auto* operation = std::get_if<ir::Operation>(&made.kind)) {
+            std::vector<double> of;
+            for (ir::Value operand : made.operands) of.push_back(bounds[operand.index]);
+            return bound_of(operation->op, of);
+        }
         double largest = 0;
-        for (double cell : module.tables[read.table].reals) largest = std::fmax(largest, std::fabs(cell));
-        bounds[made.results[0].index] = largest;
+        const auto* read = std::get_if<ir::ReadTable>(&made.kind);
+        if (!read) return unknown; // what a loop carries, too
+        for (double cell : module.tables[read->table].reals) largest = std::fmax(largest, std::fabs(cell));
+        return largest;
     }
-    void measure(const ir::Instruction& made, const ir::Call& call)
-    {
-        for (size_t i = 0; i < made.results.size(); ++i)
-            bounds[made.results[i].index] = callees[call.function].result_bounds[i];
-    }
-    void measure(const ir::Instruction& made, const ir::If& choice)
-    {
-        for (const ir::Block& arm : choice.arms) measure(arm);
-        for (size_t i = 0; i < made.results.size(); ++i)
-            bounds[made.results[i].index] =
-                std::fmax(bounds[choice.arms[0].yields[i].index], bounds[choice.arms[1].yields[i].index]);
-    }
-    void measure(const ir::Instruction&, const ir::For& loop) { measure(loop.body[0]); } // what is carried: unknown
 
     // ---- sinks
     static constexpr uint32_t rounds_max = UINT32_MAX;

@@ -56,20 +56,21 @@ std::vector<bool> varying_values(const ir::Function& function, const std::vector
 
 // The results of a loop in lanes are one for all iterations, and so is what waits for them.
 std::vector<bool> varying_iterations(const ir::Function& function, const std::vector<bool>& parameters,
-                                     const LaneLoops& loops)
+                                     const LaneLoops& loops, bool ordered)
 {
     Variance variance(function, parameters);
     ir::for_each_instruction(function.body, [&](const ir::Instruction& made) {
         const auto* loop = std::get_if<ir::For>(&made.kind);
-        const auto in_lanes = loop ? loops.find(loop) : loops.end();
-        if (in_lanes == loops.end()) return;
-        const auto& [carried, fixed, waits, side_by_side] = in_lanes->second;
-        for (size_t i = 0; i < waits.size(); ++i) variance.is_one[i] = variance.is_one[i] || waits[i];
+        const auto found = loop ? loops.find(loop) : loops.end();
+        if (found == loops.end() || found->second.is_ordered != ordered) return;
+        const LaneLoop& in_lanes = found->second;
+        for (size_t i = 0; i < in_lanes.waits.size(); ++i)
+            if (in_lanes.waits[i]) variance.is_one[i] = true;
         for (ir::Value result : made.results) variance.is_one[result.index] = true;
         const std::vector<ir::Value>& values = loop->body[0].parameters;
         variance.set(values[0]);
-        for (size_t i = 0; i < carried.size(); ++i) {
-            if (carried[i].kind != Carried::Kind::kept) variance.set(values[i + 1]);
+        for (size_t i = 0; i < in_lanes.carried.size(); ++i) {
+            if (in_lanes.carried[i].kind != Carried::Kind::kept) variance.set(values[i + 1]);
             variance.is_one[values[i + 1].index] = true; // as it is now
         }
     });

@@ -12,9 +12,9 @@ namespace haptel::jit {
 // together: all of them if one argument does.
 std::vector<bool> varying_values(const ir::Function& function, const std::vector<bool>& parameters);
 
-// The same between the iterations of one loop, for one point: of the body of each of `loops`, or of everything where
-// those of the function's parameters vary.
+// The same between the iterations of one loop, for one point: of the body of each of `loops`, of the ordered ones or of
+// the others, or of everything where those of the function's parameters vary.
 std::vector<bool> varying_iterations(const ir::Function& function, const std::vector<bool>& parameters,
-                                     const LaneLoops& loops);
+                                     const LaneLoops& loops, bool ordered);
 
 } // namespace haptel::jit

@@ -3,19 +3,18 @@
 #include "jit/codegen/isa.h"
 #include "jit/codegen/kernels.h"
 #include "jit/codegen/llvm.h"
-#include "jit/engine/code_generator_tables.h"
-#include "jit/engine/code_version.h"
-#include "jit/engine/compilers.h"
-#include "jit/engine/hot_swap.h"
 #include "jit/engine/linker.h"
 #include "jit/engine/llvm_library.h"
+#include "jit/engine/machine_code.h"
 #include "jit/engine/shared_code.h"
-#include "jit/engine/stopwatch.h"
 
 #include <atomic>
 #include <cstdlib>
 
 namespace haptel::jit {
+
+// Which code generator this is: a hash of its sources, made when it is built.
+extern const char code_version[];
 
 namespace {
 
@@ -26,69 +25,26 @@ constexpr double worth_keeping_s = 10e-3;
 constexpr Effort kernel_effort_max = Effort::quick;
 
 // What is made once per process and never taken down: code may outlive every static object.
-class Engine {
-public:
-    static Engine& get()
-    {
-        static Engine* engine = new Engine;
-        return *engine;
-    }
-
-    CodeResult compile(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options);
-    void prepare_kernels(const ir::Module& module, std::span<const EntryPoint> entries);
-    void remove(llvm::orc::JITDylib& place) { linker.remove(place); }
-    std::string name() const { return machine_name; }
-    std::string identity() const { return target; }
-    size_t kernel_count() { return shared.count(); }
-    uint32_t lanes() const { return processor.lanes; }
-    std::string isa() const { return isa_text; }
-
-private:
-    Engine();
+struct Engine {
+    Engine() : fault(start()) {}
     std::string start();
+    CodeResult compile(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options);
     CodeResult link(const Object& object, std::span<const EntryPoint> entries, Fetch& callees, CompileTimes& times);
-    std::vector<SharedCode::Function> called(const ir::Module& module, const KernelCalls& calls) const;
     std::string identity_of(const KernelCalls& calls, std::span<const EntryPoint> entries) const;
 
-    std::string fault; // why there is no engine; empty: there is
-    std::string machine_name, isa_text;
-    std::string target; // all that decides what code is made of an IR
+    EngineInfo info;
     Processor processor;
     Compilers compilers;
     Linker linker;
-    SharedCode shared{compilers, linker};
+    SharedCode shared{compilers, linker, info.identity};
+    std::atomic<size_t> programs{0};
+    const std::string fault; // why there is no engine; empty: there is
 };
 
-std::atomic<size_t> alive{0};
-
-class LinkedCode final : public Code {
-public:
-    explicit LinkedCode(llvm::orc::JITDylib& own) : place(own) { ++alive; }
-    ~LinkedCode() override
-    {
-        Engine::get().remove(place);
-        --alive;
-    }
-    void add(const EntryPoint& entry, llvm::orc::ExecutorAddr address)
-    {
-        if (entry.lanes == LaneForm::points)
-            batch_entries[entry.name] = address.toPtr<haptel_batch_entry*>();
-        else
-            entries[entry.name] = address.toPtr<haptel_entry*>();
-    }
-    void add_slot(const EntryPoint& entry, llvm::orc::ExecutorAddr address)
-    {
-        slots[entry.name] = address.toPtr<void**>();
-    }
-    void set_full() { is_final = true; }
-
-private:
-    llvm::orc::JITDylib& place;
-};
-
-Engine::Engine()
+Engine& engine()
 {
-    fault = start();
+    static auto* const made = new Engine;
+    return *made;
 }
 
 std::string Engine::start()
@@ -100,24 +56,57 @@ std::string Engine::start()
     const char* const wanted = std::getenv("HAPTEL_ISA");
     if (std::string error = restrict_to_isa(*host, wanted ? wanted : ""); !error.empty()) return error;
     host->getOptions().AllowFPOpFusion = llvm::FPOpFusion::Strict;
-    machine_name = "LLVM " + llvm_version() + " " + host->getTargetTriple().str() + " " + host->getCPU();
+    info.name = "LLVM " + llvm_version() + " " + host->getTargetTriple().str() + " " + host->getCPU();
 
-    if (std::string error = compilers.start(*host); !error.empty()) return error;
-    compilers.with_machine([&](const llvm::TargetMachine& machine) {
-        make_code_generator_tables(machine);
+    std::string linker_error;
+    const std::string error = compilers.start(*host, [&](llvm::TargetMachine& machine) {
         processor = processor_of(machine);
-        isa_text = isa_of(machine);
-        target = std::string(code_version) + ";" + llvm_identity() + ";" + machine_name + ";" +
-                 machine.getTargetFeatureString().str() + ";" + std::to_string(processor.lanes);
-        fault = linker.start(*host, machine.createDataLayout());
+        info.batch_lanes = processor.lanes;
+        info.isa = isa_of(machine);
+        info.identity = std::string(code_version) + ";" + llvm_identity() + ";" + info.name + ";" +
+                        machine.getTargetFeatureString().str() + ";" + std::to_string(processor.lanes);
+        linker_error = linker.start(*host, machine.createDataLayout());
     });
-    return fault;
+    return error.empty() ? linker_error : error;
+}
+
+// The symbol of an entry's slot, which holds the address of its code.
+std::string slot_of(const EntryPoint& entry)
+{
+    return "slot of " + symbol_of(entry);
+}
+
+// Entries that can be given other code while they are in use: each jumps to where its slot points. Whoever calls it
+// holds the same pointer before and after, and gets the same bits if the code is of the same program.
+void make_replaceable(llvm::Module& module, std::span<const EntryPoint> entries)
+{
+    for (const EntryPoint& entry : entries) {
+        llvm::Function* const body = module.getFunction(symbol_of(entry));
+        body->setName("body of " + symbol_of(entry));
+        body->setLinkage(llvm::GlobalValue::InternalLinkage);
+        llvm::Type* const pointer = llvm::PointerType::getUnqual(module.getContext());
+        auto* slot =
+            new llvm::GlobalVariable(module, pointer, false, llvm::GlobalValue::ExternalLinkage, body, slot_of(entry));
+        slot->setAlignment(llvm::Align(alignof(void*)));
+
+        llvm::Function* const jump = llvm::Function::Create(body->getFunctionType(), llvm::GlobalValue::ExternalLinkage,
+                                                            symbol_of(entry), module);
+        jump->setDoesNotThrow();
+        llvm::IRBuilder<> builder(llvm::BasicBlock::Create(module.getContext(), "", jump));
+        llvm::LoadInst* code = builder.CreateLoad(pointer, slot);
+        code->setAlignment(llvm::Align(alignof(void*)));
+        code->setAtomic(llvm::AtomicOrdering::Acquire);
+        std::vector<llvm::Value*> arguments;
+        for (llvm::Argument& argument : jump->args()) arguments.push_back(&argument);
+        builder.CreateCall(body->getFunctionType(), code, arguments)->setTailCallKind(llvm::CallInst::TCK_MustTail);
+        builder.CreateRetVoid();
+    }
 }
 
 // Equal for programs of equal code: what their entries do, under which names, and where they find the parameters.
 std::string Engine::identity_of(const KernelCalls& calls, std::span<const EntryPoint> entries) const
 {
-    std::string text = target;
+    std::string text = info.identity;
     const auto add = [&](std::string_view word) { text.append(std::to_string(word.size())).append(" ").append(word); };
     for (const EntryPoint& entry : entries) {
         const bool is_height = entry.kind == EntryPoint::Kind::height;
@@ -135,33 +124,7 @@ std::string Engine::identity_of(const KernelCalls& calls, std::span<const EntryP
     return text;
 }
 
-std::vector<SharedCode::Function> Engine::called(const ir::Module& module, const KernelCalls& calls) const
-{
-    std::vector<SharedCode::Function> functions;
-    for (const auto& [name, kernel] : calls.used())
-        functions.push_back(
-            {name, name, [&, &symbol = name, &wanted = kernel](llvm::LLVMContext& context, Effort effort) {
-                 return generate_kernel(module, symbol, wanted, processor, context, effort == Effort::draft);
-             }});
-    for (const auto& [name, form] : calls.used_elementary())
-        functions.push_back(
-            {name, name + ";" + target, [&symbol = name, &wanted = form](llvm::LLVMContext& context, Effort) {
-                 return generate_elementary(symbol, wanted, context);
-             }});
-    return functions;
-}
-
-void Engine::prepare_kernels(const ir::Module& module, std::span<const EntryPoint> entries)
-{
-    if (!fault.empty()) return;
-    KernelCalls calls(module, target);
-    llvm::LLVMContext context;
-    generate(module, entries, processor, context, &calls, true);
-    Addresses unused;
-    Fetch(shared, called(module, calls), kernel_effort_max).finish(unused);
-}
-
-// With what the object calls. An object from disk that cannot be linked leaves no code and no error.
+// With what the object calls.
 CodeResult Engine::link(const Object& object, std::span<const EntryPoint> entries, Fetch& callees, CompileTimes& times)
 {
     Stopwatch stopwatch;
@@ -175,16 +138,19 @@ CodeResult Engine::link(const Object& object, std::span<const EntryPoint> entrie
         if (is_replaceable) entry_addresses[slot_of(entry)];
     }
     const Linker::Linked linked = linker.link(object.bytes, callee_addresses, entry_addresses);
-    if (!linked.place) return {nullptr, object.is_from_disk ? "" : linked.error};
-    auto code = std::make_shared<LinkedCode>(*linked.place);
-    for (const EntryPoint& entry : entries) {
-        code->add(entry, entry_addresses[symbol_of(entry)]);
-        if (is_replaceable) code->add_slot(entry, entry_addresses[slot_of(entry)]);
-    }
-    if (!is_replaceable) code->set_full();
+    if (!linked.place) return {nullptr, linked.error};
+    ++programs;
+    const std::shared_ptr<void> memory(linked.place, [this](llvm::orc::JITDylib* place) {
+        linker.remove(*place);
+        --programs;
+    });
+    std::map<std::string, Code::Entry> linked_entries;
+    for (const EntryPoint& entry : entries)
+        linked_entries[entry.name] = {entry_addresses[symbol_of(entry)].toPtr<void*>(),
+                                      is_replaceable ? entry_addresses[slot_of(entry)].toPtr<void**>() : nullptr,
+                                      entry.lanes == LaneForm::points};
     times.link_s = stopwatch.lap_s();
-    code->times = times;
-    return {std::move(code), {}};
+    return {std::make_shared<Code>(std::move(linked_entries), memory, times, !is_replaceable), {}};
 }
 
 CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options)
@@ -192,7 +158,7 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
     if (!fault.empty()) return {nullptr, fault};
     CompileTimes times;
     Stopwatch stopwatch;
-    KernelCalls calls(module, target);
+    KernelCalls calls(module, processor, info.identity);
     const std::string identity = identity_of(calls, entries);
     const auto generate_for = [&](Effort effort, llvm::LLVMContext& context) {
         const bool has_kernels = options.kernels && effort != Effort::full;
@@ -202,7 +168,7 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
         return generated;
     };
     const auto callees_for = [&](Effort effort) {
-        return Fetch(shared, called(module, calls), std::min(effort, kernel_effort_max));
+        return Fetch(shared, calls.used(), std::min(effort, kernel_effort_max));
     };
     Object object;
     if (options.kernels) object = found_object(identity, options.effort);
@@ -214,7 +180,7 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
         times.generate_s = stopwatch.lap_s();
         Fetch callees = callees_for(object.effort);
         CodeResult linked = link(object, entries, callees, times);
-        if (linked.code || !linked.error.empty()) return linked;
+        if (linked.code) return linked; // else what is on disk is no good
     }
     llvm::LLVMContext context;
     const std::unique_ptr<llvm::Module> generated = generate_for(options.effort, context);
@@ -229,69 +195,58 @@ CodeResult Engine::compile(const ir::Module& module, std::span<const EntryPoint>
 
 } // namespace
 
+haptel_entry* Code::entry(const std::string& name) const
+{
+    const auto found = entries.find(name);
+    const bool is_one = found != entries.end() && !found->second.is_batch;
+    return is_one ? reinterpret_cast<haptel_entry*>(found->second.address) : nullptr;
+}
+
+haptel_batch_entry* Code::batch_entry(const std::string& name) const
+{
+    const auto found = entries.find(name);
+    const bool is_one = found != entries.end() && found->second.is_batch;
+    return is_one ? reinterpret_cast<haptel_batch_entry*>(found->second.address) : nullptr;
+}
+
 void Code::replace_by(std::shared_ptr<const Code> better) const
 {
     const std::lock_guard lock(replacing);
     if (is_final) return;
     replacement = std::move(better); // first, so that it outlives every call
-    for (const auto& [name, slot] : slots) {
-        void* code = reinterpret_cast<void*>(replacement->entry(name));
-        if (!code) code = reinterpret_cast<void*>(replacement->batch_entry(name));
-        if (code) std::atomic_ref(*slot).store(code, std::memory_order_release);
-    }
+    for (const auto& [name, entry] : entries)
+        std::atomic_ref(*entry.slot).store(replacement->entries.at(name).address, std::memory_order_release);
     is_final = true;
-}
-
-haptel_entry* Code::entry(const std::string& name) const
-{
-    const auto found = entries.find(name);
-    return found == entries.end() ? nullptr : found->second;
-}
-
-haptel_batch_entry* Code::batch_entry(const std::string& name) const
-{
-    const auto found = batch_entries.find(name);
-    return found == batch_entries.end() ? nullptr : found->second;
 }
 
 CodeResult compile_code(const ir::Module& module, std::span<const EntryPoint> entries, const CodeOptions& options)
 {
-    return Engine::get().compile(module, entries, options);
+    return engine().compile(module, entries, options);
 }
 
 void prepare_kernels(const ir::Module& module, std::span<const EntryPoint> entries)
 {
-    Engine::get().prepare_kernels(module, entries);
+    if (!engine().fault.empty()) return;
+    KernelCalls calls(module, engine().processor, engine().info.identity);
+    llvm::LLVMContext context;
+    generate(module, entries, engine().processor, context, &calls, true);
+    Addresses unused;
+    Fetch(engine().shared, calls.used(), kernel_effort_max).finish(unused);
 }
 
 size_t programs_alive()
 {
-    return alive;
+    return engine().programs;
 }
 
 size_t kernels_alive()
 {
-    return Engine::get().kernel_count();
+    return engine().shared.count();
 }
 
-uint32_t batch_lanes()
+const EngineInfo& engine_info()
 {
-    return Engine::get().lanes();
-}
-
-std::string isa_name()
-{
-    return Engine::get().isa();
-}
-
-std::string code_identity()
-{
-    return Engine::get().identity();
-}
-
-std::string engine_name()
-{
-    return Engine::get().name();
+    return engine().info;
 }
 
 } // namespace haptel::jit

@@ -34,11 +34,20 @@ struct CompileTimes {
 // Owns the machine code of one program.
 class Code {
 public:
-    virtual ~Code() = default;
+    // Its entry points by name.
+    struct Entry {
+        void* address = nullptr;
+        void** slot = nullptr; // holds where the entry jumps to; none in code of full effort
+        bool is_batch = false;
+    };
+    Code(std::map<std::string, Entry> linked, std::shared_ptr<void> owned, const CompileTimes& took, bool is_full)
+        : times(took), entries(std::move(linked)), memory(std::move(owned)), is_final(is_full)
+    {
+    }
     // Of an entry point by its name; null if there is none.
     haptel_entry* entry(const std::string& name) const;
     haptel_batch_entry* batch_entry(const std::string& name) const;
-    CompileTimes times;
+    const CompileTimes times;
 
     // True where the code is of full effort, made so or replaced.
     bool is_full() const { return is_final; }
@@ -46,13 +55,10 @@ public:
     // callers in any thread go on and hold the pointers that they held. Once.
     void replace_by(std::shared_ptr<const Code> better) const;
 
-protected:
-    std::map<std::string, haptel_entry*> entries;
-    std::map<std::string, haptel_batch_entry*> batch_entries;
-    std::map<std::string, void**> slots; // by entry, jit/engine/hot_swap.h; none in code of full effort
-    mutable std::atomic<bool> is_final{false};
-
 private:
+    const std::map<std::string, Entry> entries;
+    const std::shared_ptr<void> memory;
+    mutable std::atomic<bool> is_final;
     mutable std::mutex replacing;
     mutable std::shared_ptr<const Code> replacement;
 };
@@ -80,16 +86,13 @@ size_t programs_alive();
 // Library functions that were compiled apart and are in memory (jit/codegen/kernels.h); they stay.
 size_t kernels_alive();
 
-// Points that a batch entry evaluates side by side.
-uint32_t batch_lanes();
-
-// "avx512 vbmi": the instruction set of code, as jit/codegen/isa.h names it. Empty where there is no engine.
-std::string isa_name();
-
-// "LLVM 19.1.7 x86_64-pc-linux-gnu skylake-avx512": for reports.
-std::string engine_name();
-
-// What decides which code is made of an IR, and code on disk is known by: code generator, LLVM, processor.
-std::string code_identity();
+struct EngineInfo {
+    uint32_t batch_lanes = 0; // points that a batch entry evaluates side by side
+    std::string isa;          // "avx512 vbmi", as jit/codegen/isa.h names it. Empty where there is no engine
+    std::string name;         // "LLVM 19.1.7 x86_64-pc-linux-gnu skylake-avx512": for reports
+    // What decides which code is made of an IR, and code on disk is known by: code generator, LLVM, processor.
+    std::string identity;
+};
+const EngineInfo& engine_info();
 
 } // namespace haptel::jit

@@ -4,16 +4,7 @@
 
 namespace haptel::jit {
 
-namespace {
-
 namespace orc = llvm::orc;
-
-std::string text(llvm::Error error)
-{
-    return llvm::toString(std::move(error));
-}
-
-} // namespace
 
 std::string Linker::start(const orc::JITTargetMachineBuilder& host, const llvm::DataLayout& layout)
 {
@@ -23,39 +14,27 @@ std::string Linker::start(const orc::JITTargetMachineBuilder& host, const llvm::
                      .setLinkProcessSymbolsByDefault(false)
                      .setPlatformSetUp(orc::setUpInactivePlatform) // no constructors, no thread-local data
                      .create();
-    if (!built) return "the JIT did not start: " + text(built.takeError());
+    if (!built) return "the JIT did not start: " + llvm::toString(built.takeError());
     jit = std::move(*built);
     // Failures come back from the lookup; nothing is printed.
     jit->getExecutionSession().setErrorReporter([](llvm::Error error) { llvm::consumeError(std::move(error)); });
-
-    auto made = jit->createJITDylib("library");
-    if (!made) return "the JIT did not start: " + text(made.takeError());
-    library = &*made;
-    orc::SymbolMap symbols;
+    library = &new_place("library");
+    Addresses functions;
     for (const LibraryFunction& function : code_library())
-        symbols[jit->mangleAndIntern(function.name)] = {orc::ExecutorAddr::fromPtr(function.address),
-                                                        llvm::JITSymbolFlags::Exported};
-    if (auto error = library->define(orc::absoluteSymbols(std::move(symbols))))
-        return "the JIT did not start: " + text(std::move(error));
+        functions[function.name] = orc::ExecutorAddr::fromPtr(function.address);
+    define(*library, functions);
     return {};
 }
 
 Linker::Linked Linker::link(std::string_view object, const Addresses& others, Addresses& wanted)
 {
-    auto made = jit->createJITDylib("object " + std::to_string(++links));
-    if (!made) return {nullptr, "no room for the object: " + text(made.takeError())};
-    orc::JITDylib& place = *made;
+    orc::JITDylib& place = new_place("object " + std::to_string(++links));
     const auto failed = [&](const std::string& what, llvm::Error error) {
         remove(place);
-        return Linked{nullptr, what + text(std::move(error))};
+        return Linked{nullptr, what + llvm::toString(std::move(error))};
     };
     place.addToLinkOrder(*library);
-    orc::SymbolMap symbols;
-    for (const auto& [name, address] : others)
-        symbols[jit->mangleAndIntern(name)] = {address, llvm::JITSymbolFlags::Exported};
-    if (!symbols.empty())
-        if (auto error = place.define(orc::absoluteSymbols(std::move(symbols))))
-            return failed("what the object calls was refused: ", std::move(error));
+    define(place, others);
     auto bytes = llvm::MemoryBuffer::getMemBufferCopy({object.data(), object.size()}, "textures");
     if (auto error = jit->addObjectFile(place, std::move(bytes)))
         return failed("the object was refused: ", std::move(error));
@@ -71,6 +50,21 @@ void Linker::remove(orc::JITDylib& place)
 {
     // The only ways to fail are the operating system's, at unmapping; there is nobody to tell and nothing to mend.
     llvm::consumeError(jit->getExecutionSession().removeJITDylib(place));
+}
+
+// Each has a name of its own, which is all that can go wrong.
+orc::JITDylib& Linker::new_place(const std::string& name)
+{
+    return llvm::cantFail(jit->createJITDylib(name));
+}
+
+// Of names that the place does not have yet.
+void Linker::define(orc::JITDylib& place, const Addresses& functions)
+{
+    orc::SymbolMap symbols;
+    for (const auto& [name, address] : functions)
+        symbols[jit->mangleAndIntern(name)] = {address, llvm::JITSymbolFlags::Exported};
+    llvm::cantFail(place.define(orc::absoluteSymbols(std::move(symbols))));
 }
 
 } // namespace haptel::jit

@@ -32,6 +32,9 @@ private:
     std::unique_ptr<llvm::orc::LLJIT> jit;
     llvm::orc::JITDylib* library = nullptr; // holds code_library()
     std::atomic<uint64_t> links{0};         // made so far, for names
+
+    llvm::orc::JITDylib& new_place(const std::string& name);
+    void define(llvm::orc::JITDylib& place, const Addresses& functions);
 };
 
 } // namespace haptel::jit

@@ -1,11 +1,14 @@
 #include "jit/engine/llvm_library.h"
 
 #include <llvm-c/Core.h>
+#include <llvm/ADT/StringExtras.h>
 
+#include <algorithm>
 #include <cstring>
 #include <dlfcn.h>
 #include <elf.h>
 #include <link.h>
+#include <span>
 #include <string_view>
 #include <sys/stat.h>
 
@@ -18,60 +21,45 @@ const void* code_of_llvm()
     return reinterpret_cast<const void*>(&LLVMGetVersion);
 }
 
-struct Wanted {
-    uintptr_t address;
-    std::string build_id;
-};
-
 // In the notes of one segment: name size, content size and kind, then name and content, each padded to four bytes.
-std::string build_id_in(const char* notes, size_t size)
+std::string build_id_in(std::string_view notes)
 {
     const auto padded = [](size_t count) { return (count + 3) / 4 * 4; };
-    while (size >= sizeof(ElfW(Nhdr))) {
-        ElfW(Nhdr) head;
-        std::memcpy(&head, notes, sizeof head);
+    ElfW(Nhdr) head;
+    while (notes.size() >= sizeof head) {
+        std::memcpy(&head, notes.data(), sizeof head);
         const size_t content = sizeof head + padded(head.n_namesz), end = content + padded(head.n_descsz);
-        if (end > size) break;
-        if (head.n_type == NT_GNU_BUILD_ID && std::string_view(notes + sizeof head, 3) == "GNU") {
-            std::string id;
-            for (size_t i = 0; i < head.n_descsz; ++i) {
-                const auto byte = static_cast<unsigned char>(notes[content + i]);
-                (id += "0123456789abcdef"[byte >> 4]) += "0123456789abcdef"[byte & 15];
-            }
-            return id;
-        }
-        notes += end;
-        size -= end;
+        if (end > notes.size()) break;
+        if (head.n_type == NT_GNU_BUILD_ID && notes.substr(sizeof head, 3) == "GNU")
+            return llvm::toHex(notes.substr(content, head.n_descsz), true);
+        notes.remove_prefix(end);
     }
     return {};
-}
-
-int look_at(dl_phdr_info* file, size_t, void* data)
-{
-    Wanted& wanted = *static_cast<Wanted*>(data);
-    bool is_inside = false;
-    for (size_t i = 0; i < file->dlpi_phnum; ++i) {
-        const ElfW(Phdr)& segment = file->dlpi_phdr[i];
-        const uintptr_t begin = file->dlpi_addr + segment.p_vaddr;
-        is_inside |= segment.p_type == PT_LOAD && wanted.address - begin < segment.p_memsz;
-    }
-    if (!is_inside) return 0;
-    for (size_t i = 0; i < file->dlpi_phnum && wanted.build_id.empty(); ++i) {
-        const ElfW(Phdr)& segment = file->dlpi_phdr[i];
-        if (segment.p_type == PT_NOTE)
-            wanted.build_id =
-                build_id_in(reinterpret_cast<const char*>(file->dlpi_addr + segment.p_vaddr), segment.p_memsz);
-    }
-    return 1;
 }
 
 } // namespace
 
 std::string build_id_of(const void* address)
 {
-    Wanted wanted{reinterpret_cast<uintptr_t>(address), {}};
-    dl_iterate_phdr(look_at, &wanted);
-    return wanted.build_id;
+    struct Search {
+        uintptr_t wanted;
+        std::string build_id;
+    } search{reinterpret_cast<uintptr_t>(address), {}};
+    const auto look_at = [](dl_phdr_info* file, size_t, void* data) {
+        auto& here = *static_cast<Search*>(data);
+        const std::span segments(file->dlpi_phdr, file->dlpi_phnum);
+        if (std::none_of(segments.begin(), segments.end(), [&](const ElfW(Phdr) & segment) {
+                return segment.p_type == PT_LOAD && here.wanted - (file->dlpi_addr + segment.p_vaddr) < segment.p_memsz;
+            }))
+            return 0;
+        for (const ElfW(Phdr) & segment : segments)
+            if (segment.p_type == PT_NOTE && here.build_id.empty())
+                here.build_id =
+                    build_id_in({reinterpret_cast<const char*>(file->dlpi_addr + segment.p_vaddr), segment.p_memsz});
+        return 1;
+    };
+    dl_iterate_phdr(look_at, &search);
+    return search.build_id;
 }
 
 std::string llvm_version()

@@ -1,13 +1,61 @@
-// An LLVM module to an object file.
+// LLVM modules to object files, for as many threads at once as ask: by a short list of LLVM's passes for drafts and
+// quick code, by the standard pipeline for full effort.
 #pragma once
 
 #include "jit/codegen/llvm.h"
 #include "jit/engine/engine.h"
 
+#include <array>
+#include <chrono>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
 namespace haptel::jit {
 
-// Verifies, optimises and selects; adds what that took to `times`. Nothing or why not.
-std::string make_object(llvm::Module& module, llvm::TargetMachine& machine, Effort effort,
-                        llvm::SmallVectorImpl<char>& object, CompileTimes& times);
+// Seconds from one lap to the next.
+class Stopwatch {
+public:
+    double lap_s()
+    {
+        const Clock::time_point now = Clock::now();
+        return std::chrono::duration<double>(now - std::exchange(start, now)).count();
+    }
+
+private:
+    using Clock = std::chrono::steady_clock;
+    Clock::time_point start = Clock::now();
+};
+
+// An object file and how it came about.
+struct Object {
+    std::string bytes, error;
+    Effort effort = Effort::quick; // what went into it, at least what was asked for
+};
+
+// Verifies, optimises and selects; adds what that took to `times`.
+Object make_object(llvm::Module& module, llvm::TargetMachine& machine, Effort effort, CompileTimes& times);
+
+// The code generators of this processor. One serves one thread at a time; it is made when all there are serve another.
+class Compilers {
+public:
+    // Calls `look` with one. Nothing or why not; nothing else may be called before.
+    std::string start(const llvm::orc::JITTargetMachineBuilder& host,
+                      llvm::function_ref<void(llvm::TargetMachine&)> look);
+
+    Object make(llvm::Module& module, Effort effort, CompileTimes& times);
+
+private:
+    using Machine = std::unique_ptr<llvm::TargetMachine>;
+    Machine take(Effort effort);
+    void give_back(Effort effort, Machine machine);
+
+    std::optional<llvm::orc::JITTargetMachineBuilder> builder;
+    std::mutex mutex;
+    std::array<std::vector<Machine>, 3> idle; // by Effort
+};
 
 } // namespace haptel::jit

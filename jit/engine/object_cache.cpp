@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <llvm/Support/MemoryBuffer.h>
+#include <llvm/Support/raw_ostream.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <vector>
@@ -21,40 +23,6 @@ constexpr uint64_t object_max = uint64_t{64} << 20; // of code for textures, a t
 constexpr uint32_t stores_per_trim = 64;            // the first of a process is one
 constexpr auto abandoned_after = std::chrono::hours(1);
 
-class File {
-public:
-    explicit File(int opened) : descriptor(opened) {}
-    ~File()
-    {
-        if (descriptor >= 0) close(descriptor);
-    }
-    File(const File&) = delete;
-    File& operator=(const File&) = delete;
-    const int descriptor;
-};
-
-bool write_all(int descriptor, std::string_view bytes)
-{
-    while (!bytes.empty()) {
-        const ssize_t written = write(descriptor, bytes.data(), bytes.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) return false;
-        bytes.remove_prefix(static_cast<size_t>(written));
-    }
-    return true;
-}
-
-bool read_all(int descriptor, std::string& bytes)
-{
-    for (size_t done = 0; done < bytes.size();) {
-        const ssize_t count = read(descriptor, bytes.data() + done, bytes.size() - done);
-        if (count < 0 && errno == EINTR) continue;
-        if (count <= 0) return false;
-        done += static_cast<size_t>(count);
-    }
-    return true;
-}
-
 std::string_view bytes_of(const ContentHash& hash)
 {
     return {reinterpret_cast<const char*>(hash.data()), hash.size()};
@@ -68,6 +36,20 @@ std::string head_of(const ContentHash& key, std::string_view object)
     return std::string(magic).append(bytes_of(key)).append(bytes_of(content_hash(checked)));
 }
 constexpr size_t head_size = magic.size() + 2 * sizeof(ContentHash);
+
+// Of an open file; nothing where it is not ours, or damaged.
+std::optional<std::string> object_in(int file, const ContentHash& key)
+{
+    struct stat found = {};
+    if (fstat(file, &found) != 0 || !S_ISREG(found.st_mode) || found.st_uid != geteuid()) return {};
+    const auto size = static_cast<uint64_t>(found.st_size);
+    if (size < head_size || size > object_max) return {};
+    const auto bytes = llvm::MemoryBuffer::getOpenFile(file, "", size, false, true); // not mapped: it may be cut short
+    if (!bytes) return {};
+    const std::string_view whole = (*bytes)->getBuffer(), object = whole.substr(head_size);
+    if (whole.substr(0, head_size) != head_of(key, object)) return {};
+    return std::string(object);
+}
 
 fs::path folder_of_environment()
 {
@@ -138,19 +120,13 @@ std::string ObjectCache::fault() const
 
 std::optional<std::string> ObjectCache::load(const ContentHash& key) const
 {
-    if (folder.empty()) return std::nullopt;
+    if (!fault().empty()) return std::nullopt;
     // Not through a link, and without waiting for the other end of a pipe.
-    const File file(open(place_of(key).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
-    struct stat found = {};
-    if (file.descriptor < 0 || fstat(file.descriptor, &found) != 0 || !S_ISREG(found.st_mode)) return std::nullopt;
-    const auto size = static_cast<uint64_t>(found.st_size);
-    if (size < head_size || size > object_max || found.st_uid != geteuid() || !fault().empty()) return std::nullopt;
-    std::string bytes(size, '\0');
-    if (!read_all(file.descriptor, bytes)) return std::nullopt;
-    std::string object = bytes.substr(head_size);
-    bytes.resize(head_size);
-    if (bytes != head_of(key, object)) return std::nullopt;
-    futimens(file.descriptor, nullptr); // used now
+    const int file = open(place_of(key).c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (file < 0) return std::nullopt;
+    std::optional<std::string> object = object_in(file, key);
+    if (object) futimens(file, nullptr); // used now
+    close(file);
     return object;
 }
 
@@ -161,13 +137,13 @@ void ObjectCache::store(const ContentHash& key, std::string_view object)
     if (fs::create_directories(folder, ignored)) chmod(folder.c_str(), S_IRWXU);
     if (!fault().empty()) return;
     std::string name = (folder / unfinished).string() + "XXXXXX";
-    {
-        const File file(mkostemp(name.data(), O_CLOEXEC));
-        if (file.descriptor < 0) return;
-        if (!write_all(file.descriptor, head_of(key, object)) || !write_all(file.descriptor, object) ||
-            rename(name.c_str(), place_of(key).c_str()) != 0)
-            unlink(name.c_str());
-    }
+    const int file = mkostemp(name.data(), O_CLOEXEC);
+    if (file < 0) return;
+    llvm::raw_fd_ostream out(file, true);
+    out << head_of(key, object) << object;
+    out.close();
+    if (out.has_error() || rename(name.c_str(), place_of(key).c_str()) != 0) unlink(name.c_str());
+    out.clear_error(); // else it would end the process
     if (stored++ % stores_per_trim == 0) trim();
 }
 

@@ -21,7 +21,7 @@ Object found_object(const std::string& identity, Effort effort)
     for (Effort kept : {Effort::full, Effort::quick, Effort::draft})
         if (kept >= effort)
             if (std::optional<std::string> found = ObjectCache::shared().load(key_of(identity, kept)))
-                return {std::move(*found), {}, kept, true};
+                return {std::move(*found), {}, kept};
     return {};
 }
 
@@ -43,34 +43,34 @@ size_t SharedCode::count()
     return linked.size();
 }
 
-std::string SharedCode::link(const Function& function, Effort effort, llvm::orc::ExecutorAddr& address)
+std::string SharedCode::link(const Function& function, Effort effort)
 {
-    Addresses wanted{{function.name, {}}};
-    Object object = found_object(function.identity, effort);
+    const auto& [name, write] = function;
+    const std::string identity = name + ";" + target;
+    Addresses wanted{{name, {}}};
+    Object object = found_object(identity, effort);
     if (object.bytes.empty() || !linker.link(object.bytes, {}, wanted).place) {
         CompileTimes unused;
         llvm::LLVMContext context;
-        object = compilers.make(*function.generate(context, effort), effort, unused);
+        llvm::Module alone(name, context);
+        write(alone, effort == Effort::draft);
+        object = compilers.make(alone, effort, unused);
         if (!object.error.empty()) return object.error;
-        if (effort != Effort::draft) keep(object, function.identity);
+        if (effort != Effort::draft) keep(object, identity);
         if (Linker::Linked made = linker.link(object.bytes, {}, wanted); !made.place) return made.error;
     }
-    address = wanted.begin()->second;
+    const Linked made{wanted.begin()->second, object.effort};
     const std::lock_guard lock(mutex);
-    const auto [place, is_new] = linked.try_emplace(function.name, Linked{address, object.effort});
-    if (!is_new && place->second.effort < object.effort) place->second = {address, object.effort};
+    const auto [place, is_new] = linked.try_emplace(name, made);
+    if (!is_new && place->second.effort < made.effort) place->second = made;
     return {};
 }
 
-Fetch::Fetch(SharedCode& from, std::vector<SharedCode::Function> wanted, Effort of_effort)
-    : shared(from), effort(of_effort)
+Fetch::Fetch(SharedCode& from, const FunctionsApart& functions, Effort of_effort)
+    : shared(from), wanted(functions), effort(of_effort)
 {
-    for (SharedCode::Function& function : wanted) {
-        if (const auto address = shared.known(function.name, effort))
-            found[function.name] = address;
-        else
-            missing.push_back({std::move(function), {}, {}});
-    }
+    for (const SharedCode::Function& function : wanted)
+        if (!shared.known(function.first, effort)) missing.push_back({function});
     const size_t others = std::max(std::thread::hardware_concurrency(), 2u) - 1;
     while (helpers.size() < std::min(missing.size(), others)) // deferred where no thread is to be had
         helpers.push_back(std::async(std::launch::async | std::launch::deferred, [this] { work(); }));
@@ -78,8 +78,7 @@ Fetch::Fetch(SharedCode& from, std::vector<SharedCode::Function> wanted, Effort 
 
 void Fetch::work()
 {
-    for (size_t i = next++; i < missing.size(); i = next++)
-        missing[i].error = shared.link(missing[i].function, effort, missing[i].address);
+    for (size_t i = next++; i < missing.size(); i = next++) missing[i].error = shared.link(missing[i].function, effort);
 }
 
 std::string Fetch::finish(Addresses& addresses)
@@ -87,11 +86,10 @@ std::string Fetch::finish(Addresses& addresses)
     work();
     for (std::future<void>& helper : helpers) helper.get();
     helpers.clear();
-    addresses = found;
-    for (const Item& item : missing) {
-        if (!item.error.empty()) return item.error;
-        addresses[item.function.name] = item.address;
-    }
+    for (const Missing& one : missing)
+        if (!one.error.empty()) return one.error;
+    for (const SharedCode::Function& function : wanted)
+        addresses[function.first] = shared.known(function.first, effort);
     return {};
 }
 

@@ -2,11 +2,10 @@
 #pragma once
 
 #include "jit/codegen/kernels.h"
-#include "jit/engine/compilers.h"
 #include "jit/engine/linker.h"
+#include "jit/engine/machine_code.h"
 
 #include <atomic>
-#include <functional>
 #include <future>
 #include <map>
 #include <mutex>
@@ -15,22 +14,21 @@
 
 namespace haptel::jit {
 
-using Generate = std::function<std::unique_ptr<llvm::Module>(llvm::LLVMContext&, Effort)>;
-
 // On disk, of that effort or a greater one; no bytes: there is none.
 Object found_object(const std::string& identity, Effort effort);
 void keep(const Object& object, const std::string& identity);
 
 class SharedCode {
 public:
-    SharedCode(Compilers& makes, Linker& links) : compilers(makes), linker(links) {}
+    // `names`: what decides, with a function's name, which code it has.
+    SharedCode(Compilers& makes, Linker& links, const std::string& names)
+        : compilers(makes), linker(links), target(names)
+    {
+    }
 
-    struct Function {
-        std::string name, identity;
-        Generate generate; // a module with that function; any thread
-    };
+    using Function = FunctionsApart::value_type;
     // Nothing or why not.
-    std::string link(const Function& function, Effort effort, llvm::orc::ExecutorAddr& address);
+    std::string link(const Function& function, Effort effort);
     // Null: not linked yet, or of less effort.
     llvm::orc::ExecutorAddr known(const std::string& name, Effort effort);
     size_t count();
@@ -42,6 +40,7 @@ private:
     };
     Compilers& compilers;
     Linker& linker;
+    const std::string& target;
     std::mutex mutex;
     std::map<std::string, Linked> linked; // by name; the best of each
 };
@@ -49,23 +48,22 @@ private:
 // Functions on their way while their caller, too, is compiled: other threads begin with what is not linked yet.
 class Fetch {
 public:
-    Fetch(SharedCode& from, std::vector<SharedCode::Function> wanted, Effort effort);
+    Fetch(SharedCode& from, const FunctionsApart& functions, Effort effort);
 
     // Lends a hand and waits. Nothing or why not.
     std::string finish(Addresses& addresses);
 
 private:
-    struct Item {
-        SharedCode::Function function;
-        llvm::orc::ExecutorAddr address;
-        std::string error;
+    struct Missing {
+        const SharedCode::Function& function;
+        std::string error = {};
     };
     void work();
 
     SharedCode& shared;
+    const FunctionsApart& wanted;
     const Effort effort;
-    Addresses found;
-    std::vector<Item> missing;
+    std::vector<Missing> missing;
     std::atomic<size_t> next{0};            // of them
     std::vector<std::future<void>> helpers; // last: ends before what it works on
 };

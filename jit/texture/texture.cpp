@@ -104,7 +104,7 @@ CompiledTextures compile_texture(std::string_view text, const TextureOptions& op
     // The engine starts beside the front end of the first text: neither needs the other.
     static std::atomic<bool> has_begun{false};
     const std::future<void> starting =
-        has_begun.exchange(true) ? std::future<void>() : std::async(std::launch::async, [] { engine_name(); });
+        has_begun.exchange(true) ? std::future<void>() : std::async(std::launch::async, [] { engine_info(); });
     lang::CompileResult checked = lang::compile({options.name, std::string(text)}, language_options(options));
     CompiledTextures result{nullptr, std::move(checked.diagnostics), std::move(checked.sources),
                             std::move(checked.files)};

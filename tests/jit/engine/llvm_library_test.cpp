@@ -59,8 +59,8 @@ TEST_CASE("code on disk is known by the LLVM library that runs, not by the heade
     const std::string id = build_id_in_file(file);
     CHECK(jit::llvm_identity().find(jit::llvm_version() + " ") == 0);
     if (!id.empty()) CHECK(jit::llvm_identity() == jit::llvm_version() + " " + id);
-    CHECK(jit::code_identity().find(jit::llvm_identity()) != std::string::npos);
-    CHECK(jit::engine_name().find("LLVM " + jit::llvm_version() + " ") == 0);
+    CHECK(jit::engine_info().identity.find(jit::llvm_identity()) != std::string::npos);
+    CHECK(jit::engine_info().name.find("LLVM " + jit::llvm_version() + " ") == 0);
 }
 
 TEST_CASE("what is no code has no build id")

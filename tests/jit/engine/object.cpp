@@ -30,10 +30,9 @@ ObjectResult compile_object(const ir::Module& module, std::span<const EntryPoint
     llvm::LLVMContext context;
     const Processor of_target = processor_of(*machine);
     const std::unique_ptr<llvm::Module> generated = generate(module, entries, of_target, context);
-    llvm::SmallVector<char, 0> object;
     CompileTimes unused;
-    error = make_object(*generated, *machine, Effort::full, object, unused);
-    return {error.empty() ? std::string(object.begin(), object.end()) : "", error};
+    Object made = make_object(*generated, *machine, Effort::full, unused);
+    return {std::move(made.bytes), std::move(made.error)};
 }
 
 } // namespace haptel::jit
