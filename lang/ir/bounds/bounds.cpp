@@ -29,30 +29,28 @@ std::string source_name(const std::string& name)
     return head.substr(head.rfind(' ') + 1);
 }
 
-// An upper bound to push down, of one piece of the box: -infinity where the piece holds no value at all.
-enum class Goal : uint8_t { highest, lowest, slope, curvature, faults }; // faults: 1 where one may be, else 0
+// Upper bounds to push down: of one result and of its negative; of slope and curvature; 1 where a fault may be, else 0.
+enum class Goal : uint8_t { result, variation, no_faults };
 
-// The box, cut into pieces: the one that holds the greatest bound is cut next, for each goal in turn.
+// The box, cut into pieces: the one that holds the greatest bound is cut next, for each bound in turn.
 class Bisection {
 public:
     // `result` of the body: 0 is the height, then the outputs.
-    Bisection(const Module& module, const Texture& texture, BoundsBox around, std::vector<Goal> which,
-              size_t result = 0)
+    Bisection(const Module& module, const Texture& texture, BoundsBox around, Goal which, size_t result = 0)
         : evaluator(module, operations_per_evaluation)
         , entry(texture.body)
         , of_result(result)
         , box(std::move(around))
-        , goals(std::move(which))
-        , queues(goals.size())
+        , goal(which)
+        , queues(goal == Goal::no_faults ? 1 : 2)
     {
         const uint64_t extent = instructions_reached(module, entry);
         if (extent > usual_extent) operations_left = operations_in_all * usual_extent / extent;
-        std::vector<bool> is_read(input_count, false);
+        std::set<Input> read;
         for_each_instruction(module.functions[entry].body, [&](const Instruction& made) {
-            if (auto* read = std::get_if<ReadInput>(&made.kind)) is_read[static_cast<size_t>(read->input)] = true;
+            if (auto* input = std::get_if<ReadInput>(&made.kind)) read.insert(input->input);
         });
-        for (size_t i = 0; i < input_count; ++i)
-            if (is_read[i]) consider(&box.input[i]);
+        for (Input input : read) consider(&box.input[static_cast<size_t>(input)]);
         for (size_t i = 0; i < box.parameters.size(); ++i)
             if (texture.parameters[i].type == Type::real) consider(&box.parameters[i]);
         std::vector<Interval> all;
@@ -62,29 +60,28 @@ public:
 
     void run(uint32_t evaluations)
     {
-        std::vector<double> before(goals.size(), infinity);
+        std::vector<double> before(queues.size(), infinity);
         uint32_t limit = evaluations;
-        for (uint32_t target = 16; !sides.empty() && !is_settled; target *= 2) {
-            while (pieces.size() < std::min(target, limit) && operations_left > 0 && !is_settled) cut();
+        for (uint32_t target = 16; !is_settled; target *= 2) {
+            while (pieces.size() < std::min(target, limit) && !is_settled) cut();
             bool has_improved = false;
-            for (size_t g = 0; g < goals.size(); ++g) {
-                if (!is_wanted(g)) continue;
-                const double now = bound(g);
-                has_improved |= target == 16 || now > useless || now < before[g] - 0.05 * std::fabs(before[g]);
-                if (now >
-                    useless) // within reason: what has a pole takes more pieces, to come to a bound at all and after it
+            for (size_t i = 0; i < queues.size(); ++i) {
+                if (!is_wanted(i)) continue;
+                const double now = bound(i);
+                has_improved |= target == 16 || now > useless || now < before[i] - 0.05 * std::fabs(before[i]);
+                // within reason: what has a pole takes more pieces, to come to a bound at all and after it
+                if (now > useless)
                     limit = std::min(4 * evaluations, static_cast<uint32_t>(pieces.size()) + 2 * evaluations);
-                before[g] = now;
+                before[i] = now;
             }
-            if (pieces.size() >= limit || operations_left == 0 || !has_improved) break;
+            if (pieces.size() >= limit || !has_improved) break;
         }
     }
 
     // Cuts what may fault until nothing is left that may; false if something is.
     bool excludes_faults(uint32_t evaluations)
     {
-        while (bound(0) > 0 && !sides.empty() && !is_settled && pieces.size() < evaluations && operations_left > 0)
-            cut();
+        while (bound(0) > 0 && !is_settled && pieces.size() < evaluations) cut();
         return bound(0) == 0;
     }
 
@@ -104,22 +101,20 @@ public:
         }
     }
 
-    double bound(size_t goal) { return pieces[next_of(queues[goal])].bounds[goal]; }
+    double bound(size_t which) { return pieces[next_of(queues[which])].bounds[which]; }
     bool may_be_nan() const
     {
-        return std::any_of(pieces.begin(), pieces.end(),
-                           [](const Piece& piece) { return !piece.is_cut && piece.may_be_nan; });
+        return std::ranges::any_of(pieces, [](const Piece& piece) { return !piece.is_cut && piece.may_be_nan; });
     }
-    // Of the box in one piece, where the goals are of derivatives.
+    // Of the box in one piece, where the goal is of derivatives.
     const Variation& over_all() const { return whole; }
-    const std::vector<Undefined>& undefined_over_all() const { return undefined; }
-    const std::set<uint32_t>& believed_over_all() const { return believed; }
-    const auto& contradicted() const { return evaluator.contradicted(); }
+    const IntervalEvaluator::Findings& found_over_all() const { return of_whole; }
+    const IntervalEvaluator::Findings& found() const { return evaluator.findings(); }
 
 private:
     struct Piece {
         std::vector<Interval> sides;
-        std::vector<double> bounds; // by goal
+        std::vector<double> bounds; // -infinity where the piece holds no value at all
         bool may_be_nan = false, is_cut = false;
     };
     using Queue = std::priority_queue<std::pair<double, size_t>>; // bound, piece
@@ -128,13 +123,12 @@ private:
     uint32_t entry;
     size_t of_result;
     BoundsBox box;
-    std::vector<Goal> goals;
+    Goal goal;
     std::vector<Interval*> sides; // of `box` that can be cut
     std::vector<Piece> pieces;
-    std::vector<Queue> queues; // by goal
+    std::vector<Queue> queues; // by bound
     Variation whole;
-    std::vector<Undefined> undefined;
-    std::set<uint32_t> believed;
+    IntervalEvaluator::Findings of_whole;
     uint64_t operations_left = operations_in_all;
     size_t turn = 0;
     bool is_settled = false;
@@ -147,37 +141,34 @@ private:
     void add(std::vector<Interval> where)
     {
         for (size_t i = 0; i < sides.size(); ++i) *sides[i] = where[i];
-        const bool of_height = goals[0] == Goal::highest;
-        Interval height;
-        Variation variation;
-        bool may_fault = false;
-        if (of_height) {
-            height = evaluator.run(entry, {}, &box)[of_result];
+        Interval value;
+        Piece piece{std::move(where), {}};
+        if (goal == Goal::result) {
+            value = evaluator.run(entry, {}, &box)[of_result];
+            piece.bounds = {value.maximum, -value.minimum};
         } else {
-            IntervalEvaluator::Results results =
-                evaluator.run_varying(entry, box, pieces.empty() && goals[0] == Goal::slope);
-            height = results.values[0];
-            variation = results.variations[0];
-            const auto is_finite = [](const Interval& value) { return value.is_finite(); };
-            may_fault = !std::all_of(results.values.begin(), results.values.end(), is_finite) || variation.may_fault;
-            if (pieces.empty()) whole = variation, undefined = evaluator.undefined(), believed = evaluator.believed();
+            const auto [values, variations] =
+                evaluator.run_varying(entry, box, pieces.empty() && goal == Goal::variation);
+            value = values[0];
+            const bool may_fault = variations[0].may_fault || !std::ranges::all_of(values, &Interval::is_finite);
+            piece.bounds = {variations[0].slope, variations[0].curvature};
+            if (goal == Goal::no_faults) piece.bounds = {may_fault ? 1.0 : 0.0};
+            if (pieces.empty()) whole = variations[0], of_whole = evaluator.findings();
         }
         operations_left -= std::min(operations_left, evaluator.operations_used() + 1);
-        Piece piece{std::move(where), {}, height.may_be_nan, false};
-        for (size_t g = 0; g < goals.size(); ++g) {
-            const double found = goals[g] == Goal::highest  ? height.maximum
-                                 : goals[g] == Goal::lowest ? -height.minimum
-                                 : goals[g] == Goal::slope  ? variation.slope
-                                 : goals[g] == Goal::faults ? may_fault
-                                                            : variation.curvature;
-            piece.bounds.push_back(height.is_empty() ? -infinity : found);
-            queues[g].emplace(piece.bounds[g], pieces.size());
+        piece.may_be_nan = value.may_be_nan;
+        for (size_t i = 0; i < queues.size(); ++i) {
+            if (value.is_empty()) piece.bounds[i] = -infinity;
+            queues[i].emplace(piece.bounds[i], pieces.size());
         }
         pieces.push_back(std::move(piece));
     }
 
     // A curvature is of a gradient without jumps; of others it is not looked for, only told as it comes.
-    bool is_wanted(size_t goal) const { return goals[goal] != Goal::curvature || whole.continuity >= Continuity::c1; }
+    bool is_wanted(size_t bound) const
+    {
+        return goal != Goal::variation || bound == 0 || whole.continuity >= Continuity::c1;
+    }
 
     size_t next_of(Queue& queue)
     {
@@ -187,8 +178,8 @@ private:
 
     void cut()
     {
-        while (!is_wanted(turn % goals.size())) ++turn;
-        const size_t chosen = next_of(queues[turn++ % goals.size()]);
+        while (!is_wanted(turn % queues.size())) ++turn;
+        const size_t chosen = next_of(queues[turn++ % queues.size()]);
         std::vector<Interval> left = pieces[chosen].sides, right = left;
         size_t widest = sides.size();
         double widest_share = 0;
@@ -197,10 +188,8 @@ private:
             const double share = (left[i].maximum - left[i].minimum) / (all.maximum - all.minimum);
             if (share > widest_share) widest = i, widest_share = share;
         }
-        if (widest == sides.size()) { // too small to cut
-            is_settled = true;
-            return;
-        }
+        is_settled = widest == sides.size() || operations_left == 0; // too small to cut, or too long
+        if (is_settled) return;
         pieces[chosen].is_cut = true;
         const double middle = left[widest].minimum / 2 + left[widest].maximum / 2;
         left[widest].maximum = right[widest].minimum = middle;
@@ -209,16 +198,21 @@ private:
     }
 };
 
+Interval result_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations,
+                       size_t result)
+{
+    Bisection bisection(module, texture, box, Goal::result, result);
+    bisection.run(evaluations);
+    return {-bisection.bound(1), bisection.bound(0), bisection.may_be_nan()};
+}
+
 } // namespace
 
 Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations)
 {
-    Bisection bisection(module, texture, box, {Goal::highest, Goal::lowest});
-    bisection.run(evaluations);
-    Interval height{-bisection.bound(1), bisection.bound(0), bisection.may_be_nan()};
-    const bool may_be_infinite = height.is_empty() || std::isinf(height.minimum) || std::isinf(height.maximum);
+    Interval height = result_bounds(module, texture, box, evaluations, 0);
     if (height.is_empty()) height = {0, 0, true};
-    height.may_be_nan |= may_be_infinite;
+    height.may_be_nan |= !height.is_finite();
     if (height.may_be_nan) height = {std::min(height.minimum, 0.0), std::max(height.maximum, 0.0), true};
     return height;
 }
@@ -227,31 +221,27 @@ std::vector<Interval> output_bounds(const Module& module, const Texture& texture
                                     uint32_t evaluations)
 {
     std::vector<Interval> outputs;
-    const size_t results = module.functions[texture.body].body.yields.size();
-    for (size_t result = 1; result < results; ++result) {
-        Bisection bisection(module, texture, box, {Goal::highest, Goal::lowest}, result);
-        bisection.run(evaluations);
-        outputs.push_back({-bisection.bound(1), bisection.bound(0), bisection.may_be_nan()});
-    }
+    for (size_t result = 1; result < module.functions[texture.body].body.yields.size(); ++result)
+        outputs.push_back(result_bounds(module, texture, box, evaluations, result));
     return outputs;
 }
 
 TextureBounds texture_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations)
 {
     TextureBounds bounds{height_bounds(module, texture, box, evaluations), 0, 0, Continuity::unknown, {}, {}};
-    Bisection bisection(module, texture, box, {Goal::slope, Goal::curvature});
+    Bisection bisection(module, texture, box, Goal::variation);
     bisection.run(evaluations);
     bounds.slope_max = std::max(0.0, bisection.bound(0));
     bounds.curvature_max_per_m = std::max(0.0, bisection.bound(1));
     bounds.continuity = bisection.over_all().continuity;
     bounds.cause = bisection.over_all().cause;
-    for (uint32_t function : bisection.believed_over_all()) {
+    for (uint32_t function : bisection.found_over_all().believed) {
         const std::string name = source_name(module.functions[function].name);
         if (std::find(bounds.declared.begin(), bounds.declared.end(), name) == bounds.declared.end())
             bounds.declared.push_back(name);
     }
     if (!bounds.declared.empty()) bisection.look_at_points(points_for_facts);
-    for (const auto& [where, fact] : bisection.contradicted()) bounds.contradicted.push_back(fact);
+    for (const auto& [where, fact] : bisection.found().contradicted) bounds.contradicted.push_back(fact);
     return bounds;
 }
 
@@ -263,8 +253,8 @@ std::vector<Undefined> undefined_in(const Module& module, const Texture& texture
     BoundsBox bounded = box;
     for (Interval& input : bounded.input)
         input = {std::max(input.minimum, -some_number), std::min(input.maximum, some_number)};
-    Bisection bisection(module, texture, std::move(bounded), {Goal::faults});
-    return bisection.excludes_faults(evaluations) ? std::vector<Undefined>{} : bisection.undefined_over_all();
+    Bisection bisection(module, texture, std::move(bounded), Goal::no_faults);
+    return bisection.excludes_faults(evaluations) ? std::vector<Undefined>{} : bisection.found_over_all().undefined;
 }
 
 } // namespace haptel::ir

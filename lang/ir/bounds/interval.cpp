@@ -43,15 +43,9 @@ Interval quotient(double a, double b)
     return signed_as((a < 0) != (b < 0), rounded(q, is_exact));
 }
 
-Interval hull(std::initializer_list<Interval> parts)
+Interval interval_of(const IntRange& range)
 {
-    Interval all = not_a_number;
-    for (const Interval& part : parts) {
-        all.minimum = std::min(all.minimum, part.minimum);
-        all.maximum = std::max(all.maximum, part.maximum);
-    }
-    all.may_be_nan = false;
-    return all;
+    return {static_cast<double>(range.minimum), static_cast<double>(range.maximum)};
 }
 
 } // namespace
@@ -68,8 +62,7 @@ Interval add(const Interval& a, const Interval& b)
 
 Interval multiply(const Interval& a, const Interval& b)
 {
-    Interval all = hull({product(a.minimum, b.minimum), product(a.minimum, b.maximum), product(a.maximum, b.minimum),
-                         product(a.maximum, b.maximum)});
+    Interval all = at_ends(a, b, product);
     all.may_be_nan = (may_be_infinite(a) && b.contains(0)) || (may_be_infinite(b) && a.contains(0));
     return all;
 }
@@ -80,18 +73,9 @@ Interval divide(const Interval& a, const Interval& b)
 {
     bool nan = (a.contains(0) && b.contains(0)) || (may_be_infinite(a) && may_be_infinite(b));
     if (b.contains(0)) return {-infinity, infinity, nan};
-    Interval all = hull({quotient(a.minimum, b.minimum), quotient(a.minimum, b.maximum), quotient(a.maximum, b.minimum),
-                         quotient(a.maximum, b.maximum)});
+    Interval all = at_ends(a, b, quotient);
     all.may_be_nan = nan;
     return all;
-}
-
-Interval fraction(const Interval& a)
-{
-    if (may_be_infinite(a)) return {0, 1, true};
-    double cell = std::floor(a.minimum);
-    if (cell != std::floor(a.maximum)) return {0, 1};
-    return add(a, {-cell, -cell});
 }
 
 Interval modulo(const Interval& a, const Interval& b)
@@ -125,37 +109,32 @@ Interval truth(bool may_be_false, bool may_be_true)
 
 Interval to_integer(const Interval& a, Type type)
 {
-    IntRange full = full_range(type);
-    auto low = static_cast<double>(full.minimum), high = static_cast<double>(full.maximum);
-    Interval whole{std::clamp(std::trunc(a.minimum), low, high), std::clamp(std::trunc(a.maximum), low, high)};
+    const Interval full = everything(type);
     if (a.is_empty()) return {0, 0};
-    return a.may_be_nan ? hull({whole, {0, 0}}) : whole;
+    const auto whole = [&](double end) { return std::clamp(std::trunc(end), full.minimum, full.maximum); };
+    const Interval cut{whole(a.minimum), whole(a.maximum)};
+    return a.may_be_nan ? join(cut, {0, 0}) : cut;
 }
 
-// A comparison is decided where no pair of values says otherwise; of NaN it is false.
-struct Comparison {
-    const Interval &a, &b;
-    bool nan = a.may_be_nan || b.may_be_nan, none = a.is_empty() || b.is_empty();
-
-    Interval less() const { return truth(none || nan || a.maximum >= b.minimum, !none && a.minimum < b.maximum); }
-    Interval less_or_equal() const
-    {
-        return truth(none || nan || a.maximum > b.minimum, !none && a.minimum <= b.maximum);
-    }
-    Interval equal() const
-    {
-        bool overlap = !none && a.minimum <= b.maximum && b.minimum <= a.maximum;
-        return truth(nan || !(overlap && a.is_point() && b.is_point()), overlap);
-    }
-};
-
-Interval exclusive_or(const Interval& a, const Interval& b)
+// Of a comparison that holds for all pairs of numbers, and for some of them; of NaN it is false.
+Interval comparison(const Interval& a, const Interval& b, bool of_all, bool of_some)
 {
-    bool differ = a.minimum != b.minimum;
-    return a.is_point() && b.is_point() ? truth(!differ, differ) : truth(true, true);
+    const bool is_of_numbers = !a.is_empty() && !b.is_empty(), nan = a.may_be_nan || b.may_be_nan;
+    return truth(!is_of_numbers || nan || !of_all, is_of_numbers && of_some);
 }
 
-Interval on_integers(Op op, Type type, std::span<const Interval> operands)
+Interval equality(const Interval& a, const Interval& b)
+{
+    const bool overlap = a.minimum <= b.maximum && b.minimum <= a.maximum;
+    return comparison(a, b, overlap && a.is_point() && b.is_point(), overlap);
+}
+
+Interval inverted(const Interval& truth)
+{
+    return {1 - truth.maximum, 1 - truth.minimum};
+}
+
+Interval on_integers(Op op, std::span<const Interval> operands)
 {
     IntRange ranges[4];
     for (const Interval& operand : operands)
@@ -165,16 +144,8 @@ Interval on_integers(Op op, Type type, std::span<const Interval> operands)
         return static_cast<int64_t>(std::clamp(value, static_cast<double>(INT32_MIN), static_cast<double>(UINT32_MAX)));
     };
     for (size_t i = 0; i < operands.size(); ++i) ranges[i] = {end(operands[i].minimum), end(operands[i].maximum)};
-    IntRange range = range_of(op, type, {ranges, operands.size()});
-    return {static_cast<double>(range.minimum), static_cast<double>(range.maximum)};
-}
-
-// Outward rounding leaves nothing beyond what the operation can be.
-Interval clipped(Op op, Interval result)
-{
-    if (result.is_empty()) return result;
-    const Traits& row = traits(op);
-    return {std::max(result.minimum, row.least), std::min(result.maximum, row.most), result.may_be_nan};
+    const Type type = op_info(op).result == 'u' ? Type::u32 : Type::i32;
+    return interval_of(range_of(op, type, {ranges, operands.size()}));
 }
 
 Interval value_of(Op op, std::span<const Interval> x)
@@ -203,37 +174,37 @@ Interval value_of(Op op, std::span<const Interval> x)
         all.may_be_nan |= both.may_be_nan;
         return all;
     }
-    case Op::min: return {std::min(a.minimum, b.minimum), std::min(a.maximum, b.maximum)};
-    case Op::max: return {std::max(a.minimum, b.minimum), std::max(a.maximum, b.maximum)};
-    case Op::fract: return fraction(a);
+    case Op::min:
+    case Op::land: return {std::min(a.minimum, b.minimum), std::min(a.maximum, b.maximum)};
+    case Op::max:
+    case Op::lor: return {std::max(a.minimum, b.minimum), std::max(a.maximum, b.maximum)};
+    case Op::fract: return modulo(a, {1, 1});
     case Op::mod: return modulo(a, b);
     case Op::length2:
     case Op::length3:
     case Op::length4: return length(x);
-    case Op::spline: return {-infinity, infinity, true}; // images are the evaluator's to know
-    case Op::image_width:
-    case Op::image_height: return {1, INT32_MAX};
+    case Op::spline: return everything(Type::real); // images are the evaluator's to know
+    case Op::i_to_r:
+    case Op::u_to_r:
     case Op::detach: return a;
     case Op::lt:
     case Op::ilt:
-    case Op::ult: return Comparison{a, b}.less();
+    case Op::ult: return comparison(a, b, a.maximum < b.minimum, a.minimum < b.maximum);
     case Op::le:
     case Op::ile:
-    case Op::ule: return Comparison{a, b}.less_or_equal();
+    case Op::ule: return comparison(a, b, a.maximum <= b.minimum, a.minimum <= b.maximum);
     case Op::eq:
     case Op::ieq:
-    case Op::ueq: return Comparison{a, b}.equal();
+    case Op::ueq: return equality(a, b);
     case Op::is_finite: return truth(!a.is_finite(), !a.is_empty());
-    case Op::land: return {std::min(a.minimum, b.minimum), std::min(a.maximum, b.maximum)};
-    case Op::lor: return {std::max(a.minimum, b.minimum), std::max(a.maximum, b.maximum)};
-    case Op::lxor: return exclusive_or(a, b);
-    case Op::lnot: return {1 - a.maximum, 1 - a.minimum};
+    case Op::lxor: return inverted(equality(a, b));
+    case Op::lnot: return inverted(a);
     case Op::select: return a.is_point() ? x[a.minimum != 0 ? 1 : 2] : join(x[1], x[2]);
     case Op::r_to_i: return to_integer(a, Type::i32);
     case Op::r_to_u: return to_integer(a, Type::u32);
-    case Op::i_to_r:
-    case Op::u_to_r:
-    case Op::b_to_i: return a;
+    case Op::image_width:
+    case Op::image_height:
+    case Op::b_to_i:
     case Op::iadd:
     case Op::isub:
     case Op::imul:
@@ -246,13 +217,13 @@ Interval value_of(Op op, std::span<const Interval> x)
     case Op::ishr:
     case Op::imin:
     case Op::imax:
-    case Op::u_as_i: return on_integers(op, Type::i32, x);
+    case Op::u_as_i:
     case Op::udiv:
     case Op::urem:
     case Op::ushr:
     case Op::umin:
     case Op::umax:
-    case Op::i_as_u: return on_integers(op, Type::u32, x);
+    case Op::i_as_u: return on_integers(op, x);
     }
     return {-infinity, infinity, true};
 }
@@ -267,11 +238,6 @@ bool holds_pole(Op op, std::span<const Interval> operands)
     if (row.shape == Shape::power) return a.contains(0) && operands[1].minimum < 0;
     if (row.shape == Shape::tangent) return may_be_infinite(by_shape(op, operands)); // in double never met, only 1e16
     return row.has_pole_at_ends && (a.contains(row.from) || a.contains(row.to));
-}
-
-bool Interval::is_finite() const
-{
-    return !may_be_nan && minimum > -infinity && maximum < infinity && !is_empty();
 }
 
 double size_of(const Interval& a)
@@ -289,18 +255,17 @@ Interval everything(Type type)
 {
     if (type == Type::real) return {-infinity, infinity, true};
     if (type == Type::image) return any_image;
-    IntRange full = full_range(type);
-    return {static_cast<double>(full.minimum), static_cast<double>(full.maximum)};
+    return interval_of(full_range(type));
 }
 
-Interval join(const Interval& a, const Interval& b)
+Interval exactly(double value)
 {
-    return {std::min(a.minimum, b.minimum), std::max(a.maximum, b.maximum), a.may_be_nan || b.may_be_nan};
+    return std::isnan(value) ? no_number : Interval{value, value};
 }
 
-Interval intersect(const Interval& a, const Interval& b)
+Interval exactly(Type type, uint32_t bits)
 {
-    return {std::max(a.minimum, b.minimum), std::min(a.maximum, b.maximum), a.may_be_nan && b.may_be_nan};
+    return interval_of(constant_range(type, bits));
 }
 
 Interval evaluate(Op op, std::span<const Interval> operands)
@@ -313,11 +278,12 @@ Interval evaluate(Op op, std::span<const Interval> operands)
         is_empty |= operand.is_empty();
         may_be_nan |= operand.may_be_nan;
     }
-    Interval result = is_empty ? not_a_number : clipped(op, value_of(op, operands));
+    // outward rounding leaves nothing beyond what the operation can be
+    const Traits& row = traits(op);
+    Interval result = is_empty ? no_number : intersect(value_of(op, operands), Interval{row.least, row.most, true});
     result.may_be_nan |= may_be_nan;
-    const bool swallows_nan =
-        traits(op).shape == Shape::power &&
-        ((operands[0].may_be_nan && operands[1].contains(0)) || (operands[1].may_be_nan && operands[0].contains(1)));
+    const bool swallows_nan = row.shape == Shape::power && ((operands[0].may_be_nan && operands[1].contains(0)) ||
+                                                            (operands[1].may_be_nan && operands[0].contains(1)));
     return swallows_nan ? join(result, {1, 1}) : result; // pow(NaN, 0) and pow(1, NaN)
 }
 

@@ -6,6 +6,7 @@
 
 #include "lang/ir/ir.h"
 
+#include <algorithm>
 #include <limits>
 #include <span>
 
@@ -21,22 +22,32 @@ struct Interval {
     bool is_empty() const { return !(minimum <= maximum); }
     bool is_point() const { return minimum == maximum; }
     bool contains(double value) const { return minimum <= value && value <= maximum; }
-    bool is_finite() const; // and never NaN
+    bool is_finite() const { return !may_be_nan && minimum > -infinity && maximum < infinity && !is_empty(); }
 };
 
 inline constexpr Interval no_value{infinity, -infinity};
+inline constexpr Interval no_number{infinity, -infinity, true}; // of an operation on what it is not defined for
 
 // Of an image: the index of the texture parameter that it is.
 inline constexpr Interval any_image{-1, -1};
 
 Interval everything(Type type);
-double size_of(const Interval& a); // of what is farthest from 0
+Interval exactly(double value);
+Interval exactly(Type type, uint32_t bits); // of an integer or a boolean
+double size_of(const Interval& a);          // of what is farthest from 0
 
 // Whether the two are equal but for rounding: by no more than that part of the greatest value that there is.
 inline constexpr double rounding_share = 1e-9;
 bool are_close(const Interval& a, const Interval& b, double greatest);
-Interval join(const Interval& a, const Interval& b);
-Interval intersect(const Interval& a, const Interval& b); // of what is known by two ways: NaN only if both allow it
+inline Interval join(const Interval& a, const Interval& b)
+{
+    return {std::min(a.minimum, b.minimum), std::max(a.maximum, b.maximum), a.may_be_nan || b.may_be_nan};
+}
+// Of what is known by two ways: NaN only if both allow it.
+inline Interval intersect(const Interval& a, const Interval& b)
+{
+    return {std::max(a.minimum, b.minimum), std::min(a.maximum, b.maximum), a.may_be_nan && b.may_be_nan};
+}
 
 // Of bounds of finite numbers: the product of 0 and an infinite end is 0.
 Interval add(const Interval& a, const Interval& b);

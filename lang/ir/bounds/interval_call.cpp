@@ -28,17 +28,12 @@ double reach_of(const Function& function, const IntervalEvaluator::Results& argu
     return std::sqrt(square) * (1 + 1e-14);
 }
 
-bool are_apart(const Interval& a, const Interval& b)
+bool are_apart(std::span<const Interval> a, std::span<const Interval> b)
 {
-    return !a.is_empty() && !a.may_be_nan && (a.maximum < b.minimum || b.maximum < a.minimum);
-}
-
-template <size_t size>
-bool are_apart(const std::array<Interval, size>& a, const std::array<Interval, size>& b)
-{
-    bool any = false;
-    for (size_t j = 0; j < size; ++j) any |= are_apart(a[j], b[j]);
-    return any;
+    for (size_t i = 0; i < a.size(); ++i)
+        if (!a[i].is_empty() && !a[i].may_be_nan && (a[i].maximum < b[i].minimum || b[i].maximum < a[i].minimum))
+            return true;
+    return false;
 }
 
 // What a body does, over all of a box, although its facts exclude it.
@@ -46,7 +41,7 @@ std::optional<FalseFact::What> contradicted_by(const IntervalEvaluator::Results&
                                                const IntervalEvaluator::Results& declared, size_t result)
 {
     using What = FalseFact::What;
-    if (are_apart(found.values[result], declared.values[result])) return What::value;
+    if (are_apart({&found.values[result], 1}, {&declared.values[result], 1})) return What::value;
     if (found.variations.empty() || found.variations[result].continuity < Continuity::c1) return std::nullopt;
     const Variation &by_body = found.variations[result], &by_facts = declared.variations[result];
     if (are_apart(by_body.gradient, by_facts.gradient)) return What::slope;
@@ -58,30 +53,50 @@ std::optional<FalseFact::What> contradicted_by(const IntervalEvaluator::Results&
 // how the result varies with others than the first, even where they move by 0.
 bool tells_derivative(const Function& function, const IntervalEvaluator::Results& arguments, bool are_finite)
 {
-    const auto first = arguments.variations.begin(), last = arguments.variations.end();
-    const auto has_tangent = [](const Variation& argument) { return argument.has_tangent; };
+    const std::span<const Variation> all(arguments.variations);
     const auto stays = [](const Variation& argument) { return argument.has_tangent && !argument.is_active; };
-    return (are_finite || std::none_of(first, last, has_tangent)) &&
-           std::none_of(first + function.first_argument_size, last, stays);
+    return (are_finite || std::ranges::none_of(all, &Variation::has_tangent)) &&
+           std::ranges::none_of(all.subspan(function.first_argument_size), stays);
+}
+
+// By the chain rule: of the first argument by the facts, of the others, where they move too, as found (`by_others`;
+// null: not looked for). Of how it bends by both, only the class is known.
+Variation by_facts(const Function& function, const Facts& facts, const IntervalEvaluator::Results& arguments,
+                   const Variation* by_others)
+{
+    const std::span<const Variation> all(arguments.variations);
+    const auto first = all.first(function.first_argument_size), others = all.subspan(first.size());
+    Variation variation = chain(facts, first);
+    if (std::ranges::any_of(others, &Variation::is_active)) {
+        const Variation of_first = std::exchange(variation, unknown_variation({}));
+        if (by_others) {
+            for (size_t j = 0; j < variation.gradient.size(); ++j)
+                variation.gradient[j] = add(of_first.gradient[j], by_others->gradient[j]);
+            variation.slope = (of_first.slope + by_others->slope) * (1 + 1e-15);
+        }
+        variation.continuity = facts.continuity.value_or(Continuity::unknown);
+        roughen(variation, of_first.continuity, of_first.cause);
+        for (const Variation& other : others)
+            if (other.is_active) roughen(variation, other.continuity, other.cause);
+    }
+    if (!facts.continuity && variation.is_active) variation.continuity = Continuity::unknown;
+    return variation;
 }
 
 } // namespace
 
-const std::vector<bool>& IntervalEvaluator::tangents_of(uint32_t index, std::span<const Variation> arguments)
+const Activity& IntervalEvaluator::tangents_of(uint32_t index, std::span<const Variation> arguments)
 {
-    static const std::vector<bool> none;
-    if (!varying) return none;
     const Function& function = module.functions[index];
     std::vector<bool> given;
     for (const Variation& argument : arguments) given.push_back(argument.has_tangent);
-    const auto [known, is_new] = tangents.try_emplace({index, given});
-    if (!is_new) return known->second;
-    Activity activity(function.value_types.size(), 1);
+    const auto [known, is_new] = activities.try_emplace({index, given}, function.value_types.size(), 1);
+    Activity& activity = known->second;
+    if (!is_new) return activity;
     for (size_t p = 0; p < given.size(); ++p)
         if (given[p]) activity.set(function.parameters[p], 0);
     propagate(function, dependences, [](Input input, size_t) { return input <= Input::uv_y; }, activity);
-    for (uint32_t i = 0; i < function.value_types.size(); ++i) known->second.push_back(activity.any(Value{i}));
-    return known->second;
+    return activity;
 }
 
 IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const Results& arguments, Span span)
@@ -104,17 +119,23 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     return results;
 }
 
+std::vector<Interval> IntervalEvaluator::values_inside(uint32_t index, std::vector<Interval> arguments, Span span)
+{
+    const bool was_varying = std::exchange(varying, false);
+    std::vector<Interval> values = look_inside(index, {std::move(arguments), {}}, span).values;
+    varying = was_varying;
+    return values;
+}
+
 // What the body does with its first argument held still; no variations where no other argument moves.
 IntervalEvaluator::Results IntervalEvaluator::by_other_arguments(uint32_t index, const Results& arguments, Span span)
 {
     const Function& function = module.functions[index];
     const auto others = std::span(arguments.variations).subspan(function.first_argument_size);
     const auto first = std::span(arguments.variations).first(function.first_argument_size);
-    const auto moves = [](const Variation& argument) { return argument.is_active; };
-    const bool has_slope = std::any_of(function.facts.begin(), function.facts.end(),
-                                       [](const Facts& facts) { return facts.slope.has_value(); });
-    if (!has_slope || std::none_of(others.begin(), others.end(), moves) ||
-        std::none_of(first.begin(), first.end(), moves))
+    const auto has_slope = [](const Facts& facts) { return facts.slope.has_value(); };
+    if (std::ranges::none_of(function.facts, has_slope) || std::ranges::none_of(others, &Variation::is_active) ||
+        std::ranges::none_of(first, &Variation::is_active))
         return {};
     Results held = arguments;
     std::fill_n(held.variations.begin(), first.size(), Variation{});
@@ -129,32 +150,6 @@ void IntervalEvaluator::pass_faults(uint32_t index, const Results& arguments, Re
     for (size_t r = 0; r < results.variations.size(); ++r)
         for (size_t p = 0; p < arguments.variations.size(); ++p)
             results.variations[r].may_fault |= depends[r][p] && arguments.variations[p].may_fault;
-}
-
-// By the chain rule: of the first argument by the facts, of the others, where they move too, as found (`by_others`;
-// null: not looked for). Of how it bends by both, only the class is known.
-Variation IntervalEvaluator::by_facts(const Function& function, const Facts& facts, const Results& arguments,
-                                      const Variation* by_others) const
-{
-    const std::span<const Variation> all(arguments.variations);
-    const auto first = all.first(function.first_argument_size), others = all.subspan(first.size());
-    const Variation of_first = chain(facts, first);
-    Variation variation = of_first;
-    for (const Variation& other : others) {
-        if (!other.is_active) continue;
-        const Variation before = variation;
-        variation = unknown_variation(other.cause.span);
-        if (by_others) {
-            for (size_t j = 0; j < before.gradient.size(); ++j)
-                variation.gradient[j] = add(of_first.gradient[j], by_others->gradient[j]);
-            variation.slope = (of_first.slope + by_others->slope) * (1 + 1e-15);
-        }
-        variation.continuity = facts.continuity.value_or(Continuity::unknown);
-        roughen(variation, before.continuity, before.cause);
-        roughen(variation, other.continuity, other.cause);
-    }
-    if (!facts.continuity && variation.is_active) variation.continuity = Continuity::unknown;
-    return variation;
 }
 
 // Facts speak of arguments that are numbers. An argument without bounds counts as some number; what comes of an
@@ -182,7 +177,7 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
         const Facts facts = r < function.facts.size() ? function.facts[r] : Facts{};
         declared.values.push_back(declared_value(facts, !are_finite));
         const bool says_something = facts.value_minimum || facts.slope || facts.curvature || facts.continuity;
-        if (varying && says_something && !facts.proven) believed_functions.insert(index);
+        if (varying && says_something && !facts.proven) noted.believed.insert(index);
         is_all_told &= facts.value_minimum && facts.value_maximum && facts.slope;
         const Interval& value = declared.values.back();
         is_narrow |= facts.slope && *facts.slope * reach < (value.maximum - value.minimum) / 2;
@@ -202,7 +197,7 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
     for (size_t r = 0; r < count; ++r) {
         const bool may_be_false = r < function.facts.size() && !function.facts[r].proven;
         if (const auto what = may_be_false ? contradicted_by(results, declared, r) : std::nullopt) {
-            false_facts.try_emplace({index, *what}, FalseFact{function.facts[r], *what, results.values[r]});
+            noted.contradicted.try_emplace({index, *what}, FalseFact{function.facts[r], *what, results.values[r]});
             continue; // the body is what runs
         }
         results.values[r] = intersect(results.values[r], declared.values[r]);
@@ -223,14 +218,11 @@ void IntervalEvaluator::cross_call(const Function& function, uint32_t index, con
     for (size_t r = 0; r < results.values.size(); ++r)
         seams->cross(
             operands, results.values[r],
-            [&](auto parts) { return seams->numbers.of(ValueNumbers::Other::call, uint64_t{index} << 32 | r, parts); },
-            [&](auto values) {
-                const bool was_varying = std::exchange(varying, false);
-                const Interval value = look_inside(index, {{values.begin(), values.end()}, {}}, span).values[r];
-                varying = was_varying;
-                return value;
+            [&](auto parts, auto, bool) {
+                return seams->numbers.of(ValueNumbers::Other::call, uint64_t{index} << 32 | r, parts);
             },
-            [](auto, bool) { return std::nullopt; }, results.variations[r]);
+            [&](auto values) { return values_inside(index, {values.begin(), values.end()}, span)[r]; },
+            results.variations[r]);
 }
 
 // Facts hold of the numbers that arguments may be; of what is not a number the body alone tells.
@@ -242,7 +234,7 @@ IntervalEvaluator::Results IntervalEvaluator::call_beside_nan(uint32_t index, co
     for (size_t i = 0; i < arguments.values.size(); ++i) {
         if (!arguments.values[i].may_be_nan) continue;
         Results beside = arguments;
-        beside.values[i] = {infinity, -infinity, true};
+        beside.values[i] = no_number;
         const Results there = look_inside(index, beside, span);
         for (size_t r = 0; r < there.values.size(); ++r) {
             all.values[r] = join(all.values[r], there.values[r]);
@@ -261,20 +253,15 @@ void IntervalEvaluator::sharpen_by_slope(uint32_t index, const Results& argument
     const auto is_lipschitz = [](const Facts& facts) {
         return facts.slope && facts.continuity && *facts.continuity >= Continuity::c0;
     };
-    if (std::none_of(function.facts.begin(), function.facts.end(), is_lipschitz)) return;
-    Results middle{arguments.values, {}};
-    for (uint32_t i = 0; i < function.first_argument_size; ++i) {
-        const Interval& argument = arguments.values[i];
-        const double at = argument.minimum / 2 + argument.maximum / 2;
-        middle.values[i] = {at, at};
-    }
-    const bool was_varying = std::exchange(varying, false);
-    const Results there = look_inside(index, middle, {});
-    varying = was_varying;
+    if (std::ranges::none_of(function.facts, is_lipschitz)) return;
+    std::vector<Interval> middle = arguments.values;
+    for (uint32_t i = 0; i < function.first_argument_size; ++i)
+        middle[i] = exactly(middle[i].minimum / 2 + middle[i].maximum / 2);
+    const std::vector<Interval> there = values_inside(index, std::move(middle), {});
     for (size_t r = 0; r < std::min(function.facts.size(), results.values.size()); ++r) {
         if (!is_lipschitz(function.facts[r])) continue;
         const double change = *function.facts[r].slope * reach * (1 + 1e-14);
-        results.values[r] = intersect(results.values[r], add(there.values[r], {-change, change}));
+        results.values[r] = intersect(results.values[r], add(there[r], {-change, change}));
     }
 }
 

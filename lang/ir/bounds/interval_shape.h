@@ -8,9 +8,6 @@
 
 namespace haptel::ir {
 
-// Without a value, but perhaps NaN: of an operation on what it is not defined for.
-inline constexpr Interval not_a_number{infinity, -infinity, true};
-
 inline double down(double value, int steps = 1)
 {
     for (int i = 0; i < steps; ++i) value = std::nextafter(value, -infinity);
@@ -36,6 +33,14 @@ inline Interval absolute(const Interval& a)
 {
     double low = std::fabs(a.minimum), high = std::fabs(a.maximum);
     return {a.contains(0) ? 0.0 : std::min(low, high), std::max(low, high)};
+}
+
+// Of f, which makes an interval of one value of each, at their ends. What is NaN does not count.
+template <typename F>
+Interval at_ends(const Interval& a, const Interval& b, const F& f)
+{
+    const Interval least = join(join(no_value, f(a.minimum, b.minimum)), f(a.minimum, b.maximum));
+    return join(join(least, f(a.maximum, b.minimum)), f(a.maximum, b.maximum));
 }
 
 // Of an operation that has a shape.

@@ -23,20 +23,15 @@ public:
     Partials of(Op op, std::span<const Interval> operands, uint32_t active);
 
 private:
-    struct Step {
-        Op op = Op::add;
-        Interval constant{0, 0}; // where the step has no operands
-        std::vector<uint32_t> operands;
+    struct Rule {
+        Function line;
+        std::vector<std::pair<uint32_t, Value>> first;             // operand, where
+        std::vector<std::tuple<uint32_t, uint32_t, Value>> second; // operand, operand, where
     };
-    struct Line {
-        std::vector<Step> steps;                                      // their values follow the operands'
-        std::vector<std::pair<uint32_t, uint32_t>> first;             // operand, where
-        std::vector<std::tuple<uint32_t, uint32_t, uint32_t>> second; // operand, operand, where
-    };
-    std::map<std::pair<Op, uint32_t>, Line> lines;
+    std::map<std::pair<Op, uint32_t>, Rule> rules;
     std::vector<Interval> values; // of one evaluation; kept for its memory
 
-    static Line differentiated(Op op, uint32_t active);
+    static Rule differentiated(Op op, uint32_t active);
 };
 
 } // namespace haptel::ir

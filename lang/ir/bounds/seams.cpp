@@ -10,14 +10,6 @@ using Number = ValueNumbers::Number;
 
 constexpr size_t crossings_max = 16; // of one value; of more, those that are continuous are settled first
 
-const Crossing* crossing_of(const Seams::Operand& operand, uint32_t seam)
-{
-    if (operand.crossings)
-        for (const Crossing& crossing : *operand.crossings)
-            if (crossing.seam == seam) return &crossing;
-    return nullptr;
-}
-
 void settle(const Crossing& crossing, Variation& variation)
 {
     const Continuity left = crossing.is_continuous ? Continuity::c0 : Continuity::jump;
@@ -26,11 +18,9 @@ void settle(const Crossing& crossing, Variation& variation)
     variation.cause = crossing.cause; // also of what is as rough by itself: a fold is seen at its seam
 }
 
-// Whether a remainder by a whole number is compared with one.
-bool compares_whole(const ValueNumbers::Remainder& row)
+bool is_whole(double value)
 {
-    const double limit = row.offset / row.factor;
-    return row.by > 0 && std::floor(row.by) == row.by && std::floor(limit) == limit;
+    return std::floor(value) == value;
 }
 
 // Which operand the result is.
@@ -50,86 +40,74 @@ std::optional<size_t> choice_of(Op op, std::span<const Interval> values, bool on
 
 Variation settled(Variation variation)
 {
-    if (!variation.crossings) return variation;
-    for (const Crossing& crossing : *variation.crossings) settle(crossing, variation);
-    variation.crossings = nullptr;
+    for (const Crossing& crossing : variation.crossings) settle(crossing, variation);
+    variation.crossings.clear();
     return variation;
 }
 
-Variation chosen_at(Variation variation, Span span)
+void choose_at(Span span, Variation& variation)
 {
-    if (!variation.crossings) return variation;
-    std::vector<Crossing> placed = *variation.crossings;
-    for (Crossing& crossing : placed)
+    for (Crossing& crossing : variation.crossings)
         if (crossing.cause.op == Op::lt || crossing.cause.op == Op::le) crossing.cause = {span, {}};
-    variation.crossings = std::make_shared<const std::vector<Crossing>>(std::move(placed));
-    return variation;
-}
-
-Variation without(Variation variation, uint32_t seam)
-{
-    if (!variation.crossings) return variation;
-    std::vector<Crossing> left;
-    for (const Crossing& crossing : *variation.crossings)
-        if (crossing.seam != seam) left.push_back(crossing);
-    variation.crossings = left.empty() ? nullptr : std::make_shared<const std::vector<Crossing>>(std::move(left));
-    return variation;
 }
 
 Seams::Operand Seams::operand(const Variation& variation, const Interval& value, Type type)
 {
-    const bool is_constant = value.is_point() && value.is_finite();
-    const Number number = is_constant                              ? numbers.constant(value.minimum)
-                          : variation.number != ValueNumbers::none ? variation.number
-                                                                   : numbers.unlike_any();
-    return {number, value, is_constant ? nullptr : variation.crossings, type == Type::real};
+    const bool is_real = type == Type::real;
+    if (value.is_point() && value.is_finite()) return {numbers.constant(value.minimum), value, {}, is_real};
+    const Number number = variation.number != ValueNumbers::none ? variation.number : numbers.unlike_any();
+    return {number, value, variation.crossings, is_real};
 }
 
 void Seams::cross(std::span<const Operand> operands, const Interval& result, const NumberOf& number,
-                  const ValueOf& value, const ChoiceOf& choice, Variation& made)
+                  const ValueOf& value, Variation& made)
 {
-    std::vector<Number> all;
-    for (const Operand& operand : operands) all.push_back(operand.number);
-    made.number = number(all);
-
+    struct Parts {
+        std::vector<Number> numbers;
+        std::vector<Interval> values;
+    };
+    Parts whole;
     std::map<uint32_t, Cause> crossed;
-    for (const Operand& operand : operands)
-        if (operand.crossings)
-            for (const Crossing& crossing : *operand.crossings) crossed.emplace(crossing.seam, crossing.cause);
+    for (const Operand& operand : operands) {
+        whole.numbers.push_back(operand.number);
+        whole.values.push_back(operand.value);
+        for (const Crossing& crossing : operand.crossings) crossed.emplace(crossing.seam, crossing.cause);
+    }
+    made.number = number(whole.numbers, whole.values, false);
+
     std::vector<Crossing> crossings;
     for (const auto& [index, cause] : crossed) {
         const Seam seam = seams[index];
         Side sides[2];
         for (const bool is_after : {false, true}) {
-            std::vector<Number> near, there;
-            std::vector<Interval> on, beside;
+            Parts on, beside;
             for (const Operand& operand : operands) {
-                const Crossing* crossing = crossing_of(operand, index);
-                Side side{operand.number, numbers.where(operand.number, seam.place, seam.value), operand.value};
-                if (crossing) side = is_after ? crossing->after : crossing->before;
-                near.push_back(side.near);
-                there.push_back(side.there);
-                on.push_back(side.value);
+                const auto crossing = std::ranges::find(operand.crossings, index, &Crossing::seam);
+                const bool is_crossed = crossing != operand.crossings.end();
+                const Side side =
+                    !is_crossed
+                        ? Side{operand.number, numbers.where(operand.number, seam.place, seam.value), operand.value}
+                        : (is_after ? crossing->after : crossing->before);
+                on.numbers.push_back(side.there);
+                on.values.push_back(side.value);
+                beside.numbers.push_back(side.near);
                 // A little further than on the seam, in what is not known to stay as it is.
                 const double further = rounding_share * size_of(operand.value);
-                const bool stays = !crossing || numbers.constant_of(side.near);
-                beside.push_back(stays             ? side.value
-                                 : operand.is_real ? Interval{side.value.minimum - further,
-                                                              side.value.maximum + further, side.value.may_be_nan}
-                                                   : operand.value);
+                const bool stays = !is_crossed || numbers.constant_of(side.near);
+                beside.values.push_back(
+                    stays ? side.value
+                    : operand.is_real
+                        ? Interval{side.value.minimum - further, side.value.maximum + further, side.value.may_be_nan}
+                        : operand.value);
             }
-            Side& made_side = sides[is_after];
-            made_side.value = intersect(value(on), result);
-            if (made_side.value.is_empty()) made_side.value = result;
-            const Interval around = intersect(value(beside), result);
-            const auto named = [&](const Interval& known, std::span<const Interval> values, bool on_seam,
-                                   const std::vector<Number>& parts) {
-                if (known.is_point() && known.is_finite()) return numbers.constant(known.minimum);
-                const std::optional<size_t> chosen = choice(values, on_seam);
-                return chosen ? parts[*chosen] : number(parts);
+            Interval there = intersect(value(on.values), result);
+            if (there.is_empty()) there = result;
+            const auto named = [&](const Interval& known, const Parts& parts, bool on_seam) {
+                return known.is_point() && known.is_finite() ? numbers.constant(known.minimum)
+                                                             : number(parts.numbers, parts.values, on_seam);
             };
-            made_side.near = named(around, beside, false, near);
-            made_side.there = named(made_side.value, on, true, there);
+            const Interval around = intersect(value(beside.values), result);
+            sides[is_after] = {named(around, beside, false), named(there, on, true), there};
         }
         if (sides[0].near == sides[1].near) continue;
         const double size = size_of(result);
@@ -144,29 +122,30 @@ void Seams::cross(std::span<const Operand> operands, const Interval& result, con
                 if (is_settled) settle(crossing, made);
                 return is_settled;
             });
-    made.crossings = crossings.empty() ? nullptr : std::make_shared<const std::vector<Crossing>>(std::move(crossings));
+    made.crossings = std::move(crossings);
 }
 
 void Seams::cross(Op op, std::span<const Operand> operands, const Interval& result, Variation& made)
 {
-    cross(
-        operands, result, [&](std::span<const Number> parts) { return numbers.of(op, parts); },
-        [&](std::span<const Interval> values) { return evaluate(op, values); },
-        [&](std::span<const Interval> values, bool on_seam) { return choice_of(op, values, on_seam); }, made);
+    const auto number = [&](std::span<const Number> parts, std::span<const Interval> values, bool on_seam) {
+        const std::optional<size_t> chosen = choice_of(op, values, on_seam);
+        return chosen ? parts[*chosen] : numbers.of(op, parts);
+    };
+    cross(operands, result, number, [&](std::span<const Interval> values) { return evaluate(op, values); }, made);
 }
 
 // ---- where they are
 
-uint32_t Seams::seam_at(Kind kind, Number place)
+Number Seams::of(Op op, Number a, Number b)
 {
-    const auto [known, is_new] = by_place.try_emplace({kind, place}, static_cast<uint32_t>(seams.size()));
-    if (is_new) {
-        const Number index = numbers.unlike_any(true);
-        const Number value = kind == Kind::zero   ? numbers.constant(0)
-                             : kind == Kind::half ? numbers.linear({index, 1, 0.5})
-                                                  : index;
-        seams.push_back({place, value, index});
-    }
+    const Number both[] = {a, b};
+    return numbers.of(op, both);
+}
+
+uint32_t Seams::seam_at(Number place, bool is_zero)
+{
+    const auto [known, is_new] = by_place.try_emplace({place, is_zero}, static_cast<uint32_t>(seams.size()));
+    if (is_new) seams.push_back({place, is_zero ? numbers.constant(0) : numbers.unlike_any(true)});
     return known->second;
 }
 
@@ -179,68 +158,55 @@ Side Seams::side_of(const Seam& seam, Number near, const Interval& value)
 
 std::optional<uint32_t> Seams::of_condition(Number a, Number b)
 {
-    const Number both[] = {a, b};
-    const auto known = by_place.find({Kind::zero, numbers.of(Op::sub, both)});
+    const auto known = by_place.find({of(Op::sub, a, b), true});
     return known == by_place.end() ? std::nullopt : std::optional(known->second);
 }
 
 bool Seams::begin(Op op, std::span<const Operand> operands, const Interval& result, const Cause& cause, Variation& made)
 {
-    const Number a = operands[0].number;
-    const auto both = [&](Op how) {
-        const Number parts[] = {a, operands[1].number};
-        return numbers.of(how, parts);
-    };
+    const Number a = operands[0].number, b = operands.back().number;
     const bool rises_only = operands[0].value.minimum >= 0, falls_only = operands[0].value.maximum <= 0;
     const bool is_cut = op == Op::trunc || op == Op::r_to_i || op == Op::r_to_u;
-    uint32_t index = 0, replaced = UINT32_MAX;
+    const double by = op == Op::fract ? 1 : op == Op::mod ? numbers.constant_of(b).value_or(0) : 0;
+    uint32_t index = 0;
     Number before = ValueNumbers::none, after = ValueNumbers::none;
-    if (op == Op::floor || op == Op::ceil || (is_cut && (rises_only || falls_only))) {
-        index = seam_at(Kind::whole, a);
-        const bool is_below = op == Op::floor || (is_cut && rises_only);
-        before = numbers.linear({seams[index].index, 1, is_below ? -1.0 : 0.0});
-        after = numbers.linear({seams[index].index, 1, is_below ? 0.0 : 1.0});
-    } else if (op == Op::round) {
-        index = seam_at(Kind::half, a);
-        before = seams[index].index;
-        after = numbers.linear({seams[index].index, 1, 1});
-    } else if (op == Op::fract || (op == Op::mod && numbers.constant_of(operands[1].number).value_or(0) != 0)) {
-        const double by = op == Op::fract ? 1 : *numbers.constant_of(operands[1].number);
-        index = seam_at(Kind::whole, op == Op::fract ? a : both(Op::div));
-        const Number parts[] = {a, numbers.linear({seams[index].index, by, 0})};
-        after = numbers.of(Op::sub, parts);
-        before = numbers.linear({after, 1, by});
+    if (op == Op::floor || op == Op::ceil || op == Op::round || (is_cut && (rises_only || falls_only))) {
+        index = seam_at(op == Op::round ? numbers.sum(-0.5, {{a, 1}}) : a);
+        const double first = op == Op::floor || (is_cut && rises_only) ? -1 : 0;
+        before = numbers.sum(first, {{seams[index].value, 1}});
+        after = numbers.sum(first + 1, {{seams[index].value, 1}});
+    } else if (by != 0) {
+        index = seam_at(op == Op::fract ? a : of(Op::div, a, b));
+        after = numbers.sum(0, {{a, 1}, {seams[index].value, -by}});
+        before = numbers.sum(by, {{after, 1}});
     } else if (op == Op::lt || op == Op::le) {
-        const Number apart = both(Op::sub);
+        const Number apart = of(Op::sub, a, b);
         if (numbers.constant_of(apart)) return false;
-        if (const auto row = numbers.remainder(apart); row && compares_whole(*row)) {
+        const auto row = numbers.remainder(apart);
+        const double limit = row ? -row->offset / row->factor : 0;
+        if (row && row->by > 0 && is_whole(row->by) && is_whole(limit)) {
             // mod(u, b) < c of whole numbers is true of u where it is of floor(u), and changes with that alone
-            const Number by = numbers.constant(row->by), limit = numbers.constant(-row->offset / row->factor);
-            const Number turns[] = {row->of, by};
-            replaced = seam_at(Kind::whole, numbers.of(Op::div, turns));
-            index = seam_at(Kind::whole, row->of);
-            for (const bool is_after : {false, true}) {
-                const Number cell[] = {numbers.linear({seams[index].index, 1, is_after ? 0.0 : -1.0}), by};
-                const Number rest = numbers.of(Op::mod, cell);
-                const Number is_less[] = {rest, limit}, is_not_less[] = {limit, rest};
-                (is_after ? after : before) =
-                    row->factor > 0 ? numbers.of(Op::lt, is_less) : numbers.of(Op::le, is_not_less);
-            }
+            const Number turn = numbers.constant(row->by), end = numbers.constant(limit);
+            const uint32_t replaced = seam_at(of(Op::div, row->of, turn));
+            std::erase_if(made.crossings, [&](const Crossing& crossing) { return crossing.seam == replaced; });
+            index = seam_at(row->of);
+            const auto in_cell = [&](double cell) {
+                const Number rest = of(Op::mod, numbers.sum(cell, {{seams[index].value, 1}}), turn);
+                return row->factor > 0 ? of(Op::lt, rest, end) : of(Op::le, end, rest);
+            };
+            before = in_cell(-1);
+            after = in_cell(0);
         } else {
-            index = seam_at(Kind::zero, apart);
+            index = seam_at(apart, true);
             before = numbers.constant(1);
             after = numbers.constant(0);
         }
     } else {
         return false;
     }
-    std::vector<Crossing> crossings;
-    if (made.crossings)
-        for (const Crossing& crossing : *made.crossings)
-            if (crossing.seam != index && crossing.seam != replaced) crossings.push_back(crossing);
+    std::erase_if(made.crossings, [&](const Crossing& crossing) { return crossing.seam == index; });
     const Seam seam = seams[index];
-    crossings.push_back({index, side_of(seam, before, result), side_of(seam, after, result), false, cause});
-    made.crossings = std::make_shared<const std::vector<Crossing>>(std::move(crossings));
+    made.crossings.push_back({index, side_of(seam, before, result), side_of(seam, after, result), false, cause});
     return true;
 }
 

@@ -17,25 +17,10 @@
 
 namespace haptel::ir {
 
-struct Side {
-    ValueNumbers::Number near = ValueNumbers::none;  // in a neighbourhood on that side
-    ValueNumbers::Number there = ValueNumbers::none; // on the seam
-    Interval value{0, 0};                            // likewise
-};
-
-struct Crossing {
-    uint32_t seam;
-    Side before, after;
-    bool is_continuous; // both sides have the same value there
-    Cause cause;        // the operation that jumps
-};
-
 // The crossings as part of the class: a jump, or a kink.
 Variation settled(Variation variation);
-// With conditions told of the place where they choose.
-Variation chosen_at(Variation variation, Span span);
-// Without that of one seam.
-Variation without(Variation variation, uint32_t seam);
+// Tells conditions of the place where they choose.
+void choose_at(Span span, Variation& variation);
 
 class Seams {
 public:
@@ -43,21 +28,21 @@ public:
     struct Operand {
         Number number;
         Interval value;
-        std::shared_ptr<const std::vector<Crossing>> crossings;
+        std::span<const Crossing> crossings;
         bool is_real;
     };
-    // What a function makes of its operands, as numbers and as intervals.
-    using NumberOf = std::function<Number(std::span<const Number>)>;
+    // What a function makes of its operands: as an interval, and as a number, for which it may be told by such values
+    // of them which one it is. `on_seam`: not only beside it.
     using ValueOf = std::function<Interval(std::span<const Interval>)>;
-    // Which operand the result is, for such values of them; nothing: none. `on_seam`: not only beside it.
-    using ChoiceOf = std::function<std::optional<size_t>(std::span<const Interval>, bool on_seam)>;
+    using NumberOf = std::function<Number(std::span<const Number>, std::span<const Interval>, bool on_seam)>;
 
     ValueNumbers numbers;
 
+    // Lives as long as the variation.
     Operand operand(const Variation& variation, const Interval& value, Type type);
     // Number and crossings of a result.
     void cross(std::span<const Operand> operands, const Interval& result, const NumberOf& number, const ValueOf& value,
-               const ChoiceOf& choice, Variation& made);
+               Variation& made);
     void cross(Op op, std::span<const Operand> operands, const Interval& result, Variation& made);
     // The seam of an operation that jumps where its operands move. False: it has none that can be followed.
     bool begin(Op op, std::span<const Operand> operands, const Interval& result, const Cause& cause, Variation& made);
@@ -66,14 +51,13 @@ public:
 
 private:
     struct Seam {
-        Number place, value; // the former is the latter there
-        Number index;        // a whole number: of the seam among its like
+        Number place, value; // the former is the latter there: 0, or a whole number, whichever
     };
-    enum class Kind : uint8_t { whole, half, zero };
     std::vector<Seam> seams;
-    std::map<std::pair<Kind, Number>, uint32_t> by_place;
+    std::map<std::pair<Number, bool>, uint32_t> by_place; // and whether it is 0 there
 
-    uint32_t seam_at(Kind kind, Number place);
+    Number of(Op op, Number a, Number b);
+    uint32_t seam_at(Number place, bool is_zero = false);
     Side side_of(const Seam& seam, Number near, const Interval& value);
 };
 

@@ -1,15 +1,10 @@
 #include "lang/ir/bounds/spline_image.h"
 
-#include "lang/ir/bounds/spline_extremes.h"
-#include "lang/math/spline.h"
-
 #include <algorithm>
 #include <cmath>
 
 namespace haptel::ir {
 namespace {
-
-constexpr int64_t scan_max = 1024; // cells: wider places have the bounds of the whole image
 
 // Many lines of numbers side by side, solved together: number i of line k is at first[i * step + k].
 struct Lines {
@@ -19,23 +14,35 @@ struct Lines {
     double* at(size_t i) const { return first + i * step; }
 };
 
-// Solves (c[i-1] + 4 c[i] + c[i+1]) / 6 = f[i] in place, where c[-1] = c[0] and c[n] = c[n-1].
+// Solves (c[i-1] + 4 c[i] + c[i+1]) / 6 = f[i] in place for `first` <= i < `end`, where the factor is `at_ends` in
+// place of 4 in the first and in the last equation, and numbers before and after these are known.
+void solve(const Lines& all, size_t first, size_t end, double at_ends)
+{
+    std::vector<double> pivots(all.count, 1.0);
+    for (size_t i = first; i < end; ++i) {
+        pivots[i] = i == first || i + 1 == end ? at_ends : 4.0;
+        if (i > first) pivots[i] -= 1 / pivots[i - 1];
+        double* line = all.at(i);
+        const double* last = i > 0 ? all.at(i - 1) : nullptr;
+        for (size_t k = 0; k < all.lines; ++k) line[k] = 6 * line[k] - (last ? last[k] / pivots[i - 1] : 0);
+    }
+    for (size_t i = end; i-- > first;) {
+        double* line = all.at(i);
+        const double* next = i + 1 < all.count ? all.at(i + 1) : nullptr;
+        for (size_t k = 0; k < all.lines; ++k) line[k] = (line[k] - (next ? next[k] : 0)) / pivots[i];
+    }
+}
+
+// All of them, where c[-1] = c[0] and c[n] = c[n-1].
 void solve_mirrored(const Lines& all)
 {
-    const size_t n = all.count;
-    if (n == 1) return;
-    std::vector<double> pivots(n, 5.0);
-    for (size_t k = 0; k < all.lines; ++k) all.first[k] *= 6;
-    for (size_t i = 1; i < n; ++i) {
-        pivots[i] = (i + 1 == n ? 5.0 : 4.0) - 1 / pivots[i - 1];
-        double *line = all.at(i), *last = all.at(i - 1);
-        for (size_t k = 0; k < all.lines; ++k) line[k] = 6 * line[k] - last[k] / pivots[i - 1];
-    }
-    for (size_t k = 0; k < all.lines; ++k) all.at(n - 1)[k] /= pivots[n - 1];
-    for (size_t i = n - 1; i-- > 0;) {
-        double *line = all.at(i), *next = all.at(i + 1);
-        for (size_t k = 0; k < all.lines; ++k) line[k] = (line[k] - next[k]) / pivots[i];
-    }
+    if (all.count > 1) solve(all, 0, all.count, 5);
+}
+
+// The first and the last number of each line stay as they are, and are what the line is made of outside.
+void solve_clamped(const Lines& all)
+{
+    solve(all, 1, all.count - 1, 4);
 }
 
 // The same where c[-1] = c[n-1] and c[n] = c[0]: that of the mirrored line, and a correction that makes up for the
@@ -55,22 +62,6 @@ void solve_tiled(const Lines& all)
         share[k] = (all.at(n - 1)[k] - all.first[k]) / (1 + corner[n - 1] - corner[0]);
     for (size_t i = 0; i < n; ++i)
         for (size_t k = 0; k < all.lines; ++k) all.at(i)[k] -= share[k] * corner[i];
-}
-
-// The same where the first and the last number of each line stay as they are, and are what the line is made of outside.
-// Each diagonal element is 4 and its neighbours are 1: it has a solution for every line, of one number, too.
-void solve_clamped(const Lines& all)
-{
-    std::vector<double> pivots(all.count, 1.0);
-    for (size_t i = 1; i + 1 < all.count; ++i) {
-        pivots[i] = i == 1 ? 4 : 4 - 1 / pivots[i - 1];
-        double *line = all.at(i), *last = all.at(i - 1);
-        for (size_t k = 0; k < all.lines; ++k) line[k] = 6 * line[k] - last[k] / pivots[i - 1];
-    }
-    for (size_t i = all.count - 1; i-- > 1;) {
-        double *line = all.at(i), *next = all.at(i + 1);
-        for (size_t k = 0; k < all.lines; ++k) line[k] = (line[k] - next[k]) / pivots[i];
-    }
 }
 
 // Along the rows, then along the columns.
@@ -93,22 +84,6 @@ std::vector<double> framed(std::span<const double> texels, size_t columns, size_
         all.push_back(row.back());
     }
     return all;
-}
-
-// Where spline() looks for places in there, with the rounding of bringing them back into the image.
-PlaceRange places(const Interval& at, int64_t count, bool repeats)
-{
-    const auto size = static_cast<double>(count);
-    const double low = repeats ? at.minimum : std::clamp(at.minimum, -3.0, size + 2);
-    const double high = repeats ? at.maximum : std::clamp(at.maximum, -3.0, size + 2);
-    const double rounding = 1e-15 * (2 * size + std::max(std::fabs(low), std::fabs(high)));
-    return {low - rounding, high + rounding};
-}
-
-// Infinite or beyond what can be counted where that is too many.
-double cells(PlaceRange at)
-{
-    return at.high - at.low + 2;
 }
 
 } // namespace
@@ -142,39 +117,6 @@ std::shared_ptr<const SplineImage> SplineImage::make(std::span<const double> tex
     made->image = {
         {clamped.data(), tiled.data(), mirrored.data()}, static_cast<int32_t>(width), static_cast<int32_t>(height)};
     return made;
-}
-
-const Interval& SplineImage::over_all(uint32_t orders) const
-{
-    const uint32_t edge = spline_edge(orders);
-    const uint32_t by_x = spline_order_along(orders, 0), by_y = spline_order_along(orders, 1);
-    Known& all = known[edge][by_x][by_y];
-    std::call_once(all.asked, [&] {
-        // beyond the image: where a tiled or mirrored one goes on and a clamped one becomes flat
-        const auto range = [](int32_t count) { return PlaceRange{-3.0, count + 2.0}; };
-        all.found = spline_extremes(image, range(image.width), range(image.height), orders);
-        if (edge != HAPTEL_EDGE_MIRRORED || (by_x % 2 == 0 && by_y % 2 == 0)) return;
-        const double size = size_of(all.found);
-        all.found = {-size, size}; // in the copies that are turned round
-    });
-    return all.found;
-}
-
-Interval SplineImage::bounds(const Interval& x, const Interval& y, uint32_t orders) const
-{
-    if (x.is_empty() || y.is_empty()) return {infinity, -infinity, true};
-    const bool repeats = spline_edge(orders) != HAPTEL_EDGE_CLAMPED;
-    const bool may_be_nan =
-        x.may_be_nan || y.may_be_nan ||
-        (repeats && !(std::isfinite(x.maximum - x.minimum) && std::isfinite(y.maximum - y.minimum)));
-    if (spline_order_along(orders, 0) > 3 || spline_order_along(orders, 1) > 3) return {0, 0, may_be_nan};
-
-    const PlaceRange columns = places(x, image.width, repeats), rows = places(y, image.height, repeats);
-    const auto is_far = [](PlaceRange at) { return !(std::fabs(at.low) < 1e9 && std::fabs(at.high) < 1e9); };
-    const bool is_wide = is_far(columns) || is_far(rows) || cells(columns) * cells(rows) > scan_max;
-    Interval found = is_wide ? over_all(orders) : spline_extremes(image, columns, rows, orders);
-    found.may_be_nan = may_be_nan;
-    return found;
 }
 
 } // namespace haptel::ir

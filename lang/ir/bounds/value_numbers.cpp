@@ -27,8 +27,8 @@ uint64_t same_bits(double value)
 
 bool is_even(Op op)
 {
-    return op == Op::abs || op == Op::cos || op == Op::cosh || op == Op::costurn || op == Op::length2 ||
-           op == Op::length3 || op == Op::length4;
+    const Traits& row = traits(op);
+    return row.shape == Shape::even || (row.shape == Shape::wave && row.crest == 0) || is_length(op);
 }
 
 bool is_odd(Op op)
@@ -37,33 +37,27 @@ bool is_odd(Op op)
            op == Op::tanh || op == Op::asinh || op == Op::atanh || op == Op::sign || op == Op::trunc || op == Op::round;
 }
 
-bool is_commutative(Op op)
-{
-    return op == Op::min || op == Op::max || op == Op::eq || op == Op::land || op == Op::lor || op == Op::lxor ||
-           op == Op::length2 || op == Op::length3 || op == Op::length4;
-}
-
 bool makes_whole(Op op)
 {
-    return op == Op::floor || op == Op::ceil || op == Op::trunc || op == Op::round || op == Op::i_to_r ||
-           op == Op::u_to_r;
+    return is_step(op) || op == Op::i_to_r || op == Op::u_to_r;
 }
 
 } // namespace
 
 // ---- what there is
 
-Number ValueNumbers::unlike_any(bool whole)
+Number ValueNumbers::unlike_any(bool is_whole)
 {
-    definitions.push_back({false, whole, {}, {}});
-    return static_cast<Number>(definitions.size() - 1);
+    const auto number = static_cast<Number>(definitions.size());
+    definitions.push_back({Sum{0, {{number, 1}}}, is_whole});
+    return number;
 }
 
-Number ValueNumbers::function(std::vector<uint64_t> key, bool whole)
+Number ValueNumbers::function(std::vector<uint64_t> key, bool is_whole)
 {
     const auto [place, is_new] = known.try_emplace(key, none);
     if (is_new) {
-        place->second = unlike_any(whole);
+        place->second = unlike_any(is_whole);
         definitions.back().function = std::move(key);
     }
     return place->second;
@@ -85,30 +79,20 @@ std::optional<ValueNumbers::Remainder> ValueNumbers::remainder(Number number) co
               : std::nullopt;
 }
 
-Number ValueNumbers::constant(double value)
-{
-    return of(Sum{value, {}});
-}
-
 std::optional<double> ValueNumbers::constant_of(Number number) const
 {
-    const Definition& definition = definitions[number];
-    return definition.is_sum && definition.sum.parts.empty() ? std::optional(definition.sum.constant) : std::nullopt;
+    const Sum& sum = definitions[number].sum;
+    return sum.parts.empty() ? std::optional(sum.constant) : std::nullopt;
 }
 
 Number ValueNumbers::of(Other kind, uint64_t which, std::span<const Number> operands)
 {
     std::vector<uint64_t> key{1'000 + static_cast<uint64_t>(kind), which};
     key.insert(key.end(), operands.begin(), operands.end());
-    return function(std::move(key), false);
+    return function(std::move(key));
 }
 
 // ---- sums
-
-ValueNumbers::Sum ValueNumbers::sum_of(Number number) const
-{
-    return definitions[number].is_sum ? definitions[number].sum : Sum{0, {{number, 1}}};
-}
 
 void ValueNumbers::add(Sum& sum, const Sum& other, double factor)
 {
@@ -119,8 +103,7 @@ void ValueNumbers::add(Sum& sum, const Sum& other, double factor)
     if (factor == 0) return;
     sum.constant = total(sum.constant, factor * other.constant);
     for (const Part& part : other.parts) {
-        const auto place = std::lower_bound(sum.parts.begin(), sum.parts.end(), part.number,
-                                            [](const Part& a, Number number) { return a.number < number; });
+        const auto place = std::ranges::lower_bound(sum.parts, part.number, {}, &Part::number);
         if (place == sum.parts.end() || place->number != part.number)
             sum.parts.insert(place, {part.number, factor * part.factor});
         else if ((place->factor = total(place->factor, factor * part.factor)) == 0)
@@ -138,35 +121,28 @@ Number ValueNumbers::of(Sum sum)
         key.push_back(part.number);
         key.push_back(same_bits(part.factor));
     }
-    const auto [place, is_new] = known.try_emplace(std::move(key), none);
-    if (is_new) {
-        definitions.push_back({true, false, std::move(sum), {}});
-        place->second = static_cast<Number>(definitions.size() - 1);
-    }
+    const auto [place, is_new] = known.try_emplace(std::move(key), static_cast<Number>(definitions.size()));
+    if (is_new) definitions.push_back({std::move(sum)});
     return place->second;
 }
 
-Number ValueNumbers::linear(const Line& line)
+Number ValueNumbers::sum(double constant, std::initializer_list<Part> parts)
 {
-    Sum sum{line.offset, {}};
-    add(sum, sum_of(line.base), line.scale);
-    return of(std::move(sum));
+    Sum all{constant, {}};
+    for (const Part& part : parts) add(all, sum_of(part.number), part.factor);
+    return of(std::move(all));
 }
 
 Number ValueNumbers::where(Number number, Number place, Number value)
 {
     // `place` = factor * pivot + rest, so that pivot = (value - rest) / factor
-    const Sum at = sum_of(place);
+    const Sum at = sum_of(place), whole = sum_of(number);
     if (at.parts.empty()) return number;
     const Part pivot = at.parts.front();
-    Sum sum = sum_of(number);
-    const auto found =
-        std::find_if(sum.parts.begin(), sum.parts.end(), [&](const Part& part) { return part.number == pivot.number; });
-    if (found == sum.parts.end()) return number;
+    const auto found = std::ranges::find(whole.parts, pivot.number, &Part::number);
+    if (found == whole.parts.end()) return number;
     const double times = found->factor / pivot.factor;
-    add(sum, at, -times);
-    add(sum, sum_of(value), times);
-    return of(std::move(sum));
+    return sum(0, {{number, 1}, {place, -times}, {value, times}});
 }
 
 bool ValueNumbers::turn(Sum& sum)
@@ -175,14 +151,6 @@ bool ValueNumbers::turn(Sum& sum)
     sum.constant = 0.0 - sum.constant;
     for (Part& part : sum.parts) part.factor = -part.factor;
     return true;
-}
-
-Number ValueNumbers::without_sign(Number number, bool& is_turned)
-{
-    Sum sum = sum_of(number);
-    if (!turn(sum)) return number;
-    is_turned = !is_turned;
-    return of(std::move(sum));
 }
 
 ValueNumbers::Sum ValueNumbers::take_whole(Sum& sum) const
@@ -202,30 +170,28 @@ std::optional<Number> ValueNumbers::written_out(Number a, Number b)
 {
     const Sum first = sum_of(a), second = sum_of(b);
     if ((first.parts.size() + 1) * (second.parts.size() + 1) > products_max) return std::nullopt;
-    const auto factors_of = [&](Number number) {
-        const std::vector<uint64_t>& function = definitions[number].function;
-        return is_function(number, Op::mul) ? std::vector<uint64_t>(function.begin() + 1, function.end())
-                                            : std::vector<uint64_t>{number};
-    };
     Sum sum{first.constant * second.constant, {}};
     add(sum, {0, first.parts}, second.constant);
     add(sum, {0, second.parts}, first.constant);
     for (const Part& x : first.parts)
         for (const Part& y : second.parts) {
-            std::vector<uint64_t> factors = factors_of(x.number), others = factors_of(y.number);
-            if (factors.size() + others.size() > factors_max) return std::nullopt;
-            factors.insert(factors.end(), others.begin(), others.end());
-            std::sort(factors.begin(), factors.end());
-            factors.insert(factors.begin(), static_cast<uint64_t>(Op::mul));
-            add(sum, {0, {{function(std::move(factors), false), 1}}}, x.factor * y.factor);
+            std::vector<uint64_t> key{static_cast<uint64_t>(Op::mul)};
+            for (Number number : {x.number, y.number}) {
+                const std::vector<uint64_t>& factors = definitions[number].function;
+                if (is_function(number, Op::mul))
+                    key.insert(key.end(), factors.begin() + 1, factors.end());
+                else
+                    key.push_back(number);
+            }
+            if (key.size() > 1 + factors_max) return std::nullopt;
+            std::sort(key.begin() + 1, key.end());
+            add(sum, {0, {{function(std::move(key)), 1}}}, x.factor * y.factor);
         }
     return of(std::move(sum));
 }
 
 Number ValueNumbers::product(Op op, Number a, Number b)
 {
-    if (op == Op::mul)
-        if (const auto sum = written_out(a, b)) return *sum;
     // signs and factors go out of it
     double factor = 1;
     const auto bare = [&](Number number, bool is_divisor) {
@@ -240,73 +206,64 @@ Number ValueNumbers::product(Op op, Number a, Number b)
     };
     Number first = bare(a, false), second = bare(b, op == Op::div);
     if (op == Op::mul && first > second) std::swap(first, second);
-    Sum sum;
-    add(sum, {0, {{function({static_cast<uint64_t>(op), first, second}, false), 1}}}, factor);
-    return of(std::move(sum));
+    return sum(0, {{function({static_cast<uint64_t>(op), first, second}), factor}});
 }
 
-std::optional<Number> ValueNumbers::real(Op op, std::span<const Number> operands)
+// Sums and multiples of their operands, and products.
+std::optional<Number> ValueNumbers::linear(Op op, std::span<const Number> operands)
 {
-    const auto scaled = [&](Number number, double factor) {
-        Sum sum;
-        add(sum, sum_of(number), factor);
-        return of(std::move(sum));
-    };
-    const auto total = [&](Number a, Number b, double factor) {
-        Sum sum = sum_of(a);
-        add(sum, sum_of(b), factor);
-        return of(std::move(sum));
-    };
-    if (op == Op::add || op == Op::sub) return total(operands[0], operands[1], op == Op::sub ? -1 : 1);
-    if (op == Op::neg) return scaled(operands[0], -1);
-    if (op == Op::fma) {
-        const Number both[] = {operands[0], operands[1]};
-        return total(of(Op::mul, both), operands[2], 1);
-    }
-    if (op == Op::mul || op == Op::div) {
-        const auto first = constant_of(operands[0]), second = constant_of(operands[1]);
-        if (op == Op::mul && first) return scaled(operands[1], *first);
-        if (second && (op == Op::mul || *second != 0))
-            return scaled(operands[0], op == Op::mul ? *second : 1 / *second);
-        return product(op, operands[0], operands[1]);
-    }
+    const Number a = operands[0];
+    if (op == Op::neg) return sum(0, {{a, -1}});
+    if (op == Op::add || op == Op::sub) return sum(0, {{a, 1}, {operands[1], op == Op::sub ? -1.0 : 1.0}});
+    if (op == Op::fma) return sum(0, {{of(Op::mul, operands.first(2)), 1}, {operands[2], 1}});
+    if (op != Op::mul && op != Op::div) return std::nullopt;
+    const auto first = constant_of(a), second = constant_of(operands[1]);
+    if (op == Op::mul && first) return sum(0, {{operands[1], *first}});
+    if (op == Op::mul && second) return sum(0, {{a, *second}});
+    if (second && *second != 0) return sum(0, {{a, 1 / *second}});
+    const auto written = op == Op::mul ? written_out(a, operands[1]) : std::nullopt;
+    return written ? written : product(op, a, operands[1]);
+}
+
+// Operations that do not see whole numbers in their operand, or give them on.
+std::optional<Number> ValueNumbers::periodic(Op op, Number operand)
+{
     if (op != Op::fract && op != Op::floor && op != Op::ceil && op != Op::sinturn && op != Op::costurn)
         return std::nullopt;
-    Sum sum = sum_of(operands[0]);
-    const Sum whole = take_whole(sum);
-    if (op == Op::costurn && turn(sum)) take_whole(sum);
-    const bool is_turned = op == Op::sinturn && turn(sum);
-    if (is_turned) take_whole(sum);
-    const Number rest = of(std::move(sum));
-    Sum result;
-    if (op == Op::floor || op == Op::ceil) result = whole;
-    const Number inner = function({static_cast<uint64_t>(op), rest}, makes_whole(op));
-    add(result, {0, {{inner, 1}}}, is_turned ? -1 : 1);
+    Sum rest = sum_of(operand);
+    const Sum whole = take_whole(rest);
+    const bool is_turned = (is_even(op) || is_odd(op)) && turn(rest);
+    if (is_turned) take_whole(rest);
+    const Number inner = function({static_cast<uint64_t>(op), of(std::move(rest))}, makes_whole(op));
+    Sum result = makes_whole(op) ? whole : Sum{};
+    add(result, {0, {{inner, 1}}}, is_turned && is_odd(op) ? -1 : 1);
     return of(std::move(result));
 }
 
 Number ValueNumbers::of(Op op, std::span<const Number> operands)
 {
-    const OpInfo& info = op_info(op);
-    const bool are_constant =
-        std::all_of(operands.begin(), operands.end(), [&](Number number) { return constant_of(number).has_value(); });
-    if (are_constant && info.operands[0] != 'm') {
-        std::vector<Interval> points;
-        for (Number number : operands) points.push_back({*constant_of(number), *constant_of(number)});
+    std::vector<Interval> points;
+    for (Number number : operands)
+        if (const auto value = constant_of(number)) points.push_back({*value, *value});
+    if (points.size() == operands.size() && op_info(op).operands[0] != 'm') {
         const Interval result = evaluate(op, points);
         if (result.is_point() && result.is_finite()) return constant(result.minimum);
     }
-    if (const auto number = real(op, operands)) return *number;
+    if (const auto number = linear(op, operands)) return *number;
+    if (const auto number = periodic(op, operands[0])) return *number;
     if (op == Op::select && operands[1] == operands[2]) return operands[1];
     if (const auto condition = op == Op::select ? constant_of(operands[0]) : std::nullopt)
         return operands[*condition != 0 ? 1 : 2];
     bool is_turned = false;
     std::vector<uint64_t> key{static_cast<uint64_t>(op)};
-    for (Number number : operands) key.push_back(is_even(op) || is_odd(op) ? without_sign(number, is_turned) : number);
-    if (is_commutative(op)) std::sort(key.begin() + 1, key.end());
-    Sum sum;
-    add(sum, {0, {{function(std::move(key), makes_whole(op)), 1}}}, is_odd(op) && is_turned ? -1 : 1);
-    return of(std::move(sum));
+    for (Number number : operands) {
+        Sum sum = sum_of(number);
+        const bool has_sign = (is_even(op) || is_odd(op)) && turn(sum);
+        is_turned ^= has_sign;
+        key.push_back(has_sign ? of(std::move(sum)) : number);
+    }
+    if (traits(op).commutes || is_length(op)) std::sort(key.begin() + 1, key.end());
+    return sum(0, {{function(std::move(key), makes_whole(op)), is_odd(op) && is_turned ? -1.0 : 1.0}});
 }
 
 } // namespace haptel::ir

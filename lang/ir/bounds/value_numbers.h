@@ -18,22 +18,21 @@ class ValueNumbers {
 public:
     using Number = uint32_t;
     static constexpr Number none = 0;
+    struct Part {
+        Number number;
+        double factor;
+    };
 
     Number unlike_any(bool is_whole = false);
-    Number constant(double value);
+    Number constant(double value) { return sum(value, {}); }
     std::optional<double> constant_of(Number number) const;
+    // Of a constant and multiples of these.
+    Number sum(double constant, std::initializer_list<Part> parts);
     Number of(Op op, std::span<const Number> operands);
     // Of what is no operation: equal kinds of equal operands are equal.
     enum class Other : uint8_t { input, parameter, table, call };
     Number of(Other kind, uint64_t which, std::span<const Number> operands);
 
-    // scale * base + offset, by value.
-    struct Line {
-        Number base;
-        double scale, offset;
-    };
-    // The value as a multiple of another and a constant; of a sum of several, of the first.
-    Number linear(const Line& line);
     // factor * mod(of, by) + offset, by value of constants.
     struct Remainder {
         Number of;
@@ -44,34 +43,29 @@ public:
     Number where(Number number, Number place, Number value);
 
 private:
-    struct Part {
-        Number number;
-        double factor;
-        bool operator==(const Part&) const = default;
-    };
     struct Sum {
         double constant = 0;
         std::vector<Part> parts; // ascending
     };
     struct Definition {
-        bool is_sum = false, is_whole = false;
-        Sum sum;
+        Sum sum; // of itself alone, where it is no other
+        bool is_whole = false;
         std::vector<uint64_t> function = {}; // operation and operands, where it is one
     };
-    std::vector<Definition> definitions{1}; // by number
+    std::vector<Definition> definitions{{Sum{0, {{none, 1}}}}}; // by number
     std::map<std::vector<uint64_t>, Number> known;
 
-    Sum sum_of(Number number) const;
+    Sum sum_of(Number number) const { return definitions[number].sum; }
     Number of(Sum sum);
-    Number function(std::vector<uint64_t> key, bool is_whole);
+    Number function(std::vector<uint64_t> key, bool is_whole = false);
     bool is_function(Number number, Op op) const;
     static void add(Sum& sum, const Sum& other, double factor);
     // Makes the first factor positive; whether that turned the sign.
     static bool turn(Sum& sum);
-    Number without_sign(Number number, bool& is_turned);
     // Takes whole numbers away, and gives them.
     Sum take_whole(Sum& sum) const;
-    std::optional<Number> real(Op op, std::span<const Number> operands);
+    std::optional<Number> periodic(Op op, Number operand);
+    std::optional<Number> linear(Op op, std::span<const Number> operands);
     Number product(Op op, Number a, Number b);
     std::optional<Number> written_out(Number a, Number b);
 };

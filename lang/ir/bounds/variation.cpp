@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
 
 namespace haptel::ir {
@@ -20,11 +21,13 @@ double times(double a, double b)
     return a == 0 || b == 0 ? 0 : a * b;
 }
 
-double norm(std::span<const Interval> parts)
+// Euclidean, of the sizes of these parts.
+template <typename Parts, typename Size>
+double norm(const Parts& parts, const Size& size)
 {
-    double sum = 0;
-    for (const Interval& part : parts) sum += times(size_of(part), size_of(part));
-    return std::sqrt(sum) * rounding_up;
+    double squares = 0;
+    for (const auto& part : parts) squares += times(std::invoke(size, part), std::invoke(size, part));
+    return std::sqrt(squares) * rounding_up;
 }
 
 // Spectral norm of a symmetric matrix: at most its largest sum of a row, and at most its Frobenius norm.
@@ -52,8 +55,6 @@ Interval square(const Interval& a)
 // Spectral norm of the Jacobian whose rows these are.
 double jacobian_norm(std::span<const Variation> rows)
 {
-    double squares = 0;
-    for (const Variation& row : rows) squares += times(row.slope, row.slope);
     double gram_norm = 0; // largest row sum of J J^T
     for (const Variation& row : rows) {
         double sum = 0;
@@ -66,26 +67,12 @@ double jacobian_norm(std::span<const Variation> rows)
         }
         gram_norm = std::max(gram_norm, sum);
     }
-    return std::sqrt(std::min(squares, gram_norm)) * rounding_up;
-}
-
-// Norm of the second derivative of a vector whose components these are.
-double second_norm(std::span<const Variation> rows)
-{
-    double squares = 0;
-    for (const Variation& row : rows) squares += times(row.curvature, row.curvature);
-    return std::sqrt(squares) * rounding_up;
+    return std::min(norm(rows, &Variation::slope), std::sqrt(gram_norm) * rounding_up);
 }
 
 Interval around_zero(double size)
 {
     return {-size, size};
-}
-
-void tighten(Variation& variation)
-{
-    variation.slope = std::min(variation.slope, norm(variation.gradient));
-    variation.curvature = std::min(variation.curvature, spectral_norm(variation.hessian));
 }
 
 Variation roughest_of(std::span<const Variation> parts)
@@ -107,14 +94,12 @@ Continuity of_power(uint32_t power)
 // A length that is not 0 is smooth in the squares of its parts: of kinks where they are 0, twice the power is left.
 void smooth_in_length(std::span<const Variation> parts, Variation& made)
 {
-    Variation rest;
+    made.continuity = Continuity::smooth;
     for (const Variation& part : parts) {
         if (!part.is_active) continue;
         const Continuity left = part.kink != 0 ? of_power(2 * part.kink_power) : part.continuity;
-        roughen(rest, std::max(left, part.continuity), part.cause);
+        roughen(made, std::max(left, part.continuity), part.cause);
     }
-    made.continuity = rest.continuity;
-    made.cause = rest.cause;
 }
 
 // Operations that keep a kink where the value is 0: products raise it to a power, what is smooth may be a factor.
@@ -137,20 +122,15 @@ void keep_kink(Op op, std::span<const Variation> variations, Variation& made)
     made.continuity = of_power(power);
 }
 
-bool is_bounded(const std::array<Interval, axes>& gradient)
-{
-    return std::all_of(gradient.begin(), gradient.end(),
-                       [](const Interval& part) { return std::isfinite(size_of(part)); });
-}
-
 // A gradient without bound, of partials and gradients that have some.
 bool overflows(const Partials& partials, std::span<const Variation> variations, const Variation& made)
 {
+    const auto is_bounded = [](const Interval& part) { return std::isfinite(size_of(part)); };
     for (size_t i = 0; i < variations.size(); ++i)
         if (variations[i].is_active &&
-            !(std::isfinite(size_of(partials.first[i])) && is_bounded(variations[i].gradient)))
+            !(is_bounded(partials.first[i]) && std::ranges::all_of(variations[i].gradient, is_bounded)))
             return false;
-    return !is_bounded(made.gradient);
+    return !std::ranges::all_of(made.gradient, is_bounded);
 }
 
 } // namespace
@@ -177,11 +157,25 @@ Variation unknown_variation(Span where)
     return variation;
 }
 
+void tighten(Variation& variation)
+{
+    variation.slope = std::min(variation.slope, norm(variation.gradient, size_of));
+    variation.curvature = std::min(variation.curvature, spectral_norm(variation.hessian));
+}
+
 void roughen(Variation& variation, Continuity continuity, const Cause& cause)
 {
     if (continuity >= variation.continuity) return;
     variation.continuity = continuity;
     variation.cause = cause;
+}
+
+void jump_with(const Variation& choice, Span where, Variation& variation)
+{
+    if (!choice.is_active) return;
+    variation.is_active = true;
+    variation.kink = 0;
+    if (choice.continuity <= Continuity::jump) roughen(variation, choice.continuity, {where, {}});
 }
 
 Variation join(const Variation& a, const Variation& b)
@@ -204,11 +198,6 @@ Variation merge(const Variation& a, const Variation& b)
     return all;
 }
 
-bool stays_between_jumps(const Variation& variation)
-{
-    return variation.slope == 0 && variation.curvature == 0;
-}
-
 Variation intersect(const Variation& a, const Variation& b)
 {
     Variation both = settled(a).continuity >= settled(b).continuity ? a : b;
@@ -229,16 +218,16 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
         made.may_fault |= variations[i].has_tangent && (variations[i].may_fault || partials.may_fault[i]);
     if (!made.is_active) return made;
     // The direction of a length is a unit vector, and turns the slower the longer it is: as an angle does.
-    const bool is_norm = is_length(op), is_angle = traits(op).shape == Shape::angle;
+    const bool is_norm = is_length(op), is_radial = is_norm || traits(op).shape == Shape::angle;
     Partials by = partials;
     double shortest = 0;
-    for (size_t i = 0; i < operands.size() && (is_norm || is_angle); ++i) {
-        const double least = std::max({0.0, operands[i].minimum, -operands[i].maximum});
+    for (const Interval& operand : operands) {
+        const double least = std::max({0.0, operand.minimum, -operand.maximum});
         shortest += least * least;
     }
     shortest = std::sqrt(shortest) / rounding_up;
     const double steepest = is_norm ? 1 : traits(op).period / (2 * std::numbers::pi) / shortest;
-    for (size_t i = 0; i < operands.size() && (is_norm || is_angle); ++i)
+    for (size_t i = 0; i < operands.size() && is_radial; ++i)
         by.first[i] = intersect(by.first[i], around_zero(steepest));
 
     double slope = 0, curvature = 0;
@@ -264,11 +253,11 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
                 }
         }
     }
-    if (is_norm || is_angle) { // second partials: 1 / r at most of a length r, 1 / r^2 of an angle
+    if (is_radial) { // second partials: 1 / r at most of a length r, 1 / r^2 of an angle
         const double turns = jacobian_norm(variations);
         slope = std::min(slope, times(turns, steepest));
         const double bend = times(turns * turns, steepest / shortest);
-        curvature = std::min(curvature, bend + times(steepest, second_norm(variations)));
+        curvature = std::min(curvature, bend + times(steepest, norm(variations, &Variation::curvature)));
     }
     made.may_fault |= overflows(by, variations, made);
     made.slope = slope * rounding_up;
@@ -288,26 +277,20 @@ Variation chain(const Facts& facts, std::span<const Variation> arguments)
     }
     if (!made.is_active) return made;
     if (facts.continuity) roughen(made, *facts.continuity, arguments.empty() ? Cause{} : arguments[0].cause);
-    const double jacobian = jacobian_norm(arguments), second = second_norm(arguments);
+    const double jacobian = jacobian_norm(arguments), second = norm(arguments, &Variation::curvature);
     const double slope = facts.slope.value_or(infinity), curvature = facts.curvature.value_or(infinity);
 
     double column[axes];
     for (size_t j = 0; j < axes; ++j) {
-        double squares = 0;
-        for (const Variation& argument : arguments)
-            squares += times(size_of(argument.gradient[j]), size_of(argument.gradient[j]));
-        column[j] = std::sqrt(squares) * rounding_up;
+        column[j] = norm(arguments, [&](const Variation& argument) { return size_of(argument.gradient[j]); });
         made.gradient[j] = around_zero(times(slope, column[j]));
     }
     for (size_t j = 0; j < axes; ++j)
         for (size_t k = j; k < axes; ++k) {
-            double squares = 0;
-            for (const Variation& argument : arguments) {
-                const double part = size_of(argument.hessian[pair_of[j][k]]);
-                squares += times(part, part);
-            }
-            made.hessian[pair_of[j][k]] =
-                around_zero(times(curvature, column[j] * column[k]) + times(slope, std::sqrt(squares) * rounding_up));
+            const size_t pair = pair_of[j][k];
+            const double bend =
+                norm(arguments, [&](const Variation& argument) { return size_of(argument.hessian[pair]); });
+            made.hessian[pair] = around_zero(times(curvature, column[j] * column[k]) + times(slope, bend));
         }
     made.slope = times(slope, jacobian) * rounding_up;
     made.curvature = (times(curvature, jacobian * jacobian) + times(slope, second)) * rounding_up;

@@ -7,7 +7,6 @@
 #include "lang/ir/bounds/partials.h"
 
 #include <array>
-#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,7 +21,19 @@ struct Cause {
     bool is_library = false;
 };
 
-struct Crossing;
+// One side of a seam (seams.h): which value it is among its like (value_numbers.h).
+struct Side {
+    uint32_t near = 0;    // in a neighbourhood on that side
+    uint32_t there = 0;   // on the seam
+    Interval value{0, 0}; // likewise
+};
+
+struct Crossing {
+    uint32_t seam;
+    Side before, after;
+    bool is_continuous; // both sides have the same value there
+    Cause cause;        // the operation that jumps
+};
 
 struct Variation {
     static constexpr size_t directions = 3; // the axes of p
@@ -35,12 +46,10 @@ struct Variation {
     Cause cause; // of the roughest part
     // Not 0: the value is smooth but where it is 0, as |u|, a length and max(u, 0) are; its powers of 2, 3.. are C1,
     // C2..
-    uint32_t kink = 0;       // which kink: values that share it are 0 in the same places
-    uint32_t kink_power = 0; // of max(u, 0) in it
-    // Where it jumps, or may, at seams (seams.h) that its class does not speak of; null: nowhere. And which value it is
-    // among its like (value_numbers.h; 0: not known).
-    std::shared_ptr<const std::vector<Crossing>> crossings;
-    uint32_t number = 0;
+    uint32_t kink = 0;                     // which kink: values that share it are 0 in the same places
+    uint32_t kink_power = 0;               // of max(u, 0) in it
+    std::vector<Crossing> crossings;       // where it jumps, or may, at seams that its class does not speak of
+    uint32_t number = 0;                   // which value it is among its like; 0: not known
     std::array<Interval, 3> gradient = {}; // by axis
     std::array<Interval, 6> hessian = {};  // xx xy xz yy yz zz
     double slope = 0;                      // sup of the gradient's Euclidean norm
@@ -50,11 +59,13 @@ struct Variation {
 Variation axis(size_t direction); // of p_x, p_y, p_z themselves
 Variation unknown_variation(Span where);
 
+// Bounds the norms by the components.
+void tighten(Variation& variation);
+
 // Rougher of the two, with its cause.
 void roughen(Variation& variation, Continuity continuity, const Cause& cause);
-
-// Whether the value stays as it is between jumps.
-bool stays_between_jumps(const Variation& variation);
+// What depends on an undecided choice that depends on the point jumps with it.
+void jump_with(const Variation& choice, Span where, Variation& variation);
 
 // Of what may be either: an `if`, a choice, the lesser of two. Crossings become part of the class, but in `merge`,
 // which leaves them out.
