@@ -6,11 +6,9 @@
 #include "lang/check/library.h"
 #include "lang/syntax/grammar.h"
 #include "lang/text/limits.h"
-#include "lang/text/near_name.h"
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 namespace haptel::lang {
 
@@ -39,71 +37,61 @@ Type resolve_type(CheckContext& context, const TypeName& name)
         reported.hint = "vecN is vec2 and vec3 in a function that has a parameter of it: float f(vecN q)";
         return Type::error();
     }
-    const auto [nearest, is_only] = near_name(
-        name.base.text, {"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "image"});
-    if (name.base.text.starts_with("mat") && name.base.text.find('x') != std::string::npos) {
+    reported.hint = "types are float, int, uint, bool, vec2, vec3, vec4, mat2, mat3 and mat4";
+    if (name.base.text.starts_with("mat") && name.base.text.find('x') != std::string::npos)
         reported.hint = "matrices are square: mat2, mat3 and mat4";
-    } else if (!nearest.empty()) {
-        reported.hint = "did you mean " + quoted(nearest) + "?";
-        if (is_only) reported.fix = FixIt{name.base.span, std::string(nearest)};
-    } else {
-        reported.hint = "types are float, int, uint, bool, vec2, vec3, vec4, mat2, mat3 and mat4";
-    }
+    else
+        propose(reported, name.base.span,
+                near_name(name.base.text,
+                          {"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "image"}));
     return Type::error();
 }
 
-void report_image(CheckContext& context, const TypeName& name)
+Type value_type(CheckContext& context, const TypeName& name, const std::string& why, bool may_be_image)
 {
-    context.diagnostics.error(name.base.span, "image",
-                              "an image is a parameter of a texture or of a function, and nothing else",
-                              "pass it on as it is: float bark(image picture, vec2 q) { return sample(picture, q); }");
+    const Type type = resolve_type(context, name);
+    if (type == image_type && !may_be_image)
+        context.diagnostics.error(
+            name.base.span, "image", "an image is a parameter of a texture or of a function, and nothing else",
+            "pass it on as it is: float bark(image picture, vec2 q) { return sample(picture, q); }");
+    else if (type == void_type)
+        context.diagnostics.error(name.base.span, "type-mismatch", why + ", found void", "write float, int, vec3 ...");
+    else
+        return type;
+    return Type::error();
 }
 
 namespace {
-
-struct SharedInput {
-    const char* name;
-    InputName input;
-    uint8_t size;
-};
-constexpr SharedInput inputs[] = {
-    {"p", InputName::p, 3},
-    {"n", InputName::n, 3},
-    {"uv", InputName::uv, 2},
-    {"time", InputName::time, 1},
-    {"center", InputName::center, 3},
-    {"extent", InputName::extent, 3},
-    {"footprint", InputName::footprint, 1},
-};
 
 class ProgramChecker {
 public:
     // `own_library`, where this is the library itself: what its files declare together.
     ProgramChecker(const SourceSet& sources, CheckedProgram& checked, Declarations* own_library,
-                   const Declarations& seen_library, Diagnostics& diagnostics)
+                   const Declarations& seen_library, Diagnostics& sink)
         : program(checked)
-        , context{sources, diagnostics, checked, constants, {}, {}}
+        , diagnostics(sink)
+        , context{sources, sink, checked, own_library != nullptr}
         , declarations(checked.files.size())
         , made_library(own_library)
         , library(seen_library)
     {
-        for (const SharedInput& input : inputs) {
+        for (uint32_t i = 0; i < input_name_count; ++i) {
             Symbol& symbol = program.symbols.emplace_back();
             symbol.kind = SymbolKind::input;
-            symbol.name = input.name;
-            symbol.type = vec(input.size);
-            symbol.input = input.input;
+            symbol.name = builtin_inputs[i].name;
+            symbol.type = vec(builtin_inputs[i].size);
+            symbol.input = static_cast<InputName>(i);
             symbol.read_only = "it is an input";
             context.inputs.push_back(&symbol);
         }
     }
 
-    CallDepths run(const CallDepths& of_library)
+    void run()
     {
         std::vector<FileScope> scopes;
         const auto count = static_cast<uint32_t>(program.files.size());
-        for (uint32_t file = 0; file < count; ++file) scopes.push_back(scope_of(file));
         for (uint32_t file = 0; file < count; ++file) {
+            scopes.push_back(scope_of(file));
             declarations_of(file).lacks_functions |= program.files[file].tree.lacks_functions;
             declarations_of(file).unread.merge(program.files[file].tree.unread);
         }
@@ -112,27 +100,22 @@ public:
         for (uint32_t file = 0; file < count; ++file) check_constants(file, scopes[file]);
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], true);
         for (FunctionInfo& function : program.functions) {
-            if (context.diagnostics.full()) return {};
-            const Function& tree = *function.tree;
-            BodyChecker(context, scopes[function.file], function.is_library)
-                .check_function(const_cast<Function&>(tree), function);
+            if (diagnostics.full()) return;
+            BodyChecker(context, scopes[function.file]).check_function(const_cast<Function&>(*function.tree), function);
         }
         for (uint32_t file = 0; file < count; ++file) check_textures(file, scopes[file]);
-        return check_call_graph(program, of_library, context.diagnostics);
+        check_call_graph(program, diagnostics);
     }
 
 private:
-    bool is_library() const { return made_library != nullptr; }
     Declarations& declarations_of(uint32_t file) { return made_library ? *made_library : declarations[file]; }
 
     FileScope scope_of(uint32_t file)
     {
-        FileScope scope;
-        if (!is_library()) {
-            scope.add_layer(declarations[file]);
-            for (uint32_t imported : program.files[file].imported) scope.add_layer(declarations[imported]);
-        }
-        scope.add_layer(library);
+        if (context.is_library) return {{&library}};
+        FileScope scope{{&declarations[file]}};
+        for (uint32_t imported : program.files[file].imported) scope.layers.push_back(&declarations[imported]);
+        scope.layers.push_back(&library);
         return scope;
     }
 
@@ -142,36 +125,36 @@ private:
         for (Function& tree : program.files[file].tree.functions) {
             const auto is_array = [](const auto& parameter) { return parameter.type.is_array; };
             if ((tree.result.is_array || std::ranges::any_of(tree.parameters, is_array)) != with_arrays) continue;
-            if (context.diagnostics.full()) return;
+            if (diagnostics.full()) return;
             FunctionInfo& info = program.functions.emplace_back();
             info.name = tree.name.text;
             info.tree = &tree;
             info.file = file;
-            info.is_library = is_library();
-            info.result = value_type(tree.result, "a function returns a value", scope, true);
+            info.is_library = context.is_library;
+            info.result = type_of(tree.result, "a function returns a value", scope, true);
             if (type_named(info.name))
-                context.diagnostics.error(tree.name.span, "reserved-name",
-                                          quoted(info.name) + " is a type, expected a name of your own");
-            info.is_valid = !info.result.is_error() && !tree.damage.in_head;
+                diagnostics.error(tree.name.span, "reserved-name",
+                                  quoted(info.name) + " is a type, expected a name of your own");
             size_t numbers = 0;
             for (const FunctionParameter& parameter : tree.parameters) {
-                ParameterInfo made{value_type(parameter.type, "a parameter holds a value", scope), parameter.name.text,
-                                   parameter.is_function};
-                info.is_valid = info.is_valid && !made.type.is_error();
-                for (const TypeName& type : parameter.signature) {
-                    made.signature.push_back(value_type(type, "a function takes values", scope));
-                    info.is_valid = info.is_valid && !made.signature.back().is_error();
-                }
-                if ((numbers += std::max(made.type.components(), 1u)) > parameters_max) {
-                    context.diagnostics.error(parameter.name.span, "too-large",
-                                              "expected at most " + std::to_string(parameters_max) +
-                                                  " numbers as parameters of a function");
-                    info.is_valid = false;
-                    tree.body = nullptr;
-                }
-                info.parameters.push_back(std::move(made));
-                if (numbers > parameters_max) break;
+                ParameterInfo& made = info.parameters.emplace_back();
+                made.type = type_of(parameter.type, "a parameter holds a value", scope);
+                made.name = parameter.name.text;
+                made.is_function = parameter.is_function;
+                for (const TypeName& type : parameter.signature)
+                    made.signature.push_back(type_of(type, "a function takes values", scope));
+                if ((numbers += std::max(made.type.components(), 1u)) <= parameters_max) continue;
+                diagnostics.error(parameter.name.span, "too-large",
+                                  "expected at most " + std::to_string(parameters_max) +
+                                      " numbers as parameters of a function");
+                tree.body = nullptr;
+                break;
             }
+            const auto is_error = [](const ParameterInfo& parameter) {
+                return parameter.type.is_error() || std::ranges::any_of(parameter.signature, &Type::is_error);
+            };
+            info.is_valid = !info.result.is_error() && !tree.damage.in_head && numbers <= parameters_max &&
+                            std::ranges::none_of(info.parameters, is_error);
             declare(info, tree);
         }
     }
@@ -180,17 +163,15 @@ private:
     {
         auto& overloads = declarations_of(info.file).functions[info.name];
         if (overloads.size() >= overloads_max) {
-            context.diagnostics.error(tree.name.span, "too-large",
-                                      "expected at most " + std::to_string(overloads_max) + " functions called " +
-                                          quoted(info.name) + " in a file");
+            diagnostics.error(tree.name.span, "too-large",
+                              "expected at most " + std::to_string(overloads_max) + " functions called " +
+                                  quoted(info.name) + " in a file");
             return;
         }
         const auto same = [&](auto* other) { return std::ranges::equal(other->parameters, info.parameters); };
-        const auto same_and_valid = [&](auto* other) { return other->is_valid && same(other); };
-        if (auto twin = std::find_if(overloads.begin(), overloads.end(), same_and_valid);
-            twin != overloads.end() && info.is_valid) {
-            context.diagnostics
-                .error(tree.name.span, "duplicate-name", quoted(signature_of(info)) + " is defined twice")
+        const auto twin = std::ranges::find_if(overloads, [&](auto* other) { return other->is_valid && same(other); });
+        if (twin != overloads.end() && info.is_valid) {
+            diagnostics.error(tree.name.span, "duplicate-name", quoted(signature_of(info)) + " is defined twice")
                 .related.push_back({(*twin)->tree->name.span, "first defined here"});
             return;
         }
@@ -198,28 +179,18 @@ private:
         if (info.is_library) return;
         const auto known = library.functions.find(info.name);
         const auto builtins = builtin_overloads(info.name);
-        const bool replaces_library =
-            known != library.functions.end() && std::any_of(known->second.begin(), known->second.end(), same);
-        const bool replaces_builtin =
-            std::any_of(builtins.begin(), builtins.end(), [&](const BuiltinOverload& b) { return same(&b); });
+        const bool replaces_library = known != library.functions.end() && std::ranges::any_of(known->second, same);
+        const bool replaces_builtin = std::ranges::any_of(builtins, [&](const BuiltinOverload& b) { return same(&b); });
         if (replaces_library || replaces_builtin)
-            context.diagnostics.note(tree.name.span, "replaces-library",
-                                     quoted(signature_of(info)) + " replaces the " +
-                                         (replaces_library ? "library's" : "built-in") + " function in this file");
+            diagnostics.note(tree.name.span, "replaces-library",
+                             quoted(signature_of(info)) + " replaces the " +
+                                 (replaces_library ? "library's" : "built-in") + " function in this file");
     }
 
-    // Of a result or parameter: not void.
-    Type value_type(const TypeName& name, const std::string& why, const FileScope& scope, bool is_result = false)
+    Type type_of(const TypeName& name, const std::string& why, const FileScope& scope, bool is_result = false)
     {
-        const Type type = resolve_type(context, name);
-        if (type == image_type && (name.is_array || is_result))
-            report_image(context, name);
-        else if (type == void_type)
-            context.diagnostics.error(name.base.span, "type-mismatch", why + ", found void",
-                                      "write float, int, vec3 ...");
-        else
-            return name.is_array ? BodyChecker(context, scope, true).array_type(name, type) : type;
-        return Type::error();
+        const Type type = value_type(context, name, why, !name.is_array && !is_result);
+        return name.is_array ? BodyChecker(context, scope).array_type(name, type) : type;
     }
 
     void check_constants(uint32_t file, const FileScope& scope)
@@ -227,12 +198,11 @@ private:
         for (const Constant& constant : program.files[file].tree.constants)
             declarations_of(file).constant_names.insert(constant.declaration.name.text);
         for (Constant& constant : program.files[file].tree.constants) {
-            if (context.diagnostics.full()) return;
-            const Symbol* symbol = BodyChecker(context, scope, is_library()).check_global(constant.declaration);
-            if (!symbol) continue;
-            const auto [place, is_new] = declarations_of(file).constants.try_emplace(symbol->name, symbol);
+            if (diagnostics.full()) return;
+            const Symbol& symbol = BodyChecker(context, scope).check_global(constant.declaration);
+            const auto [place, is_new] = declarations_of(file).constants.try_emplace(symbol.name, &symbol);
             if (!is_new)
-                context.diagnostics.error(symbol->span, "duplicate-name", quoted(symbol->name) + " is declared twice")
+                diagnostics.error(symbol.span, "duplicate-name", quoted(symbol.name) + " is declared twice")
                     .related.push_back({place->second->span, "first declared here"});
         }
     }
@@ -242,37 +212,33 @@ private:
         std::map<std::string_view, const Texture*> seen;
         size_t count = 0;
         for (Texture& tree : program.files[file].tree.textures) {
-            if (context.diagnostics.full()) return;
+            if (diagnostics.full()) return;
             if (++count > textures_max) {
-                context.diagnostics.error(tree.name.span, "too-large",
-                                          "expected at most " + std::to_string(textures_max) + " textures in a file",
-                                          "put the others into another file");
+                diagnostics.error(tree.name.span, "too-large",
+                                  "expected at most " + std::to_string(textures_max) + " textures in a file",
+                                  "put the others into another file");
                 return;
             }
             const auto [twin, is_new] = seen.try_emplace(tree.name.text, &tree);
             if (!is_new)
-                context.diagnostics
+                diagnostics
                     .error(tree.name.span, "duplicate-texture",
                            "two textures of this file are called " + quoted(tree.name.text))
                     .related.push_back({twin->second->name.span, "the first is here"});
             if (tree.parameters.size() > parameters_max) {
-                context.diagnostics.error(tree.parameters[parameters_max].name.span, "too-large",
-                                          "expected at most " + std::to_string(parameters_max) +
-                                              " parameters of a texture");
+                diagnostics.error(tree.parameters[parameters_max].name.span, "too-large",
+                                  "expected at most " + std::to_string(parameters_max) + " parameters of a texture");
                 continue;
             }
             CheckedTexture texture;
             texture.tree = &tree;
-            for (TextureParameter& parameter : tree.parameters)
-                if (!parameter.is_output)
-                    texture.parameters.push_back(check_texture_parameter(context, scope, parameter));
-            BodyChecker(context, scope, is_library()).check_texture(tree, texture);
+            BodyChecker(context, scope).check_texture(tree, texture);
             if (file == 0) program.textures.push_back(std::move(texture));
         }
     }
 
     CheckedProgram& program;
-    ConstantEvaluator constants;
+    Diagnostics& diagnostics;
     CheckContext context;
     std::vector<Declarations> declarations; // by file
     Declarations* const made_library;       // null: this is a program
@@ -282,23 +248,16 @@ private:
 } // namespace
 
 CheckedProgram check(const SourceSet& sources, std::vector<CheckFile> files,
-                     std::shared_ptr<const CheckedLibrary> library, Diagnostics& diagnostics)
+                     std::shared_ptr<const CheckedLibrary> library, Diagnostics& diagnostics,
+                     Declarations* made_library)
 {
-    static const CheckedLibrary none;
-    const CheckedLibrary& seen = library ? *library : none;
+    static const Declarations none;
     CheckedProgram program;
     program.library = library;
     program.files = std::move(files);
-    ProgramChecker(sources, program, nullptr, seen.declarations, diagnostics).run(seen.depths);
+    const Declarations& seen = made_library ? *made_library : library ? library->declarations : none;
+    ProgramChecker(sources, program, made_library, seen, diagnostics).run();
     return program;
-}
-
-void check(const SourceSet& sources, std::vector<CheckFile> files, CheckedLibrary& checked)
-{
-    checked.program.files = std::move(files);
-    checked.depths =
-        ProgramChecker(sources, checked.program, &checked.declarations, checked.declarations, checked.diagnostics)
-            .run({});
 }
 
 } // namespace haptel::lang
