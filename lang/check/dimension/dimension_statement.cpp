@@ -18,11 +18,6 @@ constexpr int passes_max = 16;
 
 } // namespace
 
-DimensionBody::DimensionBody(DimensionChecker& all, DimensionInstance& made, bool in_library)
-    : owner(all), instance(made), is_library(in_library)
-{
-}
-
 void DimensionBody::function(const FunctionInfo& info, const FunctionReferences& passed, const Dimensions& arguments)
 {
     functions = passed;

@@ -1,7 +1,6 @@
 // Dimensions: their arithmetic, whom a finding blames, and that the work is bounded. What is said about single
 // expressions is in golden/dimensions.haptel.
 #include "lang/check/dimension/dimension.h"
-#include "lang/check/dimension/dimension_rules.h"
 #include "lang/compile.h"
 #include "tests/lang/lower/evaluation.h"
 #include "tests/support/catch.h"
