@@ -32,7 +32,8 @@ Symbol* BodyChecker::find_local(std::string_view name) const
 const Symbol* BodyChecker::find(std::string_view name) const
 {
     if (const Symbol* local = find_local(name)) return local;
-    if (const Symbol* constant = scope.constant(name)) return constant;
+    for (const Declarations* layer : scope.layers)
+        if (auto found = layer->constants.find(name); found != layer->constants.end()) return found->second;
     for (const Symbol* input : context.inputs)
         if (input->name == name) return input;
     return nullptr;
@@ -133,6 +134,7 @@ void BodyChecker::whole_body(StatementPtr& tree, const Name& name, Type result, 
                              const Damage& body_damage)
 {
     result_type = result;
+    owner_name = name.text;
     damage = &body_damage;
     in_damaged_body = body_damage.any;
     if (!tree) return;
@@ -148,7 +150,6 @@ void BodyChecker::whole_body(StatementPtr& tree, const Name& name, Type result, 
 
 void BodyChecker::check_function(Function& tree, FunctionInfo& info)
 {
-    owner_name = info.name;
     open_scope();
     uint32_t functions = 0;
     for (size_t i = 0; i < info.parameters.size(); ++i) {

@@ -132,7 +132,7 @@ private:
     Type constructor(ast::Expression& e, ast::CallExpression& call, Type type);
     std::optional<Candidate> resolve(const ast::Expression& e, const ast::Name& callee,
                                      std::vector<ast::ExpressionPtr>& arguments, uint32_t order, CallTarget& target,
-                                     Type& if_unsure);
+                                     Type& result);
     std::vector<Candidate> functions_called(const std::string& name);
     void report_no_match(const Call& call, const std::vector<Candidate>& candidates);
     void report_unknown_function(const Call& call);

@@ -35,22 +35,19 @@ std::optional<uint32_t> BodyChecker::size_of_array(const TypeName& type)
     shared.is_checked = true;
     Expression& size = *shared.written;
     const Type found = expression(size);
+    const ir::IntRange number = range(size);
     if (found.is_error()) return std::nullopt;
-    const bool is_int = found == int_type || found == uint_type;
-    const ir::IntRange wanted = range(size);
-    if (!is_int || !wanted.is_constant()) {
+    if (!is_integer(found) || !number.is_constant())
         diagnostics.error(size.span, "not-constant",
                           "expected a constant int as the size of a table, found " +
-                              (is_int ? std::string("one that varies") : to_string(found)));
-        return std::nullopt;
-    }
-    if (wanted.minimum < 1 || wanted.minimum > table_size_max) {
+                              (is_integer(found) ? "one that varies" : to_string(found)));
+    else if (number.minimum < 1 || number.minimum > table_size_max)
         diagnostics.error(size.span, "table-size",
                           "expected 1 .. " + std::to_string(table_size_max) + " elements, found " +
-                              std::to_string(wanted.minimum));
-        return std::nullopt;
-    }
-    return shared.number = static_cast<uint32_t>(wanted.minimum);
+                              std::to_string(number.minimum));
+    else
+        shared.number = static_cast<uint32_t>(number.minimum);
+    return shared.number;
 }
 
 Type BodyChecker::array_type(const TypeName& name, Type element)
@@ -137,12 +134,11 @@ Type BodyChecker::declared_array(Declaration& node, Type element, std::vector<Co
                     "expected the number of elements of " + quoted(name) + " between '[' and ']'",
                     to_string(element) + " " + name + "[4];");
     }
-    const bool is_sound_list = list && node.is_const && diagnostics.reports() == reports;
-    bool is_table = is_sound_list;
-    for (size_t i = 0; is_sound_list && i < list->elements.size(); ++i) {
+    bool is_table = list && node.is_const && diagnostics.reports() == reports;
+    for (size_t i = 0; (is_table || is_global) && i < list->elements.size(); ++i) {
         const Expression* varies = first_not_constant(*list->elements[i]);
         is_table = is_table && !varies;
-        if (varies && is_global)
+        if (varies && is_global && !varies->type.is_error())
             diagnostics.error(varies->span, "not-constant",
                               "a table is constant, expected a value known when the texture is compiled");
         if (!is_table) continue;

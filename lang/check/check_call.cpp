@@ -54,11 +54,6 @@ struct BodyChecker::Call {
 
 namespace {
 
-std::string count_of(size_t count, const char* thing)
-{
-    return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
-}
-
 // "float f(vec3 q); float f(vec2 q)", a few of them.
 std::string listed(const std::vector<Candidate>& candidates)
 {
@@ -82,14 +77,6 @@ const FunctionInfo* source_of(const FunctionReference& function)
     return source ? *source : nullptr;
 }
 
-// Column j of a matrix is the derivative by component j; an error where no type holds the derivatives.
-Type derivative_type(Type of, Type argument)
-{
-    if (argument == float_type) return of; // shape of what is differentiated
-    if (of == float_type) return argument;
-    return of == argument ? mat(of.size) : Type::error();
-}
-
 } // namespace
 
 Type BodyChecker::check(Expression& e, CallExpression& call)
@@ -108,9 +95,9 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
         for (ExpressionPtr& argument : call.arguments) expression(*argument);
         return resolve_type(context, TypeName{.base = call.callee, .is_array = false, .array_size = nullptr});
     }
-    Type if_unsure;
-    const auto chosen = resolve(e, call.callee, call.arguments, 0, call.target, if_unsure);
-    return chosen ? chosen->result : if_unsure;
+    Type result;
+    resolve(e, call.callee, call.arguments, 0, call.target, result);
+    return result;
 }
 
 // Scalars convert from any scalar; vectors and matrices join the components of their arguments. One scalar fills a
@@ -120,6 +107,7 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
 {
     bool damaged = false;
     uint32_t components = 0;
+    const std::string all = std::to_string(type.components()) + (type.is_scalar() ? " component" : " components");
     for (ExpressionPtr& tree : call.arguments) {
         Expression& argument = *tree;
         const Type found = expression(argument);
@@ -127,8 +115,7 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
         damaged |= found.is_error();
         if (!damaged && components >= type.components()) {
             const std::string full =
-                type.is_scalar() ? "is made of one value"
-                                 : "has all its " + count_of(type.components(), "component") + " before this argument";
+                type.is_scalar() ? "is made of one value" : "has all its " + all + " before this argument";
             diagnostics.error(argument.span, "wrong-argument-count", to_string(type) + " " + full,
                               "leave this argument out");
             damaged = true;
@@ -155,8 +142,7 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
     if (components == 0 || (components < type.components() && !fills)) {
         Diagnostic& reported =
             diagnostics.error(e.span, "wrong-argument-count",
-                              to_string(type) + " needs " + count_of(type.components(), "component") + ", found " +
-                                  std::to_string(components));
+                              to_string(type) + " needs " + all + ", found " + std::to_string(components));
         if (type.is_vector()) reported.hint = "one number fills all: " + to_string(type) + "(0.0)";
         if (type.is_matrix()) reported.hint = "one number fills the diagonal: " + to_string(type) + "(1.0)";
     }
@@ -165,8 +151,8 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
 
 Type BodyChecker::check(Expression& e, GradCall& call)
 {
-    Type if_unsure;
-    const auto chosen = resolve(e, call.function, call.arguments, call.order, call.target, if_unsure);
+    Type made;
+    const auto chosen = resolve(e, call.function, call.arguments, call.order, call.target, made);
     if (!chosen) return Type::error();
     const auto first = std::find_if(chosen->parameters.begin(), chosen->parameters.end(),
                                     [](const ParameterInfo& p) { return !p.is_function && p.type != image_type; });
@@ -182,12 +168,11 @@ Type BodyChecker::check(Expression& e, GradCall& call)
                     "expected a function that returns float, a vector or a matrix, found one that returns " +
                         to_string(chosen->result),
                     "the function is " + to_string(*chosen));
-    Type made = chosen->result;
-    for (uint32_t order = 0; order < call.order && !made.is_error(); ++order) made = derivative_type(made, argument);
+    // Column j of a matrix is the derivative by component j; a float changes no shape.
+    for (uint32_t order = 0; order < call.order && argument != float_type; ++order)
+        made = made == float_type ? argument : made == argument ? mat(made.size) : Type::error();
     if (!made.is_error()) return made;
-    std::string what = "the derivative";
-    if (call.order > 1)
-        what = call.order == 2 ? "the second derivative" : "a derivative of order " + std::to_string(call.order);
+    const std::string what = call.order == 1 ? "the derivative" : "a derivative of order " + std::to_string(call.order);
     return fail(
         e.span, "not-differentiable",
         what + " of " + to_string(chosen->result) + " with respect to " + to_string(argument) +
@@ -197,10 +182,10 @@ Type BodyChecker::check(Expression& e, GradCall& call)
 }
 
 // The function that the call means. On success arguments have the parameters' types or convert to them, and `target`
-// is filled in. Otherwise the reason is reported; `if_unsure` is the result if all that could be meant agree on it.
+// is filled in. Otherwise the reason is reported. `result` is its type, or that on which all that could be meant agree.
 std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& callee,
                                               std::vector<ExpressionPtr>& arguments, uint32_t order, CallTarget& target,
-                                              Type& if_unsure)
+                                              Type& result)
 {
     Call call{e, callee, {}};
     bool damaged = false;
@@ -218,7 +203,7 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
         return std::nullopt;
     }
     const auto same_result = [&](const Candidate& c) { return c.result == candidates.front().result; };
-    if (std::ranges::all_of(candidates, same_result)) if_unsure = candidates.front().result;
+    if (std::ranges::all_of(candidates, same_result)) result = candidates.front().result;
     if (damaged || !std::ranges::all_of(candidates, is_valid)) return std::nullopt;
 
     std::vector<Candidate> best;
@@ -250,6 +235,7 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
         else
             adopt_literal(*arguments[i], parameter.type);
     }
+    result = best.front().result;
     return best.front();
 }
 

@@ -266,10 +266,9 @@ Type BodyChecker::check(Expression& e, Conditional& node)
     if (a == b) return a;
     if (converts_implicitly(a, b)) return b;
     if (converts_implicitly(b, a)) return a;
-    diagnostics.error(e.span, "type-mismatch",
-                      "both sides of ':' must have one type, found " + to_string(a) + " and " + to_string(b),
-                      conversion_hint(b, a, excerpt(*node.when_false), operand(*node.when_false)));
-    return Type::error();
+    return fail(e.span, "type-mismatch",
+                "both sides of ':' must have one type, found " + to_string(a) + " and " + to_string(b),
+                conversion_hint(b, a, excerpt(*node.when_false), operand(*node.when_false)));
 }
 
 Type BodyChecker::check(Expression& e, Member& node)

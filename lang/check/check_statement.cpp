@@ -57,8 +57,8 @@ void BodyChecker::check(Span, Declaration& node)
             fail(node.name.span, "missing-value", "constant " + quoted(node.name.text) + " has no value, expected '='");
     }
     const bool is_sound = diagnostics.reports() == reports;
-    const Expression* varies = is_sound && node.is_const ? first_not_constant(*value) : nullptr;
-    if (varies && is_global)
+    const Expression* varies = value && node.is_const ? first_not_constant(*value) : nullptr;
+    if (varies && is_global && !value->type.is_error() && !varies->type.is_error())
         diagnostics.error(varies->span, "not-constant",
                           "a global is constant, expected a value known when the texture is compiled",
                           "literals, other constants and built-in functions of them are");
@@ -131,18 +131,15 @@ void BodyChecker::condition(ExpressionPtr& e, const char* of_what)
     if (!e || expression(*e).is_error() || e->type == bool_type) return;
     Diagnostic& reported = diagnostics.error(e->span, "type-mismatch",
                                              std::string("expected bool ") + of_what + ", found " + to_string(e->type));
-    if (e->type == float_type) reported.hint = "compare: " + operand(*e) + " != 0.0";
-    if (is_integer(e->type)) reported.hint = "compare: " + operand(*e) + " != 0";
+    if (e->type == float_type || is_integer(e->type))
+        reported.hint = "compare: " + operand(*e) + (e->type == float_type ? " != 0.0" : " != 0");
 }
 
 // What holds on either of two paths; a path that does not go on has no say.
 void BodyChecker::merge(Flow& into, const Flow& other) const
 {
     if (!other.reachable) return;
-    if (!into.reachable) {
-        into = other;
-        return;
-    }
+    if (!into.reachable) into = other;
     for (size_t i = 0; i < std::min(into.variables.size(), other.variables.size()); ++i) {
         into.variables[i].assigned &= other.variables[i].assigned;
         into.variables[i].range = ir::join(into.variables[i].range, other.variables[i].range);
@@ -160,10 +157,8 @@ void BodyChecker::check(Span, If& node)
         flow = before;
     }
     if (node.arms.back().condition) merge(after, flow); // no else
-    if (after.reachable)
-        flow = std::move(after);
-    else
-        flow.reachable = false;
+    flow.reachable = after.reachable;
+    if (after.reachable) flow = std::move(after);
 }
 
 void BodyChecker::check(Span span, Break&)

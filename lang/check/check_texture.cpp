@@ -34,7 +34,6 @@ std::string unit_in(const Expression& e)
 
 void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
 {
-    owner_name = tree.name.text;
     open_scope();
     for (TextureParameter& parameter : tree.parameters) {
         if (parameter.is_output)

@@ -38,13 +38,6 @@ std::string signature_of(const FunctionInfo& function)
     return text + ')';
 }
 
-const Symbol* FileScope::constant(std::string_view name) const
-{
-    for (const Declarations* layer : layers)
-        if (auto found = layer->constants.find(name); found != layer->constants.end()) return found->second;
-    return nullptr;
-}
-
 std::vector<Candidate> FileScope::functions(std::string_view name) const
 {
     std::vector<Candidate> found;

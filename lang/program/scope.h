@@ -49,7 +49,6 @@ std::string signature_of(const FunctionInfo& function);
 struct FileScope {
     std::vector<const Declarations*> layers; // nearest first
 
-    const Symbol* constant(std::string_view name) const;
     // Every function of that name; of equal signatures only the nearest, so that a file may replace what it imports.
     std::vector<Candidate> functions(std::string_view name) const;
 };
