@@ -1,16 +1,15 @@
-// The files of a program: what each declares and sees; then every body.
+// The files of a program: what each declares and sees; then every body; then who calls whom.
 #include "lang/check/check.h"
 
 #include "lang/check/body_checker.h"
-#include "lang/check/call_graph.h"
 #include "lang/check/library.h"
 #include "lang/syntax/grammar.h"
 #include "lang/text/limits.h"
-#include "lang/text/near_name.h"
 
 #include <algorithm>
 #include <map>
-#include <set>
+#include <unordered_map>
+#include <utility>
 
 namespace haptel::lang {
 
@@ -39,71 +38,152 @@ Type resolve_type(CheckContext& context, const TypeName& name)
         reported.hint = "vecN is vec2 and vec3 in a function that has a parameter of it: float f(vecN q)";
         return Type::error();
     }
-    const auto [nearest, is_only] = near_name(
-        name.base.text, {"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "image"});
-    if (name.base.text.starts_with("mat") && name.base.text.find('x') != std::string::npos) {
+    reported.hint = "types are float, int, uint, bool, vec2, vec3, vec4, mat2, mat3 and mat4";
+    if (name.base.text.starts_with("mat") && name.base.text.find('x') != std::string::npos)
         reported.hint = "matrices are square: mat2, mat3 and mat4";
-    } else if (!nearest.empty()) {
-        reported.hint = "did you mean " + quoted(nearest) + "?";
-        if (is_only) reported.fix = FixIt{name.base.span, std::string(nearest)};
-    } else {
-        reported.hint = "types are float, int, uint, bool, vec2, vec3, vec4, mat2, mat3 and mat4";
-    }
+    else
+        propose(reported, name.base.span,
+                near_name(name.base.text,
+                          {"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "image"}));
     return Type::error();
 }
 
-void report_image(CheckContext& context, const TypeName& name)
+Type value_type(CheckContext& context, const TypeName& name, const std::string& why, bool may_be_image)
 {
-    context.diagnostics.error(name.base.span, "image",
-                              "an image is a parameter of a texture or of a function, and nothing else",
-                              "pass it on as it is: float bark(image picture, vec2 q) { return sample(picture, q); }");
+    const Type type = resolve_type(context, name);
+    if (type == image_type && !may_be_image)
+        context.diagnostics.error(
+            name.base.span, "image", "an image is a parameter of a texture or of a function, and nothing else",
+            "pass it on as it is: float bark(image picture, vec2 q) { return sample(picture, q); }");
+    else if (type == void_type)
+        context.diagnostics.error(name.base.span, "type-mismatch", why + ", found void", "write float, int, vec3 ...");
+    else
+        return type;
+    return Type::error();
 }
 
 namespace {
 
-struct SharedInput {
-    const char* name;
-    InputName input;
-    uint8_t size;
+constexpr uint32_t chain_max = 128;
+constexpr uint32_t order_max = 4; // each order multiplies the code by the number of its directions
+
+struct Visit {
+    FunctionInfo* function;
+    size_t next_mention = 0;
+    bool is_begun = false, is_done = false;
 };
-constexpr SharedInput inputs[] = {
-    {"p", InputName::p, 3},
-    {"n", InputName::n, 3},
-    {"uv", InputName::uv, 2},
-    {"time", InputName::time, 1},
-    {"center", InputName::center, 3},
-    {"extent", InputName::extent, 3},
-    {"footprint", InputName::footprint, 1},
-};
+
+// What a function that mentions these is, by what they are; reports chains and derivatives that are too deep.
+void complete(FunctionInfo& caller, const std::vector<FunctionInfo::Mention>& mentions, Diagnostics& diagnostics)
+{
+    static const FunctionInfo built_in{};
+    uint32_t call_depth = 1, derivative_order = 0;
+    for (const FunctionInfo::Mention& mention : mentions) {
+        const FunctionInfo& callee = mention.function ? *mention.function : built_in;
+        const uint32_t depth = 1 + callee.call_depth;
+        const uint32_t order =
+            mention.order + callee.derivative_order + (mention.through ? mention.through->derivative_order : 0);
+        if (depth > chain_max) {
+            diagnostics.error(mention.span, "too-deep",
+                              "functions call each other more than " + std::to_string(chain_max) + " deep here");
+        } else if (order > order_max) {
+            diagnostics.error(mention.span, "too-deep",
+                              "derivatives of derivatives of order " + std::to_string(order) +
+                                  " are taken here, expected at most " + std::to_string(order_max));
+        } else {
+            call_depth = std::max(call_depth, depth);
+            derivative_order = std::max(derivative_order, order);
+        }
+        caller.reads |= callee.reads;
+    }
+    caller.call_depth = call_depth;
+    caller.derivative_order = derivative_order;
+}
+
+void report_cycle(const std::vector<Visit*>& path, const FunctionInfo::Mention& mention, Diagnostics& diagnostics)
+{
+    constexpr ptrdiff_t shown = 8;
+    const auto first = std::ranges::find(path, mention.function, &Visit::function);
+    std::string cycle;
+    for (auto visit = first; visit != path.end(); ++visit) {
+        if (visit - first == shown) cycle += "... -> ";
+        if (visit - first < shown || visit + 1 == path.end()) cycle += (*visit)->function->name + " -> ";
+    }
+    diagnostics.error(mention.span, "recursion",
+                      "function '" + mention.function->name + "' ends up calling itself: " + cycle +
+                          mention.function->name,
+                      "every texture must end: write a for loop with a bound");
+}
+
+// Functions that call themselves, even round corners, would not end; chains of calls are kept short enough for every
+// later stage to walk them by recursion, and derivatives of derivatives few enough to be written out. What is reported
+// of neither gets its FunctionInfo::call_depth and derivative_order, and adds what is read by functions that it
+// mentions to what it reads.
+void check_call_graph(CheckedProgram& program, Diagnostics& diagnostics)
+{
+    std::unordered_map<const FunctionInfo*, Visit> visits;
+    for (FunctionInfo& function : program.functions) visits[&function] = {&function};
+    // Depth first with a stack of its own: a file may hold a chain of any length.
+    std::vector<Visit*> path;
+    const auto enter = [&](Visit& visit) {
+        if (!std::exchange(visit.is_begun, true)) path.push_back(&visit);
+    };
+    for (const FunctionInfo& root : program.functions) {
+        enter(visits[&root]);
+        while (!path.empty()) {
+            Visit& visit = *path.back();
+            FunctionInfo& function = *visit.function;
+            if (visit.next_mention == function.mentions.size()) {
+                complete(function, function.mentions, diagnostics);
+                visit.is_done = true;
+                path.pop_back();
+                continue;
+            }
+            const FunctionInfo::Mention& mention = function.mentions[visit.next_mention++];
+            const auto callee = visits.find(mention.function);
+            if (callee == visits.end()) continue;
+            if (callee->second.is_begun && !callee->second.is_done) report_cycle(path, mention, diagnostics);
+            enter(callee->second);
+        }
+    }
+    for (const CheckedTexture& texture : program.textures) {
+        FunctionInfo unused;
+        complete(unused, texture.mentions, diagnostics);
+    }
+}
 
 class ProgramChecker {
 public:
     // `own_library`, where this is the library itself: what its files declare together.
     ProgramChecker(const SourceSet& sources, CheckedProgram& checked, Declarations* own_library,
-                   const Declarations& seen_library, Diagnostics& diagnostics)
+                   const Declarations& seen_library, Diagnostics& sink)
         : program(checked)
-        , context{sources, diagnostics, checked, constants, {}, {}}
+        , diagnostics(sink)
+        , context{sources, sink, checked, own_library != nullptr}
         , declarations(checked.files.size())
         , made_library(own_library)
         , library(seen_library)
     {
-        for (const SharedInput& input : inputs) {
+        for (uint32_t i = 0; i < input_name_count; ++i) {
             Symbol& symbol = program.symbols.emplace_back();
             symbol.kind = SymbolKind::input;
-            symbol.name = input.name;
-            symbol.type = vec(input.size);
-            symbol.input = input.input;
+            symbol.name = builtin_inputs[i].name;
+            symbol.type = vec(builtin_inputs[i].size);
+            symbol.input = static_cast<InputName>(i);
             symbol.read_only = "it is an input";
             context.inputs.push_back(&symbol);
         }
     }
 
-    CallDepths run(const CallDepths& of_library)
+    void run()
     {
         std::vector<FileScope> scopes;
         const auto count = static_cast<uint32_t>(program.files.size());
-        for (uint32_t file = 0; file < count; ++file) scopes.push_back(scope_of(file));
         for (uint32_t file = 0; file < count; ++file) {
+            FileScope& scope = scopes.emplace_back();
+            if (!context.is_library) scope.layers.push_back(&declarations[file]);
+            for (uint32_t imported : program.files[file].imported) scope.layers.push_back(&declarations[imported]);
+            scope.layers.push_back(&library);
             declarations_of(file).lacks_functions |= program.files[file].tree.lacks_functions;
             declarations_of(file).unread.merge(program.files[file].tree.unread);
         }
@@ -112,29 +192,15 @@ public:
         for (uint32_t file = 0; file < count; ++file) check_constants(file, scopes[file]);
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], true);
         for (FunctionInfo& function : program.functions) {
-            if (context.diagnostics.full()) return {};
-            const Function& tree = *function.tree;
-            BodyChecker(context, scopes[function.file], function.is_library)
-                .check_function(const_cast<Function&>(tree), function);
+            if (diagnostics.full()) return;
+            BodyChecker(context, scopes[function.file]).check_function(const_cast<Function&>(*function.tree), function);
         }
         for (uint32_t file = 0; file < count; ++file) check_textures(file, scopes[file]);
-        return check_call_graph(program, of_library, context.diagnostics);
+        check_call_graph(program, diagnostics);
     }
 
 private:
-    bool is_library() const { return made_library != nullptr; }
     Declarations& declarations_of(uint32_t file) { return made_library ? *made_library : declarations[file]; }
-
-    FileScope scope_of(uint32_t file)
-    {
-        FileScope scope;
-        if (!is_library()) {
-            scope.add_layer(declarations[file]);
-            for (uint32_t imported : program.files[file].imported) scope.add_layer(declarations[imported]);
-        }
-        scope.add_layer(library);
-        return scope;
-    }
 
     // Those that pass arrays, or the others.
     void declare_functions(uint32_t file, const FileScope& scope, bool with_arrays)
@@ -142,36 +208,36 @@ private:
         for (Function& tree : program.files[file].tree.functions) {
             const auto is_array = [](const auto& parameter) { return parameter.type.is_array; };
             if ((tree.result.is_array || std::ranges::any_of(tree.parameters, is_array)) != with_arrays) continue;
-            if (context.diagnostics.full()) return;
+            if (diagnostics.full()) return;
             FunctionInfo& info = program.functions.emplace_back();
             info.name = tree.name.text;
             info.tree = &tree;
             info.file = file;
-            info.is_library = is_library();
-            info.result = value_type(tree.result, "a function returns a value", scope, true);
+            info.is_library = context.is_library;
+            info.result = type_of(tree.result, "a function returns a value", scope, true);
             if (type_named(info.name))
-                context.diagnostics.error(tree.name.span, "reserved-name",
-                                          quoted(info.name) + " is a type, expected a name of your own");
-            info.is_valid = !info.result.is_error() && !tree.damage.in_head;
+                diagnostics.error(tree.name.span, "reserved-name",
+                                  quoted(info.name) + " is a type, expected a name of your own");
             size_t numbers = 0;
             for (const FunctionParameter& parameter : tree.parameters) {
-                ParameterInfo made{value_type(parameter.type, "a parameter holds a value", scope), parameter.name.text,
-                                   parameter.is_function};
-                info.is_valid = info.is_valid && !made.type.is_error();
-                for (const TypeName& type : parameter.signature) {
-                    made.signature.push_back(value_type(type, "a function takes values", scope));
-                    info.is_valid = info.is_valid && !made.signature.back().is_error();
-                }
-                if ((numbers += std::max(made.type.components(), 1u)) > parameters_max) {
-                    context.diagnostics.error(parameter.name.span, "too-large",
-                                              "expected at most " + std::to_string(parameters_max) +
-                                                  " numbers as parameters of a function");
-                    info.is_valid = false;
-                    tree.body = nullptr;
-                }
-                info.parameters.push_back(std::move(made));
-                if (numbers > parameters_max) break;
+                ParameterInfo& made = info.parameters.emplace_back();
+                made.type = type_of(parameter.type, "a parameter holds a value", scope);
+                made.name = parameter.name.text;
+                made.is_function = parameter.is_function;
+                for (const TypeName& type : parameter.signature)
+                    made.signature.push_back(type_of(type, "a function takes values", scope));
+                if ((numbers += std::max(made.type.components(), 1u)) <= parameters_max) continue;
+                diagnostics.error(parameter.name.span, "too-large",
+                                  "expected at most " + std::to_string(parameters_max) +
+                                      " numbers as parameters of a function");
+                tree.body = nullptr;
+                break;
             }
+            const auto is_error = [](const ParameterInfo& parameter) {
+                return parameter.type.is_error() || std::ranges::any_of(parameter.signature, &Type::is_error);
+            };
+            info.is_valid = !info.result.is_error() && !tree.damage.in_head && numbers <= parameters_max &&
+                            std::ranges::none_of(info.parameters, is_error);
             declare(info, tree);
         }
     }
@@ -180,17 +246,15 @@ private:
     {
         auto& overloads = declarations_of(info.file).functions[info.name];
         if (overloads.size() >= overloads_max) {
-            context.diagnostics.error(tree.name.span, "too-large",
-                                      "expected at most " + std::to_string(overloads_max) + " functions called " +
-                                          quoted(info.name) + " in a file");
+            diagnostics.error(tree.name.span, "too-large",
+                              "expected at most " + std::to_string(overloads_max) + " functions called " +
+                                  quoted(info.name) + " in a file");
             return;
         }
         const auto same = [&](auto* other) { return std::ranges::equal(other->parameters, info.parameters); };
-        const auto same_and_valid = [&](auto* other) { return other->is_valid && same(other); };
-        if (auto twin = std::find_if(overloads.begin(), overloads.end(), same_and_valid);
-            twin != overloads.end() && info.is_valid) {
-            context.diagnostics
-                .error(tree.name.span, "duplicate-name", quoted(signature_of(info)) + " is defined twice")
+        const auto twin = std::ranges::find_if(overloads, [&](auto* other) { return other->is_valid && same(other); });
+        if (twin != overloads.end() && info.is_valid) {
+            diagnostics.error(tree.name.span, "duplicate-name", quoted(signature_of(info)) + " is defined twice")
                 .related.push_back({(*twin)->tree->name.span, "first defined here"});
             return;
         }
@@ -198,28 +262,18 @@ private:
         if (info.is_library) return;
         const auto known = library.functions.find(info.name);
         const auto builtins = builtin_overloads(info.name);
-        const bool replaces_library =
-            known != library.functions.end() && std::any_of(known->second.begin(), known->second.end(), same);
-        const bool replaces_builtin =
-            std::any_of(builtins.begin(), builtins.end(), [&](const BuiltinOverload& b) { return same(&b); });
+        const bool replaces_library = known != library.functions.end() && std::ranges::any_of(known->second, same);
+        const bool replaces_builtin = std::ranges::any_of(builtins, [&](const BuiltinOverload& b) { return same(&b); });
         if (replaces_library || replaces_builtin)
-            context.diagnostics.note(tree.name.span, "replaces-library",
-                                     quoted(signature_of(info)) + " replaces the " +
-                                         (replaces_library ? "library's" : "built-in") + " function in this file");
+            diagnostics.note(tree.name.span, "replaces-library",
+                             quoted(signature_of(info)) + " replaces the " +
+                                 (replaces_library ? "library's" : "built-in") + " function in this file");
     }
 
-    // Of a result or parameter: not void.
-    Type value_type(const TypeName& name, const std::string& why, const FileScope& scope, bool is_result = false)
+    Type type_of(const TypeName& name, const std::string& why, const FileScope& scope, bool is_result = false)
     {
-        const Type type = resolve_type(context, name);
-        if (type == image_type && (name.is_array || is_result))
-            report_image(context, name);
-        else if (type == void_type)
-            context.diagnostics.error(name.base.span, "type-mismatch", why + ", found void",
-                                      "write float, int, vec3 ...");
-        else
-            return name.is_array ? BodyChecker(context, scope, true).array_type(name, type) : type;
-        return Type::error();
+        const Type type = value_type(context, name, why, !name.is_array && !is_result);
+        return name.is_array ? BodyChecker(context, scope).array_type(name, type) : type;
     }
 
     void check_constants(uint32_t file, const FileScope& scope)
@@ -227,12 +281,11 @@ private:
         for (const Constant& constant : program.files[file].tree.constants)
             declarations_of(file).constant_names.insert(constant.declaration.name.text);
         for (Constant& constant : program.files[file].tree.constants) {
-            if (context.diagnostics.full()) return;
-            const Symbol* symbol = BodyChecker(context, scope, is_library()).check_global(constant.declaration);
-            if (!symbol) continue;
-            const auto [place, is_new] = declarations_of(file).constants.try_emplace(symbol->name, symbol);
+            if (diagnostics.full()) return;
+            const Symbol& symbol = BodyChecker(context, scope).check_global(constant.declaration);
+            const auto [place, is_new] = declarations_of(file).constants.try_emplace(symbol.name, &symbol);
             if (!is_new)
-                context.diagnostics.error(symbol->span, "duplicate-name", quoted(symbol->name) + " is declared twice")
+                diagnostics.error(symbol.span, "duplicate-name", quoted(symbol.name) + " is declared twice")
                     .related.push_back({place->second->span, "first declared here"});
         }
     }
@@ -242,37 +295,33 @@ private:
         std::map<std::string_view, const Texture*> seen;
         size_t count = 0;
         for (Texture& tree : program.files[file].tree.textures) {
-            if (context.diagnostics.full()) return;
+            if (diagnostics.full()) return;
             if (++count > textures_max) {
-                context.diagnostics.error(tree.name.span, "too-large",
-                                          "expected at most " + std::to_string(textures_max) + " textures in a file",
-                                          "put the others into another file");
+                diagnostics.error(tree.name.span, "too-large",
+                                  "expected at most " + std::to_string(textures_max) + " textures in a file",
+                                  "put the others into another file");
                 return;
             }
             const auto [twin, is_new] = seen.try_emplace(tree.name.text, &tree);
             if (!is_new)
-                context.diagnostics
+                diagnostics
                     .error(tree.name.span, "duplicate-texture",
                            "two textures of this file are called " + quoted(tree.name.text))
                     .related.push_back({twin->second->name.span, "the first is here"});
             if (tree.parameters.size() > parameters_max) {
-                context.diagnostics.error(tree.parameters[parameters_max].name.span, "too-large",
-                                          "expected at most " + std::to_string(parameters_max) +
-                                              " parameters of a texture");
+                diagnostics.error(tree.parameters[parameters_max].name.span, "too-large",
+                                  "expected at most " + std::to_string(parameters_max) + " parameters of a texture");
                 continue;
             }
             CheckedTexture texture;
             texture.tree = &tree;
-            for (TextureParameter& parameter : tree.parameters)
-                if (!parameter.is_output)
-                    texture.parameters.push_back(check_texture_parameter(context, scope, parameter));
-            BodyChecker(context, scope, is_library()).check_texture(tree, texture);
+            BodyChecker(context, scope).check_texture(tree, texture);
             if (file == 0) program.textures.push_back(std::move(texture));
         }
     }
 
     CheckedProgram& program;
-    ConstantEvaluator constants;
+    Diagnostics& diagnostics;
     CheckContext context;
     std::vector<Declarations> declarations; // by file
     Declarations* const made_library;       // null: this is a program
@@ -282,23 +331,16 @@ private:
 } // namespace
 
 CheckedProgram check(const SourceSet& sources, std::vector<CheckFile> files,
-                     std::shared_ptr<const CheckedLibrary> library, Diagnostics& diagnostics)
+                     std::shared_ptr<const CheckedLibrary> library, Diagnostics& diagnostics,
+                     Declarations* made_library)
 {
-    static const CheckedLibrary none;
-    const CheckedLibrary& seen = library ? *library : none;
+    static const Declarations none;
     CheckedProgram program;
     program.library = library;
     program.files = std::move(files);
-    ProgramChecker(sources, program, nullptr, seen.declarations, diagnostics).run(seen.depths);
+    const Declarations& seen = made_library ? *made_library : library ? library->declarations : none;
+    ProgramChecker(sources, program, made_library, seen, diagnostics).run();
     return program;
-}
-
-void check(const SourceSet& sources, std::vector<CheckFile> files, CheckedLibrary& checked)
-{
-    checked.program.files = std::move(files);
-    checked.depths =
-        ProgramChecker(sources, checked.program, &checked.declarations, checked.declarations, checked.diagnostics)
-            .run({});
 }
 
 } // namespace haptel::lang

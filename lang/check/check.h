@@ -6,6 +6,7 @@
 #pragma once
 
 #include "lang/program/checked_program.h"
+#include "lang/program/scope.h"
 #include "lang/text/diagnostic.h"
 
 #include <memory>
@@ -13,10 +14,9 @@
 
 namespace haptel::lang {
 
+// `made_library`, where this is the library itself: gets what its files declare, and they see each other.
 CheckedProgram check(const SourceSet& sources, std::vector<CheckFile> files,
-                     std::shared_ptr<const CheckedLibrary> library, Diagnostics& diagnostics);
-
-// The same of the files of a library, which see each other; makes `checked` but for its sources.
-void check(const SourceSet& sources, std::vector<CheckFile> files, CheckedLibrary& checked);
+                     std::shared_ptr<const CheckedLibrary> library, Diagnostics& diagnostics,
+                     Declarations* made_library = nullptr);
 
 } // namespace haptel::lang

@@ -1,8 +1,7 @@
-// Calls: constructors, overloads, functions as arguments, derivatives of functions.
+// Calls: constructors, overloads, functions as arguments, derivatives of functions; and of what is no function: a
+// variable, a word of another language, a slip.
 #include "lang/check/body_checker.h"
-#include "lang/syntax/foreign.h"
 #include "lang/syntax/grammar.h"
-#include "lang/syntax/operators.h"
 
 #include <algorithm>
 
@@ -10,12 +9,50 @@ namespace haptel::lang {
 
 using namespace ast;
 
-namespace {
+// An argument: a value, or a function.
+struct BodyChecker::Argument {
+    Expression* tree;
+    std::vector<Candidate> functions; // that its name may mean; none: it is a value
+    bool is_function() const { return !functions.empty(); }
 
-std::string count_of(size_t count, const char* thing)
-{
-    return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
-}
+    // The function that is passed; null if none fits.
+    const Candidate* passed_as(const ParameterInfo& parameter) const
+    {
+        const auto same = [](const ParameterInfo& p, Type type) { return !p.is_function && p.type == type; };
+        const auto found = std::ranges::find_if(functions, [&](const Candidate& candidate) {
+            return parameter.is_function && candidate.result == parameter.type &&
+                   std::ranges::equal(candidate.parameters, parameter.signature, same);
+        });
+        return found == functions.end() ? nullptr : &*found;
+    }
+    bool fits(const ParameterInfo& parameter) const
+    {
+        if (parameter.is_function || is_function()) return passed_as(parameter);
+        return converts(*tree, parameter.type);
+    }
+};
+
+struct BodyChecker::Call {
+    const Expression& tree;
+    const Name& callee;
+    std::vector<Argument> arguments;
+
+    bool fits(const Candidate& candidate) const
+    {
+        const auto fits = [](const Argument& argument, const ParameterInfo& p) { return argument.fits(p); };
+        return std::ranges::equal(arguments, candidate.parameters, fits);
+    }
+    // Arguments that become what a function takes, which they fit.
+    ptrdiff_t conversions(const Candidate& candidate) const
+    {
+        ptrdiff_t count = 0;
+        for (size_t i = 0; i < arguments.size(); ++i)
+            count += !arguments[i].is_function() && arguments[i].tree->type != candidate.parameters[i].type;
+        return count;
+    }
+};
+
+namespace {
 
 // "float f(vec3 q); float f(vec2 q)", a few of them.
 std::string listed(const std::vector<Candidate>& candidates)
@@ -27,22 +64,11 @@ std::string listed(const std::vector<Candidate>& candidates)
     return text;
 }
 
-std::string described(const ParameterInfo& parameter)
-{
-    std::string text = to_string(parameter.type);
-    if (!parameter.is_function) return text;
-    text = "a function " + text + "(";
-    for (size_t i = 0; i < parameter.signature.size(); ++i)
-        text += (i > 0 ? ", " : "") + to_string(parameter.signature[i]);
-    return text + ")";
-}
-
 bool is_valid(const Candidate& candidate)
 {
     if (auto source = std::get_if<const FunctionInfo*>(&candidate.function)) return (*source)->is_valid;
-    return !candidate.result.is_error() &&
-           std::ranges::none_of(candidate.parameters,
-                                [](const ParameterInfo& parameter) { return parameter.type.is_error(); });
+    const auto is_error = [](const ParameterInfo& parameter) { return parameter.type.is_error(); };
+    return !candidate.result.is_error() && std::ranges::none_of(candidate.parameters, is_error);
 }
 
 const FunctionInfo* source_of(const FunctionReference& function)
@@ -51,30 +77,16 @@ const FunctionInfo* source_of(const FunctionReference& function)
     return source ? *source : nullptr;
 }
 
-// Column j of a matrix is the derivative by component j; an error where no type holds the derivatives.
-Type derivative_type(Type of, Type argument)
-{
-    if (argument == float_type) return of; // shape of what is differentiated
-    if (of == float_type) return argument;
-    return of == argument ? mat(of.size) : Type::error();
-}
-
-bool is_literal_for(const Expression& argument, Type wanted)
-{
-    return argument.type == int_type && wanted == uint_type && std::holds_alternative<NumberLiteral>(argument.node);
-}
-
 } // namespace
 
 Type BodyChecker::check(Expression& e, CallExpression& call)
 {
     if (const auto type = type_named(call.callee.text)) return constructor(e, call, *type);
     const ForeignWord* foreign = foreign_word(ForeignKind::type, call.callee.text);
-    if (foreign && !find(call.callee.text) && !scope.is_function(call.callee.text)) {
-        Diagnostic& reported = diagnostics.error(call.callee.span, "foreign-word",
-                                                 quoted(call.callee.text) + " is not a type of Haptel", foreign->hint);
-        if (foreign->is_exact && !foreign->replacement.empty())
-            reported.fix = FixIt{call.callee.span, std::string(foreign->replacement)};
+    if (foreign && !find(call.callee.text) && scope.functions(call.callee.text).empty()) {
+        Diagnostic& reported =
+            diagnostics.error(call.callee.span, "foreign-word", quoted(call.callee.text) + " is not a type of Haptel");
+        propose(reported, call.callee.span, *foreign);
         if (const auto type = type_named(foreign->replacement)) return constructor(e, call, *type);
         for (ExpressionPtr& argument : call.arguments) expression(*argument);
         return Type::error();
@@ -83,9 +95,9 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
         for (ExpressionPtr& argument : call.arguments) expression(*argument);
         return resolve_type(context, TypeName{.base = call.callee, .is_array = false, .array_size = nullptr});
     }
-    Type if_unsure;
-    const auto chosen = resolve(e, call.callee, call.arguments, 0, call.target, if_unsure);
-    return chosen ? chosen->result : if_unsure;
+    Type result;
+    resolve(e, call.callee, call.arguments, 0, call.target, result);
+    return result;
 }
 
 // Scalars convert from any scalar; vectors and matrices join the components of their arguments. One scalar fills a
@@ -95,29 +107,25 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
 {
     bool damaged = false;
     uint32_t components = 0;
-    for (size_t i = 0; i < call.arguments.size(); ++i) {
-        Expression& argument = *call.arguments[i];
+    const std::string all = std::to_string(type.components()) + (type.is_scalar() ? " component" : " components");
+    for (ExpressionPtr& tree : call.arguments) {
+        Expression& argument = *tree;
         const Type found = expression(argument);
+        const bool is_second_matrix = type.is_matrix() && found.is_matrix() && call.arguments.size() > 1;
         damaged |= found.is_error();
         if (!damaged && components >= type.components()) {
             const std::string full =
-                type.is_scalar() ? "is made of one value"
-                                 : "has all its " + count_of(type.components(), "component") + " before this argument";
+                type.is_scalar() ? "is made of one value" : "has all its " + all + " before this argument";
             diagnostics.error(argument.span, "wrong-argument-count", to_string(type) + " " + full,
                               "leave this argument out");
             damaged = true;
         }
-        if (!damaged && found == image_type) {
-            diagnostics.error(argument.span, "image",
-                              "expected numbers and vectors for " + to_string(type) + ", found image",
-                              "read it: sample(" + excerpt(argument) + ", uv)");
-            damaged = true;
-        }
-        if (!damaged && (found.is_array() || (type.is_matrix() && found.is_matrix() && call.arguments.size() > 1))) {
-            diagnostics.error(argument.span, "type-mismatch",
+        if (!damaged && (found == image_type || found.is_array() || is_second_matrix)) {
+            diagnostics.error(argument.span, found == image_type ? ErrorCode("image") : ErrorCode("type-mismatch"),
                               "expected numbers and vectors for " + to_string(type) + ", found " + to_string(found),
-                              found.is_array() ? "pick elements: " + operand(argument) + "[i]"
-                                               : "pick columns: " + operand(argument) + "[0]");
+                              found == image_type ? "read it: sample(" + excerpt(argument) + ", uv)"
+                              : found.is_array()  ? "pick elements: " + operand(argument) + "[i]"
+                                                  : "pick columns: " + operand(argument) + "[0]");
             damaged = true;
         }
         components += found.components();
@@ -134,8 +142,7 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
     if (components == 0 || (components < type.components() && !fills)) {
         Diagnostic& reported =
             diagnostics.error(e.span, "wrong-argument-count",
-                              to_string(type) + " needs " + count_of(type.components(), "component") + ", found " +
-                                  std::to_string(components));
+                              to_string(type) + " needs " + all + ", found " + std::to_string(components));
         if (type.is_vector()) reported.hint = "one number fills all: " + to_string(type) + "(0.0)";
         if (type.is_matrix()) reported.hint = "one number fills the diagonal: " + to_string(type) + "(1.0)";
     }
@@ -144,8 +151,8 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
 
 Type BodyChecker::check(Expression& e, GradCall& call)
 {
-    Type if_unsure;
-    const auto chosen = resolve(e, call.function, call.arguments, call.order, call.target, if_unsure);
+    Type made;
+    const auto chosen = resolve(e, call.function, call.arguments, call.order, call.target, made);
     if (!chosen) return Type::error();
     const auto first = std::find_if(chosen->parameters.begin(), chosen->parameters.end(),
                                     [](const ParameterInfo& p) { return !p.is_function && p.type != image_type; });
@@ -161,12 +168,11 @@ Type BodyChecker::check(Expression& e, GradCall& call)
                     "expected a function that returns float, a vector or a matrix, found one that returns " +
                         to_string(chosen->result),
                     "the function is " + to_string(*chosen));
-    Type made = chosen->result;
-    for (uint32_t order = 0; order < call.order && !made.is_error(); ++order) made = derivative_type(made, argument);
+    // Column j of a matrix is the derivative by component j; a float changes no shape.
+    for (uint32_t order = 0; order < call.order && argument != float_type; ++order)
+        made = made == float_type ? argument : made == argument ? mat(made.size) : Type::error();
     if (!made.is_error()) return made;
-    std::string what = "the derivative";
-    if (call.order > 1)
-        what = call.order == 2 ? "the second derivative" : "a derivative of order " + std::to_string(call.order);
+    const std::string what = call.order == 1 ? "the derivative" : "a derivative of order " + std::to_string(call.order);
     return fail(
         e.span, "not-differentiable",
         what + " of " + to_string(chosen->result) + " with respect to " + to_string(argument) +
@@ -176,164 +182,192 @@ Type BodyChecker::check(Expression& e, GradCall& call)
 }
 
 // The function that the call means. On success arguments have the parameters' types or convert to them, and `target`
-// is filled in. Otherwise the reason is reported; `if_unsure` is the result if all that could be meant agree on it.
+// is filled in. Otherwise the reason is reported. `result` is its type, or that on which all that could be meant agree.
 std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& callee,
                                               std::vector<ExpressionPtr>& arguments, uint32_t order, CallTarget& target,
-                                              Type& if_unsure)
+                                              Type& result)
 {
-    std::vector<Argument> classes;
+    Call call{e, callee, {}};
     bool damaged = false;
-    for (ExpressionPtr& argument : arguments) {
-        classes.push_back(classify(*argument));
-        damaged |= classes.back().is_function ? !std::ranges::all_of(classes.back().functions, is_valid)
-                                              : argument->type.is_error();
+    for (ExpressionPtr& tree : arguments) {
+        auto name = std::get_if<NameExpression>(&tree->node);
+        const Symbol* symbol = name ? find(name->name) : nullptr;
+        const bool is_value = !name || (symbol && symbol->kind != SymbolKind::function);
+        call.arguments.push_back({tree.get(), is_value ? std::vector<Candidate>{} : functions_called(name->name)});
+        const std::vector<Candidate>& functions = call.arguments.back().functions;
+        damaged |= functions.empty() ? expression(*tree).is_error() : !std::ranges::all_of(functions, is_valid);
     }
-    std::vector<Candidate> candidates;
-    if (Symbol* local = find_local(callee.text); local && local->kind == SymbolKind::function) {
-        local->is_read = true;
-        candidates.push_back(candidate_of(*local));
-    } else {
-        candidates = scope.functions(callee.text);
-    }
+    const std::vector<Candidate> candidates = functions_called(callee.text);
     if (candidates.empty()) {
-        report_unknown_function(e, callee, arguments, classes);
+        report_unknown_function(call);
         return std::nullopt;
     }
     const auto same_result = [&](const Candidate& c) { return c.result == candidates.front().result; };
-    if (std::all_of(candidates.begin(), candidates.end(), same_result)) if_unsure = candidates.front().result;
-    if (damaged || !std::all_of(candidates.begin(), candidates.end(), is_valid)) return std::nullopt;
+    if (std::ranges::all_of(candidates, same_result)) result = candidates.front().result;
+    if (damaged || !std::ranges::all_of(candidates, is_valid)) return std::nullopt;
 
-    const Candidate* best = nullptr;
-    int best_cost = 0;
-    std::vector<Candidate> ties;
+    std::vector<Candidate> best;
     for (const Candidate& candidate : candidates) {
-        const auto cost = cost_of(candidate, arguments, classes);
-        if (!cost || (best && *cost > best_cost)) continue;
-        if (!best || *cost < best_cost) ties.clear();
-        ties.push_back(candidate);
-        best = &candidate;
-        best_cost = *cost;
+        if (!call.fits(candidate)) continue;
+        const auto more = best.empty() ? 0 : call.conversions(candidate) - call.conversions(best.front());
+        if (more < 0) best.clear();
+        if (more <= 0) best.push_back(candidate);
     }
-    if (!best) {
-        report_no_match(e, callee, arguments, classes, candidates);
+    if (best.empty()) {
+        report_no_match(call, candidates);
         return std::nullopt;
     }
-    if (ties.size() > 1) {
+    if (best.size() > 1) {
         diagnostics.error(e.span, "ambiguous-call",
                           "this call of " + quoted(callee.text) + " fits several functions equally well",
-                          listed(ties) + "; convert arguments to say which, for example float(i)");
+                          listed(best) + "; convert arguments to say which, for example float(i)");
         return std::nullopt;
     }
-    target.function = best->function;
-    const FunctionInfo* source = source_of(best->function);
+    target.function = best.front().function;
+    const FunctionInfo* source = source_of(target.function);
     if (source || order > 0) mentions.push_back({source, callee.span, order, nullptr});
     for (size_t i = 0; i < arguments.size(); ++i) {
-        const Candidate* passed = passed_function(classes[i], best->parameters[i]);
+        const ParameterInfo& parameter = best.front().parameters[i];
+        const Candidate* passed = call.arguments[i].passed_as(parameter);
         target.function_arguments.push_back(passed ? passed->function : FunctionReference{});
-        if (passed) mentions.push_back({source_of(passed->function), arguments[i]->span, order, source});
-        if (!passed && is_literal_for(*arguments[i], best->parameters[i].type)) arguments[i]->type = uint_type;
+        if (passed)
+            mentions.push_back({source_of(passed->function), arguments[i]->span, order, source});
+        else
+            adopt_literal(*arguments[i], parameter.type);
     }
-    return *best;
+    result = best.front().result;
+    return best.front();
 }
 
-// A name that is no variable but a function is passed as one; anything else is a value.
-BodyChecker::Argument BodyChecker::classify(Expression& argument)
+// That the name means where it is called or passed.
+std::vector<Candidate> BodyChecker::functions_called(const std::string& name)
 {
-    auto name = std::get_if<NameExpression>(&argument.node);
-    Symbol* local = name ? find_local(name->name) : nullptr;
-    if (local && local->kind == SymbolKind::function) {
-        local->is_read = true;
-        return {true, {candidate_of(*local)}};
-    }
-    if (name && !find(name->name) && scope.is_function(name->name)) return {true, scope.functions(name->name)};
-    expression(argument);
-    return {};
-}
-
-const Candidate* BodyChecker::passed_function(const Argument& argument, const ParameterInfo& parameter) const
-{
-    if (!argument.is_function || !parameter.is_function) return nullptr;
-    for (const Candidate& candidate : argument.functions) {
-        const auto same = [](const ParameterInfo& p, Type type) { return !p.is_function && p.type == type; };
-        if (candidate.result == parameter.type &&
-            std::equal(candidate.parameters.begin(), candidate.parameters.end(), parameter.signature.begin(),
-                       parameter.signature.end(), same))
-            return &candidate;
-    }
-    return nullptr;
-}
-
-// Number of conversions; nothing if the arguments do not fit.
-std::optional<int> BodyChecker::cost_of(const Candidate& candidate, const std::vector<ExpressionPtr>& arguments,
-                                        const std::vector<Argument>& classes) const
-{
-    if (candidate.parameters.size() != arguments.size()) return std::nullopt;
-    int cost = 0;
-    for (size_t i = 0; i < arguments.size(); ++i) {
-        const ParameterInfo& parameter = candidate.parameters[i];
-        if (parameter.is_function || classes[i].is_function) {
-            if (!passed_function(classes[i], parameter)) return std::nullopt;
-            continue;
-        }
-        if (!converts_implicitly(arguments[i]->type, parameter.type) && !is_literal_for(*arguments[i], parameter.type))
-            return std::nullopt;
-        cost += arguments[i]->type != parameter.type;
-    }
-    return cost;
+    Symbol* local = find_local(name);
+    if (!local || local->kind != SymbolKind::function) return scope.functions(name);
+    local->is_read = true;
+    return {Candidate(*local)};
 }
 
 // As exact as can be: the argument that is wrong if only one function can be meant, else what there is.
-void BodyChecker::report_no_match(const Expression& e, const Name& callee, const std::vector<ExpressionPtr>& arguments,
-                                  const std::vector<Argument>& classes, const std::vector<Candidate>& candidates)
+void BodyChecker::report_no_match(const Call& call, const std::vector<Candidate>& candidates)
 {
+    const std::string name = quoted(call.callee.text);
+    std::set<size_t> counts;
     std::vector<Candidate> same_count;
-    for (const Candidate& candidate : candidates)
-        if (candidate.parameters.size() == arguments.size()) same_count.push_back(candidate);
+    for (const Candidate& candidate : candidates) {
+        counts.insert(candidate.parameters.size());
+        if (candidate.parameters.size() == call.arguments.size()) same_count.push_back(candidate);
+    }
     if (same_count.empty()) {
-        std::string message = quoted(callee.text) + " takes ";
-        std::vector<size_t> counts;
-        for (const Candidate& candidate : candidates) counts.push_back(candidate.parameters.size());
-        std::sort(counts.begin(), counts.end());
-        counts.erase(std::unique(counts.begin(), counts.end()), counts.end());
-        for (size_t i = 0; i + 1 < counts.size(); ++i)
-            message += std::to_string(counts[i]) + (i + 2 < counts.size() ? ", " : " or ");
-        message += count_of(counts.back(), "argument") + ", found " + std::to_string(arguments.size());
-        diagnostics.error(e.span, "wrong-argument-count", std::move(message), listed(candidates));
+        std::string numbers;
+        for (size_t count : counts)
+            numbers += (numbers.empty() ? "" : count == *counts.rbegin() ? " or " : ", ") + std::to_string(count);
+        diagnostics.error(call.tree.span, "wrong-argument-count",
+                          name + " takes " + numbers + (*counts.rbegin() == 1 ? " argument" : " arguments") +
+                              ", found " + std::to_string(call.arguments.size()),
+                          listed(candidates));
         return;
     }
-    if (same_count.size() == 1) {
-        for (size_t i = 0; i < arguments.size(); ++i) {
-            const ParameterInfo& parameter = same_count.front().parameters[i];
-            const bool fits = parameter.is_function
-                                  ? passed_function(classes[i], parameter) != nullptr
-                                  : !classes[i].is_function && converts_implicitly(arguments[i]->type, parameter.type);
-            if (!fits) return report_argument(same_count.front(), i, *arguments[i], classes[i]);
-        }
+    for (size_t i = 0; i < call.arguments.size() && same_count.size() == 1; ++i) {
+        const Argument& argument = call.arguments[i];
+        const ParameterInfo& parameter = same_count.front().parameters[i];
+        if (argument.fits(parameter)) continue;
+        Diagnostic& reported = diagnostics.error(
+            argument.tree->span, "type-mismatch",
+            std::string("expected ") + (parameter.is_function ? "a function " : "") + to_string(parameter) +
+                " as argument " + std::to_string(i + 1) + ", found " +
+                (!argument.is_function()          ? to_string(argument.tree->type)
+                 : argument.functions.size() == 1 ? "the function " + to_string(argument.functions.front())
+                                                  : "functions that take other arguments"),
+            listed(same_count));
+        if (source_of(same_count.front().function) && parameter.symbol)
+            reported.related.push_back({parameter.symbol->span, quoted(parameter.name) + " is declared here"});
+        return;
     }
-    std::string found;
-    for (size_t i = 0; i < arguments.size(); ++i)
-        found += (i > 0 ? ", " : "") + (classes[i].is_function
-                                            ? "function " + std::string(context.sources.text(arguments[i]->span))
-                                            : to_string(arguments[i]->type));
-    diagnostics.error(e.span, "no-matching-function", "no " + quoted(callee.text) + " takes (" + found + ")",
+    std::string types;
+    for (const Argument& argument : call.arguments)
+        types += (types.empty() ? "" : ", ") +
+                 (argument.is_function() ? "function " + std::string(context.sources.text(argument.tree->span))
+                                         : to_string(argument.tree->type));
+    diagnostics.error(call.tree.span, "no-matching-function", "no " + name + " takes (" + types + ")",
                       listed(same_count));
 }
 
-void BodyChecker::report_argument(const Candidate& candidate, size_t index, const Expression& argument,
-                                  const Argument& argument_class)
+// "clamp($1, 0.0, 1.0)" with the arguments' text in place; empty if their number differs.
+std::string BodyChecker::filled_in(std::string_view pattern, const Call& call) const
 {
-    const ParameterInfo& parameter = candidate.parameters[index];
-    std::string found = to_string(argument.type);
-    if (argument_class.is_function)
-        found = argument_class.functions.size() == 1 ? "the function " + to_string(argument_class.functions.front())
-                                                     : "functions that take other arguments";
-    Diagnostic& reported = diagnostics.error(argument.span, "type-mismatch",
-                                             "expected " + described(parameter) + " as argument " +
-                                                 std::to_string(index + 1) + ", found " + found,
-                                             listed({candidate}));
-    auto source = std::get_if<const FunctionInfo*>(&candidate.function);
-    if (source && parameter.symbol)
-        reported.related.push_back({parameter.symbol->span, quoted(parameter.name) + " is declared here"});
+    std::string written(pattern);
+    const bool is_call = pattern.find(" * ") == pattern.npos && pattern.find(" / ") == pattern.npos &&
+                         !pattern.starts_with('!'); // one call as a whole
+    for (size_t i = 0; i < call.arguments.size(); ++i) {
+        const Expression& argument = *call.arguments[i].tree;
+        const std::string hole = "$" + std::to_string(i + 1);
+        std::string text(context.sources.text(argument.span));
+        if (!is_call && is_open(argument)) text = "(" + text + ")";
+        if (written.find(hole) == written.npos) return {};
+        for (size_t at = 0; (at = written.find(hole, at)) != written.npos; at += text.size())
+            written.replace(at, hole.size(), text);
+    }
+    if (written.find('$') != written.npos) return {};
+    return is_call ? written : "(" + written + ")";
+}
+
+// A function or type of that name fits the arguments as they are.
+bool BodyChecker::takes(std::string_view name, const Call& call) const
+{
+    uint32_t components = 0;
+    for (const Argument& argument : call.arguments) {
+        if (!argument.is_function() && argument.tree->type.is_error()) return false;
+        components += argument.tree->type.components();
+    }
+    if (const auto type = type_named(name)) return components == type->components();
+    return std::ranges::any_of(scope.functions(name), [&](const Candidate& candidate) { return call.fits(candidate); });
+}
+
+void BodyChecker::report_unknown_function(const Call& call)
+{
+    const std::string& name = call.callee.text;
+    const Span span = call.callee.span;
+    if (const Symbol* variable = find(name)) {
+        mark_read(name);
+        if (variable->type.is_error()) return; // enough has been said of it
+        diagnostics.error(span, "not-a-function",
+                          quoted(name) + " is a " + to_string(variable->type) + ", expected a function",
+                          "to multiply, write " + name + " * (...)");
+        return;
+    }
+    if (name == "grad") {
+        diagnostics.error(span, "grad", "grad takes the name of a function",
+                          "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)");
+        return;
+    }
+    if (std::ranges::any_of(scope.layers, &Declarations::lacks_functions) || may_be_unread(name) ||
+        context.unknown_functions.contains(name) || diagnostics.full())
+        return diagnostics.count_consequence();
+    Diagnostic& reported = diagnostics.error(span, "unknown-function", "unknown function " + quoted(name));
+    if (const ForeignWord* foreign = foreign_word(ForeignKind::function, name)) {
+        propose(reported, span, *foreign);
+        if (foreign->replacement.find('$') == std::string_view::npos) return;
+        reported.fix.reset();
+        const std::string written = filled_in(foreign->replacement, call);
+        if (!written.empty() && std::holds_alternative<CallExpression>(call.tree.node))
+            reported.fix = FixIt{call.tree.span, written};
+        return;
+    }
+    const std::string_view stem = std::string_view(name).substr(0, name.size() - 1);
+    if (name.ends_with('f') && !builtin_overloads(stem).empty()) { // sinf of C
+        reported.hint = "write " + std::string(stem);
+        if (takes(stem, call)) reported.fix = FixIt{span, std::string(stem)};
+        return;
+    }
+    std::vector<std::string_view> names{"float", "int",  "uint", "bool", "vec2", "vec3",
+                                        "vec4",  "mat2", "mat3", "mat4", "grad"};
+    for (const Declarations* layer : scope.layers)
+        for (const auto& [known, functions] : layer->functions) names.push_back(known);
+    for (const auto& [known, overloads] : builtin_overloads()) names.push_back(known);
+    const NearName near = near_name(name, names);
+    if (near.name.empty()) context.unknown_functions.insert(name);
+    propose(reported, span, near, takes(near.name, call));
 }
 
 } // namespace haptel::lang

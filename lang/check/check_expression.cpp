@@ -93,6 +93,17 @@ std::string operator_hint(BinaryOp op, Type left, Type right)
 
 } // namespace
 
+bool converts(const Expression& e, Type wanted)
+{
+    return converts_implicitly(e.type, wanted) ||
+           (e.type == int_type && wanted == uint_type && std::holds_alternative<NumberLiteral>(e.node));
+}
+
+void adopt_literal(Expression& e, Type wanted)
+{
+    if (wanted == uint_type && converts(e, wanted)) e.type = uint_type;
+}
+
 Type BodyChecker::expression(Expression& e)
 {
     e.type = std::visit([&](auto& node) { return check(e, node); }, e.node);
@@ -117,22 +128,15 @@ std::string BodyChecker::operand(const Expression& e) const
     return is_open(e) && text != "x" ? "(" + text + ")" : text;
 }
 
-bool BodyChecker::require(Expression& e, Type wanted, const std::string& where)
+void BodyChecker::require(Expression& e, Type wanted, const std::string& where)
 {
-    if (e.type.is_error() || wanted.is_error()) return false;
-    if (converts_implicitly(e.type, wanted)) return true;
-    if (auto literal = std::get_if<NumberLiteral>(&e.node); literal && e.type == int_type && wanted == uint_type) {
-        e.type = uint_type;
-        return true;
-    }
-    diagnostics.error(e.span, "type-mismatch", "expected " + to_string(wanted) + where + ", found " + to_string(e.type),
-                      conversion_hint(e.type, wanted, excerpt(e), operand(e)));
-    return false;
-}
-
-Type BodyChecker::check(Expression&, ErrorExpression&)
-{
-    return Type::error();
+    adopt_literal(e, wanted);
+    if (e.type.is_error() || wanted.is_error())
+        diagnostics.count_consequence();
+    else if (!converts(e, wanted))
+        diagnostics.error(e.span, "type-mismatch",
+                          "expected " + to_string(wanted) + where + ", found " + to_string(e.type),
+                          conversion_hint(e.type, wanted, excerpt(e), operand(e)));
 }
 
 Type BodyChecker::check(Expression& e, NumberLiteral& node)
@@ -147,26 +151,16 @@ Type BodyChecker::check(Expression& e, NumberLiteral& node)
     return is_unsigned ? uint_type : int_type;
 }
 
-Type BodyChecker::check(Expression&, BoolLiteral&)
-{
-    return bool_type;
-}
-
-Type BodyChecker::check(Expression& e, NameExpression& node)
-{
-    return read(e, node, all_parts);
-}
-
 // A name that is read, at least some parts of it.
 Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
 {
     const Symbol* symbol = find(node.name);
-    const bool is_shared = !symbol || symbol->kind == SymbolKind::input;
-    if (is_shared && may_be_unread(node.name)) {
+    if ((!symbol || symbol->kind == SymbolKind::input) && may_be_unread(node.name)) {
         diagnostics.count_consequence();
         return Type::error();
     }
-    if (!symbol && scope.is_function(node.name))
+    mark_read(node.name);
+    if (symbol ? symbol->kind == SymbolKind::function : !scope.functions(node.name).empty())
         return fail(e.span, "not-a-value", quoted(node.name) + " is a function, expected a value",
                     "call it: " + node.name + "(...)");
     if (!symbol) {
@@ -174,38 +168,28 @@ Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
         return Type::error();
     }
     node.symbol = symbol;
-    mark_read(node.name);
-    switch (symbol->kind) {
-    case SymbolKind::input: reads |= 1u << static_cast<uint32_t>(symbol->input); break;
-    case SymbolKind::function:
-        return fail(e.span, "not-a-value", quoted(node.name) + " is a function, expected a value",
-                    "call it: " + node.name + "(...)");
-    case SymbolKind::local: {
-        const uint64_t whole = parts_of(symbol->type), assigned = flow.variables[symbol->slot].assigned;
-        const uint64_t missing = whole & parts & ~assigned;
-        if (!missing || symbol->type.is_error()) break;
-        if (in_damaged_body) { // most likely what assigns it could not be read
-            diagnostics.count_consequence();
-            flow.variables[symbol->slot].assigned = whole;
-            return Type::error();
-        }
-        std::string name = node.name;
-        if (assigned & whole) name += part_name(symbol->type, static_cast<uint32_t>(std::countr_zero(missing)));
-        Diagnostic& reported =
-            diagnostics.error(e.span, "unassigned", quoted(name) + " is read here before it has a value on every path",
-                              symbol->type.is_array() ? "give each element one: for (int i = 0; i < " +
-                                                            std::to_string(symbol->type.array_size) + "; ++i) " +
-                                                            node.name + "[i] = " + zero_of(symbol->type.element()) + ";"
-                                                      : "give it one where it is declared: " + to_string(symbol->type) +
-                                                            " " + node.name + " = " + zero_of(symbol->type) + ";");
-        reported.related.push_back({symbol->span, quoted(node.name) + " is declared here"});
-        flow.variables[symbol->slot].assigned = whole; // one report is enough
-        break;
+    if (symbol->kind == SymbolKind::input) reads |= 1u << static_cast<uint32_t>(symbol->input);
+    if (symbol->type.is_error()) diagnostics.count_consequence();
+    if (symbol->kind != SymbolKind::local || symbol->type.is_error()) return symbol->type;
+
+    uint64_t& assigned = flow.variables[symbol->slot].assigned;
+    const uint64_t whole = parts_of(symbol->type), missing = whole & parts & ~assigned;
+    const bool has_some = assigned & whole;
+    if (!missing) return symbol->type;
+    assigned = whole;      // one report is enough
+    if (in_damaged_body) { // most likely what assigns it could not be read
+        diagnostics.count_consequence();
+        return Type::error();
     }
-    case SymbolKind::constant:
-    case SymbolKind::table:
-    case SymbolKind::texture_parameter: break;
-    }
+    const std::string part = has_some ? part_name(symbol->type, static_cast<uint32_t>(std::countr_zero(missing))) : "";
+    const std::string type = to_string(symbol->type), count = std::to_string(symbol->type.array_size);
+    diagnostics
+        .error(e.span, "unassigned", quoted(node.name + part) + " is read here before it has a value on every path",
+               symbol->type.is_array() ? "give each element one: for (int i = 0; i < " + count + "; ++i) " + node.name +
+                                             "[i] = " + zero_of(symbol->type.element()) + ";"
+                                       : "give it one where it is declared: " + type + " " + node.name + " = " +
+                                             zero_of(symbol->type) + ";")
+        .related.push_back({symbol->span, quoted(node.name) + " is declared here"});
     return symbol->type;
 }
 
@@ -245,19 +229,17 @@ Type BodyChecker::check(Expression& e, Unary& node)
 Type BodyChecker::check(Expression&, Chain& node)
 {
     Type left = expression(*node.first);
-    Expression* first = node.first.get();
     for (Chain::Link& link : node.rest) {
         const Type right = expression(*link.operand);
         if (left.is_error() || right.is_error()) {
             left = Type::error();
             continue; // the other operands deserve their messages
         }
-        // A whole number beside a uint is meant as one.
-        if (first && left == int_type && right == uint_type && std::holds_alternative<NumberLiteral>(first->node))
-            left = first->type = uint_type;
-        if (left == uint_type && right == int_type && std::holds_alternative<NumberLiteral>(link.operand->node))
-            link.operand->type = uint_type;
-        first = nullptr;
+        adopt_literal(*link.operand, left);
+        if (&link == &node.rest.front()) {
+            adopt_literal(*node.first, right);
+            left = node.first->type;
+        }
         const auto types = operator_types(link.op, left, link.operand->type);
         left = types ? types->result
                      : report_operator(link.op, join(node.first->span, link.operand->span), left, *link.operand);
@@ -284,21 +266,19 @@ Type BodyChecker::check(Expression& e, Conditional& node)
     if (a == b) return a;
     if (converts_implicitly(a, b)) return b;
     if (converts_implicitly(b, a)) return a;
-    diagnostics.error(e.span, "type-mismatch",
-                      "both sides of ':' must have one type, found " + to_string(a) + " and " + to_string(b),
-                      conversion_hint(b, a, excerpt(*node.when_false), operand(*node.when_false)));
-    return Type::error();
+    return fail(e.span, "type-mismatch",
+                "both sides of ':' must have one type, found " + to_string(a) + " and " + to_string(b),
+                conversion_hint(b, a, excerpt(*node.when_false), operand(*node.when_false)));
 }
 
 Type BodyChecker::check(Expression& e, Member& node)
 {
     const auto swizzle = parse_swizzle(node.member.text);
-    Type object;
     auto name = std::get_if<NameExpression>(&node.object->node);
     const Symbol* symbol = name ? find(name->name) : nullptr;
-    const bool reads_part = swizzle && symbol && symbol->kind == SymbolKind::local && symbol->type.is_vector() &&
-                            swizzle->highest() < symbol->type.size;
-    object = node.object->type = reads_part ? read(*node.object, *name, swizzle->mask()) : expression(*node.object);
+    const bool reads_part = swizzle && symbol && symbol->type.is_vector() && swizzle->highest() < symbol->type.size;
+    const Type object = node.object->type =
+        reads_part ? read(*node.object, *name, swizzle->mask()) : expression(*node.object);
     if (object.is_error()) return object;
     if (!object.is_vector())
         return fail(e.span, "bad-swizzle",
@@ -309,11 +289,10 @@ Type BodyChecker::check(Expression& e, Member& node)
                     : object.is_array()  ? "pick an element: " + excerpt(*node.object) + "[i]"
                                          : std::string{});
     if (!swizzle || swizzle->highest() >= object.size) {
-        Diagnostic& reported = diagnostics.error(
-            node.member.span, "bad-swizzle", to_string(object) + " has no component " + quoted(node.member.text),
-            "its components are " + std::string(object.size == 2   ? "x and y"
-                                                : object.size == 3 ? "x, y and z"
-                                                                   : "x, y, z and w"));
+        constexpr const char* names[] = {"x and y", "x, y and z", "x, y, z and w"};
+        Diagnostic& reported = diagnostics.error(node.member.span, "bad-swizzle",
+                                                 to_string(object) + " has no component " + quoted(node.member.text),
+                                                 std::string("its components are ") + names[object.size - 2]);
         if (node.member.text.size() > 1)
             reported.hint += ", picked by up to four letters of one set: xyzw, rgba or stpq";
         return Type::error();
@@ -326,9 +305,9 @@ Type BodyChecker::check(Expression& e, Index& node)
     auto name = std::get_if<NameExpression>(&node.object->node);
     const Type index = expression(*node.index); // first: it says which part is read
     const Symbol* symbol = name ? find(name->name) : nullptr;
-    uint64_t parts = all_parts;
-    if (const ir::IntRange at = range(*node.index); symbol && is_integer(index) && at.is_constant())
-        parts = parts_at(symbol->type, at.minimum);
+    const ir::IntRange at = range(*node.index);
+    const bool is_one_part = symbol && is_integer(index) && at.is_constant();
+    const uint64_t parts = is_one_part ? parts_at(symbol->type, at.minimum) : all_parts;
     const Type object = node.object->type = name ? read(*node.object, *name, parts) : expression(*node.object);
     if (object.is_error()) return object;
     if (object.is_scalar())
@@ -336,33 +315,23 @@ Type BodyChecker::check(Expression& e, Index& node)
                     quoted(excerpt(*node.object)) + " is a " + to_string(object) +
                         ", expected an array, a matrix or a vector before '['");
     const Type element = object.element();
-    if (index.is_error()) return element;
     if (!is_integer(index)) {
-        diagnostics.error(node.index->span, "type-mismatch", "expected int as an index, found " + to_string(index),
-                          conversion_hint(index, int_type, excerpt(*node.index), operand(*node.index)));
+        require(*node.index, int_type, " as an index");
         return element;
     }
-    check_index(*node.index, *node.object);
-    return element;
-}
-
-// Certain mistakes only: what cannot be proven in range is clamped in code.
-void BodyChecker::check_index(const Expression& index, const Expression& object)
-{
-    const uint32_t size = object.type.element_count();
-    const std::string of_what = excerpt(object);
-    const ir::IntRange possible = range(index);
-    if (possible.maximum >= 0 && possible.minimum < size) return;
-    std::string found = std::to_string(possible.minimum);
-    if (!possible.is_constant()) found += " .. " + std::to_string(possible.maximum);
-    const std::string last = std::to_string(size - 1);
+    // Certain mistakes only: what cannot be proven in range is clamped in code.
+    if (at.maximum >= 0 && at.minimum < object.element_count()) return element;
+    const std::string of_what = excerpt(*node.object), count = std::to_string(object.element_count()),
+                      last = std::to_string(object.element_count() - 1);
+    std::string found = std::to_string(at.minimum);
+    if (!at.is_constant()) found += " .. " + std::to_string(at.maximum);
     Diagnostic& reported =
-        diagnostics.error(index.span, "index-out-of-range",
+        diagnostics.error(node.index->span, "index-out-of-range",
                           "index " + found + " is outside " + quoted(of_what) + ", expected 0 .. " + last,
-                          "counted from 0, the last of " + std::to_string(size) + " is " + of_what + "[" + last + "]");
-    auto name = std::get_if<NameExpression>(&object.node);
-    if (name && name->symbol && name->symbol->span.end > 0)
-        reported.related.push_back({name->symbol->span, quoted(name->name) + " is declared here"});
+                          "counted from 0, the last of " + count + " is " + of_what + "[" + last + "]");
+    if (symbol && symbol->span.end > 0)
+        reported.related.push_back({symbol->span, quoted(name->name) + " is declared here"});
+    return element;
 }
 
 } // namespace haptel::lang

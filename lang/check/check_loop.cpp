@@ -15,11 +15,12 @@ namespace {
 
 constexpr const char* loop_form = "a loop counts: for (int i = 0; i < 8; ++i)";
 
-// The names that are assigned to anywhere in a statement.
-std::vector<const NameExpression*> assigned_in(const Statement& s)
+// The names that are assigned to anywhere in a statement, if there is one.
+std::vector<const NameExpression*> assigned_in(const StatementPtr& s)
 {
     std::vector<const NameExpression*> names;
-    for_each_in(s, [&](const Statement& inner) {
+    if (!s) return names;
+    for_each_in(*s, [&](const Statement& inner) {
         auto assignment = std::get_if<Assignment>(&inner.node);
         if (auto name = assignment ? root_of(*assignment) : nullptr) names.push_back(name);
     });
@@ -30,54 +31,40 @@ std::vector<const NameExpression*> assigned_in(const Statement& s)
 const NameExpression* first_read(const Expression& e, const std::vector<const NameExpression*>& names)
 {
     if (auto name = std::get_if<NameExpression>(&e.node)) {
-        const bool listed =
-            std::any_of(names.begin(), names.end(), [&](auto* other) { return other->name == name->name; });
-        return listed ? name : nullptr;
+        return std::ranges::count(names, name->name, &NameExpression::name) > 0 ? name : nullptr;
     }
     for (const Expression* operand : operands_of(e))
         if (auto read = first_read(*operand, names)) return read;
     return nullptr;
 }
 
-bool names_counter(const Expression& e, const Symbol& counter)
-{
-    auto name = std::get_if<NameExpression>(&e.node);
-    return name && name->symbol == &counter;
-}
-
 } // namespace
 
-void BodyChecker::check(Statement& s, For& node)
+void BodyChecker::check(Span span, For& node)
 {
     open_scope();
-    Symbol* counter = nullptr;
-    bool is_const = false;
-    if (node.init) {
-        statement(*node.init);
-        if (auto declaration = std::get_if<Declaration>(&node.init->node)) {
-            counter = const_cast<Symbol*>(declaration->symbol);
-            is_const = declaration->is_const;
-        }
-    }
+    auto declaration = node.init ? std::get_if<Declaration>(&node.init->node) : nullptr;
+    if (node.init) statement(*node.init);
+    Symbol* counter = declaration ? declared.back() : nullptr;
+    // Ranges of what the loop assigns are not known at its start, nor behind it.
     for (const StatementPtr* repeated : {&node.step, &node.body})
-        if (*repeated) forget_ranges_assigned_in(**repeated);
+        for (const NameExpression* name : assigned_in(*repeated))
+            if (const Symbol* local = find_local(name->name); local && local->kind == SymbolKind::local)
+                flow.variables[local->slot].range = full_range(local->type);
     if (node.condition) condition(node.condition, "as the condition of a loop");
-    if (counter && !counter->type.is_error() && counter->type != int_type && counter->type != uint_type) {
-        diagnostics.error(counter->span, "unbounded-loop", "a loop counts in int, found " + to_string(counter->type),
-                          "count in int and compute the " + to_string(counter->type) + " from it: float x = 0.1 * i;");
-        counter = nullptr;
-    } else if (counter && is_const && !counter->type.is_error()) {
-        diagnostics.error(counter->span, "read-only", quoted(counter->name) + " counts the loop and cannot be constant",
-                          "leave 'const' out");
-        counter = nullptr;
-    } else if (!counter && in_damaged_body) {
+    if (!counter && in_damaged_body) {
         diagnostics.count_consequence(); // most likely what declares it could not be read
     } else if (!counter) {
-        diagnostics.error(node.init ? node.init->span : s.span, "unbounded-loop",
+        diagnostics.error(node.init ? node.init->span : span, "unbounded-loop",
                           "expected a counter declared in the loop", loop_form);
-    }
-    if (counter && counter->kind == SymbolKind::local) {
-        plan(s, node, *counter);
+    } else if (!counter->type.is_error() && !is_integer(counter->type)) {
+        diagnostics.error(counter->span, "unbounded-loop", "a loop counts in int, found " + to_string(counter->type),
+                          "count in int and compute the " + to_string(counter->type) + " from it: float x = 0.1 * i;");
+    } else if (!counter->type.is_error() && declaration->is_const) {
+        diagnostics.error(counter->span, "read-only", quoted(counter->name) + " counts the loop and cannot be constant",
+                          "leave 'const' out");
+    } else {
+        plan(span, node, *counter);
         counter->read_only = "it counts the loop";
         counter->is_read = true;
     }
@@ -93,23 +80,13 @@ void BodyChecker::check(Statement& s, For& node)
     close_scope();
 }
 
-// Ranges of what the body assigns are not known at its start, nor behind it.
-void BodyChecker::forget_ranges_assigned_in(const Statement& s)
-{
-    for (const NameExpression* name : assigned_in(s))
-        if (const Symbol* local = find_local(name->name); local && local->kind == SymbolKind::local)
-            flow.variables[local->slot].range =
-                ir::full_range(local->type == uint_type ? ir::Type::u32 : ir::Type::i32);
-}
-
 // Sets loop.plan, and the counter's range inside the body, or says why the loop is not bounded.
-void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
+void BodyChecker::plan(Span span, For& loop, Symbol& counter)
 {
     auto init = std::get_if<Declaration>(&loop.init->node);
     if (!init->initializer || init->initializer->type.is_error()) return;
-    auto refuse = [&](Span span, std::string message) -> Diagnostic& {
-        Diagnostic& reported = diagnostics.error(span, "unbounded-loop", std::move(message), loop_form);
-        return reported;
+    const auto refuse = [&](Span at, std::string message) -> Diagnostic& {
+        return diagnostics.error(at, "unbounded-loop", std::move(message), loop_form);
     };
     LoopPlan made;
     made.counter = &counter;
@@ -117,14 +94,17 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
 
     // the condition: counter against bound
     if (!loop.condition) {
-        refuse(s.span, "this loop has no condition, expected a bound for " + quoted(counter.name));
+        refuse(span, "this loop has no condition, expected a bound for " + quoted(counter.name));
         return;
     }
     if (loop.condition->type.is_error()) return;
     auto chain = std::get_if<Chain>(&loop.condition->node);
     const bool simple = chain && chain->rest.size() == 1;
-    const bool left = simple && names_counter(*chain->first, counter);
-    const bool right = simple && names_counter(*chain->rest[0].operand, counter);
+    const auto is_counter = [&](const Expression& e) {
+        auto name = std::get_if<NameExpression>(&e.node);
+        return name && name->symbol == &counter;
+    };
+    const bool left = simple && is_counter(*chain->first), right = simple && is_counter(*chain->rest[0].operand);
     if (left == right) {
         refuse(loop.condition->span, "expected a comparison of " + quoted(counter.name) + " with a bound");
         return;
@@ -151,9 +131,9 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
     auto stepped = step ? std::get_if<NameExpression>(&step->target->node) : nullptr;
     const bool adds = step && (step->op == BinaryOp::add || step->op == BinaryOp::subtract);
     if (!adds || !stepped || stepped->name != counter.name) {
-        refuse(loop.step ? loop.step->span : s.span, "expected a step of " + quoted(counter.name) + ": ++" +
-                                                         counter.name + ", --" + counter.name + ", " + counter.name +
-                                                         " += 2");
+        refuse(loop.step ? loop.step->span : span, "expected a step of " + quoted(counter.name) + ": ++" +
+                                                       counter.name + ", --" + counter.name + ", " + counter.name +
+                                                       " += 2");
         return;
     }
     stepped->symbol = &counter;
@@ -176,54 +156,51 @@ void BodyChecker::plan(Statement& s, For& loop, Symbol& counter)
             "a bound is computed once, before the loop: leave " + quoted(own->name) + " out of it";
         return;
     }
-    if (auto changed = loop.body ? first_read(*made.bound, assigned_in(*loop.body)) : nullptr) {
+    if (auto changed = first_read(*made.bound, assigned_in(loop.body))) {
         refuse(made.bound->span,
                "the bound of this loop changes in its body: " + quoted(changed->name) + " is assigned there")
             .hint = "keep the bound in a variable of its own";
         return;
     }
 
-    // how often, at most: the distance between the farthest start and bound, in steps
-    const ir::IntRange from = range(*made.start), to = range(*made.bound);
+    // how often, at most: the distance between the farthest start and bound, in steps. Ranges as if it counted up
     const bool up = made.step > 0;
-    const int64_t stride = up ? made.step : -made.step;
-    const int64_t farthest = up ? to.maximum - from.minimum : from.maximum - to.minimum;
-    const int64_t nearest = up ? to.minimum - from.maximum : from.minimum - to.maximum;
-    const int64_t trips = farthest < 0        ? 0
-                          : made.is_inclusive ? farthest / stride + 1
-                                              : (farthest + stride - 1) / stride;
-    const ir::IntRange full = ir::full_range(counter.type == uint_type ? ir::Type::u32 : ir::Type::i32);
+    const auto upwards = [&](ir::IntRange r) { return up ? r : ir::IntRange{-r.maximum, -r.minimum}; };
+    const ir::IntRange from = upwards(range(*made.start)), to = upwards(range(*made.bound)),
+                       full = upwards(full_range(counter.type));
+    const int64_t stride = up ? made.step : -made.step, excess = made.is_inclusive ? 0 : 1;
+    const int64_t farthest = to.maximum - from.minimum, nearest = to.minimum - from.maximum;
+    const int64_t trips = farthest < 0 ? 0 : (farthest - excess + stride) / stride;
     const int64_t way_max = INT32_MAX - stride; // beyond, the last step could wrap
-    if (trips > static_cast<int64_t>(ir::operations_limit) || farthest > way_max) {
-        const bool bound_unknown = !to.is_constant() && (up ? to.maximum == full.maximum : to.minimum == full.minimum);
-        const bool start_unknown =
-            !from.is_constant() && (up ? from.minimum == full.minimum : from.maximum == full.maximum);
+    const auto trips_max = static_cast<int64_t>(ir::operations_limit);
+    if (trips > trips_max || farthest > way_max) {
+        const bool bound_unknown = !to.is_constant() && to.maximum == full.maximum;
+        const bool start_unknown = !from.is_constant() && from.minimum == full.minimum;
         if (bound_unknown || start_unknown) {
             const Expression& culprit = bound_unknown ? *made.bound : *made.start;
-            const char* limit = up == bound_unknown ? "min" : "max";
+            const bool is_upper = up == bound_unknown;
             diagnostics.error(culprit.span, "unbounded-loop",
                               "cannot tell how often this loop runs: " + quoted(excerpt(culprit)) + " can be any " +
                                   to_string(counter.type),
-                              std::string("write ") + limit + "(" + excerpt(culprit) + ", " +
-                                  (up == bound_unknown ? "16" : "0") + "), or give the parameter a range: in 1 .. 16");
-        } else if (trips <= static_cast<int64_t>(ir::operations_limit)) {
+                              std::string(is_upper ? "write min(" : "write max(") + excerpt(culprit) +
+                                  (is_upper ? ", 16" : ", 0") + "), or give the parameter a range: in 1 .. 16");
+        } else if (trips <= trips_max) {
             refuse(loop.condition->span, "the bound of this loop may be " + std::to_string(farthest) +
                                              " from its start, expected at most " + std::to_string(way_max))
                 .hint = "the last step could pass the greatest " + to_string(counter.type) + ": lower the bound";
         } else {
             diagnostics.error(loop.condition->span, "too-costly",
                               "this loop may run " + std::to_string(trips) + " times, expected at most " +
-                                  std::to_string(ir::operations_limit),
+                                  std::to_string(trips_max),
                               "a texture is computed a thousand times a second: lower the bound");
         }
         return;
     }
     made.trip_max = static_cast<uint32_t>(trips);
-    made.runs = loop.body && nearest >= (made.is_inclusive ? 0 : 1);
+    made.runs = loop.body && nearest >= excess;
     made.difference_may_wrap = nearest < INT32_MIN;
     loop.plan = made;
-    ir::IntRange inside = up ? ir::IntRange{from.minimum, to.maximum - (made.is_inclusive ? 0 : 1)}
-                             : ir::IntRange{to.minimum + (made.is_inclusive ? 0 : 1), from.maximum};
+    const ir::IntRange inside = upwards({from.minimum, to.maximum - excess});
     if (inside.minimum <= inside.maximum) flow.variables[counter.slot].range = inside;
 }
 

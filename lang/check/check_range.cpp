@@ -24,38 +24,21 @@ ir::IntRange apply(ir::Op op, Type type, ir::IntRange a, ir::IntRange b)
         const auto slot = [](ir::IntRange r) { return ir::Slot<double>{0, static_cast<uint32_t>(r.minimum)}; };
         ir::Slot<double> result;
         ir::execute<double>(op, result, slot(a), slot(b), {}, {});
-        const int64_t value = type == uint_type ? int64_t{result.bits} : int64_t{static_cast<int32_t>(result.bits)};
-        return {value, value};
+        return ir::constant_range(ir_type(type), result.bits);
     }
     return ir::range_of(op, ir_type(type), std::array{a, b});
 }
 
-std::optional<ir::Op> int_op(BinaryOp op, bool is_unsigned)
-{
-    using enum BinaryOp;
-    switch (op) {
-    case add: return ir::Op::iadd;
-    case subtract: return ir::Op::isub;
-    case multiply: return ir::Op::imul;
-    case divide: return is_unsigned ? ir::Op::udiv : ir::Op::idiv;
-    case remainder: return is_unsigned ? ir::Op::urem : ir::Op::irem;
-    case bit_and: return ir::Op::iand;
-    case bit_or: return ir::Op::ior;
-    case bit_xor: return ir::Op::ixor;
-    case shift_left: return ir::Op::ishl;
-    case shift_right: return is_unsigned ? ir::Op::ushr : ir::Op::ishr;
-    case less:
-    case less_equal:
-    case greater:
-    case greater_equal:
-    case equal:
-    case not_equal:
-    case logical_and:
-    case logical_or:
-    case logical_xor: return std::nullopt;
-    }
-    return std::nullopt;
-}
+struct IntOperation {
+    BinaryOp op;
+    ir::Op of_int, of_uint;
+};
+constexpr IntOperation operations[] = {
+    {BinaryOp::add, ir::Op::iadd, ir::Op::iadd},        {BinaryOp::subtract, ir::Op::isub, ir::Op::isub},
+    {BinaryOp::multiply, ir::Op::imul, ir::Op::imul},   {BinaryOp::divide, ir::Op::idiv, ir::Op::udiv},
+    {BinaryOp::remainder, ir::Op::irem, ir::Op::urem},  {BinaryOp::bit_and, ir::Op::iand, ir::Op::iand},
+    {BinaryOp::bit_or, ir::Op::ior, ir::Op::ior},       {BinaryOp::bit_xor, ir::Op::ixor, ir::Op::ixor},
+    {BinaryOp::shift_left, ir::Op::ishl, ir::Op::ishl}, {BinaryOp::shift_right, ir::Op::ishr, ir::Op::ushr}};
 
 ir::IntRange absolute(ir::IntRange a)
 {
@@ -68,13 +51,10 @@ ir::IntRange absolute(ir::IntRange a)
 
 ir::IntRange BodyChecker::range(const Expression& e) const
 {
-    const ir::IntRange full = ir::full_range(ir_type(e.type));
-    if (e.type != int_type && e.type != uint_type) return full;
-    if (auto literal = std::get_if<NumberLiteral>(&e.node)) {
-        const auto bits = static_cast<uint32_t>(literal->integer);
-        const int64_t value = e.type == uint_type ? int64_t{bits} : int64_t{static_cast<int32_t>(bits)};
-        return {value, value};
-    }
+    const ir::IntRange full = full_range(e.type);
+    if (!is_integer(e.type)) return full;
+    if (auto literal = std::get_if<NumberLiteral>(&e.node))
+        return ir::constant_range(ir_type(e.type), static_cast<uint32_t>(literal->integer));
     if (auto name = std::get_if<NameExpression>(&e.node)) {
         if (!name->symbol) return full;
         if (name->symbol->kind == SymbolKind::local) return flow.variables[name->symbol->slot].range;
@@ -92,9 +72,9 @@ ir::IntRange BodyChecker::range(const Expression& e) const
     if (auto chain = std::get_if<Chain>(&e.node)) {
         ir::IntRange left = range(*chain->first);
         for (const Chain::Link& link : chain->rest) {
-            const auto op = int_op(link.op, e.type == uint_type);
-            if (!op) return full;
-            left = apply(*op, e.type, left, range(*link.operand));
+            const auto operation = std::ranges::find(operations, link.op, &IntOperation::op); // others make no integer
+            left =
+                apply(e.type == uint_type ? operation->of_uint : operation->of_int, e.type, left, range(*link.operand));
         }
         return left;
     }

@@ -46,9 +46,7 @@ struct ConstantEvaluator::Work {
     ModuleLowering lowering{module, unused};
 };
 
-ConstantEvaluator::ConstantEvaluator() : work(std::make_unique<Work>()) {}
-
-ConstantEvaluator::~ConstantEvaluator() = default;
+ConstantEvaluator::ConstantEvaluator() : work(std::make_shared<Work>()) {}
 
 std::vector<ConstantPart> ConstantEvaluator::value(const Expression& e, Type type)
 {

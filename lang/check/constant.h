@@ -18,13 +18,12 @@ const ast::Expression* first_not_constant(const ast::Expression& expression);
 class ConstantEvaluator {
 public:
     ConstantEvaluator();
-    ~ConstantEvaluator();
     // The components of a checked constant expression, converted to `type` (a scalar or vector).
     std::vector<ConstantPart> value(const ast::Expression& expression, Type type);
 
 private:
     struct Work;
-    const std::unique_ptr<Work> work;
+    const std::shared_ptr<Work> work;
 };
 
 // As a number: reals as they are, integers by the sign of `type`, false 0 and true 1.

@@ -40,10 +40,14 @@ public:
         return outlines.size() == texts.size() && std::all_of(texts.begin(), texts.end(), same);
     }
 
-    std::shared_ptr<const CheckedLibrary> with(const Names& names)
+    // Null: with all names.
+    std::shared_ptr<const CheckedLibrary> with(const Names* names)
     {
         bool has_grown = !checked;
-        std::vector<std::string_view> to_see(names.begin(), names.end());
+        std::vector<std::string_view> to_see;
+        if (names) to_see.assign(names->begin(), names->end());
+        for (const auto& [name, places] : unread)
+            if (!names) to_see.push_back(name);
         while (!to_see.empty()) {
             const auto found = unread.extract(to_see.back());
             to_see.pop_back();
@@ -57,13 +61,6 @@ public:
         }
         if (has_grown) check_wanted();
         return checked;
-    }
-
-    std::shared_ptr<const CheckedLibrary> whole()
-    {
-        Names all;
-        for (const auto& [name, places] : unread) all.insert(name);
-        return with(all);
     }
 
 private:
@@ -84,7 +81,7 @@ private:
             const uint32_t file = SourceSet::library_files + static_cast<uint32_t>(i);
             files.push_back({parse(*sources, file, outlines[i].tokens_of(is_wanted[i]), made->diagnostics), {}});
         }
-        check(*sources, std::move(files), *made);
+        made->program = check(*sources, std::move(files), nullptr, made->diagnostics, &made->declarations);
         checked = std::move(made);
     }
 
@@ -104,7 +101,7 @@ std::shared_ptr<const CheckedLibrary> latest_library(const std::vector<SourceFil
     static auto& latest = *new std::unique_ptr<Library>; // threads may outlive static objects
     const std::lock_guard lock(mutex);
     if (!latest || !latest->is_of(texts)) latest = std::make_unique<Library>(texts);
-    return names ? latest->with(*names) : latest->whole();
+    return latest->with(names);
 }
 
 } // namespace

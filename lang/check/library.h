@@ -1,8 +1,9 @@
 // The standard library's text, parsed and checked: once, for all programs that see it, and only what they name.
 #pragma once
 
-#include "lang/check/call_graph.h"
+#include "lang/program/checked_program.h"
 #include "lang/program/scope.h"
+#include "lang/text/diagnostic.h"
 
 #include <memory>
 #include <string_view>
@@ -16,9 +17,8 @@ struct CheckedLibrary {
     std::shared_ptr<const SourceSet> sources; // with indices from SourceSet::library_files on
     CheckedProgram program;
     Declarations declarations; // of all its files
-    CallDepths depths;
-    Diagnostics diagnostics; // what there is to say about it; told with every program
-    bool is_whole = false;   // everything that the texts declare is here
+    Diagnostics diagnostics;   // what there is to say about it; told with every program
+    bool is_whole = false;     // everything that the texts declare is here
 };
 
 using Names = std::unordered_set<std::string_view>;

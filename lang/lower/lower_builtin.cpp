@@ -219,8 +219,6 @@ constexpr Formula formulas[] = {
 #define OPERATION(id, ...) Formula(),
 #define COMPOSED(id, ...) Formula(&Formulas::id),
 #include "lang/program/builtins.def"
-#undef OPERATION
-#undef COMPOSED
 };
 
 } // namespace

@@ -186,7 +186,7 @@ LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector
 // A built-in as a function, to be passed or differentiated.
 LoweredFunction ModuleLowering::make(const BuiltinOverload& overload)
 {
-    ir::Builder builder(module, unique(to_string(candidate_of(overload))));
+    ir::Builder builder(module, unique(to_string(Candidate(overload))));
     builder.function().is_library = true;
     std::vector<Values> arguments(overload.parameters.size());
     uint32_t& first_size = builder.function().first_argument_size;

@@ -42,18 +42,13 @@ struct CheckedTexture {
     std::vector<FunctionInfo::Mention> mentions;
 };
 
-// Keeps the trees and everything they point to. Move it, do not copy it.
+// Keeps the trees and everything they point to.
 struct CheckedProgram {
     std::shared_ptr<const CheckedLibrary> library; // that all files see; null: none, or it is the library itself
     std::vector<CheckFile> files;                  // by Span::file; without those of the library
     std::deque<Symbol> symbols;
     std::deque<FunctionInfo> functions;
     std::vector<CheckedTexture> textures; // of file 0, in source order
-
-    CheckedProgram() = default;
-    CheckedProgram(CheckedProgram&&) = default;
-    CheckedProgram& operator=(CheckedProgram&&) = default;
-    CheckedProgram(const CheckedProgram&) = delete;
 };
 
 } // namespace haptel::lang

@@ -24,42 +24,33 @@ struct Declarations {
 
 // A function that a call may mean.
 struct Candidate {
+    explicit Candidate(const FunctionInfo& f) : function(&f), result(f.result), parameters(f.parameters) {}
+    explicit Candidate(const BuiltinOverload& f) : function(&f), result(f.result), parameters(f.parameters) {}
+    explicit Candidate(const Symbol& parameter) // that is a function
+        : function(&parameter), result(parameter.type), parameters(parameter.parameters)
+    {
+    }
+
     FunctionReference function;
     Type result;
     std::span<const ParameterInfo> parameters;
-    uint32_t layer = 0; // of the scope it was found in, nearest first
 };
-
-Candidate candidate_of(const FunctionInfo& function);
-Candidate candidate_of(const BuiltinOverload& overload);
-Candidate candidate_of(const Symbol& function_parameter);
 
 // "fbm"; empty for no function.
 std::string name_of(const FunctionReference& function);
 // "float fbm(vec3 q, int octaves)", for messages.
 std::string to_string(const Candidate& candidate);
+// "float", "float(vec3)", "float f(vec3)"
+std::string to_string(const ParameterInfo& parameter, const std::string& name = {}, std::string_view separator = ", ");
 // "fbm(vec3,int)": name and types, as overloads are told apart.
 std::string signature_of(const FunctionInfo& function);
 
 // What one file sees: its own declarations first, then imports, then the library; the language's built-ins last.
-class FileScope {
-public:
-    void add_layer(const Declarations& declarations) { layers.push_back(&declarations); }
+struct FileScope {
+    std::vector<const Declarations*> layers; // nearest first
 
-    const Symbol* constant(std::string_view name) const;
-    bool declares_constant_later(std::string_view name) const; // asked where constant(name) has found none
-    bool is_function(std::string_view name) const;
     // Every function of that name; of equal signatures only the nearest, so that a file may replace what it imports.
     std::vector<Candidate> functions(std::string_view name) const;
-
-    bool lacks_functions() const;                    // an unknown function may be one that could not be read
-    bool may_be_unread(std::string_view name) const; // likewise a constant
-
-    void collect_function_names(std::vector<std::string_view>& names) const;
-    void collect_constant_names(std::vector<std::string_view>& names) const;
-
-private:
-    std::vector<const Declarations*> layers; // nearest first
 };
 
 } // namespace haptel::lang

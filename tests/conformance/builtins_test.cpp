@@ -110,8 +110,8 @@ struct Compiled {
 std::vector<Compiled> all_overloads()
 {
     std::vector<Compiled> all;
-    for (const std::string_view name : builtin_names())
-        for (const BuiltinOverload& overload : builtin_overloads(name)) {
+    for (const auto& [name, overloads] : builtin_overloads())
+        for (const BuiltinOverload& overload : overloads) {
             if (overload.result.scalar != Scalar::float_) continue;
             const auto is_image = [](const ParameterInfo& parameter) { return parameter.type == image_type; };
             if (std::ranges::any_of(overload.parameters, is_image)) continue; // spline_test.cpp, image_test.cpp

@@ -132,7 +132,7 @@ std::vector<Entry> reference()
         Entry entry{std::string(builtin.name), std::string(built_in_group), {}, std::nullopt};
         for (const lang::BuiltinOverload& overload : lang::builtin_overloads(builtin.name))
             entry.overloads.push_back(
-                {lang::to_string(lang::candidate_of(overload)), std::string(overload.builtin->doc), std::nullopt});
+                {lang::to_string(lang::Candidate(overload)), std::string(overload.builtin->doc), std::nullopt});
         entries.push_back(std::move(entry));
     }
     return entries;

@@ -3,6 +3,8 @@
 #include "lang/text/number.h"
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
 #include <cstdlib>
 #include <numeric>
@@ -73,6 +75,30 @@ std::string units_of(Dimension dimension)
     return (unit_power("m", dimension.length_exponent()) + unit_power("s", dimension.time_exponent())).substr(1);
 }
 
+// The dimensions that the letters a, b, c stand for, as far as arguments have said.
+using Letters = std::array<Dimension, 3>;
+
+// "1", "a", "ab", "a^-1/2", "am^-1"
+Dimension evaluate(std::string_view term, const Letters& letters)
+{
+    Dimension product = Dimension::plain();
+    while (!term.empty()) {
+        const char letter = term.front();
+        term.remove_prefix(1);
+        if (letter == '1') continue;
+        Exponent exponent{1, 1};
+        if (term.starts_with('^')) {
+            const char* const end = term.data() + term.size();
+            const char* at = std::from_chars(term.data() + 1, end, exponent.numerator).ptr;
+            if (at != end && *at == '/') at = std::from_chars(at + 1, end, exponent.denominator).ptr;
+            term = {at, end};
+        }
+        const Dimension base = letter == 'm' ? Dimension::length() : letters[static_cast<size_t>(letter - 'a')];
+        product = product * base.power(exponent);
+    }
+    return product;
+}
+
 } // namespace
 
 std::optional<Exponent> exponent_near(double value)
@@ -90,16 +116,14 @@ std::optional<Exponent> exponent_near(double value)
 
 Dimension Dimension::power(Exponent exponent) const
 {
-    if (is_any()) return any();
     const auto length = product(length_power, exponent), time = product(time_power, exponent);
-    return length && time ? of(*length, *time) : any();
+    return is_known && length && time ? of(*length, *time) : any();
 }
 
 Dimension operator*(Dimension a, Dimension b)
 {
-    if (a.is_any() || b.is_any()) return Dimension::any();
     const auto length = sum(a.length_power, b.length_power), time = sum(a.time_power, b.time_power);
-    return length && time ? Dimension::of(*length, *time) : Dimension::any();
+    return a.is_known && b.is_known && length && time ? Dimension::of(*length, *time) : Dimension::any();
 }
 
 std::optional<Dimension> join(Dimension a, Dimension b)
@@ -154,6 +178,26 @@ std::string_view literal_unit(Dimension dimension)
 {
     const Known* entry = known(dimension);
     return entry ? entry->unit : std::string_view{};
+}
+
+DimensionResult apply_rule(BuiltinId id, std::span<const Dimension> arguments)
+{
+    const std::string_view rule = all_builtins()[static_cast<size_t>(id)].dimensions;
+    const size_t open = rule.find('(');
+    std::string_view rest = rule.substr(open + 1, rule.size() - open - 2);
+    Letters letters{Dimension::any(), Dimension::any(), Dimension::any()};
+    DimensionResult made;
+    for (size_t i = 0; i < arguments.size(); ++i) {
+        const std::string_view term = rest.substr(0, rest.find(','));
+        rest.remove_prefix(std::min(rest.size(), term.size() + 1));
+        const Dimension expected = evaluate(term, letters);
+        const auto both = join(expected, arguments[i]);
+        const bool is_letter = term.size() == 1 && term != "1";
+        if (!both && made.fits) made = {Dimension::any(), false, i, expected, is_letter};
+        if (is_letter) letters[static_cast<size_t>(term.front() - 'a')] = both.value_or(Dimension::any());
+    }
+    made.result = evaluate(rule.substr(0, open), letters);
+    return made;
 }
 
 } // namespace haptel::lang

@@ -1,5 +1,8 @@
-// Physical dimensions: powers of length and time. Angles and counts are plain numbers.
+// Physical dimensions: powers of length and time. Angles and counts are plain numbers. And what the built-in functions
+// do with them.
 #pragma once
+
+#include "lang/program/builtins.h"
 
 #include <compare>
 #include <cstdint>
@@ -63,5 +66,16 @@ std::string advice_to_plain(Dimension dimension);
 std::string factor_to_plain(Dimension dimension);
 // A unit that gives a bare literal this dimension without changing its value: "m"; empty if there is none.
 std::string_view literal_unit(Dimension dimension);
+
+struct DimensionResult {
+    Dimension result = Dimension::any();
+    // The first argument that does not fit, and what it should be; `fits` if all do.
+    bool fits = true;
+    size_t argument = 0;
+    Dimension expected = Dimension::any();
+    bool by_letter = false; // because an argument further left is so
+};
+// The rule of that function in builtins.def, applied to its arguments.
+DimensionResult apply_rule(BuiltinId id, std::span<const Dimension> arguments);
 
 } // namespace haptel::lang

@@ -53,28 +53,21 @@ constexpr uint32_t dimension_nesting_limit = 500; // as in lowering, which repor
 
 class DimensionChecker {
 public:
-    DimensionChecker(const SourceSet& all_sources, const CheckedProgram& checked)
-        : sources(all_sources), program(checked)
-    {
-    }
+    explicit DimensionChecker(const SourceSet& all_sources) : sources(all_sources) {}
 
-    std::vector<DimensionInstance> constants();
-    DimensionInstance texture(const CheckedTexture& texture);
     // `arguments` by the parameters that are values, `passed` by those that are functions; no function is a parameter
     // any more, but it may be unknown.
     DimensionInstance& function(const FunctionInfo& info, const FunctionReferences& passed,
                                 const Dimensions& arguments);
     bool has_seen(const FunctionInfo& function) const { return choices.contains(&function); }
-    // False once the work is more than a program of sensible size can need: then everything fits.
-    bool spend(size_t steps);
+    // False once more work was spent than a program of sensible size can need: then everything fits.
+    bool spend(size_t steps) { return (work += steps) <= work_max; }
 
     const SourceSet& sources;
-    const CheckedProgram& program;
     ConstantEvaluator constant_values;
     std::unordered_map<const Symbol*, Dimension> symbols; // constants, tables, parameters of the texture at hand
     Span user_call;                                       // in code of the user's own, the innermost under work
     uint32_t nesting = 0;                                 // of expressions and statements under work, over all bodies
-    bool is_exhausted = false;
 
 private:
     struct Key {
@@ -85,12 +78,16 @@ private:
     };
     std::map<Key, DimensionInstance> instances;                // nodes stay where they are
     std::unordered_map<const FunctionInfo*, uint32_t> choices; // of dimensions, per function
+    static constexpr size_t work_max = 1'000'000;              // expressions looked at; well below a second
     size_t work = 0;
 };
 
 class DimensionBody {
 public:
-    DimensionBody(DimensionChecker& owner, DimensionInstance& instance, bool is_library);
+    DimensionBody(DimensionChecker& all, DimensionInstance& made, bool in_library)
+        : owner(all), instance(made), is_library(in_library)
+    {
+    }
 
     void function(const FunctionInfo& info, const FunctionReferences& passed, const Dimensions& arguments);
     void texture(const CheckedTexture& texture);
@@ -105,6 +102,13 @@ private:
         Origin first;
         Origin other = {}; // what it is instead after another path that has come together with this one
         bool is_mixed() const { return !other.dimension.is_any(); }
+    };
+    struct Call {
+        Span span;
+        const std::string& name;
+        std::vector<const ast::Expression*> values = {}; // that are passed
+        Dimensions dimensions = {};                      // theirs
+        FunctionReferences passed = {};
     };
     using Variables = std::vector<Variable>; // by Symbol::slot
     using Flow = std::optional<Variables>;   // nothing: not reached
@@ -124,12 +128,9 @@ private:
     Dimension constructor(const ast::Expression& e, const ast::CallExpression& node);
     Dimension call(const ast::Expression& e, const std::string& name, const CallTarget& target,
                    const std::vector<ast::ExpressionPtr>& arguments, uint32_t order);
-    Dimension built_in(const std::string& name, const BuiltinOverload& overload, const Dimensions& dimensions,
-                       const std::vector<const ast::Expression*>& values);
-    Dimension power(const ast::CallExpression& node, const Dimensions& dimensions);
-    void blame_call(const ast::Expression& e, const std::string& name, const FunctionInfo& callee,
-                    const FunctionReferences& passed, const Dimensions& dimensions,
-                    const std::vector<const ast::Expression*>& values);
+    Dimension built_in(const Call& call, const BuiltinOverload& overload);
+    Dimension power(const Call& call);
+    void blame_call(const Call& call, const FunctionInfo& callee);
     FunctionReference resolved(const FunctionReference& reference) const;
 
     // ---- statements

@@ -29,20 +29,6 @@ std::string mismatch(BinaryOp op, Dimension left, Dimension right)
     return "cannot compare " + a + " with " + b;
 }
 
-Dimension dimension_of_input(InputName input)
-{
-    switch (input) {
-    case InputName::p:
-    case InputName::center:
-    case InputName::extent:
-    case InputName::footprint: return Dimension::length();
-    case InputName::time: return Dimension::time();
-    case InputName::n:
-    case InputName::uv: return Dimension::plain();
-    }
-    return Dimension::any();
-}
-
 } // namespace
 
 const Expression* bare_number(const Expression& e)
@@ -113,7 +99,8 @@ Dimension DimensionBody::find(const Expression& e)
 
 Dimension DimensionBody::read(const Symbol& symbol, Span span)
 {
-    if (symbol.kind == SymbolKind::input) return dimension_of_input(symbol.input);
+    if (symbol.kind == SymbolKind::input)
+        return dimension_of_unit(builtin_inputs[static_cast<size_t>(symbol.input)].unit);
     if (symbol.kind != SymbolKind::local) {
         const auto known = owner.symbols.find(&symbol);
         return known == owner.symbols.end() ? Dimension::any() : known->second;

@@ -18,18 +18,13 @@ constexpr int passes_max = 16;
 
 } // namespace
 
-DimensionBody::DimensionBody(DimensionChecker& all, DimensionInstance& made, bool in_library)
-    : owner(all), instance(made), is_library(in_library)
-{
-}
-
 void DimensionBody::function(const FunctionInfo& info, const FunctionReferences& passed, const Dimensions& arguments)
 {
     functions = passed;
     Variables start;
     for (const Dimension dimension : arguments) start.push_back({{dimension, info.tree->name.span}});
-    start.resize(std::max<size_t>(start.size(), info.slot_count));
-    if (info.tree->body) body(*info.tree->body, start);
+    start.resize(info.slot_count);
+    body(*info.tree->body, start);
 }
 
 void DimensionBody::texture(const CheckedTexture& texture)
@@ -40,7 +35,7 @@ void DimensionBody::texture(const CheckedTexture& texture)
         start[output.symbol->slot] = {{Dimension::plain(), output.symbol->span}};
     for (const CheckedParameter& parameter : texture.parameters)
         owner.symbols.insert_or_assign(parameter.symbol, this->parameter(parameter));
-    if (texture.tree->body) body(*texture.tree->body, start);
+    body(*texture.tree->body, start);
 }
 
 void DimensionBody::body(const Statement& tree, const Variables& start)
@@ -87,11 +82,10 @@ void DimensionBody::statement(const Statement& s)
 void DimensionBody::declaration(const Declaration& node)
 {
     const Dimension found = node.initializer ? expression(*node.initializer) : Dimension::any();
-    const Symbol* symbol = node.symbol;
-    if (symbol && symbol->kind == SymbolKind::local)
-        (*flow)[symbol->slot] = {{found, node.initializer ? node.initializer->span : node.name.span}};
-    else if (symbol)
-        owner.symbols.insert_or_assign(symbol, found);
+    if (node.symbol->kind == SymbolKind::local)
+        (*flow)[node.symbol->slot] = {{found, node.initializer ? node.initializer->span : node.name.span}};
+    else
+        owner.symbols.insert_or_assign(node.symbol, found);
 }
 
 void DimensionBody::assign(const Statement& s, const Assignment& node)

@@ -1,7 +1,6 @@
 // Dimensions: their arithmetic, whom a finding blames, and that the work is bounded. What is said about single
 // expressions is in golden/dimensions.haptel.
 #include "lang/check/dimension/dimension.h"
-#include "lang/check/dimension/dimension_rules.h"
 #include "lang/compile.h"
 #include "tests/lang/lower/evaluation.h"
 #include "tests/support/catch.h"
@@ -125,8 +124,8 @@ TEST_CASE("dimension: the rule of every built-in function is how it scales")
         return parts.size() == 1 ? "float(" + text + ")" : text + ")";
     };
     size_t functions = 0, refusals = 0;
-    for (const std::string_view name : builtin_names()) {
-        for (const BuiltinOverload& overload : builtin_overloads(name)) {
+    for (const auto& [name, overloads] : builtin_overloads()) {
+        for (const BuiltinOverload& overload : overloads) {
             const auto fits_here = [](Type type) { return type == float_type || type == vec(3); };
             const auto& parameters = overload.parameters;
             if (!fits_here(overload.result) || overload.builtin->id == BuiltinId::stretch) continue;
