@@ -149,14 +149,10 @@ void FunctionEmitter::emit(const ir::Instruction& made, const ir::RealConstant& 
     define(made.results[0], llvm::ConstantFP::get(builder.getDoubleTy(), constant.value));
 }
 
-void FunctionEmitter::emit(const ir::Instruction& made, const ir::IntConstant& constant)
+void FunctionEmitter::emit(const ir::Instruction& made, const ir::WordConstant& constant)
 {
-    define(made.results[0], builder.getInt32(constant.bits));
-}
-
-void FunctionEmitter::emit(const ir::Instruction& made, const ir::BoolConstant& constant)
-{
-    define(made.results[0], builder.getInt1(constant.value));
+    const bool is_truth = source.type(made.results[0]) == ir::Type::boolean;
+    define(made.results[0], is_truth ? builder.getInt1(constant.bits != 0) : builder.getInt32(constant.bits));
 }
 
 void FunctionEmitter::emit(const ir::Instruction& made, const ir::ReadInput& read)

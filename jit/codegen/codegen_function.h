@@ -62,8 +62,7 @@ private:
     void emit(const ir::Instruction& made);
     void emit(const ir::Instruction& made, const ir::Operation& operation);
     void emit(const ir::Instruction& made, const ir::RealConstant& constant);
-    void emit(const ir::Instruction& made, const ir::IntConstant& constant);
-    void emit(const ir::Instruction& made, const ir::BoolConstant& constant);
+    void emit(const ir::Instruction& made, const ir::WordConstant& constant);
     void emit(const ir::Instruction& made, const ir::ReadInput& read);
     void emit(const ir::Instruction& made, const ir::ReadParameter& read);
     void emit(const ir::Instruction& made, const ir::ReadTable& read);

@@ -73,8 +73,7 @@ private:
     }
     void write(const ir::Operation& kind) { word(static_cast<uint32_t>(kind.op)); }
     void write(const ir::RealConstant& kind) { real(kind.value); }
-    void write(const ir::IntConstant& kind) { word(kind.bits); }
-    void write(const ir::BoolConstant& kind) { word(kind.value); }
+    void write(const ir::WordConstant& kind) { word(kind.bits); }
     void write(const ir::ReadInput& kind) { word(static_cast<uint32_t>(kind.input)); }
     void write(const ir::ReadParameter& kind) { word(kind.parameter); }
     void write(const ir::ReadTable& kind) { hash(tables[kind.table]); }

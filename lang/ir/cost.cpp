@@ -30,9 +30,8 @@ uint64_t own_cost(const Instruction& made)
 {
     if (auto* operation = std::get_if<Operation>(&made.kind)) return operation->op == Op::spline ? of_spline : 1;
     if (auto* loop = std::get_if<For>(&made.kind)) return plus(loop->trip_max, 1);
-    const bool is_constant = std::holds_alternative<RealConstant>(made.kind) ||
-                             std::holds_alternative<IntConstant>(made.kind) ||
-                             std::holds_alternative<BoolConstant>(made.kind);
+    const bool is_constant =
+        std::holds_alternative<RealConstant>(made.kind) || std::holds_alternative<WordConstant>(made.kind);
     return is_constant ? 0 : 1;
 }
 

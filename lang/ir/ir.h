@@ -49,12 +49,9 @@ struct Operation {
 struct RealConstant {
     double value;
 }; // any bits, NaN and -0 included
-struct IntConstant {
+struct WordConstant {
     uint32_t bits;
-}; // i32 or u32, by the result's type
-struct BoolConstant {
-    bool value;
-};
+}; // i32, u32 or boolean (0 or 1), by the result's type
 struct ReadInput {
     Input input;
 }; // entry functions only
@@ -84,7 +81,7 @@ struct For {
     std::vector<Block> body; /* exactly one */
 };
 
-using Kind = std::variant<Operation, RealConstant, IntConstant, BoolConstant, ReadInput, ReadParameter, ReadTable, Call,
+using Kind = std::variant<Operation, RealConstant, WordConstant, ReadInput, ReadParameter, ReadTable, Call,
                           PointDerivative, If, For>;
 
 struct Instruction {

@@ -129,15 +129,13 @@ private:
         simple(made, info.name, {types, count}, *type, range_of(operation.op, *type, {operand_ranges, count}));
     }
     void check(const Instruction& made, const RealConstant&, uint32_t) { simple(made, "a constant", {}, Type::real); }
-    void check(const Instruction& made, const IntConstant& constant, uint32_t)
+    void check(const Instruction& made, const WordConstant& constant, uint32_t)
     {
-        const bool is_u32 = made.results.size() == 1 && function.type(made.results[0]) == Type::u32;
-        const Type type = is_u32 ? Type::u32 : Type::i32;
-        simple(made, "a constant", {}, type, constant_range(type, constant.bits));
-    }
-    void check(const Instruction& made, const BoolConstant& constant, uint32_t)
-    {
-        simple(made, "a constant", {}, Type::boolean, IntRange{constant.value, constant.value});
+        const Type type = made.results.size() == 1 ? function.type(made.results[0]) : Type::real;
+        const IntRange value = constant_range(type, constant.bits), full = full_range(type);
+        if (type == Type::real || type == Type::image || !value.within(full.minimum, full.maximum))
+            return fail("a constant is none of its type");
+        simple(made, "a constant", {}, type, value);
     }
     void check(const Instruction& made, const ReadInput& read, uint32_t)
     {

@@ -199,15 +199,10 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const RealC
         std::isnan(constant.value) ? Interval{infinity, -infinity, true} : Interval{constant.value, constant.value};
 }
 
-void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const IntConstant& constant)
+void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const WordConstant& constant)
 {
     Value result = made.results[0];
     frame.values[result.index] = integer(frame.function.type(result), constant.bits);
-}
-
-void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const BoolConstant& constant)
-{
-    frame.values[made.results[0].index] = {constant.value ? 1.0 : 0.0, constant.value ? 1.0 : 0.0};
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadInput& read)

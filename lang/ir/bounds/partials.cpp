@@ -47,8 +47,8 @@ PartialRules::Line PartialRules::differentiated(Op op, uint32_t active)
         place[made.results[0].index] = arity + static_cast<uint32_t>(line.steps.size());
         Step& step = line.steps.emplace_back();
         if (auto* real = std::get_if<RealConstant>(&made.kind)) step.constant = {real->value, real->value};
-        if (auto* truth = std::get_if<BoolConstant>(&made.kind))
-            step.constant = {truth->value ? 1.0 : 0.0, truth->value ? 1.0 : 0.0};
+        if (auto* truth = std::get_if<WordConstant>(&made.kind))
+            step.constant = {truth->bits ? 1.0 : 0.0, truth->bits ? 1.0 : 0.0};
         if (auto* operation = std::get_if<Operation>(&made.kind)) {
             step.op = operation->op;
             for (Value operand : made.operands) step.operands.push_back(place[operand.index]);

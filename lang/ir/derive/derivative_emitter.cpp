@@ -176,16 +176,9 @@ void DerivativeEmitter::copy(Builder& builder, const Instruction& made, const Re
     set_primal(made.results[0], builder.real(constant.value));
 }
 
-void DerivativeEmitter::copy(Builder& builder, const Instruction& made, const IntConstant& constant)
+void DerivativeEmitter::copy(Builder& builder, const Instruction& made, const WordConstant& constant)
 {
-    bool is_signed = function.type(made.results[0]) == Type::i32;
-    set_primal(made.results[0],
-               is_signed ? builder.i32(static_cast<int32_t>(constant.bits)) : builder.u32(constant.bits));
-}
-
-void DerivativeEmitter::copy(Builder& builder, const Instruction& made, const BoolConstant& constant)
-{
-    set_primal(made.results[0], builder.boolean(constant.value));
+    set_primal(made.results[0], builder.word(constant.bits, function.type(made.results[0])));
 }
 
 void DerivativeEmitter::copy(Builder& builder, const Instruction& made, const ReadInput& read)

@@ -80,8 +80,7 @@ private:
 
     void copy(Builder& builder, const Instruction& made, const Operation& operation);
     void copy(Builder& builder, const Instruction& made, const RealConstant& constant);
-    void copy(Builder& builder, const Instruction& made, const IntConstant& constant);
-    void copy(Builder& builder, const Instruction& made, const BoolConstant& constant);
+    void copy(Builder& builder, const Instruction& made, const WordConstant& constant);
     void copy(Builder& builder, const Instruction& made, const ReadInput& read);
     void copy(Builder& builder, const Instruction& made, const ReadParameter& read);
     void copy(Builder& builder, const Instruction& made, const ReadTable& read);

@@ -62,8 +62,7 @@ private:
         machine.digest ^= machine.digest >> 29;
     }
     void run(const Instruction& made, const RealConstant& constant) { slot(made.results[0]).real = T(constant.value); }
-    void run(const Instruction& made, const IntConstant& constant) { slot(made.results[0]).bits = constant.bits; }
-    void run(const Instruction& made, const BoolConstant& constant) { slot(made.results[0]).bits = constant.value; }
+    void run(const Instruction& made, const WordConstant& constant) { slot(made.results[0]).bits = constant.bits; }
     void run(const Instruction& made, const ReadInput& read)
     {
         slot(made.results[0]).real = machine.entry_inputs->input[static_cast<size_t>(read.input)];
