@@ -65,7 +65,7 @@ struct Call {
     uint32_t function;
 }; // operands: arguments; results: the callee's results
 // Derivative of operand 0 with respect to p along an axis. Not of what values are made of, but of where the program is
-// used: gone once a texture has entries (point_derivative.h), and never in a final program.
+// used: gone once a texture has entries (differentiate.h), and never in a final program.
 struct PointDerivative {
     uint32_t axis; // 0, 1, 2
 };

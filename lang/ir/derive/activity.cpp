@@ -75,10 +75,9 @@ bool Activity::add(Value value, Value from)
     return is_new;
 }
 
-void Activity::add(Value value, const Activity& other)
+void Activity::clear(Value value)
 {
-    for (size_t d = 0; d < width; ++d)
-        if (other(value, d)) set(value, d);
+    for (size_t d = 0; d < width; ++d) bits[value.index * width + d] = false;
 }
 
 const Dependence& Dependences::of(uint32_t function)
