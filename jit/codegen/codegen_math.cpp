@@ -1,7 +1,6 @@
 #include "jit/codegen/codegen_math.h"
 
 #include "jit/codegen/codegen_number.h"
-#include "lang/ir/elementary.h"
 #include "lang/ir/elementary_functions.h"
 #include "lang/ir/op_info.h"
 
