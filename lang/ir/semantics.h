@@ -7,8 +7,8 @@
 // Bits of a NaN are not part of the meaning: no operation can see them.
 #pragma once
 
+#include "lang/ir/elementary_exact.h"
 #include "lang/ir/ir.h"
-#include "lang/math/elementary_exact.h"
 #include "lang/math/spline.h"
 #include "lang/math/turn_polynomials.h"
 
