@@ -28,21 +28,18 @@ void set_block(ir::EntryInputs<T>& inputs, const ir::Texture& texture, const voi
     std::memcpy(head, block, sizeof head);
     for (size_t i = 0; i < std::size(head); ++i) inputs.input[point_inputs + i] = T(head[i]);
     inputs.parameters.clear();
-    inputs.images.clear();
     for (const ir::Parameter& parameter : texture.parameters) {
         const char* place = static_cast<const char*>(block) + parameter.offset;
-        double real = 0;
-        uint32_t word = 0;
-        inputs.images.push_back(nullptr);
-        if (parameter.type == ir::Type::image) std::memcpy(&inputs.images.back(), place, sizeof(haptel_image*));
-        std::memcpy(parameter.type == ir::Type::real ? static_cast<void*>(&real) : &word, place,
-                    parameter.type == ir::Type::real ? sizeof real : sizeof word);
-        switch (parameter.type) {
-        case ir::Type::real: inputs.parameters.emplace_back(T(real)); break;
-        case ir::Type::i32:
-        case ir::Type::u32: inputs.parameters.emplace_back(word); break;
-        case ir::Type::boolean: inputs.parameters.emplace_back(word != 0); break;
-        case ir::Type::image: inputs.parameters.emplace_back(word); break; // read from inputs.images
+        ir::Slot<T>& slot = inputs.parameters.emplace_back();
+        if (parameter.type == ir::Type::real) {
+            double real = 0;
+            std::memcpy(&real, place, sizeof real);
+            slot.real = T(real);
+        } else if (parameter.type == ir::Type::image) {
+            std::memcpy(&slot.image, place, sizeof slot.image);
+        } else {
+            std::memcpy(&slot.bits, place, sizeof slot.bits);
+            if (parameter.type == ir::Type::boolean) slot.bits = slot.bits != 0;
         }
     }
 }

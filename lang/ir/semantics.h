@@ -19,7 +19,8 @@
 
 namespace haptel::ir {
 
-// One scalar of any type: `real` counts for reals, `bits` for integers (two's complement) and booleans (0 or 1).
+// One scalar of any type: `real` counts for reals, `bits` for integers (two's complement) and booleans (0 or 1),
+// `image` for images (null: flat).
 template <typename T>
 struct Slot {
     T real{};

@@ -9,21 +9,15 @@
 #include "lang/ir/semantics.h"
 
 #include <span>
-#include <variant>
 #include <vector>
 
 namespace haptel::ir {
 
-// Real numbers of one evaluation: T is double or Quad (quad.h). Integers and booleans are the same for all.
-template <typename T>
-using Scalar = std::variant<T, uint32_t, bool>; // real; i32 and u32 as bits; boolean
-
-// What an entry reads. Parameter values by index in Texture::parameters.
+// What an entry reads. Real numbers of one evaluation: T is double or Quad (quad.h).
 template <typename T>
 struct EntryInputs {
     T input[input_count] = {};
-    std::vector<Scalar<T>> parameters;            // of an image: any
-    std::vector<const haptel_image*> images = {}; // by the same index; missing: flat
+    std::vector<Slot<T>> parameters; // by index in Texture::parameters
 };
 
 // Of one module, which must be verified and must not change meanwhile; prepared once, so that no evaluation allocates.

@@ -69,17 +69,7 @@ private:
     }
     void run(const Instruction& made, const ReadParameter& read)
     {
-        const EntryInputs<T>& inputs = *machine.entry_inputs;
-        Slot<T>& result = slot(made.results[0]);
-        result = {};
-        if (function.type(made.results[0]) == Type::image) {
-            if (read.parameter < inputs.images.size()) result.image = inputs.images[read.parameter];
-        } else if (const Scalar<T>& value = inputs.parameters[read.parameter]; const T* real = std::get_if<T>(&value)) {
-            result.real = *real;
-        } else {
-            const bool* truth = std::get_if<bool>(&value);
-            result.bits = truth ? *truth : std::get<uint32_t>(value);
-        }
+        slot(made.results[0]) = machine.entry_inputs->parameters[read.parameter];
     }
     void run(const Instruction& made, const ReadTable& read)
     {
