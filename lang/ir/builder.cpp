@@ -11,8 +11,6 @@
 namespace haptel::ir {
 namespace {
 
-constexpr size_t link_kind = std::variant_size_v<Kind>; // of a list of operands: no instruction
-
 uint64_t payload_of(const Kind& kind)
 {
     const auto bits = [](const auto& of) -> uint64_t {
@@ -32,15 +30,15 @@ uint64_t payload_of(const Kind& kind)
 
 size_t Builder::KeyHash::operator()(const Key& key) const
 {
-    uint64_t hash = (key.kind << 8 | static_cast<uint64_t>(key.type)) ^ key.payload * 0x9E3779B97F4A7C15u;
-    for (uint32_t word : key.operand) hash = (hash ^ word) * 0xBF58476D1CE4E5B9u, hash ^= hash >> 31;
-    return static_cast<size_t>(hash);
+    const uint64_t kind = key.kind << 8 | static_cast<uint64_t>(key.type);
+    return std::hash<std::u32string>()(key.operands) ^
+           ((kind ^ key.payload * 0x9E3779B97F4A7C15u) * 0xBF58476D1CE4E5B9u);
 }
 
 Builder::Key Builder::key_of(const Kind& kind, Type type, std::span<const Value> operands)
 {
-    Key key{kind.index(), type, payload_of(kind)};
-    for (size_t i = 0; i < operands.size(); ++i) key.operand[i] = operands[i].index;
+    Key key{kind.index(), type, payload_of(kind), {}};
+    for (Value operand : operands) key.operands.push_back(operand.index);
     return key;
 }
 
@@ -55,42 +53,22 @@ Value Builder::new_value(Type type, Definition made)
 Value Builder::emit(const Key& key, const Kind& kind, std::span<const Value> operands, std::span<const Type> types,
                     const Definition& made)
 {
-    auto [entry, is_new] = known.try_emplace(key, static_cast<uint32_t>(definitions.size()));
-    if (!is_new) return {entry->second};
+    const auto [entry, is_new] = known.try_emplace(key, Value{static_cast<uint32_t>(definitions.size())});
+    if (!is_new) return entry->second;
     Instruction instruction{kind, {operands.begin(), operands.end()}, {}, span};
     for (Type type : types) instruction.results.push_back(new_value(type, made));
     scopes.back().keys.push_back(&entry->first);
     scopes.back().block.instructions.push_back(std::move(instruction));
-    return {entry->second};
-}
-
-uint32_t Builder::list(std::span<const Value> values)
-{
-    uint32_t number = 0;
-    for (Value value : values) {
-        const auto [entry, is_new] = known.try_emplace(Key{link_kind, {}, number, {value.index}}, lists + 1);
-        if (is_new) {
-            ++lists;
-            scopes.back().keys.push_back(&entry->first);
-        }
-        number = entry->second;
-    }
-    return number;
-}
-
-Block Builder::close()
-{
-    for (const Key* key : scopes.back().keys) known.erase(known.find(*key));
-    Block block = std::move(scopes.back().block);
-    scopes.pop_back();
-    return block;
+    return entry->second;
 }
 
 Block Builder::closed(const Arm& arm)
 {
     scopes.emplace_back();
     std::vector<Value> yields = arm();
-    Block block = close();
+    for (const Key* key : scopes.back().keys) known.erase(known.find(*key));
+    Block block = std::move(scopes.back().block);
+    scopes.pop_back();
     block.yields = std::move(yields);
     return block;
 }
@@ -140,7 +118,7 @@ Value Builder::operation(Op op, std::span<const Value> operands)
     made.range = range_of(op, *result, {ranges, operands.size()});
 
     Key key = key_of(Operation{op}, *result, operands);
-    if (traits(op).commutes && key.operand[1] < key.operand[0]) std::swap(key.operand[0], key.operand[1]);
+    if (traits(op).commutes) std::ranges::sort(key.operands);
     return emit(key, Operation{op}, operands, {&*result, 1}, made);
 }
 
@@ -154,10 +132,9 @@ std::vector<Value> Builder::call(uint32_t function, std::span<const Value> argum
     const Function& callee = module.functions[function];
     std::vector<Type> types;
     for (Value result : callee.body.yields) types.push_back(callee.type(result));
-    const Value interned{list(arguments)};
     const Kind kind = Call{function};
     std::vector<Value> results;
-    const Value first = emit(key_of(kind, {}, {&interned, 1}), kind, arguments, types, {});
+    const Value first = emit(key_of(kind, {}, arguments), kind, arguments, types, {});
     for (uint32_t i = 0; i < types.size(); ++i) results.push_back({first.index + i});
     return results;
 }

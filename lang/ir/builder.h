@@ -72,13 +72,12 @@ public:
     Function& function() { return target; } // to set facts, first_argument_size before finish
 
 private:
-    // What an instruction without effects is made of: equal keys, equal results. A longer list of operands is interned
-    // beforehand, link by link, and stands for one.
+    // What an instruction without effects is made of: equal keys, equal results.
     struct Key {
         size_t kind; // Kind::index()
         Type type;
-        uint64_t payload; // of the kind
-        uint32_t operand[4] = {UINT32_MAX, UINT32_MAX, UINT32_MAX, UINT32_MAX};
+        uint64_t payload;        // of the kind
+        std::u32string operands; // by Value::index; few of them need no memory
         bool operator==(const Key&) const = default;
     };
     struct KeyHash {
@@ -94,8 +93,7 @@ private:
     Function target;
     std::vector<Definition> definitions; // by Value::index
     std::vector<Scope> scopes;
-    std::unordered_map<Key, uint32_t, KeyHash> known; // first result, or number of a list
-    uint32_t lists = 0;
+    std::unordered_map<Key, Value, KeyHash> known; // first result
 
     static Key key_of(const Kind& kind, Type type, std::span<const Value> operands);
     const Definition& definition(Value value) const { return definitions[value.index]; }
@@ -104,8 +102,6 @@ private:
     // First result of an equal instruction in an open block, or of this one, appended. Results are consecutive.
     Value emit(const Key& key, const Kind& kind, std::span<const Value> operands, std::span<const Type> types,
                const Definition& definition);
-    uint32_t list(std::span<const Value> values); // equal lists, equal numbers
-    Block close();
     Block closed(const Arm& arm); // what the arm makes, and yields
     // A value that equals op(operands) bit for bit (any NaN equals any NaN) and costs less, if the list in fold.cpp has
     // one.

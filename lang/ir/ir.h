@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -98,13 +99,8 @@ struct Block {
 };
 
 // The two arms of an `if`, the body of a loop, nothing of another instruction.
-inline std::span<const Block> blocks_of(const Instruction& made)
-{
-    if (const auto* choice = std::get_if<If>(&made.kind)) return choice->arms;
-    if (const auto* loop = std::get_if<For>(&made.kind)) return loop->body;
-    return {};
-}
-inline std::span<Block> blocks_of(Instruction& made)
+template <typename Made> // Instruction, const or not
+auto blocks_of(Made& made) -> std::span<std::conditional_t<std::is_const_v<Made>, const Block, Block>>
 {
     if (auto* choice = std::get_if<If>(&made.kind)) return choice->arms;
     if (auto* loop = std::get_if<For>(&made.kind)) return loop->body;
@@ -112,12 +108,12 @@ inline std::span<Block> blocks_of(Instruction& made)
 }
 
 // Of the block and of all blocks in it, each before what is in it.
-template <typename Visit>
-void for_each_instruction(const Block& block, const Visit& visit)
+template <typename Blocks, typename Visit>
+void for_each_instruction(Blocks& block, const Visit& visit)
 {
-    for (const Instruction& made : block.instructions) {
+    for (auto& made : block.instructions) {
         visit(made);
-        for (const Block& inner : blocks_of(made)) for_each_instruction(inner, visit);
+        for (auto& inner : blocks_of(made)) for_each_instruction(inner, visit);
     }
 }
 

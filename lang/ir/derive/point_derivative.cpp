@@ -81,22 +81,18 @@ std::vector<bool> PointUses::needed(const Function& function, bool tangents_of_r
 void remove_unresolved(Module& module)
 {
     std::vector<uint32_t> moved; // by old index; UINT32_MAX: removed
-    auto asks = [&](auto&& self, Block& block) -> bool {
-        for (Instruction& made : block.instructions) {
-            if (std::holds_alternative<PointDerivative>(made.kind)) return true;
-            if (auto* call = std::get_if<Call>(&made.kind)) {
-                call->function = moved[call->function];
-                if (call->function == UINT32_MAX) return true;
-            }
-            for (Block& inner : blocks_of(made))
-                if (self(self, inner)) return true;
-        }
-        return false;
-    };
     uint32_t kept = 0;
     for (Function& function : module.functions) {
-        moved.push_back(asks(asks, function.body) ? UINT32_MAX : kept);
-        if (moved.back() == UINT32_MAX) continue;
+        bool asks = false;
+        for_each_instruction(function.body, [&](Instruction& made) {
+            asks |= std::holds_alternative<PointDerivative>(made.kind);
+            auto* call = std::get_if<Call>(&made.kind);
+            if (!call) return;
+            call->function = moved[call->function];
+            asks |= call->function == UINT32_MAX;
+        });
+        moved.push_back(asks ? UINT32_MAX : kept);
+        if (asks) continue;
         if (kept + 1 != moved.size()) module.functions[kept] = std::move(function);
         ++kept;
     }
