@@ -17,7 +17,13 @@ public:
 
     static constexpr uint32_t rounds_max = 8;
 
-    bool flow(Value from, Value to) { return is_real(from) && is_real(to) && activity.add(to, from); }
+    bool flow(Value from, Value to)
+    {
+        bool is_new = false;
+        for (size_t d = 0; is_real(from) && is_real(to) && d < activity.directions(); ++d)
+            if (activity(from, d)) is_new |= activity.set(to, d);
+        return is_new;
+    }
     void steer(Value, Value) {}
     void assume(Value carried)
     {
@@ -65,14 +71,6 @@ bool Activity::set(Value value, size_t direction)
     if (bit) return false;
     bit = true;
     return true;
-}
-
-bool Activity::add(Value value, Value from)
-{
-    bool is_new = false;
-    for (size_t d = 0; d < width; ++d)
-        if ((*this)(from, d)) is_new |= set(value, d);
-    return is_new;
 }
 
 void Activity::clear(Value value)

@@ -15,9 +15,7 @@ public:
     size_t directions() const { return width; }
     bool operator()(Value value, size_t direction) const { return bits[value.index * width + direction]; }
     bool any(Value value) const;
-    // True if that is new.
-    bool set(Value value, size_t direction);
-    bool add(Value value, Value from);
+    bool set(Value value, size_t direction); // true if that is new
     void clear(Value value);
 
 private:

@@ -61,7 +61,8 @@ std::string pattern_of(const Seeds& seeds) // "1..,.t.": a letter per parameter 
 
 } // namespace
 
-CallPlan Differentiator::plan(const Instruction& call, const Activity& activity, PointDerivatives point_derivatives)
+std::optional<CallPlan> Differentiator::plan(const Instruction& call, const Activity& activity,
+                                             PointDerivatives point_derivatives)
 {
     const uint32_t callee = std::get<Call>(call.kind).function;
     const PointUse& use = point_uses.of(callee);
@@ -76,16 +77,15 @@ CallPlan Differentiator::plan(const Instruction& call, const Activity& activity,
             (is_tangent_wanted && std::ranges::any_of(depends, reads_it)) || (resolves && use.parameters[p]);
         if (is_needed && activity.any(call.operands[p])) plan.columns.push_back(p);
     }
-    if (plan.columns.empty() && !resolves) return plan;
-    const bool by_jacobian = plan.columns.size() <= activity.directions() && !use.asks;
-    plan.how = by_jacobian ? CallPlan::How::jacobian : CallPlan::How::tangents;
-    const size_t directions = by_jacobian ? plan.columns.size() : activity.directions();
+    if (plan.columns.empty() && !resolves) return std::nullopt;
+    plan.by_jacobian = plan.columns.size() <= activity.directions() && !use.asks;
+    const size_t directions = plan.by_jacobian ? plan.columns.size() : activity.directions();
     Seeds seeds(call.operands.size(), std::vector<Seed>(directions, Seed::none));
     for (size_t column = 0; column < plan.columns.size(); ++column) {
         const size_t p = plan.columns[column];
         for (size_t d = 0; d < directions; ++d)
-            if (by_jacobian ? d == column : activity(call.operands[p], d))
-                seeds[p][d] = by_jacobian ? Seed::unit : Seed::given;
+            if (plan.by_jacobian ? d == column : activity(call.operands[p], d))
+                seeds[p][d] = plan.by_jacobian ? Seed::unit : Seed::given;
     }
     plan.request = {callee, std::move(seeds), resolves ? PointDerivatives::resolved : PointDerivatives::vary,
                     is_tangent_wanted};

@@ -44,11 +44,7 @@ struct DerivativeRequest {
 
 // How the derivative of a callee is had at a call.
 struct CallPlan {
-    enum class How : uint8_t {
-        plain,    // not at all: no result has a tangent
-        jacobian, // by its derivative with respect to the `columns`, and the chain rule at the call
-        tangents, // by passing the tangents on
-    } how = How::plain;
+    bool by_jacobian = false; // with respect to the `columns`, and the chain rule; else the tangents are passed on
     std::vector<size_t> columns = {}; // active arguments that a result depends on
     DerivativeRequest request = {};   // of the callee
 };
@@ -69,9 +65,10 @@ public:
     // respect to p is replaced by one that holds their values.
     void make_entries(Texture& texture);
 
-    // The way that needs fewer directions inside the callee. The chain rule at the call is no way for a callee that
-    // asks for derivatives with respect to the point: there it matters how the tangents themselves move.
-    CallPlan plan(const Instruction& call, const Activity& activity, PointDerivatives point_derivatives);
+    // Nothing where no result has a tangent, else the way that needs fewer directions inside the callee. The chain rule
+    // at the call is no way for a callee that asks for derivatives with respect to the point: there it matters how the
+    // tangents themselves move.
+    std::optional<CallPlan> plan(const Instruction& call, const Activity& activity, PointDerivatives point_derivatives);
 
 private:
     Module& module;
