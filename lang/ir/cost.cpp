@@ -76,8 +76,7 @@ struct Spending {
     }
 };
 
-} // namespace
-
+// Whether `function`, or what it calls, holds each function of the module up to it: itself included.
 std::vector<bool> reached_from(const Module& module, uint32_t function)
 {
     std::vector<bool> reached(size_t{function} + 1, false);
@@ -89,6 +88,8 @@ std::vector<bool> reached_from(const Module& module, uint32_t function)
             });
     return reached;
 }
+
+} // namespace
 
 size_t instructions_reached(const Module& module, uint32_t function)
 {

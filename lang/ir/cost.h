@@ -11,10 +11,7 @@
 
 namespace haptel::ir {
 
-// Whether `function`, or what it calls, holds each function of the module up to it: itself included.
-std::vector<bool> reached_from(const Module& module, uint32_t function);
-
-// Instructions of these functions together, each counted once.
+// Instructions of `function` and of all that it calls, each function counted once.
 size_t instructions_reached(const Module& module, uint32_t function);
 
 // One call of each of these functions, callees included, by index. `wanted`: with what they call; of others, 0.

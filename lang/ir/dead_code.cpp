@@ -7,14 +7,9 @@
 namespace haptel::ir {
 namespace {
 
-class Marker {
-public:
-    // Without `parameters` a call needs all of its operands.
-    explicit Marker(const Function& whole, const ParametersNeeded* parameters = nullptr)
-        : needed(whole.value_types.size(), false), parameters_needed(parameters)
-    {
-    }
-    std::vector<bool> needed; // by Value::index
+struct Marker {
+    std::vector<bool> needed;                            // by Value::index
+    const ParametersNeeded* parameters_needed = nullptr; // null: a call needs all of its operands
 
     static constexpr uint32_t rounds_max = 8;
 
@@ -46,9 +41,6 @@ public:
         for (size_t i = 0; i < made.operands.size(); ++i)
             if (used[i]) need(made.operands[i]);
     }
-
-private:
-    const ParametersNeeded* const parameters_needed;
 };
 
 template <typename Keep>
@@ -121,7 +113,7 @@ private:
 std::vector<bool> needed_values(const Function& function, const std::vector<bool>& results,
                                 const ParametersNeeded& parameters)
 {
-    Marker marker(function, &parameters);
+    Marker marker{std::vector<bool>(function.value_types.size()), &parameters};
     for (size_t i = 0; i < results.size(); ++i)
         if (results[i]) marker.need(function.body.yields[i]);
     Dataflow(marker).backwards(function.body);
@@ -130,7 +122,7 @@ std::vector<bool> needed_values(const Function& function, const std::vector<bool
 
 void remove_dead_code(Function& function)
 {
-    Marker marker(function);
+    Marker marker{std::vector<bool>(function.value_types.size())};
     for (Value result : function.body.yields) marker.need(result);
     Dataflow(marker).backwards(function.body);
     Remover(function, marker);

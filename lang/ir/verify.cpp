@@ -65,12 +65,10 @@ private:
 
     bool are_visible(const std::vector<Value>& values)
     {
-        for (Value value : values)
-            if (value.index >= visible.size() || !visible[value.index]) {
-                fail("a value is used where it is not defined");
-                return false;
-            }
-        return true;
+        const auto is_visible = [&](Value value) { return value.index < visible.size() && visible[value.index]; };
+        const bool all = std::ranges::all_of(values, is_visible);
+        if (!all) fail("a value is used where it is not defined");
+        return all;
     }
     bool have_types(std::span<const Value> values, std::span<const Type> types) const
     {

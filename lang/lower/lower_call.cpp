@@ -224,13 +224,12 @@ uint32_t ModuleLowering::smooth_ramp()
 LoweredFunction ModuleLowering::make_derivative(const LoweredFunction& of)
 {
     const ir::Derivative derivative = differentiator.jacobian(of.index);
-    const std::vector<ir::Value> parameters = module.functions[of.index].parameters;
-    ir::Builder builder(module, unique("grad " + module.functions[of.index].name));
+    const ir::Function& source = module.functions[of.index];
+    ir::Builder builder(module, unique("grad " + source.name));
     Values arguments;
-    for (ir::Value parameter : parameters)
-        arguments.push_back(builder.parameter(module.functions[of.index].type(parameter)));
-    builder.function().first_argument_size = module.functions[of.index].first_argument_size;
-    builder.function().is_library = module.functions[of.index].is_library;
+    for (ir::Value parameter : source.parameters) arguments.push_back(builder.parameter(source.type(parameter)));
+    builder.function().first_argument_size = source.first_argument_size;
+    builder.function().is_library = source.is_library;
     const Values results = builder.call(derivative.function, arguments);
     size_t next = derivative.exists.size(); // behind the values: by result, then direction
     const size_t rows = derivative.exists.size(), columns = derivative.exists.front().size();

@@ -7,13 +7,11 @@ namespace haptel::ir {
 namespace {
 
 // Forwards: what is made of something active may be active itself.
-class Propagation {
-public:
-    Propagation(const Function& source, Dependences& dependences, InputActivity inputs, Activity& result)
-        : function(source), callees(dependences), input_is_active(inputs), activity(result)
-    {
-        Dataflow(*this).forwards(function.body);
-    }
+struct Propagation {
+    const Function& function;
+    Dependences& callees;
+    InputActivity input_is_active;
+    Activity& activity;
 
     static constexpr uint32_t rounds_max = 8;
 
@@ -46,13 +44,6 @@ public:
             if (callees.point_derivatives == PointDerivatives::vary) flow(made.operands[0], made.results[0]);
         }
     }
-
-private:
-    const Function& function;
-    Dependences& callees;
-    InputActivity input_is_active;
-    Activity& activity;
-
     bool is_real(Value value) const { return function.type(value) == Type::real; }
 };
 
@@ -99,7 +90,8 @@ const Dependence& Dependences::of(uint32_t function)
 
 void propagate(const Function& function, Dependences& callees, InputActivity input_is_active, Activity& activity)
 {
-    Propagation(function, callees, input_is_active, activity);
+    Propagation analysis{function, callees, input_is_active, activity};
+    Dataflow(analysis).forwards(function.body);
 }
 
 } // namespace haptel::ir
