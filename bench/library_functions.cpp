@@ -1,6 +1,6 @@
 #include "bench/library_functions.h"
 
-#include "lang/math/elementary_exact.h"
+#include "lang/ir/elementary_exact.h"
 
 namespace haptel::bench {
 namespace {

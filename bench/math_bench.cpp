@@ -4,8 +4,8 @@
 #include "bench/library_functions.h"
 #include "jit/engine/engine.h"
 #include "lang/ir/builder.h"
-#include "lang/ir/elementary.h"
 #include "lang/ir/op_info.h"
+#include "lang/ir/semantics.h"
 
 #include <algorithm>
 #include <cmath>

@@ -28,20 +28,18 @@ void set_block(ir::EntryInputs<T>& inputs, const ir::Texture& texture, const voi
     std::memcpy(head, block, sizeof head);
     for (size_t i = 0; i < std::size(head); ++i) inputs.input[point_inputs + i] = T(head[i]);
     inputs.parameters.clear();
-    inputs.images.clear();
     for (const ir::Parameter& parameter : texture.parameters) {
-        const auto read = [place = static_cast<const char*>(block) + parameter.offset](auto value) {
-            std::memcpy(&value, place, sizeof value);
-            return value;
-        };
-        const bool is_image = parameter.type == ir::Type::image;
-        inputs.images.push_back(is_image ? read(static_cast<const haptel_image*>(nullptr)) : nullptr);
-        switch (parameter.type) {
-        case ir::Type::real: inputs.parameters.emplace_back(T(read(double()))); break;
-        case ir::Type::i32:
-        case ir::Type::u32: inputs.parameters.emplace_back(read(uint32_t())); break;
-        case ir::Type::boolean: inputs.parameters.emplace_back(read(uint32_t()) != 0); break;
-        case ir::Type::image: inputs.parameters.emplace_back(uint32_t()); break; // read from inputs.images
+        const char* place = static_cast<const char*>(block) + parameter.offset;
+        ir::Slot<T>& slot = inputs.parameters.emplace_back();
+        if (parameter.type == ir::Type::real) {
+            double real = 0;
+            std::memcpy(&real, place, sizeof real);
+            slot.real = T(real);
+        } else if (parameter.type == ir::Type::image) {
+            std::memcpy(&slot.image, place, sizeof slot.image);
+        } else {
+            std::memcpy(&slot.bits, place, sizeof slot.bits);
+            if (parameter.type == ir::Type::boolean) slot.bits = slot.bits != 0;
         }
     }
 }

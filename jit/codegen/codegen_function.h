@@ -69,8 +69,11 @@ private:
     {
         return {llvm::ConstantFP::get(builder.getDoubleTy(), constant.value)};
     }
-    Values emit(const ir::Instruction&, const ir::IntConstant& constant) { return {builder.getInt32(constant.bits)}; }
-    Values emit(const ir::Instruction&, const ir::BoolConstant& constant) { return {builder.getInt1(constant.value)}; }
+    Values emit(const ir::Instruction& made, const ir::WordConstant& constant)
+    {
+        const bool is_truth = source.type(made.results[0]) == ir::Type::boolean;
+        return {is_truth ? builder.getInt1(constant.bits != 0) : builder.getInt32(constant.bits)};
+    }
     Values emit(const ir::Instruction&, const ir::PointDerivative&) { return {}; } // in no program that is verified
     Values emit(const ir::Instruction& made, const ir::ReadInput& read);
     Values emit(const ir::Instruction& made, const ir::ReadParameter& read);

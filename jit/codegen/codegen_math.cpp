@@ -1,6 +1,5 @@
 #include "jit/codegen/codegen_math.h"
 
-#include "lang/ir/elementary.h"
 #include "lang/ir/elementary_functions.h"
 #include "lang/ir/op_info.h"
 #include "lang/math/elementary_number.h"

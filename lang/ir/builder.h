@@ -1,35 +1,52 @@
 // Makes the instructions of one function, folding and sharing on the way.
 //
-// Folded are only identities that keep NaN, infinity and -0 (the list stands in builder.cpp); equal pure operations in
-// an enclosing block are shared.
+// Folded are only identities that keep NaN, infinity and -0 (the list stands in fold.cpp); equal pure operations in an
+// enclosing block are shared.
 #pragma once
 
 #include "lang/ir/ir.h"
 
 #include <functional>
 #include <initializer_list>
-#include <memory>
 #include <span>
+#include <unordered_map>
 
 namespace haptel::ir {
+
+// How a value was made, as far as folding looks.
+struct Definition {
+    std::optional<Op> op = {};
+    Value operand[4] = {};
+    bool is_constant = false;
+    double real = 0;
+    std::optional<IntRange> range = {}; // integers and booleans; absent: that of the type
+};
 
 class Builder {
 public:
     Builder(Module& module, std::string name);
-    ~Builder();
     Builder(const Builder&) = delete;
 
     Value parameter(Type type); // before the first instruction
 
-    Value real(double value);
-    Value i32(int32_t value);
-    Value u32(uint32_t value);
-    Value boolean(bool value);
-    Value input(Input input);
-    Value texture_parameter(uint32_t index, Type type);
-    Value table(uint32_t table, Value index); // index in range; see clamp_index
+    // An instruction with that one result: constants and what is read.
+    Value simple(const Kind& kind, std::span<const Value> operands, Type type);
+    Value real(double value) { return simple(RealConstant{value}, {}, Type::real); }
+    Value word(uint32_t bits, Type type) { return simple(WordConstant{bits}, {}, type); } // i32, u32, boolean
+    Value i32(int32_t value) { return word(static_cast<uint32_t>(value), Type::i32); }
+    Value u32(uint32_t value) { return word(value, Type::u32); }
+    Value boolean(bool value) { return word(value, Type::boolean); }
+    Value input(Input input) { return simple(ReadInput{input}, {}, Type::real); }
+    Value texture_parameter(uint32_t index, Type type) { return simple(ReadParameter{index}, {}, type); }
+    Value table(uint32_t table, Value index) // index in range; see clamp_index
+    {
+        return simple(ReadTable{table}, {&index, 1}, module.tables[table].element);
+    }
     Value operation(Op op, std::span<const Value> operands);
-    Value operation(Op op, std::initializer_list<Value> operands);
+    Value operation(Op op, std::initializer_list<Value> operands)
+    {
+        return operation(op, std::span<const Value>(operands.begin(), operands.size()));
+    }
     Value point_derivative(uint32_t axis, Value of);
     std::vector<Value> call(uint32_t function, std::span<const Value> arguments);
 
@@ -45,19 +62,50 @@ public:
 
     // If the value is a known constant.
     std::optional<double> real_constant(Value value) const;
-    std::optional<uint32_t> int_constant(Value value) const;
-    std::optional<bool> bool_constant(Value value) const;
+    std::optional<uint32_t> word_constant(Value value) const; // i32, u32, boolean
 
-    Type type(Value value) const;
-    Span span; // given to every instruction made from here on
+    Type type(Value value) const { return target.type(value); }
+    Span span = {}; // given to every instruction made from here on
 
     // Ends the function with these results and adds it to the module; returns its index.
     uint32_t finish(std::span<const Value> results);
-    Function& function(); // to set facts, first_argument_size before finish
+    Function& function() { return target; } // to set facts, first_argument_size before finish
 
 private:
-    struct State;
-    std::unique_ptr<State> state;
+    // What an instruction without effects is made of: equal keys, equal results.
+    struct Key {
+        size_t kind; // Kind::index()
+        Type type;
+        uint64_t payload;        // of the kind
+        std::u32string operands; // by Value::index; few of them need no memory
+        bool operator==(const Key&) const = default;
+    };
+    struct KeyHash {
+        size_t operator()(const Key& key) const;
+    };
+    struct Scope {
+        Block block = {};
+        std::vector<const Key*> keys = {}; // known only while the scope is open
+    };
+    class Fold;
+
+    Module& module;
+    Function target;
+    std::vector<Definition> definitions; // by Value::index
+    std::vector<Scope> scopes;
+    std::unordered_map<Key, Value, KeyHash> known; // first result
+
+    static Key key_of(const Kind& kind, Type type, std::span<const Value> operands);
+    const Definition& definition(Value value) const { return definitions[value.index]; }
+    IntRange range(Value value) const { return *definition(value).range; }
+    Value new_value(Type type, Definition definition = {});
+    // First result of an equal instruction in an open block, or of this one, appended. Results are consecutive.
+    Value emit(const Key& key, const Kind& kind, std::span<const Value> operands, std::span<const Type> types,
+               const Definition& definition);
+    Block closed(const Arm& arm); // what the arm makes, and yields
+    // A value that equals op(operands) bit for bit (any NaN equals any NaN) and costs less, if the list in fold.cpp has
+    // one.
+    std::optional<Value> fold(Op op, std::span<const Value> operands);
 };
 
 } // namespace haptel::ir

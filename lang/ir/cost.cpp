@@ -1,10 +1,7 @@
 #include "lang/ir/cost.h"
 
-#include "lang/ir/extent.h"
-
 #include <algorithm>
 #include <map>
-#include <tuple>
 
 namespace haptel::ir {
 namespace {
@@ -30,9 +27,8 @@ uint64_t own_cost(const Instruction& made)
 {
     if (auto* operation = std::get_if<Operation>(&made.kind)) return operation->op == Op::spline ? of_spline : 1;
     if (auto* loop = std::get_if<For>(&made.kind)) return plus(loop->trip_max, 1);
-    const bool is_constant = std::holds_alternative<RealConstant>(made.kind) ||
-                             std::holds_alternative<IntConstant>(made.kind) ||
-                             std::holds_alternative<BoolConstant>(made.kind);
+    const bool is_constant =
+        std::holds_alternative<RealConstant>(made.kind) || std::holds_alternative<WordConstant>(made.kind);
     return is_constant ? 0 : 1;
 }
 
@@ -51,33 +47,17 @@ uint64_t cost(const Block& block, const std::vector<uint64_t>& functions)
     return sum;
 }
 
-struct BySource {
-    bool operator()(const Span& a, const Span& b) const
-    {
-        return std::tie(a.file, a.begin, a.end) < std::tie(b.file, b.begin, b.end);
-    }
-};
-
-// Callers first: how often a function runs is known when its body is looked at.
-class Spending {
-public:
-    Spending(const Module& whole, uint32_t function)
-        : module(whole), costs(operations_max(whole, reached_from(whole, function))), runs(costs.size(), 0)
-    {
-        runs[function] = 1;
-        for (size_t i = runs.size(); i-- > 0;) spend(module.functions[i].body, runs[i]);
-    }
-    std::map<Span, uint64_t, BySource> places;
-
-private:
+// What one call of a function spends, block by block.
+struct Spending {
     const Module& module;
     const std::vector<uint64_t> costs; // by function
-    std::vector<uint64_t> runs;        // likewise
+    std::vector<uint64_t> runs;        // likewise: how often what this function calls is run
+    std::map<Span, uint64_t> places = {};
 
-    void spend(const Block& block, uint64_t often)
+    void block(const Block& source, uint64_t often)
     {
         if (often == 0) return;
-        for (const Instruction& made : block.instructions) {
+        for (const Instruction& made : source.instructions) {
             uint64_t here = own_cost(made);
             if (auto* call = std::get_if<Call>(&made.kind)) {
                 if (module.functions[call->function].is_library)
@@ -89,14 +69,36 @@ private:
                 uint64_t& place = places[made.span];
                 place = plus(place, times(here, often));
             }
-            if (auto* loop = std::get_if<For>(&made.kind)) spend(loop->body[0], times(often, loop->trip_max));
+            if (auto* loop = std::get_if<For>(&made.kind)) block(loop->body[0], times(often, loop->trip_max));
             if (auto* choice = std::get_if<If>(&made.kind))
-                spend(choice->arms[cost(choice->arms[1], costs) > cost(choice->arms[0], costs)], often);
+                block(choice->arms[cost(choice->arms[1], costs) > cost(choice->arms[0], costs)], often);
         }
     }
 };
 
+// Whether `function`, or what it calls, holds each function of the module up to it: itself included.
+std::vector<bool> reached_from(const Module& module, uint32_t function)
+{
+    std::vector<bool> reached(size_t{function} + 1, false);
+    reached.back() = true;
+    for (size_t i = reached.size(); i-- > 0;) // callees stand before their callers
+        if (reached[i])
+            for_each_instruction(module.functions[i].body, [&](const Instruction& made) {
+                if (auto* call = std::get_if<Call>(&made.kind)) reached[call->function] = true;
+            });
+    return reached;
+}
+
 } // namespace
+
+size_t instructions_reached(const Module& module, uint32_t function)
+{
+    const std::vector<bool> reached = reached_from(module, function);
+    size_t sum = 0;
+    for (size_t i = 0; i < reached.size(); ++i)
+        if (reached[i]) for_each_instruction(module.functions[i].body, [&](const Instruction&) { ++sum; });
+    return sum;
+}
 
 std::vector<uint64_t> operations_max(const Module& module, const std::vector<bool>& wanted)
 {
@@ -113,8 +115,13 @@ uint64_t operations_max(const Module& module, uint32_t function)
 
 std::vector<SpanCost> cost_by_span(const Module& module, uint32_t function)
 {
+    Spending spending{module, operations_max(module, reached_from(module, function)),
+                      std::vector<uint64_t>(size_t{function} + 1, 0)};
+    spending.runs[function] = 1;
+    for (size_t i = spending.runs.size(); i-- > 0;) // callers first: by then it is known how often one runs
+        spending.block(module.functions[i].body, spending.runs[i]);
     std::vector<SpanCost> costs;
-    for (const auto& [span, count] : Spending(module, function).places) costs.push_back({span, count});
+    for (const auto& [span, count] : spending.places) costs.push_back({span, count});
     return costs;
 }
 

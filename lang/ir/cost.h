@@ -1,4 +1,4 @@
-// How many operations code takes at worst, and where they are spent.
+// How much code there is, how many operations it takes at worst, and where they are spent.
 //
 // The dearer arm of an `if` counts, and loops as often as they may run; what is a few instructions of a processor or
 // one call of the mathematical library is one operation. Counts saturate.
@@ -10,6 +10,9 @@
 #include <vector>
 
 namespace haptel::ir {
+
+// Instructions of `function` and of all that it calls, each function counted once.
+size_t instructions_reached(const Module& module, uint32_t function);
 
 // One call of each of these functions, callees included, by index. `wanted`: with what they call; of others, 0.
 std::vector<uint64_t> operations_max(const Module& module, const std::vector<bool>& wanted);

@@ -7,14 +7,9 @@
 namespace haptel::ir {
 namespace {
 
-class Marker {
-public:
-    // Without `parameters` a call needs all of its operands.
-    explicit Marker(const Function& whole, const ParametersNeeded* parameters = nullptr)
-        : needed(whole.value_types.size(), false), parameters_needed(parameters)
-    {
-    }
-    std::vector<bool> needed; // by Value::index
+struct Marker {
+    std::vector<bool> needed;                            // by Value::index
+    const ParametersNeeded* parameters_needed = nullptr; // null: a call needs all of its operands
 
     static constexpr uint32_t rounds_max = 8;
 
@@ -46,84 +41,70 @@ public:
         for (size_t i = 0; i < made.operands.size(); ++i)
             if (used[i]) need(made.operands[i]);
     }
-
-private:
-    const ParametersNeeded* const parameters_needed;
 };
 
+template <typename Keep>
+void filter(std::vector<Value>& values, size_t first, const Keep& keep)
+{
+    size_t kept = first;
+    for (size_t i = first; i < values.size(); ++i)
+        if (keep(i - first)) values[kept++] = values[i];
+    values.resize(kept);
+}
+
+// What is needed, with dense numbers: every use follows its definition, so that one walk renames both.
 class Remover {
 public:
-    explicit Remover(Function& whole) : function(whole), marker(whole) {}
-
-    void run()
+    Remover(Function& whole, const Marker& needed) : function(whole), marker(needed), renamed(whole.value_types.size())
     {
-        for (Value result : function.body.yields) marker.need(result);
-        Dataflow(marker).backwards(function.body);
-        sweep(function.body);
-        number();
+        define(function.parameters);
+        block(function.body);
+        function.value_types = std::move(types);
     }
 
 private:
     Function& function;
-    Marker marker;
+    const Marker& marker;
+    std::vector<Value> renamed; // by Value::index
+    std::vector<Type> types;
 
-    template <typename Keep>
-    static void filter(std::vector<Value>& values, size_t first, const Keep& keep)
+    void define(std::vector<Value>& values)
     {
-        size_t kept = first;
-        for (size_t i = first; i < values.size(); ++i)
-            if (keep(i - first)) values[kept++] = values[i];
-        values.resize(kept);
-    }
-
-    void sweep(Block& block)
-    {
-        std::erase_if(block.instructions, [&](const Instruction& made) { return !marker.is_needed(made); });
-        for (Instruction& made : block.instructions) {
-            if (blocks_of(made).empty()) continue;
-            const bool is_loop = std::holds_alternative<For>(made.kind);
-            const std::vector<Value> results = made.results;
-            auto keep = [&](size_t i) { return marker.is_needed(results[i]); };
-            filter(made.results, 0, keep);
-            if (is_loop) filter(made.operands, 1, keep);
-            for (Block& inner : blocks_of(made)) {
-                if (is_loop) filter(inner.parameters, 1, keep);
-                filter(inner.yields, 0, keep);
-                sweep(inner);
-            }
+        for (Value& value : values) {
+            types.push_back(function.type(value));
+            renamed[value.index] = {static_cast<uint32_t>(types.size() - 1)};
+            value = renamed[value.index];
         }
     }
-
-    // Every use follows its definition in this order, so that one walk renames both.
-    void number()
+    void use(std::vector<Value>& values)
     {
-        std::vector<Value> renamed(function.value_types.size());
-        std::vector<Type> types;
-        auto define = [&](std::vector<Value>& values) {
-            for (Value& value : values) {
-                types.push_back(function.value_types[value.index]);
-                renamed[value.index] = {static_cast<uint32_t>(types.size() - 1)};
-                value = renamed[value.index];
-            }
-        };
-        define(function.parameters);
-        rename(function.body, renamed, define);
-        function.value_types = std::move(types);
+        for (Value& value : values) value = renamed[value.index];
     }
 
-    template <typename Define>
-    static void rename(Block& block, const std::vector<Value>& renamed, const Define& define)
+    void block(Block& source)
     {
-        auto use = [&](std::vector<Value>& values) {
-            for (Value& value : values) value = renamed[value.index];
-        };
-        define(block.parameters);
-        for (Instruction& made : block.instructions) {
+        define(source.parameters);
+        std::erase_if(source.instructions, [&](const Instruction& made) { return !marker.is_needed(made); });
+        for (Instruction& made : source.instructions) {
+            if (!blocks_of(made).empty()) remove_results(made);
             use(made.operands);
             define(made.results);
-            for (Block& inner : blocks_of(made)) rename(inner, renamed, define);
+            for (Block& inner : blocks_of(made)) block(inner);
         }
-        use(block.yields);
+        use(source.yields);
+    }
+
+    void remove_results(Instruction& made)
+    {
+        const bool is_loop = std::holds_alternative<For>(made.kind);
+        const std::vector<Value> results = made.results;
+        const auto keep = [&](size_t i) { return marker.is_needed(results[i]); };
+        filter(made.results, 0, keep);
+        if (is_loop) filter(made.operands, 1, keep);
+        for (Block& inner : blocks_of(made)) {
+            if (is_loop) filter(inner.parameters, 1, keep);
+            filter(inner.yields, 0, keep);
+        }
     }
 };
 
@@ -132,7 +113,7 @@ private:
 std::vector<bool> needed_values(const Function& function, const std::vector<bool>& results,
                                 const ParametersNeeded& parameters)
 {
-    Marker marker(function, &parameters);
+    Marker marker{std::vector<bool>(function.value_types.size()), &parameters};
     for (size_t i = 0; i < results.size(); ++i)
         if (results[i]) marker.need(function.body.yields[i]);
     Dataflow(marker).backwards(function.body);
@@ -141,7 +122,10 @@ std::vector<bool> needed_values(const Function& function, const std::vector<bool
 
 void remove_dead_code(Function& function)
 {
-    Remover(function).run();
+    Marker marker{std::vector<bool>(function.value_types.size())};
+    for (Value result : function.body.yields) marker.need(result);
+    Dataflow(marker).backwards(function.body);
+    Remover(function, marker);
 }
 
 } // namespace haptel::ir

@@ -1,6 +1,6 @@
-#include "lang/ir/elementary.h"
-
+// Compiled once: it is much code.
 #include "lang/ir/elementary_functions.h"
+#include "lang/ir/semantics.h"
 
 namespace haptel::ir {
 

@@ -15,7 +15,7 @@ auto apply_to_angle(Op op, R a)
 {
     switch (op) {
 #define ANGULAR(name, ...)                                                                                             \
-    case Op::name: return single_##name(a);
+    case Op::name: return name(single_circle_of(a), narrow(a));
 #define OP(name, ...)                                                                                                  \
     case Op::name: break;
 #include "lang/ir/ops.def"
@@ -29,11 +29,7 @@ R apply(Op op, R a, R b)
 {
     switch (op) {
 #define ANGULAR(name, ...)                                                                                             \
-    case Op::name:                                                                                                     \
-        if constexpr (R::is_single)                                                                                    \
-            return single_##name(widen(a));                                                                            \
-        else                                                                                                           \
-            return name(a);
+    case Op::name: return name(circle_of(a), a);
 #define ELEMENTARY(name, ...)                                                                                          \
     case Op::name: return name(a);
 #define ELEMENTARY2(name, ...)                                                                                         \

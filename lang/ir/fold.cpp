@@ -13,7 +13,7 @@
 //                            min, max and % that the operands' ranges decide
 //
 // Not among them: x+0 (loses -0), x*0 and x-x (lose NaN), -(x-y) -> y-x (loses -0), reassociation.
-#include "lang/ir/builder_state.h"
+#include "lang/ir/builder.h"
 #include "lang/ir/op_info.h"
 #include "lang/ir/semantics.h"
 
@@ -38,16 +38,13 @@ bool is_rounding(Op op)
 } // namespace
 
 // One attempt: the operands and what is known of them.
-class Builder::State::Fold {
+class Builder::Fold {
 public:
-    Fold(Builder& maker, const Builder::State& known, Op tried, std::span<const Value> given)
-        : builder(maker), state(known), op(tried), operands(given)
-    {
-    }
+    Fold(Builder& maker, Op tried, std::span<const Value> given) : builder(maker), op(tried), operands(given) {}
 
     std::optional<Value> run()
     {
-        if (std::all_of(operands.begin(), operands.end(), [&](Value value) { return state.is_constant(value); }))
+        if (std::ranges::all_of(operands, [&](Value value) { return builder.definition(value).is_constant; }))
             return constant();
         if (op == Op::select) return choice();
         switch (builder.type(operands[0])) {
@@ -62,51 +59,45 @@ public:
 
 private:
     Builder& builder;
-    const Builder::State& state;
     Op op;
     std::span<const Value> operands;
 
     Value make(Op made, std::initializer_list<Value> values) { return builder.operation(made, values); }
-    bool was(Value value, Op made) const { return state.is_operation(value, made); }
-    Value inner(Value value, size_t i = 0) const { return state.definition(value).operand[i]; }
+    bool was(Value value, Op made) const { return builder.definition(value).op == made; }
+    Value inner(Value value, size_t i = 0) const { return builder.definition(value).operand[i]; }
     bool is(Value value, double constant) const
     {
         std::optional<double> known = builder.real_constant(value);
         return known && *known == constant && std::signbit(*known) == std::signbit(constant);
     }
     bool is_int(Value value, int64_t constant) const { return range(value) == IntRange{constant, constant}; }
-    IntRange range(Value value) const { return state.definition(value).range; }
-
-    Slot<double> slot(Value value) const
+    IntRange range(Value value) const { return builder.range(value); }
+    std::optional<bool> truth(Value value) const
     {
-        const Definition& made = state.definition(value);
-        return {made.real, static_cast<uint32_t>(made.range.minimum)};
+        const auto known = builder.word_constant(value);
+        return known && builder.type(value) == Type::boolean ? std::optional(*known != 0) : std::nullopt;
     }
 
     Value constant()
     {
         Slot<double> in[4], out;
         Type types[4];
-        for (size_t i = 0; i < operands.size(); ++i) in[i] = slot(operands[i]), types[i] = builder.type(operands[i]);
-        execute(op, out, in[0], in[1], in[2], in[3]);
-        switch (*result_type(op, {types, operands.size()})) {
-        case Type::real: return builder.real(out.real);
-        case Type::i32: return builder.i32(static_cast<int32_t>(out.bits));
-        case Type::u32: return builder.u32(out.bits);
-        case Type::boolean: return builder.boolean(out.bits != 0);
-        case Type::image: break; // there are no constants of it
+        for (size_t i = 0; i < operands.size(); ++i) {
+            in[i] = {builder.definition(operands[i]).real, static_cast<uint32_t>(range(operands[i]).minimum)};
+            types[i] = builder.type(operands[i]);
         }
-        return {};
+        execute(op, out, in[0], in[1], in[2], in[3]);
+        const Type type = *result_type(op, {types, operands.size()});
+        return type == Type::real ? builder.real(out.real) : builder.word(out.bits, type);
     }
 
     std::optional<Value> choice()
     {
         Value condition = operands[0], a = operands[1], b = operands[2];
         if (a == b) return a;
-        if (std::optional<bool> known = builder.bool_constant(condition)) return *known ? a : b;
+        if (std::optional<bool> known = truth(condition)) return *known ? a : b;
         if (was(condition, Op::lnot)) return make(Op::select, {inner(condition), b, a});
-        if (auto x = builder.bool_constant(a), y = builder.bool_constant(b); x && y)
-            return *x ? condition : make(Op::lnot, {condition});
+        if (auto x = truth(a), y = truth(b); x && y) return *x ? condition : make(Op::lnot, {condition});
         return std::nullopt;
     }
 
@@ -173,8 +164,8 @@ private:
         if (op == Op::lnot && was(x, Op::lnot)) return inner(x);
         if (operands.size() != 2) return std::nullopt;
         Value y = operands[1];
-        if (builder.bool_constant(x)) std::swap(x, y);
-        std::optional<bool> known = builder.bool_constant(y);
+        if (truth(x)) std::swap(x, y);
+        std::optional<bool> known = truth(y);
         if (op == Op::land && (x == y || known)) return x == y || *known ? x : y;
         if (op == Op::lor && (x == y || known)) return x == y || !*known ? x : y;
         if (op == Op::lxor && x == y) return builder.boolean(false);
@@ -193,10 +184,7 @@ private:
     std::optional<Value> integer()
     {
         Value x = operands[0], y = operands[1];
-        auto number = [&](int64_t value) {
-            return builder.type(x) == Type::i32 ? builder.i32(static_cast<int32_t>(value))
-                                                : builder.u32(static_cast<uint32_t>(value));
-        };
+        const auto zero = [&] { return builder.word(0, builder.type(x)); };
         const IntRange rx = range(x), ry = range(y);
         if (op == Op::iadd || op == Op::ior || op == Op::ixor) {
             if (is_int(y, 0)) return x;
@@ -204,17 +192,17 @@ private:
         }
         if (op == Op::isub || op == Op::ishl || op == Op::ishr || op == Op::ushr)
             if (is_int(y, 0)) return x;
-        if ((op == Op::isub || op == Op::ixor) && x == y) return number(0);
+        if ((op == Op::isub || op == Op::ixor) && x == y) return zero();
         if (op == Op::imul && is_int(y, 1)) return x;
         if (op == Op::imul && is_int(x, 1)) return y;
         if ((op == Op::idiv || op == Op::udiv) && is_int(y, 1)) return x;
         if (op == Op::irem || op == Op::urem) {
-            if (is_int(y, 1)) return number(0);
+            if (is_int(y, 1)) return zero();
             if (rx.minimum >= 0 && rx.maximum < ry.minimum) return x;
         }
         if (op == Op::iand && is_int(y, -1)) return x;
         if (op == Op::iand && is_int(x, -1)) return y;
-        if ((op == Op::imul || op == Op::iand) && (is_int(x, 0) || is_int(y, 0))) return number(0);
+        if ((op == Op::imul || op == Op::iand) && (is_int(x, 0) || is_int(y, 0))) return zero();
         if ((op == Op::iand || op == Op::ior || op == Op::imin || op == Op::imax || op == Op::umin || op == Op::umax) &&
             x == y)
             return x;
@@ -239,9 +227,9 @@ private:
     }
 };
 
-std::optional<Value> Builder::State::fold(Builder& builder, Op op, std::span<const Value> operands) const
+std::optional<Value> Builder::fold(Op op, std::span<const Value> operands)
 {
-    return Fold(builder, *this, op, operands).run();
+    return Fold(*this, op, operands).run();
 }
 
 } // namespace haptel::ir

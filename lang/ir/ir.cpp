@@ -1,7 +1,6 @@
 #include "lang/ir/op_info.h"
 
 #include <algorithm>
-#include <array>
 #include <type_traits>
 
 namespace haptel::ir {
@@ -27,19 +26,11 @@ constexpr std::string_view input_names[] = {
 #include "lang/ir/inputs.def"
 };
 
-constexpr std::array<std::string_view, 5> type_names = {"real", "i32", "u32", "bool", "image"};
-
-char letter(Type type)
-{
-    switch (type) {
-    case Type::real: return 'r';
-    case Type::i32: return 'i';
-    case Type::u32: return 'u';
-    case Type::boolean: return 'b';
-    case Type::image: return 'm';
-    }
-    return '?';
-}
+// By type, input and continuity
+constexpr std::string_view type_letters = "riubm", type_names[] = {"real", "i32", "u32", "bool", "image"};
+constexpr std::string_view continuity_names[] = {"unknown", "jump", "C0", "C1", "C2", "smooth"};
+constexpr Continuity of_derivative[] = {Continuity::unknown, Continuity::jump, Continuity::jump,
+                                        Continuity::c0,      Continuity::c1,   Continuity::smooth};
 
 } // namespace
 
@@ -69,21 +60,11 @@ std::optional<Type> result_type(Op op, std::span<const Type> operands)
         if (info.operands[i] == '*') {
             if (any && *any != operands[i]) return std::nullopt;
             any = operands[i];
-        } else if (info.operands[i] != letter(operands[i])) {
+        } else if (info.operands[i] != type_letters[static_cast<size_t>(operands[i])]) {
             return std::nullopt;
         }
     }
-    switch (info.result) {
-    case 'r': return Type::real;
-    case 'i': return Type::i32;
-    case 'u': return Type::u32;
-    case 'b': return Type::boolean;
-    }
-    return any;
-}
-
-namespace {
-constexpr std::string_view continuity_names[] = {"unknown", "jump", "C0", "C1", "C2", "smooth"};
+    return info.result == '*' ? any : static_cast<Type>(type_letters.find(info.result));
 }
 
 std::string_view to_string(Continuity continuity)
@@ -100,15 +81,7 @@ std::optional<Continuity> continuity_named(std::string_view name)
 
 Continuity lowered(Continuity continuity)
 {
-    switch (continuity) {
-    case Continuity::unknown: return Continuity::unknown;
-    case Continuity::jump:
-    case Continuity::c0: return Continuity::jump;
-    case Continuity::c1: return Continuity::c0;
-    case Continuity::c2: return Continuity::c1;
-    case Continuity::smooth: return Continuity::smooth;
-    }
-    return Continuity::unknown;
+    return of_derivative[static_cast<size_t>(continuity)];
 }
 
 } // namespace haptel::ir

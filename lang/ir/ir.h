@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -49,12 +50,9 @@ struct Operation {
 struct RealConstant {
     double value;
 }; // any bits, NaN and -0 included
-struct IntConstant {
+struct WordConstant {
     uint32_t bits;
-}; // i32 or u32, by the result's type
-struct BoolConstant {
-    bool value;
-};
+}; // i32, u32 or boolean (0 or 1), by the result's type
 struct ReadInput {
     Input input;
 }; // entry functions only
@@ -68,7 +66,7 @@ struct Call {
     uint32_t function;
 }; // operands: arguments; results: the callee's results
 // Derivative of operand 0 with respect to p along an axis. Not of what values are made of, but of where the program is
-// used: gone once a texture has entries (point_derivative.h), and never in a final program.
+// used: gone once a texture has entries (differentiate.h), and never in a final program.
 struct PointDerivative {
     uint32_t axis; // 0, 1, 2
 };
@@ -84,7 +82,7 @@ struct For {
     std::vector<Block> body; /* exactly one */
 };
 
-using Kind = std::variant<Operation, RealConstant, IntConstant, BoolConstant, ReadInput, ReadParameter, ReadTable, Call,
+using Kind = std::variant<Operation, RealConstant, WordConstant, ReadInput, ReadParameter, ReadTable, Call,
                           PointDerivative, If, For>;
 
 struct Instruction {
@@ -101,13 +99,8 @@ struct Block {
 };
 
 // The two arms of an `if`, the body of a loop, nothing of another instruction.
-inline std::span<const Block> blocks_of(const Instruction& made)
-{
-    if (const auto* choice = std::get_if<If>(&made.kind)) return choice->arms;
-    if (const auto* loop = std::get_if<For>(&made.kind)) return loop->body;
-    return {};
-}
-inline std::span<Block> blocks_of(Instruction& made)
+template <typename Made> // Instruction, const or not
+auto blocks_of(Made& made) -> std::span<std::conditional_t<std::is_const_v<Made>, const Block, Block>>
 {
     if (auto* choice = std::get_if<If>(&made.kind)) return choice->arms;
     if (auto* loop = std::get_if<For>(&made.kind)) return loop->body;
@@ -115,12 +108,12 @@ inline std::span<Block> blocks_of(Instruction& made)
 }
 
 // Of the block and of all blocks in it, each before what is in it.
-template <typename Visit>
-void for_each_instruction(const Block& block, const Visit& visit)
+template <typename Blocks, typename Visit>
+void for_each_instruction(Blocks& block, const Visit& visit)
 {
-    for (const Instruction& made : block.instructions) {
+    for (auto& made : block.instructions) {
         visit(made);
-        for (const Block& inner : blocks_of(made)) for_each_instruction(inner, visit);
+        for (auto& inner : blocks_of(made)) for_each_instruction(inner, visit);
     }
 }
 

@@ -7,26 +7,31 @@
 // Bits of a NaN are not part of the meaning: no operation can see them.
 #pragma once
 
-#include "lang/ir/elementary.h"
+#include "lang/ir/elementary_exact.h"
 #include "lang/ir/ir.h"
-#include "lang/math/elementary_exact.h"
 #include "lang/math/spline.h"
 #include "lang/math/turn_polynomials.h"
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
+#include <type_traits>
 
 namespace haptel::ir {
 
-// One scalar of any type: `real` counts for reals, `bits` for integers (two's complement) and booleans (0 or 1).
+// One scalar of any type: `real` counts for reals, `bits` for integers (two's complement) and booleans (0 or 1),
+// `image` for images (null: flat).
 template <typename T>
 struct Slot {
     T real{};
     uint32_t bits = 0;
     const haptel_image* image = nullptr;
 };
+
+// Of is_elementary(op), as interpreter, constant folding and bounds have it; b where it takes two. Total: at
+// infinities, zeros and NaN what C99 says, but for atan2, which is 0 at the origin. How exact it is says Traits::ulp;
+// tests/lang/math/elementary_test.cpp holds it to that.
+double elementary_f64(Op op, double a, double b = 0);
 
 namespace semantics {
 
@@ -78,6 +83,7 @@ template <typename T>
 T round_to_even(const T& a)
 {
     using std::copysign, std::floor;
+    if constexpr (std::is_same_v<T, double>) return std::nearbyint(a); // rounding is to nearest even in every thread
     T below = floor(a);
     T rest = a - below;
     if (!(rest == rest)) return a; // infinite or NaN
@@ -86,20 +92,11 @@ T round_to_even(const T& a)
     return copysign(up ? below + T(1) : below, a);
 }
 
-inline double round_to_even(double a)
-{
-    return std::nearbyint(a); // the rounding mode is to nearest even in every thread
-}
-
 template <typename T>
 T fused_multiply_add(const T& a, const T& b, const T& c)
 {
+    if constexpr (std::is_same_v<T, double>) return std::fma(a, b, c);
     return a * b + c; // the oracle's T is so much finer that the second rounding does not matter
-}
-
-inline double fused_multiply_add(double a, double b, double c)
-{
-    return std::fma(a, b, c);
 }
 
 template <typename T>
@@ -108,12 +105,6 @@ T two_pi()
     using std::acos;
     static const T value = T(2) * acos(T(-1));
     return value;
-}
-
-template <>
-inline double two_pi<double>()
-{
-    return 2 * std::numbers::pi;
 }
 
 // Scaled by a power of two only where squares could overflow or lose bits, so that the result is that of the plain
@@ -142,20 +133,6 @@ T length(const T* x, int count)
     return sqrt(sum) * unscale;
 }
 
-template <typename T>
-T sine_within_eighth(const T& turns)
-{
-    using std::sin;
-    return sin(two_pi<T>() * turns);
-}
-
-template <typename T>
-T cosine_within_eighth(const T& turns)
-{
-    using std::cos;
-    return cos(two_pi<T>() * turns);
-}
-
 template <size_t count>
 double polynomial(const double (&coefficients)[count], double u)
 {
@@ -164,14 +141,22 @@ double polynomial(const double (&coefficients)[count], double u)
     return sum;
 }
 
-inline double sine_within_eighth(double turns)
+template <typename T>
+T sine_within_eighth(const T& turns)
 {
-    return turns * polynomial(turn::sine_f64, turns * turns);
+    if constexpr (std::is_same_v<T, double>)
+        return turns * polynomial(turn::sine_f64, turns * turns);
+    else
+        return sin(two_pi<T>() * turns);
 }
 
-inline double cosine_within_eighth(double turns)
+template <typename T>
+T cosine_within_eighth(const T& turns)
 {
-    return turns * turns * polynomial(turn::cosine_f64, turns * turns) + 1;
+    if constexpr (std::is_same_v<T, double>)
+        return turns * turns * polynomial(turn::cosine_f64, turns * turns) + 1;
+    else
+        return cos(two_pi<T>() * turns);
 }
 
 // Of a turn, exactly: the way to the nearest whole turn, and |way| to the nearest quarter.

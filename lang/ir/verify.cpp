@@ -11,92 +11,89 @@
 namespace haptel::ir {
 namespace {
 
+// What the check of a function needs to know of the rest of its module.
+struct Surroundings {
+    const Module& module;
+    std::vector<IntRange> cells;        // by table
+    std::vector<const Texture*> owners; // by function: whose entry it is; null: of none
+    std::vector<uint32_t> depths;       // of the functions checked so far: blocks and calls inside each other
+};
+
 // Walks one function in execution order; stops at the first problem.
 class FunctionCheck {
 public:
-    FunctionCheck(const Module& whole, const std::vector<IntRange>& of_tables, uint32_t which, const Texture* owner,
-                  const std::vector<bool>& entries)
-        : module(whole)
-        , cells(of_tables)
+    FunctionCheck(const Surroundings& around, uint32_t which)
+        : known(around)
         , index(which)
-        , texture(owner)
-        , is_entry(entries)
-        , function(whole.functions[which])
+        , texture(around.owners[which])
+        , function(around.module.functions[which])
         , visible(function.value_types.size(), false)
         , was_defined(function.value_types.size(), false)
         , ranges(function.value_types.size(), {0, 0})
-    {
-    }
-
-    std::string run()
     {
         if (function.first_argument_size > function.parameters.size())
             fail("the first argument has more parts than there are parameters");
         for (Value parameter : function.parameters) define(parameter);
         if (!function.body.parameters.empty()) fail("a function body has block parameters");
         block(function.body, 0);
-        return problem;
     }
 
+    std::string problem;
+    uint32_t deepest = 0; // blocks and calls inside each other
+
 private:
-    const Module& module;
-    const std::vector<IntRange>& cells; // by table
+    const Surroundings& known;
     const uint32_t index;
-    const Texture* texture; // whose entry this is; null: of none
-    const std::vector<bool>& is_entry;
+    const Texture* const texture; // whose entry this is; null: of none
     const Function& function;
     std::vector<bool> visible, was_defined; // by Value::index
     std::vector<IntRange> ranges;
-    std::string problem;
 
     void fail(std::string what)
     {
         if (problem.empty()) problem = "function \"" + function.name + "\": " + std::move(what);
     }
 
-    void define(Value value) { define(value, full_range_of(value)); }
-    void define(Value value, IntRange range)
+    void define(Value value, std::optional<IntRange> range = {})
     {
         if (value.index >= visible.size()) return fail("a value is out of range");
         if (was_defined[value.index]) return fail("a value is defined twice");
         was_defined[value.index] = visible[value.index] = true;
-        ranges[value.index] = range;
-    }
-    IntRange full_range_of(Value value) const
-    {
-        return value.index < function.value_types.size() ? full_range(function.type(value)) : IntRange{0, 0};
-    }
-
-    bool are_visible(const std::vector<Value>& values)
-    {
-        for (Value value : values)
-            if (value.index >= visible.size() || !visible[value.index]) {
-                fail("a value is used where it is not defined");
-                return false;
-            }
-        return true;
-    }
-    bool are_typed(const std::vector<Value>& values) const
-    {
-        return std::all_of(values.begin(), values.end(),
-                           [&](Value value) { return value.index < function.value_types.size(); });
-    }
-    bool have_types_of(const std::vector<Value>& values, const std::vector<Value>& others, size_t first_other = 0)
-    {
-        bool fit = values.size() + first_other == others.size() && are_typed(values) && are_typed(others);
-        for (size_t i = 0; fit && i < values.size(); ++i)
-            fit = function.type(values[i]) == function.type(others[first_other + i]);
-        return fit;
+        ranges[value.index] = range.value_or(full_range(function.type(value)));
     }
     IntRange range(Value value) const { return ranges[value.index]; }
 
+    bool are_visible(const std::vector<Value>& values)
+    {
+        const auto is_visible = [&](Value value) { return value.index < visible.size() && visible[value.index]; };
+        const bool all = std::ranges::all_of(values, is_visible);
+        if (!all) fail("a value is used where it is not defined");
+        return all;
+    }
+    bool have_types(std::span<const Value> values, std::span<const Type> types) const
+    {
+        return std::ranges::equal(values, types, {}, [&](Value value) { return function.type(value); });
+    }
+    bool have_types_of(std::span<const Value> values, std::span<const Value> others, const Function& of) const
+    {
+        return std::ranges::equal(
+            values, others, {}, [&](Value value) { return function.type(value); },
+            [&](Value other) { return of.type(other); });
+    }
+
+    void descend(uint32_t depth)
+    {
+        deepest = std::max(deepest, depth);
+        if (depth > nesting_max) fail("blocks and calls nest deeper than " + std::to_string(nesting_max));
+    }
+
     void block(const Block& source, uint32_t depth)
     {
-        if (depth > nesting_max) return fail("blocks nest deeper than " + std::to_string(nesting_max));
+        descend(depth);
         for (const Instruction& made : source.instructions) {
-            if (!problem.empty()) return;
-            if (!are_visible(made.operands)) return;
-            if (!are_typed(made.results)) return fail("a value is out of range");
+            if (!problem.empty() || !are_visible(made.operands)) return;
+            for (Value result : made.results)
+                if (result.index >= visible.size()) return fail("a value is out of range");
             std::visit([&](const auto& kind) { check(made, kind, depth); }, made.kind);
         }
         if (!problem.empty() || !are_visible(source.yields)) return;
@@ -105,87 +102,70 @@ private:
                 for (Value result : made.results) visible[result.index] = false;
     }
 
-    bool has_shape(const Instruction& made, size_t operands, size_t results, std::string_view what)
+    // An instruction with that one result.
+    void simple(const Instruction& made, std::string_view what, std::span<const Type> operands, Type result,
+                std::optional<IntRange> range = {})
     {
-        if (made.operands.size() == operands && made.results.size() == results) return true;
-        fail(std::string(what) + " has a wrong number of operands or results");
-        return false;
-    }
-    void result_of_type(const Instruction& made, Type type, std::string_view what, std::optional<IntRange> range = {})
-    {
-        if (function.type(made.results[0]) != type) return fail(std::string(what) + " has a result of a wrong type");
-        define(made.results[0], range.value_or(full_range(type)));
+        if (!have_types(made.operands, operands) || !have_types(made.results, {&result, 1}))
+            return fail(std::string(what) + " has operands or results of a wrong type or number");
+        define(made.results[0], range);
     }
 
     void check(const Instruction& made, const Operation& operation, uint32_t)
     {
         if (static_cast<size_t>(operation.op) >= all_ops().size()) return fail("unknown operation");
         const OpInfo& info = op_info(operation.op);
-        if (!has_shape(made, info.arity, 1, info.name)) return;
         Type types[4];
         IntRange operand_ranges[4];
-        for (size_t i = 0; i < made.operands.size(); ++i) {
+        const size_t count = std::min<size_t>(made.operands.size(), info.arity);
+        for (size_t i = 0; i < count; ++i) {
             types[i] = function.type(made.operands[i]);
             operand_ranges[i] = range(made.operands[i]);
         }
-        std::optional<Type> type = result_type(operation.op, {types, info.arity});
-        if (!type) return fail("operands of a wrong type for " + std::string(info.name));
-        result_of_type(made, *type, info.name, range_of(operation.op, *type, {operand_ranges, info.arity}));
+        const std::optional<Type> type = result_type(operation.op, {types, count});
+        if (!type) return fail("operands of a wrong type or number for " + std::string(info.name));
+        simple(made, info.name, {types, count}, *type, range_of(operation.op, *type, {operand_ranges, count}));
     }
-    void check(const Instruction& made, const RealConstant&, uint32_t)
+    void check(const Instruction& made, const RealConstant&, uint32_t) { simple(made, "a constant", {}, Type::real); }
+    void check(const Instruction& made, const WordConstant& constant, uint32_t)
     {
-        if (has_shape(made, 0, 1, "a constant")) result_of_type(made, Type::real, "a constant");
-    }
-    void check(const Instruction& made, const IntConstant& constant, uint32_t)
-    {
-        if (!has_shape(made, 0, 1, "a constant")) return;
-        Type type = function.type(made.results[0]);
-        if (type != Type::i32 && type != Type::u32) return fail("a constant has a result of a wrong type");
-        int64_t value = type == Type::i32 ? int64_t{static_cast<int32_t>(constant.bits)} : int64_t{constant.bits};
-        define(made.results[0], {value, value});
-    }
-    void check(const Instruction& made, const BoolConstant& constant, uint32_t)
-    {
-        if (has_shape(made, 0, 1, "a constant"))
-            result_of_type(made, Type::boolean, "a constant", IntRange{constant.value, constant.value});
+        const Type type = made.results.size() == 1 ? function.type(made.results[0]) : Type::real;
+        const IntRange value = constant_range(type, constant.bits), full = full_range(type);
+        if (type == Type::real || type == Type::image || !value.within(full.minimum, full.maximum))
+            return fail("a constant is none of its type");
+        simple(made, "a constant", {}, type, value);
     }
     void check(const Instruction& made, const ReadInput& read, uint32_t)
     {
         if (!texture) return fail("an input is read outside of an entry");
         if (static_cast<uint32_t>(read.input) >= input_count) return fail("unknown input");
-        if (has_shape(made, 0, 1, "an input")) result_of_type(made, Type::real, "an input");
+        simple(made, "an input", {}, Type::real);
     }
     void check(const Instruction& made, const ReadParameter& read, uint32_t)
     {
         if (!texture) return fail("a texture parameter is read outside of an entry");
         if (read.parameter >= texture->parameters.size()) return fail("unknown texture parameter");
-        if (has_shape(made, 0, 1, "a parameter"))
-            result_of_type(made, texture->parameters[read.parameter].type, "a parameter");
+        simple(made, "a parameter", {}, texture->parameters[read.parameter].type);
     }
     void check(const Instruction& made, const ReadTable& read, uint32_t)
     {
-        if (read.table >= module.tables.size()) return fail("unknown table");
-        if (!has_shape(made, 1, 1, "a table cell")) return;
-        const Table& table = module.tables[read.table];
-        if (function.type(made.operands[0]) != Type::i32) return fail("a table index is not i32");
-        if (!range(made.operands[0]).within(0, int64_t{table.size()} - 1))
-            return fail("an index of table \"" + table.name + "\" is neither constant nor clamped");
-        result_of_type(made, table.element, "a table cell", cells[read.table]);
+        if (read.table >= known.module.tables.size()) return fail("unknown table");
+        const Table& table = known.module.tables[read.table];
+        constexpr Type index_type[] = {Type::i32};
+        simple(made, "a table cell", index_type, table.element, known.cells[read.table]);
+        if (problem.empty() && !range(made.operands[0]).within(0, int64_t{table.size()} - 1))
+            fail("an index of table \"" + table.name + "\" is neither constant nor clamped");
     }
-    void check(const Instruction& made, const Call& call, uint32_t)
+    void check(const Instruction& made, const Call& call, uint32_t depth)
     {
         if (call.function >= index) return fail("a call goes forward, or to itself");
-        if (is_entry[call.function]) return fail("an entry is called");
-        const Function& callee = module.functions[call.function];
-        if (!has_shape(made, callee.parameters.size(), callee.body.yields.size(), "a call")) return;
-        for (size_t i = 0; i < made.operands.size(); ++i)
-            if (function.type(made.operands[i]) != callee.type(callee.parameters[i]))
-                return fail("an argument of a wrong type for \"" + callee.name + "\"");
-        for (size_t i = 0; i < made.results.size(); ++i) {
-            if (function.type(made.results[i]) != callee.type(callee.body.yields[i]))
-                return fail("a call has a result of a wrong type");
-            define(made.results[i]);
-        }
+        if (known.owners[call.function]) return fail("an entry is called");
+        const Function& callee = known.module.functions[call.function];
+        if (!have_types_of(made.operands, callee.parameters, callee) ||
+            !have_types_of(made.results, callee.body.yields, callee))
+            return fail("arguments or results of a wrong type or number for \"" + callee.name + "\"");
+        for (Value result : made.results) define(result);
+        descend(depth + 1 + known.depths[call.function]);
     }
     void check(const Instruction&, const PointDerivative&, uint32_t)
     {
@@ -193,13 +173,13 @@ private:
     }
     void check(const Instruction& made, const If& choice, uint32_t depth)
     {
+        constexpr Type condition[] = {Type::boolean};
         if (choice.arms.size() != 2) return fail("an if has not two arms");
-        if (made.operands.size() != 1 || function.type(made.operands[0]) != Type::boolean)
-            return fail("the condition of an if is not one boolean");
+        if (!have_types(made.operands, condition)) return fail("the condition of an if is not one boolean");
         for (const Block& arm : choice.arms) {
             if (!arm.parameters.empty()) return fail("an arm of an if has parameters");
             block(arm, depth + 1);
-            if (problem.empty() && !have_types_of(arm.yields, made.results))
+            if (problem.empty() && !have_types_of(arm.yields, made.results, function))
                 fail("an arm of an if yields values that do not fit its results");
             if (!problem.empty()) return;
         }
@@ -214,30 +194,21 @@ private:
             return fail("the trip count of a loop is not i32");
         if (range(made.operands[0]).maximum > int64_t{loop.trip_max})
             return fail("a trip count may exceed its bound " + std::to_string(loop.trip_max));
-        if (!have_types_of(made.results, made.operands, 1)) return fail("a loop's results do not fit what it carries");
-        if (!have_types_of(made.results, body.parameters, 1) || function.type(body.parameters[0]) != Type::i32)
-            return fail("a loop's parameters do not fit what it carries");
-        define(body.parameters[0], {0, std::max<int64_t>(int64_t{loop.trip_max} - 1, 0)});
-        for (size_t i = 1; i < body.parameters.size(); ++i) define(body.parameters[i]);
+        for (Value parameter : body.parameters) define(parameter);
         if (!problem.empty()) return;
+        if (!have_types_of(made.operands, body.parameters, function)) // the count's type is that of the iteration
+            return fail("a loop's parameters do not fit what it carries");
+        ranges[body.parameters[0].index] = {0, std::max<int64_t>(int64_t{loop.trip_max} - 1, 0)};
         block(body, depth + 1);
         if (!problem.empty()) return;
-        if (!have_types_of(body.yields, made.results))
-            return fail("a loop yields values that do not fit what it carries");
+        const auto initial = std::span(made.operands).subspan(1);
+        if (!have_types_of(body.yields, initial, function) || !have_types_of(made.results, initial, function))
+            return fail("a loop yields values, or has results, that do not fit what it carries");
         for (Value parameter : body.parameters) visible[parameter.index] = false;
         for (size_t i = 0; i < made.results.size(); ++i)
-            define(made.results[i], join(range(made.operands[i + 1]), range(body.yields[i])));
+            define(made.results[i], join(range(initial[i]), range(body.yields[i])));
     }
 };
-
-uint32_t deepest_call(const Block& block, const std::vector<uint32_t>& functions)
-{
-    uint32_t deepest = 0;
-    for_each_instruction(block, [&](const Instruction& made) {
-        if (auto* call = std::get_if<Call>(&made.kind)) deepest = std::max(deepest, functions[call->function] + 1);
-    });
-    return deepest;
-}
 
 std::string check(const Table& table)
 {
@@ -260,17 +231,15 @@ std::string check_block(const Texture& texture)
     return "";
 }
 
-std::string check_entry(const Module& module, const Texture& texture, uint32_t index, std::vector<Type> results)
+std::string check_entry(const Module& module, const Texture& texture, uint32_t index, const std::vector<Type>& results)
 {
-    if (index == UINT32_MAX) return "";
     const std::string where = "texture \"" + texture.name + "\": ";
     if (index >= module.functions.size()) return where + "no such entry function";
     const Function& entry = module.functions[index];
-    bool fits = entry.parameters.empty() && entry.body.yields.size() == results.size();
-    for (size_t i = 0; fits && i < results.size(); ++i) {
-        Value yield = entry.body.yields[i];
-        fits = yield.index < entry.value_types.size() && entry.type(yield) == results[i];
-    }
+    const auto yields = [&](Value value, Type type) {
+        return value.index < entry.value_types.size() && entry.type(value) == type;
+    };
+    const bool fits = entry.parameters.empty() && std::ranges::equal(entry.body.yields, results, yields);
     return fits ? "" : where + "entry \"" + entry.name + "\" has parameters or wrong results";
 }
 
@@ -278,48 +247,41 @@ std::string check_entry(const Module& module, const Texture& texture, uint32_t i
 
 std::string verify(const Module& module)
 {
-    std::vector<IntRange> cells;
+    const auto count = static_cast<uint32_t>(module.functions.size());
+    Surroundings known{module, {}, std::vector<const Texture*>(count, nullptr), {}};
     for (const Table& table : module.tables) {
         if (std::string problem = check(table); !problem.empty()) return problem;
-        cells.push_back(range_of_cells(table));
+        known.cells.push_back(range_of_cells(table));
     }
 
-    const size_t count = module.functions.size();
-    std::vector<const Texture*> owners(count, nullptr);
-    std::vector<bool> is_entry(count, false);
     for (const Texture& texture : module.textures) {
         if (std::string problem = check_block(texture); !problem.empty()) return problem;
-        const Type real = Type::real, faults = Type::u32;
         if (texture.writes & ~(HAPTEL_WRITES_STIFFNESS_SCALE | HAPTEL_WRITES_FRICTION_SCALE))
             return "texture \"" + texture.name + "\" writes outputs that do not exist";
-        std::pair<uint32_t, std::vector<Type>> entries[] = {
-            {texture.body, {real}},
-            {texture.height, {real, faults}},
-            {texture.height_gradient, {real, real, real, real, faults}}};
-        for (size_t with_outputs : {0, 2})
-            entries[with_outputs].second.resize(
-                entries[with_outputs].second.size() + static_cast<size_t>(std::popcount(texture.writes)), real);
-        entries[2].second.push_back(faults);
+        const Type real = Type::real, faults = Type::u32;
+        std::vector<Type> body{real}, gradient{real, real, real, real, faults};
+        body.resize(body.size() + static_cast<size_t>(std::popcount(texture.writes)), real);
+        gradient.insert(gradient.end(), body.begin() + 1, body.end());
+        gradient.push_back(faults);
+        const std::pair<uint32_t, std::vector<Type>> entries[] = {
+            {texture.body, body}, {texture.height, {real, faults}}, {texture.height_gradient, gradient}};
         for (const auto& [index, results] : entries) {
-            if (std::string problem = check_entry(module, texture, index, results); !problem.empty()) return problem;
             if (index == UINT32_MAX) continue;
-            if (is_entry[index] && owners[index] != &texture) return "two textures share an entry function";
-            owners[index] = &texture;
-            is_entry[index] = true;
+            if (std::string problem = check_entry(module, texture, index, results); !problem.empty()) return problem;
+            if (known.owners[index] && known.owners[index] != &texture) return "two textures share an entry function";
+            known.owners[index] = &texture;
         }
     }
 
-    std::vector<uint32_t> call_depth;
     for (uint32_t i = 0; i < count; ++i) {
-        std::string problem = FunctionCheck(module, cells, i, owners[i], is_entry).run();
-        if (!problem.empty()) return problem;
-        call_depth.push_back(deepest_call(module.functions[i].body, call_depth));
-        if (call_depth.back() > call_depth_max) return "calls nest deeper than " + std::to_string(call_depth_max);
+        FunctionCheck check(known, i);
+        if (!check.problem.empty()) return check.problem;
+        known.depths.push_back(check.deepest);
     }
     const std::vector<uint64_t> cost_of = operations_max(module, std::vector<bool>(count, true));
     for (uint32_t i = 0; i < count; ++i)
-        if (is_entry[i] && cost_of[i] > operations_limit)
-            return "texture \"" + owners[i]->name + "\" may need " + std::to_string(cost_of[i]) +
+        if (known.owners[i] && cost_of[i] > operations_limit)
+            return "texture \"" + known.owners[i]->name + "\" may need " + std::to_string(cost_of[i]) +
                    " operations per call, above " + std::to_string(operations_limit);
     return "";
 }

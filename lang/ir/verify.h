@@ -9,8 +9,7 @@
 namespace haptel::ir {
 
 constexpr uint64_t operations_limit = 10'000'000; // worst case of one call of an entry
-constexpr uint32_t nesting_max = 512;             // blocks inside blocks of one function: bounds every recursion
-constexpr uint32_t call_depth_max = 512;          // calls inside calls, likewise
+constexpr uint32_t nesting_max = 512;             // blocks and calls inside each other: bounds every recursion
 
 // Empty if all is well, else the first thing that is not: types, arity, dominance, calls that go forward (recursion),
 // table indices neither constant nor clamped, trip counts that may exceed trip_max, input reads outside entries,

@@ -4,7 +4,6 @@
 #include "lang/abi/abi.h"
 #include "lang/ir/cost.h"
 #include "lang/ir/derive/point_derivative.h"
-#include "lang/ir/extent.h"
 #include "lang/ir/verify.h"
 #include "lang/lower/lowering.h"
 #include "lang/text/limits.h"

@@ -64,73 +64,51 @@ public:
     }
     Values distance(Whole x)
     {
-        Values difference;
-        for (size_t i = 0; i < x[0].size(); ++i) difference.push_back(sub(x[0][i], x[1][i]));
-        return {length_of(difference)};
+        return {length_of(each(x[0].size(), [&](size_t i) { return sub(x[0][i], x[1][i]); }))};
     }
     Values dot(Whole x) { return {product(x[0], x[1])}; }
     Values cross(Whole x)
     {
-        Values made;
-        for (size_t i = 0; i < 3; ++i) {
+        return each(3, [&](size_t i) {
             const size_t j = (i + 1) % 3, k = (i + 2) % 3;
-            made.push_back(sub(mul(x[0][j], x[1][k]), mul(x[0][k], x[1][j])));
-        }
-        return made;
+            return sub(mul(x[0][j], x[1][k]), mul(x[0][k], x[1][j]));
+        });
     }
     Values normalize(Whole x)
     {
         if (x[0].size() == 1) return {builder.operation(Op::sign, {x[0][0]})};
         const Value length = length_of(x[0]), is_zero = equal(length, real(0));
-        Values made;
-        for (Value part : x[0]) made.push_back(select(is_zero, real(0), div(part, length)));
-        return made;
+        return each(x[0].size(), [&](size_t i) { return select(is_zero, real(0), div(x[0][i], length)); });
     }
     Values faceforward(Whole x)
     {
         const Value faces = less(product(x[2], x[1]), real(0));
-        Values made;
-        for (Value part : x[0]) made.push_back(select(faces, part, builder.operation(Op::neg, {part})));
-        return made;
+        return each(x[0].size(), [&](size_t i) { return select(faces, x[0][i], negated(x[0][i])); });
     }
     Values reflect(Whole x)
     {
         const Value twice = mul(real(2), product(x[1], x[0]));
-        Values made;
-        for (size_t i = 0; i < x[0].size(); ++i) made.push_back(sub(x[0][i], mul(twice, x[1][i])));
-        return made;
+        return each(x[0].size(), [&](size_t i) { return sub(x[0][i], mul(twice, x[1][i])); });
     }
     Values refract(Whole x)
     {
         const Value eta = x[2][0], cosine = product(x[1], x[0]);
         const Value k = sub(real(1), mul(mul(eta, eta), sub(real(1), mul(cosine, cosine))));
         const Value reflected = less(k, real(0)), along = add(mul(eta, cosine), sqrt(k));
-        Values made;
-        for (size_t i = 0; i < x[0].size(); ++i)
-            made.push_back(select(reflected, real(0), sub(mul(eta, x[0][i]), mul(along, x[1][i]))));
-        return made;
+        return each(x[0].size(),
+                    [&](size_t i) { return select(reflected, real(0), sub(mul(eta, x[0][i]), mul(along, x[1][i]))); });
     }
 
-    Values matrix_comp_mult(Whole x)
-    {
-        Values made;
-        for (size_t i = 0; i < x[0].size(); ++i) made.push_back(mul(x[0][i], x[1][i]));
-        return made;
-    }
+    Value matrix_comp_mult(Parts x) { return mul(x[0], x[1]); }
     Values outer_product(Whole x)
     {
-        Values made;
-        for (Value column : x[1])
-            for (Value row : x[0]) made.push_back(mul(row, column));
-        return made;
+        const size_t rows = x[0].size();
+        return each(rows * x[1].size(), [&](size_t i) { return mul(x[0][i % rows], x[1][i / rows]); });
     }
     Values transpose(Whole x)
     {
-        Values made;
         const size_t size = size_of(x[0]);
-        for (size_t column = 0; column < size; ++column)
-            for (size_t row = 0; row < size; ++row) made.push_back(x[0][row * size + column]);
-        return made;
+        return each(size * size, [&](size_t i) { return x[0][i % size * size + i / size]; });
     }
     Values determinant(Whole x)
     {
@@ -139,19 +117,25 @@ public:
     }
     Values inverse(Whole x) // the adjugate, divided
     {
-        Values made;
         const size_t size = size_of(x[0]);
         const Value whole = determinant(x)[0];
-        for (size_t column = 0; column < size; ++column)
-            for (size_t row = 0; row < size; ++row) {
-                const Value cofactor = minor(x[0], lines_but(size, column), lines_but(size, row));
-                const bool negative = (row + column) % 2 == 1;
-                made.push_back(div(negative ? builder.operation(Op::neg, {cofactor}) : cofactor, whole));
-            }
-        return made;
+        return each(size * size, [&](size_t i) {
+            const size_t column = i / size, row = i % size;
+            const Value cofactor = minor(x[0], lines_but(size, column), lines_but(size, row));
+            const bool is_negative = (row + column) % 2 == 1;
+            return div(is_negative ? negated(cofactor) : cofactor, whole);
+        });
     }
 
 private:
+    template <typename Make>
+    static Values each(size_t count, const Make& make)
+    {
+        Values made;
+        for (size_t i = 0; i < count; ++i) made.push_back(make(i));
+        return made;
+    }
+
     Value spline_of(Value image, Value x, Value y, uint32_t edge)
     {
         const uint32_t orders = ir::spline_order(0, 0, edge);
@@ -192,6 +176,7 @@ private:
     Value div(Value a, Value b) { return make(Op::div, a, b); }
     Value less(Value a, Value b) { return make(Op::lt, a, b); }
     Value equal(Value a, Value b) { return make(Op::eq, a, b); }
+    Value negated(Value a) { return builder.operation(Op::neg, {a}); }
     Value no(Value a) { return builder.operation(Op::lnot, {a}); }
     Value sqrt(Value a) { return builder.operation(Op::sqrt, {a}); }
     Value select(Value condition, Value a, Value b) { return builder.operation(Op::select, {condition, a, b}); }
@@ -231,7 +216,7 @@ Values lower_builtin(ModuleLowering& owner, Builder& builder, const BuiltinOverl
     Formulas maker(owner, builder);
     if (auto whole = std::get_if<2>(&formula)) return (maker.**whole)(arguments);
     Values made;
-    for (size_t i = 0; i < overload.result.size; ++i) {
+    for (size_t i = 0; i < overload.result.components(); ++i) {
         Values parts;
         for (const Values& argument : arguments) parts.push_back(argument[argument.size() == 1 ? 0 : i]);
         auto of_parts = std::get_if<1>(&formula);

@@ -20,6 +20,24 @@ constexpr size_t value_count_max = 250'000;
 // ones.
 constexpr bool images_last[] = {false, true};
 
+// What is passed by value, as parameters of the function.
+std::vector<Values> declared(ir::Builder& builder, const std::vector<ParameterInfo>& parameters)
+{
+    std::vector<Type> types;
+    for (const ParameterInfo& parameter : parameters)
+        if (!parameter.is_function) types.push_back(parameter.type);
+    std::vector<Values> arguments(types.size());
+    uint32_t& first_size = builder.function().first_argument_size;
+    for (const bool are_images : images_last)
+        for (size_t p = 0; p < types.size(); ++p) {
+            if ((types[p] == image_type) != are_images) continue;
+            if (first_size == 0 && !are_images) first_size = types[p].components();
+            for (uint32_t i = 0; i < types[p].components(); ++i)
+                arguments[p].push_back(builder.parameter(ir_type(types[p])));
+        }
+    return arguments;
+}
+
 uint32_t reads_of(const FunctionReference& reference)
 {
     auto source = std::get_if<const FunctionInfo*>(&reference);
@@ -163,15 +181,7 @@ LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector
     }
     BodyLowering body(*this, unique(std::move(name)), info.slot_count);
     ir::Function& function = body.builder.function();
-    for (const bool are_images : images_last) {
-        uint32_t slot = 0;
-        for (const ParameterInfo& parameter : info.parameters) {
-            if (parameter.is_function || (slot++, (parameter.type == image_type) != are_images)) continue;
-            if (function.first_argument_size == 0 && !are_images)
-                function.first_argument_size = parameter.type.components();
-            body.value_parameter(slot - 1, parameter.type);
-        }
-    }
+    body.value_parameters(declared(body.builder, info.parameters));
     body.input_parameters(made.reads);
     body.bind_functions(passed);
     function.is_library = info.is_library;
@@ -188,15 +198,7 @@ LoweredFunction ModuleLowering::make(const BuiltinOverload& overload)
 {
     ir::Builder builder(module, unique(to_string(Candidate(overload))));
     builder.function().is_library = true;
-    std::vector<Values> arguments(overload.parameters.size());
-    uint32_t& first_size = builder.function().first_argument_size;
-    for (const bool are_images : images_last)
-        for (size_t p = 0; p < arguments.size(); ++p) {
-            const Type type = overload.parameters[p].type;
-            if ((type == image_type) != are_images) continue;
-            if (first_size == 0 && !are_images) first_size = type.components();
-            for (uint32_t i = 0; i < type.components(); ++i) arguments[p].push_back(builder.parameter(ir_type(type)));
-        }
+    const std::vector<Values> arguments = declared(builder, overload.parameters);
     return {builder.finish(lower_builtin(*this, builder, overload, arguments)), 0, 0};
 }
 
@@ -222,13 +224,12 @@ uint32_t ModuleLowering::smooth_ramp()
 LoweredFunction ModuleLowering::make_derivative(const LoweredFunction& of)
 {
     const ir::Derivative derivative = differentiator.jacobian(of.index);
-    const std::vector<ir::Value> parameters = module.functions[of.index].parameters;
-    ir::Builder builder(module, unique("grad " + module.functions[of.index].name));
+    const ir::Function& source = module.functions[of.index];
+    ir::Builder builder(module, unique("grad " + source.name));
     Values arguments;
-    for (ir::Value parameter : parameters)
-        arguments.push_back(builder.parameter(module.functions[of.index].type(parameter)));
-    builder.function().first_argument_size = module.functions[of.index].first_argument_size;
-    builder.function().is_library = module.functions[of.index].is_library;
+    for (ir::Value parameter : source.parameters) arguments.push_back(builder.parameter(source.type(parameter)));
+    builder.function().first_argument_size = source.first_argument_size;
+    builder.function().is_library = source.is_library;
     const Values results = builder.call(derivative.function, arguments);
     size_t next = derivative.exists.size(); // behind the values: by result, then direction
     const size_t rows = derivative.exists.size(), columns = derivative.exists.front().size();

@@ -24,20 +24,16 @@ Value conversion(ir::Builder& builder, Value value, Scalar from, Scalar to)
 {
     if (from == to) return value;
     const auto op = [&](Op name, Value a) { return builder.operation(name, {a}); };
+    if (from == Scalar::bool_) return conversion(builder, op(Op::b_to_i, value), Scalar::int_, to);
+    const bool from_float = from == Scalar::float_, from_int = from == Scalar::int_;
     switch (to) {
-    case Scalar::float_:
-        if (from == Scalar::bool_) return op(Op::i_to_r, op(Op::b_to_i, value));
-        return op(from == Scalar::int_ ? Op::i_to_r : Op::u_to_r, value);
-    case Scalar::int_:
-        if (from == Scalar::bool_) return op(Op::b_to_i, value);
-        return op(from == Scalar::float_ ? Op::r_to_i : Op::u_as_i, value);
-    case Scalar::uint_:
-        if (from == Scalar::bool_) return op(Op::i_as_u, op(Op::b_to_i, value));
-        return op(from == Scalar::float_ ? Op::r_to_u : Op::i_as_u, value);
-    case Scalar::bool_:
-        if (from == Scalar::float_) return op(Op::lnot, builder.operation(Op::eq, {value, builder.real(0)}));
-        if (from == Scalar::int_) return op(Op::lnot, builder.operation(Op::ieq, {value, builder.i32(0)}));
-        return op(Op::lnot, builder.operation(Op::ueq, {value, builder.u32(0)}));
+    case Scalar::float_: return op(from_int ? Op::i_to_r : Op::u_to_r, value);
+    case Scalar::int_: return op(from_float ? Op::r_to_i : Op::u_as_i, value);
+    case Scalar::uint_: return op(from_float ? Op::r_to_u : Op::i_as_u, value);
+    case Scalar::bool_: {
+        const Value zero = from_float ? builder.real(0) : builder.word(0, builder.type(value));
+        return op(Op::lnot, builder.operation(from_float ? Op::eq : from_int ? Op::ieq : Op::ueq, {value, zero}));
+    }
     case Scalar::error:
     case Scalar::image_:
     case Scalar::void_: break;
@@ -72,14 +68,9 @@ ir::Type ir_type(Type type)
 
 Values BodyLowering::zeros(Type type)
 {
-    switch (ir_type(type)) {
-    case ir::Type::i32: return Values(type.components(), builder.i32(0));
-    case ir::Type::u32: return Values(type.components(), builder.u32(0));
-    case ir::Type::boolean: return Values(type.components(), builder.boolean(false));
-    case ir::Type::image: // no variable is one
-    case ir::Type::real: break;
-    }
-    return Values(type.components(), builder.real(0));
+    const ir::Type part = ir_type(type);
+    const bool is_word = part != ir::Type::real && part != ir::Type::image; // no variable is an image
+    return Values(type.components(), is_word ? builder.word(0, part) : builder.real(0));
 }
 
 bool BodyLowering::too_deep(Span span)
@@ -129,9 +120,7 @@ Values BodyLowering::lower(const Expression& e, const NumberLiteral& node)
 {
     builder.span = e.span;
     if (e.type == float_type) return {builder.real(node.value)};
-    const auto bits = static_cast<uint32_t>(node.integer);
-    if (e.type == uint_type) return {builder.u32(bits)};
-    return {builder.i32(static_cast<int32_t>(bits))};
+    return {builder.word(static_cast<uint32_t>(node.integer), ir_type(e.type))};
 }
 
 Values BodyLowering::lower(const Expression& e, const BoolLiteral& node)
@@ -155,13 +144,11 @@ Values BodyLowering::lower(const Expression& e, const NameExpression& node)
     case SymbolKind::input: return input(symbol.input);
     case SymbolKind::texture_parameter: {
         Value value = builder.texture_parameter(symbol.slot, ir_type(symbol.type));
-        if (symbol.range && symbol.type == int_type) {
-            // Whatever the block holds: loops and tables rely on the range.
-            value = builder.operation(Op::imax, {value, builder.i32(static_cast<int32_t>(symbol.range->minimum))});
-            value = builder.operation(Op::imin, {value, builder.i32(static_cast<int32_t>(symbol.range->maximum))});
-        } else if (symbol.range) {
-            value = builder.operation(Op::umax, {value, builder.u32(static_cast<uint32_t>(symbol.range->minimum))});
-            value = builder.operation(Op::umin, {value, builder.u32(static_cast<uint32_t>(symbol.range->maximum))});
+        if (symbol.range) { // whatever the block holds: loops and tables rely on the range
+            const auto end = [&](int64_t at) { return builder.word(static_cast<uint32_t>(at), builder.type(value)); };
+            const bool is_int = symbol.type == int_type;
+            value = builder.operation(is_int ? Op::imax : Op::umax, {value, end(symbol.range->minimum)});
+            value = builder.operation(is_int ? Op::imin : Op::umin, {value, end(symbol.range->maximum)});
         }
         return {value};
     }
@@ -195,10 +182,8 @@ Values BodyLowering::constant(const Symbol& symbol)
             made.push_back(builder.real(*real));
         else if (auto truth = std::get_if<bool>(&part))
             made.push_back(builder.boolean(*truth));
-        else if (symbol.type.scalar == Scalar::uint_)
-            made.push_back(builder.u32(std::get<uint32_t>(part)));
         else
-            made.push_back(builder.i32(static_cast<int32_t>(std::get<uint32_t>(part))));
+            made.push_back(builder.word(std::get<uint32_t>(part), ir_type(symbol.type)));
     }
     return made;
 }
@@ -209,16 +194,14 @@ Values BodyLowering::lower(const Expression& e, const Unary& node)
     builder.span = e.span;
     for (Value& part : parts) {
         const bool is_real = builder.type(part) == ir::Type::real;
-        const bool is_unsigned = builder.type(part) == ir::Type::u32;
-        const auto zero = [&] { return is_unsigned ? builder.u32(0) : builder.i32(0); };
-        const auto ones = [&] { return is_unsigned ? builder.u32(UINT32_MAX) : builder.i32(-1); };
+        const auto word = [&](uint32_t bits) { return builder.word(bits, builder.type(part)); };
         switch (node.op) {
         case UnaryOp::negate:
-            part = is_real ? builder.operation(Op::neg, {part}) : integer(Op::isub, zero(), part);
+            part = is_real ? builder.operation(Op::neg, {part}) : integer(Op::isub, word(0), part);
             break;
         case UnaryOp::plus: break;
         case UnaryOp::logical_not: part = builder.operation(Op::lnot, {part}); break;
-        case UnaryOp::bit_not: part = integer(Op::ixor, part, ones()); break;
+        case UnaryOp::bit_not: part = integer(Op::ixor, part, word(UINT32_MAX)); break;
         }
     }
     return parts;

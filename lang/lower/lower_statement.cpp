@@ -34,12 +34,6 @@ BodyLowering::BodyLowering(ModuleLowering& module_lowering, std::string name, ui
 {
 }
 
-void BodyLowering::value_parameter(uint32_t slot, Type type)
-{
-    Values& parts = variables[slot];
-    for (uint32_t i = 0; i < type.components(); ++i) parts.push_back(builder.parameter(ir_type(type)));
-}
-
 Values BodyLowering::whole_body(const Statement& body, Type result)
 {
     result_type = result;
@@ -86,7 +80,7 @@ void BodyLowering::choose(Value condition, const Slots& changed, const std::func
                                     " deep here");
         return;
     }
-    ++region_depth;
+    const Nesting region(region_depth);
     depth = std::max(depth, region_depth);
     const Values before = gather(changed);
     const auto run = [&](const std::function<void()>& arm) {
@@ -96,7 +90,6 @@ void BodyLowering::choose(Value condition, const Slots& changed, const std::func
     };
     const Values after = builder.if_else(condition, [&] { return run(then_arm); }, [&] { return run(else_arm); });
     scatter(changed, after);
-    --region_depth;
 }
 
 Value BodyLowering::left()
@@ -243,7 +236,7 @@ void BodyLowering::lower(const For& node)
     const Completion ends = node.body ? completion_of(*node.body) : Completion{};
     const Slots changed = node.body ? changed_slots(listed(node.body.get(), {}), ends) : Slots{};
     if (region_depth >= region_max) return choose(builder.boolean(true), {}, [] {}, [] {}); // which reports it
-    ++region_depth;
+    const Nesting region(region_depth);
     depth = std::max(depth, region_depth);
     const Values broken_before = variables[broken_slot()];
     variables[broken_slot()] = {builder.boolean(false)};
@@ -263,7 +256,6 @@ void BodyLowering::lower(const For& node)
         });
     scatter(changed, after);
     variables[broken_slot()] = broken_before;
-    --region_depth;
 }
 
 } // namespace haptel::lang

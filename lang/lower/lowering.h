@@ -10,6 +10,7 @@
 #include "lang/program/completion.h"
 #include "lang/text/diagnostic.h"
 
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <span>
@@ -84,7 +85,7 @@ public:
     BodyLowering(ModuleLowering& owner, std::string name, uint32_t slot_count);
 
     // Parameters first: values, then inputs. A texture has neither: it reads.
-    void value_parameter(uint32_t slot, Type type);
+    void value_parameters(std::vector<Values> arguments) { std::ranges::move(arguments, variables.begin()); }
     void input_parameters(uint32_t reads);
     void bind_functions(const std::vector<FunctionReference>& passed) { functions = passed; }
     Values& variable(const Symbol& local) { return variables[local.slot]; }

@@ -51,51 +51,6 @@ struct Circle {
     }
 };
 
-template <typename R>
-R sine(const Circle<R>& circle, R of)
-{
-    const Pair<R> size = select(circle.is_odd(), circle.cosine, circle.sine);
-    return flipped(flipped(size.high + size.low, circle.sign(1)), of);
-}
-
-template <typename R>
-R cosine(const Circle<R>& circle)
-{
-    const Pair<R> size = select(circle.is_odd(), circle.sine, circle.cosine);
-    return flipped(size.high + size.low, circle.sign(1, 1));
-}
-
-template <typename R>
-R tangent(const Circle<R>& circle, R of)
-{
-    const R size = quotient(select(circle.is_odd(), circle.cosine, circle.sine),
-                            select(circle.is_odd(), circle.sine, circle.cosine));
-    return flipped(flipped(size, circle.sign(0)), of);
-}
-
-// In the precision of the angle.
-template <typename R>
-Circle<R> circle_of(R angle)
-{
-    return Circle<R>(reduced(abs(angle)));
-}
-
-template <typename R>
-R sin(R a)
-{
-    return sine(circle_of(a), a);
-}
-template <typename R>
-R cos(R a)
-{
-    return cosine(circle_of(a));
-}
-template <typename R>
-R tan(R a)
-{
-    return tangent(circle_of(a), a);
-}
-
 // In f32, of an angle in f64; `low` is what high has no room for.
 template <typename R>
 auto single_circle_of(R angle)
@@ -111,20 +66,37 @@ auto single_circle_of(R angle)
     return Circle(Angle{quarters, high, narrow(turned.high - widen(high))});
 }
 
+// In the precision of the angle.
 template <typename R>
-auto single_sin(R a)
+Circle<R> circle_of(R angle)
 {
-    return sine(single_circle_of(a), narrow(a));
+    if constexpr (R::is_single)
+        return single_circle_of(widen(angle));
+    else
+        return Circle<R>(reduced(abs(angle)));
 }
+
+// `of`: the angle, in the same precision.
 template <typename R>
-auto single_cos(R a)
+R sin(const Circle<R>& circle, R of)
 {
-    return cosine(single_circle_of(a));
+    const Pair<R> size = select(circle.is_odd(), circle.cosine, circle.sine);
+    return flipped(flipped(size.high + size.low, circle.sign(1)), of);
 }
+
 template <typename R>
-auto single_tan(R a)
+R cos(const Circle<R>& circle, R)
 {
-    return tangent(single_circle_of(a), narrow(a));
+    const Pair<R> size = select(circle.is_odd(), circle.sine, circle.cosine);
+    return flipped(size.high + size.low, circle.sign(1, 1));
+}
+
+template <typename R>
+R tan(const Circle<R>& circle, R of)
+{
+    const R size = quotient(select(circle.is_odd(), circle.cosine, circle.sine),
+                            select(circle.is_odd(), circle.sine, circle.cosine));
+    return flipped(flipped(size, circle.sign(0)), of);
 }
 
 } // namespace haptel::ir::elementary

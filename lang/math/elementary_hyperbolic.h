@@ -12,13 +12,10 @@ template <typename R>
 struct Hyperbola {
     Pair<R> sine, cosine;
 
-    explicit Hyperbola(R x) : Hyperbola(x, nearest_whole(x * log2e)) {}
-
-private:
-    using C = Constants<typename R::Float>;
-
-    Hyperbola(R x, R k) : sine{x, x}, cosine{x, x}
+    explicit Hyperbola(R x) : sine{x, x}, cosine{x, x}
     {
+        using C = Constants<typename R::Float>;
+        const R k = nearest_whole(x * log2e);
         const R high = x - k * C::ln2[0];
         const Pair<R> r = exact_sum_of_ordered(high, -(k * C::ln2[1]));
         const R u = r.high * r.high;

@@ -18,27 +18,24 @@ template <typename R>
 struct Split {
     R exponent, mantissa;
 
-    explicit Split(R x) : Split(x, x < smallest_normal) {}
-
-private:
-    using Layout = Format<typename R::Float>;
-    using Bits = typename Layout::Bits;
-    static constexpr double smallest_normal = Layout::smallest_normal;
-    static constexpr Bits one = Bits{Layout::bias} << Layout::digits, fraction = (Bits{1} << Layout::digits) - 1,
-                          sqrt_half =
-                              std::bit_cast<Bits>(static_cast<typename R::Float>(1 / std::numbers::sqrt2_v<double>)),
-                          whole = Bits{Layout::bias + Layout::digits} << Layout::digits;
-    static constexpr double shift = 64, whole_number = std::bit_cast<typename R::Float>(whole);
-
-    template <typename Truth>
-    Split(R x, Truth is_subnormal) : exponent(x), mantissa(x)
+    explicit Split(R x) : exponent(x), mantissa(x)
     {
+        const auto is_subnormal = x < Layout::smallest_normal;
         const auto word = bits(select(is_subnormal, x * 0x1p64, x)) + (one - sqrt_half);
         const R biased = with_bits(x, (word >> Layout::digits) | whole);
         exponent = biased - select(is_subnormal, constant(x, whole_number + Layout::bias + shift),
                                    constant(x, whole_number + Layout::bias));
         mantissa = with_bits(x, (word & fraction) + sqrt_half);
     }
+
+private:
+    using Layout = Format<typename R::Float>;
+    using Bits = typename Layout::Bits;
+    static constexpr Bits one = Bits{Layout::bias} << Layout::digits, fraction = (Bits{1} << Layout::digits) - 1,
+                          sqrt_half =
+                              std::bit_cast<Bits>(static_cast<typename R::Float>(1 / std::numbers::sqrt2_v<double>)),
+                          whole = Bits{Layout::bias + Layout::digits} << Layout::digits;
+    static constexpr double shift = 64, whole_number = std::bit_cast<typename R::Float>(whole);
 };
 
 // What a logarithm is where its argument is not a positive finite number.

@@ -12,6 +12,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <type_traits>
 
 namespace haptel::ir::elementary {
 
@@ -55,27 +56,30 @@ public:
 
     F value;
 
-    Number(double number) : value(static_cast<F>(number)) {}
+    template <typename Real, typename = std::enable_if_t<std::is_arithmetic_v<Real>>>
+    Number(Real number) : value(static_cast<F>(number))
+    {
+    }
 
-    friend Number operator+(Number a, Number b) { return held(a.value + b.value); }
-    friend Number operator-(Number a, Number b) { return held(a.value - b.value); }
-    friend Number operator*(Number a, Number b) { return held(a.value * b.value); }
-    friend Number operator/(Number a, Number b) { return held(a.value / b.value); }
-    friend Number operator-(Number a) { return held(-a.value); }
+    friend Number operator+(Number a, Number b) { return a.value + b.value; }
+    friend Number operator-(Number a, Number b) { return a.value - b.value; }
+    friend Number operator*(Number a, Number b) { return a.value * b.value; }
+    friend Number operator/(Number a, Number b) { return a.value / b.value; }
+    friend Number operator-(Number a) { return -a.value; }
     friend bool operator<(Number a, Number b) { return a.value < b.value; }
     friend bool operator>(Number a, Number b) { return a.value > b.value; }
     friend bool operator==(Number a, Number b) { return a.value == b.value; }
 
-    friend Number abs(Number a) { return held(std::fabs(a.value)); }
-    friend Number sqrt(Number a) { return held(std::sqrt(a.value)); }
+    friend Number abs(Number a) { return std::fabs(a.value); }
+    friend Number sqrt(Number a) { return std::sqrt(a.value); }
     friend Number select(bool condition, Number a, Number b) { return condition ? a : b; }
     friend Number constant(Number, double number) { return {number}; }
 
     friend Bits bits(Number a) { return std::bit_cast<Bits>(a.value); }
-    friend Number with_bits(Number, Bits bits) { return held(std::bit_cast<F>(bits)); }
+    friend Number with_bits(Number, Bits bits) { return std::bit_cast<F>(bits); }
 
-    friend Number<float> narrow(Number a) { return Number<float>(static_cast<double>(a.value)); }
-    friend Number<double> widen(Number a) { return Number<double>(static_cast<double>(a.value)); }
+    friend Number<float> narrow(Number a) { return a.value; }
+    friend Number<double> widen(Number a) { return a.value; }
 
     friend void reduce_where(bool condition, Number a, Angle<Number>& angle)
     {
@@ -84,14 +88,6 @@ public:
         double quarters = 0, high = 0, low = 0;
         reduce_huge_angles(&number, 1, &quarters, &high, &low);
         angle = {quarters, high, low};
-    }
-
-private:
-    static Number held(F number)
-    {
-        Number made(0);
-        made.value = number;
-        return made;
     }
 };
 

@@ -26,7 +26,7 @@ struct Symbol;
 enum class InputName : uint8_t { p, n, uv, time, center, extent, footprint };
 constexpr uint32_t input_name_count = 7;
 
-// One component of a constant: a real number, the bits of an int or uint, or a bool. The same as ir::Scalar<double>.
+// One component of a constant: a real number, the bits of an int or uint, or a bool.
 using ConstantPart = std::variant<double, uint32_t, bool>;
 
 enum class SymbolKind : uint8_t {

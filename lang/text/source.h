@@ -14,6 +14,7 @@ namespace haptel::lang {
 // Half-open byte range [begin, end) of file `file` (index into SourceSet).
 struct Span {
     uint32_t file = 0, begin = 0, end = 0;
+    auto operator<=>(const Span&) const = default;
 };
 
 inline Span join(Span a, Span b)

@@ -35,16 +35,16 @@ lang::CompileResult compiled(const Case& wanted)
 }
 
 template <typename T>
-ir::Scalar<T> scalar(ir::Type type, double value)
+ir::Slot<T> slot(ir::Type type, double value)
 {
     switch (type) {
-    case ir::Type::real: return T(value);
-    case ir::Type::boolean: return value != 0;
-    case ir::Type::i32: return static_cast<uint32_t>(static_cast<int32_t>(value));
-    case ir::Type::u32: return static_cast<uint32_t>(value);
-    case ir::Type::image: return uint32_t{0};
+    case ir::Type::real: return {T(value)};
+    case ir::Type::boolean: return {T(0), value != 0};
+    case ir::Type::i32: return {T(0), static_cast<uint32_t>(static_cast<int32_t>(value))};
+    case ir::Type::u32: return {T(0), static_cast<uint32_t>(value)};
+    case ir::Type::image: return {};
     }
-    return T(value);
+    return {T(value)};
 }
 
 template <typename T>
@@ -62,7 +62,7 @@ Outcome evaluated(const ir::Module& module, const Evaluation& at)
         double value = parameter.value;
         for (const auto& [name, text] : at.parameters)
             if (name == parameter.name) value = std::stod(text);
-        inputs.parameters.push_back(scalar<T>(parameter.type, value));
+        inputs.parameters.push_back(slot<T>(parameter.type, value));
     }
     const auto real = [](const ir::Scalar<T>& result) { return static_cast<double>(std::get<T>(result)); };
     const auto results = ir::interpret<T>(module, texture.height_gradient, {}, &inputs);

@@ -67,9 +67,9 @@ void check_height(const ir::Module& module, const ir::Texture& texture)
     for (size_t i = 0; i < ir::input_count; ++i) inputs.input[i] = 0.001 * static_cast<double>(i + 1);
     for (const ir::Parameter& parameter : texture.parameters) {
         switch (parameter.type) {
-        case ir::Type::real: inputs.parameters.emplace_back(parameter.value); break;
-        case ir::Type::boolean: inputs.parameters.emplace_back(parameter.value != 0); break;
-        default: inputs.parameters.emplace_back(static_cast<uint32_t>(static_cast<int64_t>(parameter.value)));
+        case ir::Type::real: inputs.parameters.push_back({parameter.value}); break;
+        case ir::Type::boolean: inputs.parameters.push_back({0, parameter.value != 0}); break;
+        default: inputs.parameters.push_back({0, static_cast<uint32_t>(static_cast<int64_t>(parameter.value))});
         }
     }
     const auto both = ir::interpret<double>(module, texture.height_gradient, {}, &inputs);
@@ -155,7 +155,7 @@ void read_ir(std::string_view bytes)
     const auto last = static_cast<uint32_t>(parsed.module->functions.size() - 1);
     const ir::Function& function = parsed.module->functions[last];
     if (ir::operations_max(*parsed.module, last) > 50'000) return;
-    const ir::EntryInputs<double> inputs{{}, std::vector<ir::Scalar<double>>(0)};
+    const ir::EntryInputs<double> inputs;
     for (const ir::Texture& texture : parsed.module->textures)
         if (!texture.parameters.empty()) return; // an entry may read them
     ir::Interpreter<double>(*parsed.module).run(last, ir_test::random_arguments(function, 1), &inputs);

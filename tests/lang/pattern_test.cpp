@@ -40,7 +40,7 @@ class JumpSearch {
 public:
     JumpSearch(const ir::Module& module, const ir::Texture& what) : machine(module), texture(what)
     {
-        for (const ir::Parameter& parameter : texture.parameters) inputs.parameters.push_back(parameter.value);
+        for (const ir::Parameter& parameter : texture.parameters) inputs.parameters.push_back({parameter.value});
     }
 
     double greatest_jump(uint32_t seed, int lines)

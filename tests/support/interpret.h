@@ -3,7 +3,12 @@
 
 #include "lang/ir/run/interpret.h"
 
+#include <variant>
+
 namespace haptel::ir {
+
+template <typename T>
+using Scalar = std::variant<T, uint32_t, bool>; // real; i32 and u32 as bits; boolean
 
 template <typename T>
 std::vector<Scalar<T>> interpret(const Module& module, uint32_t function, std::span<const Scalar<T>> arguments,

@@ -198,13 +198,13 @@ private:
         }
         for (Type integer : {Type::i32, Type::u32})
             if (accept(to_string(integer))) {
-                made.kind = IntConstant{word(integer)};
+                made.kind = WordConstant{word(integer)};
                 return {integer};
             }
         if (accept("bool")) {
             bool value = accept("true");
             if (!value) expect("false");
-            made.kind = BoolConstant{value};
+            made.kind = WordConstant{value};
             return {Type::boolean};
         }
         if (accept("input")) {

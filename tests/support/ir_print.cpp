@@ -162,14 +162,12 @@ private:
         uses(made.operands);
     }
     void print(const Instruction&, const RealConstant& constant, size_t) { text += "real " + number(constant.value); }
-    void print(const Instruction& made, const IntConstant& constant, size_t)
+    void print(const Instruction& made, const WordConstant& constant, size_t)
     {
         Type type = function->type(made.results[0]);
-        text += std::string(to_string(type)) + " " + word(type, constant.bits);
-    }
-    void print(const Instruction&, const BoolConstant& constant, size_t)
-    {
-        text += constant.value ? "bool true" : "bool false";
+        const bool is_truth = type == Type::boolean;
+        text += std::string(to_string(type)) + " ";
+        text += !is_truth ? word(type, constant.bits) : constant.bits ? "true" : "false";
     }
     void print(const Instruction&, const ReadInput& read, size_t)
     {

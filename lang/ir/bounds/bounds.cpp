@@ -1,7 +1,7 @@
 #include "lang/ir/bounds/bounds.h"
 
 #include "lang/ir/bounds/interval_evaluator.h"
-#include "lang/ir/extent.h"
+#include "lang/ir/cost.h"
 
 #include <algorithm>
 #include <cmath>

@@ -150,15 +150,10 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const RealC
     frame.values[made.results[0].index] = exactly(constant.value);
 }
 
-void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const IntConstant& constant)
+void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const WordConstant& constant)
 {
     const Value result = made.results[0];
     frame.values[result.index] = exactly(frame.function.type(result), constant.bits);
-}
-
-void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const BoolConstant& constant)
-{
-    frame.values[made.results[0].index] = exactly(Type::boolean, constant.value);
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadInput& read)

@@ -125,8 +125,7 @@ private:
 
     void visit(Frame& frame, const Instruction& made, const Operation& kind);
     void visit(Frame& frame, const Instruction& made, const RealConstant& kind);
-    void visit(Frame& frame, const Instruction& made, const IntConstant& kind);
-    void visit(Frame& frame, const Instruction& made, const BoolConstant& kind);
+    void visit(Frame& frame, const Instruction& made, const WordConstant& kind);
     void visit(Frame& frame, const Instruction& made, const ReadInput& kind);
     void visit(Frame& frame, const Instruction& made, const ReadParameter& kind);
     void visit(Frame& frame, const Instruction& made, const ReadTable& kind);

@@ -49,7 +49,7 @@ Partials PartialRules::of(Op op, std::span<const Interval> operands, uint32_t ac
     for (const Instruction& made : line.body.instructions) {
         Interval& value = values[made.results[0].index];
         if (auto* real = std::get_if<RealConstant>(&made.kind)) value = {real->value, real->value};
-        if (auto* truth = std::get_if<BoolConstant>(&made.kind)) value = exactly(Type::boolean, truth->value);
+        if (auto* truth = std::get_if<WordConstant>(&made.kind)) value = exactly(Type::boolean, truth->bits);
         if (auto* operation = std::get_if<Operation>(&made.kind)) {
             Interval parts[operands_max];
             for (size_t k = 0; k < made.operands.size(); ++k) parts[k] = values[made.operands[k].index];

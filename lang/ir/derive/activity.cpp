@@ -7,17 +7,21 @@ namespace haptel::ir {
 namespace {
 
 // Forwards: what is made of something active may be active itself.
-class Propagation {
-public:
-    Propagation(const Function& source, Dependences& dependences, InputActivity inputs, Activity& result)
-        : function(source), callees(dependences), input_is_active(inputs), activity(result)
-    {
-        Dataflow(*this).forwards(function.body);
-    }
+struct Propagation {
+    const Function& function;
+    Dependences& callees;
+    InputActivity input_is_active;
+    Activity& activity;
 
     static constexpr uint32_t rounds_max = 8;
 
-    bool flow(Value from, Value to) { return is_real(from) && is_real(to) && activity.add(to, from); }
+    bool flow(Value from, Value to)
+    {
+        bool is_new = false;
+        for (size_t d = 0; is_real(from) && is_real(to) && d < activity.directions(); ++d)
+            if (activity(from, d)) is_new |= activity.set(to, d);
+        return is_new;
+    }
     void steer(Value, Value) {}
     void assume(Value carried)
     {
@@ -40,13 +44,6 @@ public:
             if (callees.point_derivatives == PointDerivatives::vary) flow(made.operands[0], made.results[0]);
         }
     }
-
-private:
-    const Function& function;
-    Dependences& callees;
-    InputActivity input_is_active;
-    Activity& activity;
-
     bool is_real(Value value) const { return function.type(value) == Type::real; }
 };
 
@@ -67,18 +64,9 @@ bool Activity::set(Value value, size_t direction)
     return true;
 }
 
-bool Activity::add(Value value, Value from)
+void Activity::clear(Value value)
 {
-    bool is_new = false;
-    for (size_t d = 0; d < width; ++d)
-        if ((*this)(from, d)) is_new |= set(value, d);
-    return is_new;
-}
-
-void Activity::add(Value value, const Activity& other)
-{
-    for (size_t d = 0; d < width; ++d)
-        if (other(value, d)) set(value, d);
+    for (size_t d = 0; d < width; ++d) bits[value.index * width + d] = false;
 }
 
 const Dependence& Dependences::of(uint32_t function)
@@ -102,7 +90,8 @@ const Dependence& Dependences::of(uint32_t function)
 
 void propagate(const Function& function, Dependences& callees, InputActivity input_is_active, Activity& activity)
 {
-    Propagation(function, callees, input_is_active, activity);
+    Propagation analysis{function, callees, input_is_active, activity};
+    Dataflow(analysis).forwards(function.body);
 }
 
 } // namespace haptel::ir

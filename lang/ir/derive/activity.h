@@ -15,10 +15,8 @@ public:
     size_t directions() const { return width; }
     bool operator()(Value value, size_t direction) const { return bits[value.index * width + direction]; }
     bool any(Value value) const;
-    // True if that is new.
-    bool set(Value value, size_t direction);
-    bool add(Value value, Value from);
-    void add(Value value, const Activity& other); // the bits it has there
+    bool set(Value value, size_t direction); // true if that is new
+    void clear(Value value);
 
 private:
     size_t width;
@@ -28,8 +26,9 @@ private:
 // dependence[result][parameter]: may the derivative of the result with respect to the parameter differ from zero?
 using Dependence = std::vector<std::vector<bool>>;
 
-// Does a derivative with respect to the point have a derivative of its own, or does it count as a constant?
-enum class PointDerivatives : uint8_t { vary, constant };
+// What becomes of derivatives with respect to the point: they stay, and have derivatives of their own; or they become
+// the values they stand for, and count as constants.
+enum class PointDerivatives : uint8_t { vary, resolved };
 
 // The dependences of all functions of a module, worked out as they are asked for.
 class Dependences {

@@ -181,7 +181,7 @@ Tangent differentiate(Builder& builder, Op op, std::span<const Value> operands, 
     case Op::spline: { // the fourth of a cubic is 0
         const auto along = [&](const Term& by, uint32_t axis) {
             const uint32_t step = spline_order(axis == 0, axis == 1);
-            const std::optional<uint32_t> order = builder.int_constant(operands[3]);
+            const std::optional<uint32_t> order = builder.word_constant(operands[3]);
             if (by.is_zero() || (order && spline_order_along(*order, axis) >= 3)) return Term{&builder, {}};
             const Value next = builder.operation(Op::iadd, {operands[3], builder.i32(static_cast<int32_t>(step))});
             return by * Term{&builder, builder.operation(Op::spline, {operands[0], operands[1], operands[2], next})};

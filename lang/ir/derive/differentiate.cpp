@@ -2,10 +2,8 @@
 
 #include "lang/abi/abi.h"
 #include "lang/ir/derive/derivative_emitter.h"
-#include "lang/ir/derive/point_derivative.h"
 
 #include <algorithm>
-#include <map>
 
 namespace haptel::ir {
 namespace {
@@ -51,102 +49,89 @@ uint32_t inputs_read(const Block& block)
     return bits;
 }
 
-// "Or" of u32, through signed words.
-Value either(Builder& builder, Value a, Value b)
-{
-    const Value bits =
-        builder.operation(Op::ior, {builder.operation(Op::u_as_i, {a}), builder.operation(Op::u_as_i, {b})});
-    return builder.operation(Op::i_as_u, {bits});
-}
-
-// Appends what the body yields behind the height, 1 and a fault where that is not finite or below 0: a scale that would
-// pull where a surface pushes is no scale. The faults end `results`.
-void material_outputs(Builder& builder, const DerivativeEmitter& emitter, std::span<const Value> yields,
-                      std::vector<Value>& results)
-{
-    const size_t faults = results.size() - 1;
-    for (Value yield : yields.subspan(1)) {
-        const Value output = emitter.primal(yield);
-        const Value is_fine = builder.operation(Op::land, {builder.operation(Op::is_finite, {output}),
-                                                           builder.operation(Op::le, {builder.real(0), output})});
-        results.push_back(builder.operation(Op::select, {is_fine, output, builder.real(1)}));
-        const Value fault =
-            builder.operation(Op::select, {is_fine, builder.u32(0), builder.u32(HAPTEL_FAULT_OUTPUT_NOT_FINITE)});
-        results[faults] = either(builder, results[faults], fault);
-    }
-}
-
-} // namespace
-
-std::string pattern_of(const Seeds& seeds)
+std::string pattern_of(const Seeds& seeds) // "1..,.t.": a letter per parameter and direction
 {
     std::string pattern;
     for (const std::vector<Seed>& row : seeds) {
         if (!pattern.empty()) pattern += ',';
-        for (Seed seed : row) pattern += seed == Seed::none ? '.' : seed == Seed::unit ? '1' : 't';
+        for (Seed seed : row) pattern += ".1t"[static_cast<size_t>(seed)];
     }
-    return pattern;
+    return " [" + pattern + "]";
 }
 
-struct Differentiator::Memo final : Callees {
-    Memo(Module& module, Differentiator& owner) : differentiator(owner), dependences(module), resolver(module, owner) {}
+} // namespace
 
-    CallPlan plan(const Instruction& call, const Activity& activity) override
-    {
-        const uint32_t callee = std::get<Call>(call.kind).function;
-        return plan_call(call, dependences.of(callee), activity, resolver.asks(callee));
-    }
-    Derivative derivative(uint32_t callee, const CallPlan& plan) override
-    {
-        return differentiator.derivative(callee, plan.seeds);
-    }
-    bool resolves_point_derivatives() const override { return false; }
-
-    Differentiator& differentiator;
-    std::map<std::pair<uint32_t, Seeds>, Derivative> derivatives;
-    Dependences dependences;
-    PointDerivativeResolver resolver;
-};
-
-Differentiator::Differentiator(Module& whole) : module(whole), memo(std::make_unique<Memo>(whole, *this)) {}
-
-Differentiator::~Differentiator() = default;
-
-Derivative Differentiator::derivative(uint32_t function, const Seeds& seeds)
+std::optional<CallPlan> Differentiator::plan(const Instruction& call, const Activity& activity,
+                                             PointDerivatives point_derivatives)
 {
-    const auto key = std::make_pair(function, seeds);
-    if (auto known = memo->derivatives.find(key); known != memo->derivatives.end()) return known->second;
+    const uint32_t callee = std::get<Call>(call.kind).function;
+    const PointUse& use = point_uses.of(callee);
+    const bool resolves = point_derivatives == PointDerivatives::resolved && use.asks;
+    const bool is_tangent_wanted =
+        std::ranges::any_of(call.results, [&](Value result) { return activity.any(result); });
+    const Dependence& depends = (resolves ? point_uses.dependences : dependences).of(callee);
+    CallPlan plan;
+    for (size_t p = 0; p < call.operands.size(); ++p) {
+        const auto reads_it = [&](const std::vector<bool>& row) { return row[p]; };
+        const bool is_needed =
+            (is_tangent_wanted && std::ranges::any_of(depends, reads_it)) || (resolves && use.parameters[p]);
+        if (is_needed && activity.any(call.operands[p])) plan.columns.push_back(p);
+    }
+    if (plan.columns.empty() && !resolves) return std::nullopt;
+    plan.by_jacobian = plan.columns.size() <= activity.directions() && !use.asks;
+    const size_t directions = plan.by_jacobian ? plan.columns.size() : activity.directions();
+    Seeds seeds(call.operands.size(), std::vector<Seed>(directions, Seed::none));
+    for (size_t column = 0; column < plan.columns.size(); ++column) {
+        const size_t p = plan.columns[column];
+        for (size_t d = 0; d < directions; ++d)
+            if (plan.by_jacobian ? d == column : activity(call.operands[p], d))
+                seeds[p][d] = plan.by_jacobian ? Seed::unit : Seed::given;
+    }
+    plan.request = {callee, std::move(seeds), resolves ? PointDerivatives::resolved : PointDerivatives::vary,
+                    is_tangent_wanted};
+    return plan;
+}
 
-    const Function source = module.functions[function]; // a copy: the module grows meanwhile
-    const size_t directions = seeds.empty() ? 0 : seeds[0].size();
+Derivative Differentiator::derivative(const DerivativeRequest& request)
+{
+    if (auto known = memo.find(request); known != memo.end()) return known->second;
+
+    const auto& [index, seeds, point_derivatives, tangents_wanted] = request;
+    const Function source = module.functions[index]; // a copy: the module grows meanwhile
+    const bool resolves = point_derivatives == PointDerivatives::resolved;
+    const size_t directions = resolves ? axes : seeds.empty() ? 0 : seeds[0].size();
     Activity activity(source.value_types.size(), directions);
     for (size_t p = 0; p < seeds.size(); ++p)
         for (size_t d = 0; d < directions; ++d)
             if (seeds[p][d] != Seed::none) activity.set(source.parameters[p], d);
-    propagate(source, memo->dependences, nullptr, activity);
+    if (resolves) {
+        propagate(source, point_uses.dependences, input_is_active, activity);
+        const std::vector<bool> is_needed = point_uses.needed(source, tangents_wanted);
+        for (uint32_t value = 0; value < is_needed.size(); ++value)
+            if (!is_needed[value]) activity.clear({value});
+    } else {
+        propagate(source, dependences, nullptr, activity);
+    }
 
-    DerivativeEmitter emitter(source, activity, *memo);
-    emitter.prepare(source.body);
-
-    const bool is_jacobian = directions > 0 && seeds == first_argument_seeds(source);
-    Builder builder(module, "d " + source.name + (is_jacobian ? "" : " [" + pattern_of(seeds) + "]"));
-    emitter.begin(builder, seeds);
-    for (size_t p = 0; p < seeds.size(); ++p)
-        for (size_t d = 0; d < directions; ++d)
-            if (seeds[p][d] == Seed::unit) emitter.set_tangent(builder, source.parameters[p], d, builder.real(1));
-    emitter.emit(builder, source.body);
+    const bool is_jacobian = !resolves && directions > 0 && seeds == first_argument_seeds(source);
+    const std::string name = std::string(tangents_wanted ? "d " : "") + (resolves ? "resolved " : "") + source.name;
+    const bool is_told_by_name = is_jacobian || (resolves && seeds.empty());
+    DerivativeEmitter emitter(module, is_told_by_name ? name : name + pattern_of(seeds), source, activity, *this,
+                              point_derivatives);
+    emitter.begin(seeds);
+    emitter.emit(source.body);
 
     Derivative made;
-    const std::vector<Value> results = emitter.results(true, made.exists);
+    const std::vector<Value> results = emitter.results(tangents_wanted, made.exists);
     if (is_jacobian && !source.facts.empty()) {
-        std::vector<Facts>& facts = builder.function().facts;
+        std::vector<Facts>& facts = emitter.builder.function().facts;
         facts.resize(source.body.yields.size());
         for (size_t r = 0; r < source.facts.size(); ++r)
             facts.insert(facts.end(), std::count(made.exists[r].begin(), made.exists[r].end(), true),
                          facts_of_partial(source.facts[r]));
     }
-    made.function = builder.finish(results);
-    return memo->derivatives.emplace(key, made).first->second;
+    made.function = emitter.builder.finish(results);
+    return memo.emplace(request, made).first->second;
 }
 
 Derivative Differentiator::jacobian(uint32_t function)
@@ -156,51 +141,71 @@ Derivative Differentiator::jacobian(uint32_t function)
 
 void Differentiator::make_entries(Texture& texture)
 {
-    texture.body = memo->resolver.resolved_entry(texture.body);
-    const Function source = module.functions[texture.body];
-    auto make = [&](size_t directions, const std::string& name) {
-        Activity activity(source.value_types.size(), directions);
-        propagate(source, memo->dependences, input_is_active, activity);
-        DerivativeEmitter emitter(source, activity, *memo);
-        emitter.prepare(source.body);
-
-        Builder builder(module, name);
-        emitter.emit(builder, source.body);
-        builder.span = source.body.instructions.empty() ? Span{} : source.body.instructions.back().span;
-        const Value zero = builder.real(0), height = emitter.primal(source.body.yields[0]);
-        const Value height_is_fine = builder.operation(Op::is_finite, {height});
-        std::vector<Value> results{builder.operation(Op::select, {height_is_fine, height, zero})};
-        const Value height_fault = builder.operation(
-            Op::select, {height_is_fine, builder.u32(0), builder.u32(HAPTEL_FAULT_HEIGHT_NOT_FINITE)});
-        Value faults = height_fault;
-
-        if (directions > 0) {
-            std::vector<Value> gradient;
-            Value gradient_is_fine = builder.boolean(true);
-            for (size_t d = 0; d < directions; ++d) {
-                const Tangent& tangent = emitter.tangent(source.body.yields[0], d);
-                gradient.push_back(tangent ? *tangent : zero);
-                Value is_fine = builder.operation(Op::is_finite, {gradient.back()});
-                gradient_is_fine = builder.operation(Op::land, {gradient_is_fine, is_fine});
-            }
-            Value all_fine = builder.operation(Op::land, {height_is_fine, gradient_is_fine});
-            for (Value component : gradient)
-                results.push_back(builder.operation(Op::select, {all_fine, component, zero}));
-            Value gradient_fault = builder.operation(
-                Op::select, {gradient_is_fine, builder.u32(0), builder.u32(HAPTEL_FAULT_GRADIENT_NOT_FINITE)});
-            faults = either(builder, faults, gradient_fault);
-        }
-        results.push_back(faults);
-        if (directions > 0) {
-            material_outputs(builder, emitter, source.body.yields, results);
-            results.push_back(height_fault);
-        }
-        return builder.finish(results);
-    };
-    texture.height = make(0, texture.name + " height");
-    texture.height_gradient = make(axes, texture.name + " height and gradient");
+    if (point_uses.of(texture.body).asks)
+        texture.body = derivative({texture.body, {}, PointDerivatives::resolved, false}).function;
+    texture.height = entry(texture, 0, texture.name + " height");
+    texture.height_gradient = entry(texture, axes, texture.name + " height and gradient");
     texture.reads = inputs_read(module.functions[texture.height].body) |
                     inputs_read(module.functions[texture.height_gradient].body);
+}
+
+// In no direction, of the height alone; in three, of its gradient and the material outputs too.
+uint32_t Differentiator::entry(const Texture& texture, size_t directions, const std::string& name)
+{
+    const Function source = module.functions[texture.body];
+    Activity activity(source.value_types.size(), directions);
+    propagate(source, dependences, input_is_active, activity);
+    DerivativeEmitter emitter(module, name, source, activity, *this, PointDerivatives::vary);
+    emitter.emit(source.body);
+
+    Builder& builder = emitter.builder;
+    builder.span = source.body.instructions.empty() ? Span{} : source.body.instructions.back().span;
+    const auto is_finite = [&](Value value) { return builder.operation(Op::is_finite, {value}); };
+    const auto both = [&](Value a, Value b) { return builder.operation(Op::land, {a, b}); };
+    const auto either = [&](Value a, Value b) { // of u32, through signed words
+        const Value x = builder.operation(Op::u_as_i, {a}), y = builder.operation(Op::u_as_i, {b});
+        return builder.operation(Op::i_as_u, {builder.operation(Op::ior, {x, y})});
+    };
+    const auto select = [&](Value condition, Value a, Value b) {
+        return builder.operation(Op::select, {condition, a, b});
+    };
+    const auto fault_unless = [&](Value is_fine, uint32_t fault) {
+        const Value none = builder.u32(0);
+        return select(is_fine, none, builder.u32(fault));
+    };
+
+    const std::span<const Value> yields(source.body.yields);
+    const Value zero = builder.real(0), height = emitter.primal(yields[0]), height_is_fine = is_finite(height);
+    std::vector<Value> results{select(height_is_fine, height, zero)};
+    const Value height_fault = fault_unless(height_is_fine, HAPTEL_FAULT_HEIGHT_NOT_FINITE);
+    if (directions == 0) {
+        results.push_back(height_fault);
+        return builder.finish(results);
+    }
+
+    std::vector<Value> gradient;
+    Value gradient_is_fine = builder.boolean(true);
+    for (size_t d = 0; d < directions; ++d) {
+        gradient.push_back(emitter.tangent(yields[0], d).value_or(zero));
+        gradient_is_fine = both(gradient_is_fine, is_finite(gradient.back()));
+    }
+    const Value all_fine = both(height_is_fine, gradient_is_fine);
+    for (Value component : gradient) results.push_back(select(all_fine, component, zero));
+    Value faults = either(height_fault, fault_unless(gradient_is_fine, HAPTEL_FAULT_GRADIENT_NOT_FINITE));
+
+    // An output that is not finite or below 0 is 1 and a fault: a scale that would pull where a surface pushes is no
+    // scale.
+    std::vector<Value> outputs;
+    for (Value yield : yields.subspan(1)) {
+        const Value output = emitter.primal(yield), is_number = is_finite(output);
+        const Value is_fine = both(is_number, builder.operation(Op::le, {builder.real(0), output}));
+        outputs.push_back(select(is_fine, output, builder.real(1)));
+        faults = either(faults, fault_unless(is_fine, HAPTEL_FAULT_OUTPUT_NOT_FINITE));
+    }
+    results.push_back(faults);
+    results.insert(results.end(), outputs.begin(), outputs.end());
+    results.push_back(height_fault);
+    return builder.finish(results);
 }
 
 } // namespace haptel::ir

@@ -1,14 +1,21 @@
 // Forward differentiation of IR functions: sparse (a zero tangent does not exist), closed under itself.
+//
+// Derivatives with respect to the point become values on the way: once a texture's body is whole, the answers are
+// known, and each function that asks is made anew for its caller's tangents along p. The entries are made from the
+// result, so that their gradient is exact, second derivatives of a warp included.
 #pragma once
 
+#include "lang/ir/derive/activity.h"
+#include "lang/ir/derive/point_derivative.h"
 #include "lang/ir/ir.h"
 
 #include <cstdint>
-#include <memory>
-#include <string>
+#include <map>
 #include <vector>
 
 namespace haptel::ir {
+
+constexpr size_t axes = 3; // directions of an entry's gradient: p_x, p_y, p_z
 
 // How one parameter of a function depends on one of the directions of differentiation.
 enum class Seed : uint8_t {
@@ -20,8 +27,6 @@ enum class Seed : uint8_t {
 // seeds[parameter][direction]; all rows have the same length, the number of directions.
 using Seeds = std::vector<std::vector<Seed>>;
 
-std::string pattern_of(const Seeds& seeds); // "1..,.t.": a letter per parameter and direction, for names
-
 struct Derivative {
     uint32_t function = UINT32_MAX; // in the same module; memoised: equal request, equal index
     // The function's parameters: those of the original, then every `given` tangent by parameter, then direction.
@@ -29,13 +34,28 @@ struct Derivative {
     std::vector<std::vector<bool>> exists; // [result of the original][direction]; false: tangent is zero
 };
 
+struct DerivativeRequest {
+    uint32_t function;
+    Seeds seeds; // where derivatives with respect to the point are resolved: by the axes of p
+    PointDerivatives point_derivatives = PointDerivatives::vary;
+    bool tangents_wanted = true; // false: the function's values alone
+    auto operator<=>(const DerivativeRequest&) const = default;
+};
+
+// How the derivative of a callee is had at a call.
+struct CallPlan {
+    bool by_jacobian = false; // with respect to the `columns`, and the chain rule; else the tangents are passed on
+    std::vector<size_t> columns = {}; // active arguments that a result depends on
+    DerivativeRequest request = {};   // of the callee
+};
+
 // Owns the memo; keep one per module for as long as functions are being added.
 class Differentiator {
 public:
-    explicit Differentiator(Module& module);
-    ~Differentiator();
+    explicit Differentiator(Module& whole) : module(whole), dependences(whole), point_uses(whole) {}
 
-    Derivative derivative(uint32_t function, const Seeds& seeds);
+    Derivative derivative(const DerivativeRequest& request);
+    Derivative derivative(uint32_t function, const Seeds& seeds) { return derivative({function, seeds}); }
 
     // Partial derivatives with respect to the first non-function argument (first_argument_size parameters): unit seeds.
     Derivative jacobian(uint32_t function);
@@ -45,10 +65,18 @@ public:
     // respect to p is replaced by one that holds their values.
     void make_entries(Texture& texture);
 
+    // Nothing where no result has a tangent, else the way that needs fewer directions inside the callee. The chain rule
+    // at the call is no way for a callee that asks for derivatives with respect to the point: there it matters how the
+    // tangents themselves move.
+    std::optional<CallPlan> plan(const Instruction& call, const Activity& activity, PointDerivatives point_derivatives);
+
 private:
-    struct Memo;
     Module& module;
-    std::unique_ptr<Memo> memo;
+    Dependences dependences;
+    PointUses point_uses;
+    std::map<DerivativeRequest, Derivative> memo;
+
+    uint32_t entry(const Texture& texture, size_t directions, const std::string& name);
 };
 
 } // namespace haptel::ir

@@ -1,29 +1,23 @@
 // The slow, plain evaluator: the oracle that every other engine is compared with.
 //
 // Over double it gives the same bits as f64 code (elementary functions too, see elementary_number.h); over Quad it
-// is the truth to about 34 digits, with branches and cells decided at that precision.
+// is the truth to about 34 digits, with branches and cells decided at that precision. It walks the blocks as they are:
+// what `verify` says of their depth bounds its recursion.
 #pragma once
 
 #include "lang/ir/ir.h"
 #include "lang/ir/semantics.h"
 
-#include <memory>
 #include <span>
-#include <variant>
 #include <vector>
 
 namespace haptel::ir {
 
-// Real numbers of one evaluation: T is double or Quad (quad.h). Integers and booleans are the same for all.
-template <typename T>
-using Scalar = std::variant<T, uint32_t, bool>; // real; i32 and u32 as bits; boolean
-
-// What an entry reads. Parameter values by index in Texture::parameters.
+// What an entry reads. Real numbers of one evaluation: T is double or Quad (quad.h).
 template <typename T>
 struct EntryInputs {
     T input[input_count] = {};
-    std::vector<Scalar<T>> parameters;            // of an image: any
-    std::vector<const haptel_image*> images = {}; // by the same index; missing: flat
+    std::vector<Slot<T>> parameters; // by index in Texture::parameters
 };
 
 // Of one module, which must be verified and must not change meanwhile; prepared once, so that no evaluation allocates.
@@ -32,19 +26,24 @@ template <typename T>
 class Interpreter {
 public:
     explicit Interpreter(const Module& module);
-    ~Interpreter();
 
     // `inputs` may be null for functions that are not entries. The results stay valid until the next run.
     std::span<const Slot<T>> run(uint32_t function, std::span<const Slot<T>> arguments, const EntryInputs<T>* inputs);
 
     // Digest of every discrete choice of the last run: comparisons, cells, sides of abs, min and max. Two points of one
     // smooth piece of a texture have equal digests. Recorded only after watch_decisions(true).
-    void watch_decisions(bool on);
-    uint64_t decisions() const;
+    void watch_decisions(bool on) { watching = on; }
+    uint64_t decisions() const { return digest; }
 
 private:
-    struct Machine;
-    std::unique_ptr<Machine> machine;
+    struct Frame;
+
+    const Module& module;
+    std::vector<size_t> depths; // by function: slots of its frame and of the deepest chain of calls below it
+    std::vector<Slot<T>> slots, results;
+    const EntryInputs<T>* entry_inputs = nullptr;
+    bool watching = false;
+    uint64_t digest = 0;
 };
 
 } // namespace haptel::ir

@@ -1,164 +1,145 @@
 // Body of the interpreter, for any real type: included by one source file per type (double, Quad) and by nobody else.
 #pragma once
 
-#include "lang/ir/run/decision.h"
-#include "lang/ir/run/flat_code.h"
+#include "lang/ir/op_info.h"
 #include "lang/ir/run/interpret.h"
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 
 namespace haptel::ir {
 
+// The discrete part of what an operation decides, as a number: equal for two inputs that lie on one smooth piece.
 template <typename T>
-Slot<T> slot_of(const Scalar<T>& scalar)
+uint64_t decision(Op op, const Slot<T>& result, const Slot<T>& a, const Slot<T>& b)
 {
-    Slot<T> slot;
-    if (auto* real = std::get_if<T>(&scalar)) slot.real = *real;
-    if (auto* word = std::get_if<uint32_t>(&scalar)) slot.bits = *word;
-    if (auto* boolean = std::get_if<bool>(&scalar)) slot.bits = *boolean;
-    return slot;
+    using std::floor;
+    auto cell = [](const T& whole) { return std::bit_cast<uint64_t>(static_cast<double>(whole)); };
+    auto side = [](const T& left, const T& right) -> uint64_t { return left < right ? 1 : right < left ? 2 : 3; };
+    switch (traits(op).decides) {
+    case Decision::nothing: return 0;
+    case Decision::order: return side(a.real, b.real);
+    case Decision::side: return side(a.real, T(0));
+    case Decision::whole: return cell(result.real);
+    case Decision::cell: return cell(T(floor(a.real)));
+    case Decision::cell_of_quotient: return cell(T(floor(T(a.real / b.real))));
+    case Decision::tip: return side(result.real, T(0));
+    case Decision::quadrant: return side(a.real, T(0)) * 4 + side(b.real, T(0));
+    case Decision::truth: return result.bits;
+    }
+    return 0;
 }
 
+// One call of a function: its values, by Value::index. Those of what it calls lie behind them.
 template <typename T>
-struct Interpreter<T>::Machine {
-    explicit Machine(const Module& whole) : module(whole), functions(flatten(whole)) {}
+struct Interpreter<T>::Frame {
+    Interpreter& machine;
+    const Function& function;
+    Slot<T>* const slots;
 
-    struct Frame {
-        const FlatFunction* function;
-        uint32_t step;
-        uint32_t base;
-    };
-
-    const Module& module;
-    std::vector<FlatFunction> functions;
-    std::vector<Slot<T>> slots;
-    std::vector<Frame> frames; // callers of the running function
-    std::vector<Slot<T>> results;
-    bool watching = false;
-    uint64_t digest = 0;
-
-    Slot<T> table_cell(uint32_t table, Slot<T> index) const
+    void run(const Block& block)
     {
-        const Table& cells = module.tables[table];
-        auto last = static_cast<int64_t>(cells.size()) - 1;
-        auto at = static_cast<size_t>(std::clamp<int64_t>(static_cast<int32_t>(index.bits), 0, last));
-        Slot<T> cell;
+        for (const Instruction& made : block.instructions)
+            std::visit([&](const auto& kind) { run(made, kind); }, made.kind);
+    }
+
+private:
+    Slot<T>& slot(Value value) { return slots[value.index]; }
+    void copy(std::span<const Value> to, std::span<const Value> from)
+    {
+        for (size_t i = 0; i < to.size(); ++i) slot(to[i]) = slot(from[i]);
+    }
+
+    void run(const Instruction& made, const Operation& operation)
+    {
+        const Slot<T>* in[4] = {slots, slots, slots, slots}; // those that it does not take: any
+        for (size_t i = 0; i < made.operands.size(); ++i) in[i] = &slot(made.operands[i]);
+        Slot<T>& result = slot(made.results[0]);
+        execute(operation.op, result, *in[0], *in[1], *in[2], *in[3]);
+        if (!machine.watching) return;
+        machine.digest = (machine.digest ^ decision(operation.op, result, *in[0], *in[1])) * 0x9E3779B97F4A7C15u;
+        machine.digest ^= machine.digest >> 29;
+    }
+    void run(const Instruction& made, const RealConstant& constant) { slot(made.results[0]).real = T(constant.value); }
+    void run(const Instruction& made, const WordConstant& constant) { slot(made.results[0]).bits = constant.bits; }
+    void run(const Instruction& made, const ReadInput& read)
+    {
+        slot(made.results[0]).real = machine.entry_inputs->input[static_cast<size_t>(read.input)];
+    }
+    void run(const Instruction& made, const ReadParameter& read)
+    {
+        slot(made.results[0]) = machine.entry_inputs->parameters[read.parameter];
+    }
+    void run(const Instruction& made, const ReadTable& read)
+    {
+        const Table& cells = machine.module.tables[read.table];
+        const auto index = static_cast<int32_t>(slot(made.operands[0]).bits);
+        const auto at = static_cast<size_t>(std::clamp<int64_t>(index, 0, int64_t{cells.size()} - 1));
         if (cells.element == Type::real)
-            cell.real = T(cells.reals[at]);
+            slot(made.results[0]).real = T(cells.reals[at]);
         else
-            cell.bits = cells.words[at];
-        return cell;
+            slot(made.results[0]).bits = cells.words[at];
     }
-
-    void note(const FlatStep& step, const Slot<T>* frame)
+    void run(const Instruction& made, const Call& call)
     {
-        uint64_t chosen = decision(step.op, frame[step.result], frame[step.operand[0]], frame[step.operand[1]]);
-        digest = (digest ^ chosen) * 0x9E3779B97F4A7C15u;
-        digest ^= digest >> 29;
+        const Function& callee = machine.module.functions[call.function];
+        Frame inner{machine, callee, slots + function.value_types.size()};
+        for (size_t i = 0; i < made.operands.size(); ++i) inner.slot(callee.parameters[i]) = slot(made.operands[i]);
+        inner.run(callee.body);
+        for (size_t i = 0; i < made.results.size(); ++i) slot(made.results[i]) = inner.slot(callee.body.yields[i]);
     }
-
-    std::span<const Slot<T>> run(uint32_t entry, std::span<const Slot<T>> arguments, const EntryInputs<T>* inputs)
+    void run(const Instruction& made, const PointDerivative&) // in no program that passes `verify`
     {
-        const FlatFunction* function = &functions[entry];
-        if (slots.size() < function->depth) slots.resize(function->depth);
-        frames.clear();
-        frames.reserve(function->calls);
-        digest = 0;
-        const std::vector<Value>& parameters = module.functions[entry].parameters;
-        for (size_t i = 0; i < parameters.size(); ++i) slots[parameters[i].index] = arguments[i];
-
-        uint32_t base = 0, next = 0;
-        for (;;) {
-            Slot<T>* frame = slots.data() + base;
-            const FlatStep& step = function->steps[next++];
-            const uint32_t* operand = step.operand;
-            switch (step.kind) {
-            case FlatStep::Kind::operation:
-                execute(step.op, frame[step.result], frame[operand[0]], frame[operand[1]], frame[operand[2]],
-                        frame[operand[3]]);
-                if (watching) note(step, frame);
-                break;
-            case FlatStep::Kind::real_constant: frame[step.result].real = T(function->constants[operand[0]]); break;
-            case FlatStep::Kind::word_constant: frame[step.result].bits = operand[0]; break;
-            case FlatStep::Kind::input: frame[step.result].real = inputs->input[operand[0]]; break;
-            case FlatStep::Kind::parameter: frame[step.result] = slot_of<T>(inputs->parameters[operand[0]]); break;
-            case FlatStep::Kind::image:
-                frame[step.result].image = operand[0] < inputs->images.size() ? inputs->images[operand[0]] : nullptr;
-                break;
-            case FlatStep::Kind::table: frame[step.result] = table_cell(operand[0], frame[operand[1]]); break;
-            case FlatStep::Kind::copy: frame[step.result] = frame[operand[0]]; break;
-            case FlatStep::Kind::jump: next = operand[1]; break;
-            case FlatStep::Kind::jump_unless:
-                if (!frame[operand[0]].bits) next = operand[1];
-                break;
-            case FlatStep::Kind::loop_test:
-                if (!(static_cast<int32_t>(frame[operand[0]].bits) < static_cast<int32_t>(frame[operand[1]].bits)))
-                    next = operand[2];
-                break;
-            case FlatStep::Kind::loop_next:
-                frame[step.result].bits += 1;
-                next = operand[1];
-                break;
-            case FlatStep::Kind::call: {
-                const std::vector<Value>& formal = module.functions[operand[0]].parameters;
-                const uint32_t* actual = function->lists.data() + operand[1];
-                Slot<T>* callee_frame = frame + function->slots;
-                for (size_t i = 0; i < formal.size(); ++i) callee_frame[formal[i].index] = frame[actual[i]];
-                frames.push_back({function, next, base});
-                base += function->slots;
-                function = &functions[operand[0]];
-                next = 0;
-                break;
-            }
-            case FlatStep::Kind::finish: {
-                const uint32_t* yields = function->lists.data() + operand[1];
-                if (frames.empty()) {
-                    results.resize(module.functions[entry].body.yields.size());
-                    for (size_t i = 0; i < results.size(); ++i) results[i] = frame[yields[i]];
-                    return results;
-                }
-                Frame caller = frames.back();
-                frames.pop_back();
-                const FlatStep& call = caller.function->steps[caller.step - 1];
-                const Function& callee = module.functions[call.operand[0]];
-                const uint32_t* targets = caller.function->lists.data() + call.operand[1] + callee.parameters.size();
-                for (size_t i = 0; i < callee.body.yields.size(); ++i)
-                    slots[caller.base + targets[i]] = frame[yields[i]];
-                function = caller.function;
-                next = caller.step;
-                base = caller.base;
-                break;
-            }
-            }
+        slot(made.results[0]).real = T(std::numeric_limits<double>::quiet_NaN());
+    }
+    void run(const Instruction& made, const If& choice)
+    {
+        const Block& arm = choice.arms[slot(made.operands[0]).bits ? 0 : 1];
+        run(arm);
+        copy(made.results, arm.yields);
+    }
+    // The results hold the carried values between iterations: yields may name the body's parameters in any order.
+    void run(const Instruction& made, const For& loop)
+    {
+        const Block& body = loop.body[0];
+        const auto trips = static_cast<int32_t>(slot(made.operands[0]).bits);
+        copy(made.results, std::span(made.operands).subspan(1));
+        for (int32_t trip = 0; trip < trips; ++trip) {
+            slot(body.parameters[0]).bits = static_cast<uint32_t>(trip);
+            copy(std::span(body.parameters).subspan(1), made.results);
+            run(body);
+            copy(made.results, body.yields);
         }
     }
 };
 
 template <typename T>
-Interpreter<T>::Interpreter(const Module& module) : machine(std::make_unique<Machine>(module))
+Interpreter<T>::Interpreter(const Module& whole) : module(whole)
 {
+    for (const Function& function : module.functions) {
+        size_t below = 0;
+        for_each_instruction(function.body, [&](const Instruction& made) {
+            if (auto* call = std::get_if<Call>(&made.kind)) below = std::max(below, depths[call->function]);
+        });
+        depths.push_back(function.value_types.size() + below);
+    }
 }
 
 template <typename T>
-Interpreter<T>::~Interpreter() = default;
-
-template <typename T>
-std::span<const Slot<T>> Interpreter<T>::run(uint32_t function, std::span<const Slot<T>> arguments,
+std::span<const Slot<T>> Interpreter<T>::run(uint32_t entry, std::span<const Slot<T>> arguments,
                                              const EntryInputs<T>* inputs)
 {
-    return machine->run(function, arguments, inputs);
-}
-
-template <typename T>
-void Interpreter<T>::watch_decisions(bool on)
-{
-    machine->watching = on;
-}
-
-template <typename T>
-uint64_t Interpreter<T>::decisions() const
-{
-    return machine->digest;
+    const Function& function = module.functions[entry];
+    if (slots.size() < depths[entry]) slots.resize(depths[entry]);
+    entry_inputs = inputs;
+    digest = 0;
+    Frame frame{*this, function, slots.data()};
+    for (size_t i = 0; i < function.parameters.size(); ++i) slots[function.parameters[i].index] = arguments[i];
+    frame.run(function.body);
+    results.clear();
+    for (Value yield : function.body.yields) results.push_back(slots[yield.index]);
+    return results;
 }
 
 } // namespace haptel::ir

@@ -1,8 +1,8 @@
 // Elementary functions in code have the bits of the compiled ones, one point at a time and in lanes, in every
 // precision.
 #include "bench/elementary_truth.h"
-#include "lang/ir/elementary.h"
 #include "lang/ir/op_info.h"
+#include "lang/ir/semantics.h"
 #include "tests/jit/codegen/engines.h"
 #include "tests/support/ir_parse.h"
 

@@ -68,9 +68,9 @@ private:
         case Type::real:
             return add(block, RealConstant{is_tame() ? 0.125 * below(17) - 1 : special[below(std::size(special))]}, {},
                        type);
-        case Type::boolean: return add(block, BoolConstant{below(2) == 1}, {}, type);
+        case Type::boolean: return add(block, WordConstant{below(2)}, {}, type);
         case Type::i32:
-        case Type::u32: return add(block, IntConstant{special_words[below(std::size(special_words))]}, {}, type);
+        case Type::u32: return add(block, WordConstant{special_words[below(std::size(special_words))]}, {}, type);
         case Type::image: break;
         }
         return {};
@@ -104,8 +104,8 @@ private:
     void table_read(Block& block)
     {
         const auto table = below(2);
-        Value zero = add(block, IntConstant{0}, {}, Type::i32);
-        Value last = add(block, IntConstant{module.tables[table].size() - 1}, {}, Type::i32);
+        Value zero = add(block, WordConstant{0}, {}, Type::i32);
+        Value last = add(block, WordConstant{module.tables[table].size() - 1}, {}, Type::i32);
         Value low = add(block, Operation{Op::imax}, {pick(block, Type::i32), zero}, Type::i32);
         Value index = add(block, Operation{Op::imin}, {low, last}, Type::i32);
         add(block, ReadTable{table}, {index}, module.tables[table].element);
@@ -158,7 +158,7 @@ private:
     {
         std::vector<Type> types = carried_types();
         const uint32_t most = below(4);
-        Value limit = add(block, IntConstant{most}, {}, Type::i32);
+        Value limit = add(block, WordConstant{most}, {}, Type::i32);
         Value trips = add(block, Operation{Op::imin}, {pick(block, Type::i32), limit}, Type::i32);
         Instruction instruction{For{most, {}}, {below(2) ? trips : limit}, {}, {}};
         std::vector<Value> parameters{fresh(Type::i32)};

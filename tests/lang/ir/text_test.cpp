@@ -79,7 +79,7 @@ TEST_CASE("IR text: what is read is what is computed")
 
     EntryInputs<double> inputs;
     inputs.input[0] = 3;
-    inputs.parameters = {5u};
+    inputs.parameters = {{0, 5u}};
     CHECK(std::get<double>(interpret<double>(*parsed.module, 1, {}, &inputs)[0]) == 9); // the else arm: 3 + 6
 }
 

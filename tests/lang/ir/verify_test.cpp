@@ -78,10 +78,10 @@ TEST_CASE("verify: a good module passes, each broken one is refused with the cau
          [](Module& m) { choice(m).arms[1].yields[0] = choice(m).arms[0].instructions[0].results[0]; }},
         {"defined twice", [](Module& m) { instruction(m, 1).results[0] = instruction(m, 0).results[0]; }},
         {"out of range", [](Module& m) { instruction(m, 5).results[0] = {999}; }},
-        {"wrong number of operands", [](Module& m) { instruction(m, 5).operands.pop_back(); }},
-        {"wrong number of operands", [](Module& m) { instruction(m, 5).results.push_back({0}); }},
+        {"wrong type or number", [](Module& m) { instruction(m, 5).operands.pop_back(); }},
+        {"wrong type or number", [](Module& m) { instruction(m, 5).results.push_back({0}); }},
         {"operands of a wrong type", [](Module& m) { instruction(m, 5).operands[0] = m.functions[0].parameters[1]; }},
-        {"result of a wrong type",
+        {"results of a wrong type",
          [](Module& m) { m.functions[0].value_types[instruction(m, 5).results[0].index] = Type::i32; }},
         {"unknown operation", [](Module& m) { std::get<Operation>(instruction(m, 5).kind).op = static_cast<Op>(200); }},
         {"neither constant nor clamped",
@@ -110,7 +110,7 @@ TEST_CASE("verify: a good module passes, each broken one is refused with the cau
              m.functions[2].body.instructions.push_back({Call{1}, {}, {{2}}, {}});
              m.functions[2].value_types.push_back(Type::real);
          }},
-        {"argument of a wrong type",
+        {"arguments or results of a wrong type",
          [](Module& m) {
              std::swap(m.functions[1].body.instructions[3].operands[0],
                        m.functions[1].body.instructions[3].operands[1]);
@@ -122,7 +122,7 @@ TEST_CASE("verify: a good module passes, each broken one is refused with the cau
          [](Module& m) {
              std::get<ReadInput>(m.functions[1].body.instructions[0].kind).input = static_cast<Input>(99);
          }},
-        {"result of a wrong type", [](Module& m) { m.textures[0].parameters[0].type = Type::u32; }},
+        {"results of a wrong type", [](Module& m) { m.textures[0].parameters[0].type = Type::u32; }},
         {"outside of the block", [](Module& m) { m.textures[0].parameters[0].offset = 64; }},
         {"outside of the block", [](Module& m) { m.textures[0].parameters[0].offset = 0; }},
         {"outside of the block", [](Module& m) { m.textures[0].parameters[0].offset = 58; }},
@@ -163,12 +163,12 @@ TEST_CASE("verify: a good module passes, each broken one is refused with the cau
 TEST_CASE("verify: nesting of blocks and calls is bounded")
 {
     Module deep = parsed("function \"f0\" (%x: real) { %y = sin %x return %y }");
-    for (uint32_t i = 1; i <= call_depth_max + 1; ++i) {
+    for (uint32_t i = 1; i <= nesting_max + 1; ++i) {
         Function next = deep.functions[0];
         next.name = "f" + std::to_string(i);
         next.body.instructions[0].kind = Call{i - 1};
         deep.functions.push_back(next);
-        if (i == call_depth_max) CHECK(verify(deep) == "");
+        if (i == nesting_max) CHECK(verify(deep) == "");
     }
     CHECK(verify(deep).find("calls nest deeper") != std::string::npos);
 }

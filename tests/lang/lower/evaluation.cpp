@@ -10,16 +10,16 @@
 namespace haptel::lang::test {
 namespace {
 
-ir::Scalar<double> scalar(ir::Type type, double value)
+ir::Slot<double> slot(ir::Type type, double value)
 {
     switch (type) {
-    case ir::Type::real: return value;
-    case ir::Type::boolean: return value != 0;
-    case ir::Type::image: return uint32_t{0};
-    case ir::Type::i32: return static_cast<uint32_t>(static_cast<int32_t>(value));
-    case ir::Type::u32: return static_cast<uint32_t>(value);
+    case ir::Type::real: return {value};
+    case ir::Type::boolean: return {0, value != 0};
+    case ir::Type::image: return {};
+    case ir::Type::i32: return {0, static_cast<uint32_t>(static_cast<int32_t>(value))};
+    case ir::Type::u32: return {0, static_cast<uint32_t>(value)};
     }
-    return value;
+    return {value};
 }
 
 } // namespace
@@ -46,7 +46,7 @@ Sample evaluate(const std::string& source, const Inputs& inputs)
     for (size_t i = 0; i < texture.parameters.size(); ++i) {
         const ir::Parameter& parameter = texture.parameters[i];
         const double value = i < inputs.parameters.size() ? inputs.parameters[i] : parameter.value;
-        entry.parameters.push_back(scalar(parameter.type, value));
+        entry.parameters.push_back(slot(parameter.type, value));
     }
     const auto results = ir::interpret<double>(module, texture.height_gradient, {}, &entry);
     Sample sample;

@@ -1,7 +1,6 @@
 // Elementary functions against 113 bits: no further away than ops.def says, over the whole range, and at the
 // edges what C99 says.
 #include "bench/elementary_truth.h"
-#include "lang/ir/elementary.h"
 #include "lang/ir/op_info.h"
 #include "lang/ir/semantics.h"
 #include "tests/lang/ir/ir_support.h"

@@ -62,7 +62,7 @@ TEST_CASE("entries: the gradient follows p, and n and uv by their Jacobians on t
           return %h)");
     CHECK(module.textures[0].reads == (HAPTEL_READS_POINT | HAPTEL_READS_NORMAL | HAPTEL_READS_UV));
     EntryInputs<double> inputs;
-    inputs.parameters = {2.0};
+    inputs.parameters = {{2.0}};
     at(inputs, Input::p_x) = 3;
     at(inputs, Input::n_y) = 5;
     at(inputs, Input::uv_y) = 7;
@@ -82,7 +82,7 @@ TEST_CASE("entries: what is not finite becomes zero and a fault bit")
 {
     Module root = with_entries("%x = input p_x\n %h = log %x\n return %h");
     EntryInputs<double> inputs;
-    inputs.parameters = {2.0};
+    inputs.parameters = {{2.0}};
     for (double x : {-1.0, 0.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
         at(inputs, Input::p_x) = x;
         Sample s = sample(root, inputs);
@@ -113,7 +113,7 @@ TEST_CASE("entries: a texture that reads nothing is flat")
     Module module = with_entries("%h = real 0.001\n return %h");
     CHECK(module.textures[0].reads == 0);
     EntryInputs<double> inputs;
-    inputs.parameters = {2.0};
+    inputs.parameters = {{2.0}};
     Sample s = sample(module, inputs);
     CHECK(s.height == 0.001);
     CHECK((s.gradient[0] == 0 && s.gradient[1] == 0 && s.gradient[2] == 0 && s.faults == 0));

@@ -6,30 +6,15 @@
 
 namespace haptel::ir::exact {
 
-#define EXACT(name)                                                                                                    \
+#define ELEMENTARY(name, ...)                                                                                          \
     template <typename T>                                                                                              \
     T name(const T& a)                                                                                                 \
     {                                                                                                                  \
         using std::name;                                                                                               \
         return T(name(a));                                                                                             \
     }
-EXACT(sin)
-EXACT(cos)
-EXACT(tan)
-EXACT(asin)
-EXACT(acos)
-EXACT(atan)
-EXACT(sinh)
-EXACT(cosh)
-EXACT(tanh)
-EXACT(asinh)
-EXACT(acosh)
-EXACT(atanh)
-EXACT(exp)
-EXACT(exp2)
-EXACT(log)
-EXACT(log2)
-#undef EXACT
+#define ELEMENTARY2(...)
+#include "lang/ir/ops.def"
 
 // 0 at the origin, whatever the signs of zeros.
 template <typename T>
