@@ -259,9 +259,10 @@ ExpressionPtr Grammar::grad_call(Span first)
     bool closed = kind(ahead) == Token::name;
     for (uint32_t i = 1; i <= call.order; ++i) closed = closed && kind(ahead + i) == Token::right_paren;
     if (!closed) {
+        const uint32_t reports = diagnostics.reports();
         std::vector<ExpressionPtr> values = arguments();
         if (!accept(Token::left_paren)) return make(since(first), CallExpression{{"grad", first}, std::move(values)});
-        if (call.order == 1) // else the innermost has said it
+        if (diagnostics.reports() == reports) // else what stands in the brackets is told
             error(first, "grad", "grad takes the name of a function",
                   "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)");
         arguments();

@@ -114,9 +114,9 @@ struct FunctionInfo {
     const ast::Function* tree = nullptr;
     uint32_t file = 0;
     bool is_library = false;
-    uint32_t slot_count = 0; // local variables, parameters included
-    uint32_t reads = 0;      // HAPTEL_READS_* of itself and of every function it mentions
-    uint32_t call_depth = 0; // functions in the longest chain of calls that starts here
+    uint32_t slot_count = 0;       // local variables, parameters included
+    uint32_t reads = 0;            // HAPTEL_READS_* of itself and of every function it mentions
+    uint32_t call_depth = 0;       // functions in the longest chain of calls that starts here
     uint32_t derivative_order = 0; // of derivatives of derivatives that it takes, at most
     std::vector<Mention> mentions;
     bool is_valid = true; // false: its head has errors; calls to it are not checked

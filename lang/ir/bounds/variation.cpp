@@ -12,8 +12,8 @@ namespace haptel::ir {
 namespace {
 
 constexpr double rounding_up = 1 + 1e-14; // norms are computed to nearest
-constexpr size_t axes = Variation::directions;
-constexpr size_t pair_of[axes][axes] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}; // in `hessian`
+constexpr size_t axis_count = Variation::directions;
+constexpr size_t pair_of[axis_count][axis_count] = {{0, 1, 2}, {1, 3, 4}, {2, 4, 5}}; // in `hessian`
 
 // An infinite bound times an exact zero is zero: what is bounded is a finite number.
 double times(double a, double b)
@@ -34,9 +34,9 @@ double norm(const Parts& parts, const Size& size)
 double spectral_norm(const std::array<Interval, 6>& matrix)
 {
     double rows = 0, squares = 0;
-    for (size_t j = 0; j < axes; ++j) {
+    for (size_t j = 0; j < axis_count; ++j) {
         double row = 0;
-        for (size_t k = 0; k < axes; ++k) {
+        for (size_t k = 0; k < axis_count; ++k) {
             const double part = size_of(matrix[pair_of[j][k]]);
             row += part;
             squares += times(part, part);
@@ -60,7 +60,7 @@ double jacobian_norm(std::span<const Variation> rows)
         double sum = 0;
         for (const Variation& other : rows) {
             Interval product{0, 0};
-            for (size_t j = 0; j < axes; ++j)
+            for (size_t j = 0; j < axis_count; ++j)
                 product = add(product,
                               &row == &other ? square(row.gradient[j]) : multiply(row.gradient[j], other.gradient[j]));
             sum += size_of(product);
@@ -236,7 +236,7 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
         if (!a.is_active) continue;
         slope += times(size_of(by.first[i]), a.slope);
         curvature += times(size_of(by.first[i]), a.curvature);
-        for (size_t j = 0; j < axes; ++j)
+        for (size_t j = 0; j < axis_count; ++j)
             made.gradient[j] = add(made.gradient[j], multiply(by.first[i], a.gradient[j]));
         for (size_t j = 0; j < made.hessian.size(); ++j)
             made.hessian[j] = add(made.hessian[j], multiply(by.first[i], a.hessian[j]));
@@ -244,8 +244,8 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
             const Variation& b = variations[l];
             if (!b.is_active) continue;
             curvature += times(size_of(by.second[i][l]), times(a.slope, b.slope));
-            for (size_t j = 0; j < axes; ++j)
-                for (size_t k = j; k < axes; ++k) {
+            for (size_t j = 0; j < axis_count; ++j)
+                for (size_t k = j; k < axis_count; ++k) {
                     const Interval product =
                         i == l && j == k ? square(a.gradient[j]) : multiply(a.gradient[j], b.gradient[k]);
                     Interval& sum = made.hessian[pair_of[j][k]];
@@ -280,13 +280,13 @@ Variation chain(const Facts& facts, std::span<const Variation> arguments)
     const double jacobian = jacobian_norm(arguments), second = norm(arguments, &Variation::curvature);
     const double slope = facts.slope.value_or(infinity), curvature = facts.curvature.value_or(infinity);
 
-    double column[axes];
-    for (size_t j = 0; j < axes; ++j) {
+    double column[axis_count];
+    for (size_t j = 0; j < axis_count; ++j) {
         column[j] = norm(arguments, [&](const Variation& argument) { return size_of(argument.gradient[j]); });
         made.gradient[j] = around_zero(times(slope, column[j]));
     }
-    for (size_t j = 0; j < axes; ++j)
-        for (size_t k = j; k < axes; ++k) {
+    for (size_t j = 0; j < axis_count; ++j)
+        for (size_t k = j; k < axis_count; ++k) {
             const size_t pair = pair_of[j][k];
             const double bend =
                 norm(arguments, [&](const Variation& argument) { return size_of(argument.hessian[pair]); });
