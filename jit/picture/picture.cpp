@@ -115,14 +115,32 @@ const char* jpeg_damage(std::string_view bytes)
     return fine;
 }
 
-// TGA has no mark. Whole texels as they are: 18 bytes, a name, and the texels.
-const char* tga_damage(std::string_view bytes)
+// The lowest byte first.
+uint64_t number(std::string_view bytes, size_t at, size_t count)
 {
-    const size_t palette = byte(bytes, 1), kind = byte(bytes, 2), bits = byte(bytes, 16);
-    if (palette != 0 || (kind != 2 && kind != 3) || bits % 8 != 0) return fine;
-    const size_t width = byte(bytes, 12) | byte(bytes, 13) << 8, height = byte(bytes, 14) | byte(bytes, 15) << 8;
-    const size_t begin = 18 + byte(bytes, 0), there = bytes.size() - std::min(bytes.size(), begin);
-    return width * height * (bits / 8) > there ? "it ends before its last texel" : fine; // of 16 + 16 + 5 bits
+    return count == 0 ? 0 : byte(bytes, at) | number(bytes, at + 1, count - 1) << 8;
+}
+
+// Rows of whole words, from a place that the file names. What is packed the reader does not know.
+bool is_cut_bmp(std::string_view bytes)
+{
+    const bool is_first = number(bytes, 14, 4) == 12; // of 1988: sizes of 16 bits
+    const uint64_t width = number(bytes, 18, is_first ? 2 : 4), bits = number(bytes, is_first ? 24 : 28, 2);
+    const auto height = static_cast<int32_t>(number(bytes, is_first ? 20 : 22, is_first ? 2 : 4)); // < 0: from the top
+    if (!is_first && number(bytes, 30, 4) % 3 != 0) return false;
+    const uint64_t row = (width * bits + 31) / 32 * 4, begin = number(bytes, 10, 4);
+    return row != 0 && (begin > bytes.size() || std::abs(int64_t{height}) > int64_t((bytes.size() - begin) / row));
+}
+
+// TGA has no mark: 18 bytes, a name, a palette, and the texels, as they are or up to 128 of them in a packet.
+bool is_cut_tga(std::string_view bytes)
+{
+    const uint64_t palette = byte(bytes, 1), kind = byte(bytes, 2), texel = byte(bytes, 16) / 8;
+    const bool is_packed = kind > 8;
+    if (palette > 1 || kind % 8 == 0 || kind % 8 > 3 || kind > 11 || byte(bytes, 16) % 8 != 0) return false;
+    const uint64_t texels = number(bytes, 12, 2) * number(bytes, 14, 2);
+    const uint64_t begin = 18 + byte(bytes, 0) + palette * number(bytes, 5, 2) * (byte(bytes, 7) / 8);
+    return begin + (is_packed ? (texels + 127) / 128 * (1 + texel) : texels * texel) > bytes.size();
 }
 
 // Damage that the reader of common pictures takes without a look in some of its releases, and computes with: of what is
@@ -131,7 +149,7 @@ const char* tga_damage(std::string_view bytes)
 const char* picture_damage(std::string_view bytes)
 {
     if (bytes.starts_with("\xff\xd8") || bytes.starts_with("\xff\xff")) return jpeg_damage(bytes);
-    return tga_damage(bytes);
+    return (bytes.starts_with("BM") ? is_cut_bmp(bytes) : is_cut_tga(bytes)) ? "it ends before its last texel" : fine;
 }
 
 } // namespace
@@ -147,10 +165,10 @@ Picture read_common_picture(std::string_view bytes)
     allocation_max = 1 << 20;
     if (!stbi_info_from_memory(data, size, &width, &height, &channels))
         return no_picture("is no picture that can be read", formats);
-    Picture made = picture_of(width, height);
+    Picture made = picture_of(width, std::abs(int64_t{height})); // < 0: a BMP from the top
     if (!made.error.empty()) return made;
     // Twice, as it grows by doubling: the file's own bytes, and 4 channels of 16 bits for each texel.
-    allocation_max += 2 * (bytes.size() + 8 * made.gray.size() + static_cast<size_t>(height));
+    allocation_max += 2 * (bytes.size() + 8 * made.gray.size() + static_cast<size_t>(made.height));
     const std::unique_ptr<stbi_us, void (*)(void*)> gray(
         stbi_load_16_from_memory(data, size, &width, &height, &channels, 1), stbi_image_free);
     if (!gray && std::string_view(stbi_failure_reason()) == "Out of memory")

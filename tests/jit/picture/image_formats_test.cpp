@@ -243,6 +243,35 @@ TEST_CASE("picture: a PNM or TGA that ends before its last texel is refused, a w
         for (const size_t there : {size_t{0}, size_t{1}, all / 2, all - 1})
             CHECK(decoded(head + std::string(there, '\xff')).error == "is damaged: it ends before its last texel");
     }
+
+    const std::string packet = "\x8e\x60"; // 15 times the same texel of 8 bits
+    CHECK(decoded(tga(8, 11) + packet).gray.size() == 15);
+    for (const int kind : {10, 11})
+        CHECK(decoded(tga(8, kind) + "\x8e").error == "is damaged: it ends before its last texel");
+}
+
+TEST_CASE("picture: a BMP that ends before its last texel is refused, a whole one is read")
+{
+    for (const int head : {12, 40})
+        for (const int32_t height : {3, -3}) {
+            if (head == 12 && height < 0) continue;
+            CAPTURE(head, height);
+            FileBytes file;
+            for (const char mark : {'B', 'M'}) file.put(static_cast<uint8_t>(mark));
+            for (const int number : {0, 0, 14 + head, head}) file.put(static_cast<uint32_t>(number));
+            if (head == 12)
+                for (const int number : {5, 3, 1, 24}) file.put(static_cast<uint16_t>(number));
+            else {
+                for (const int number : {5, height}) file.put(static_cast<uint32_t>(number));
+                for (const int number : {1, 24}) file.put(static_cast<uint16_t>(number));
+                for (int i = 0; i < 6; ++i) file.put(uint32_t{0});
+            }
+            const size_t all = 3 * 16; // rows of whole words
+            CHECK(decoded(file.bytes + std::string(all, '\x60')).gray.size() == 15);
+            for (const size_t there : {size_t{0}, size_t{1}, all / 2, all - 1})
+                CHECK(decoded(file.bytes + std::string(there, '\x60')).error ==
+                      "is damaged: it ends before its last texel");
+        }
 }
 
 // The format's own words (netpbm.sourceforge.net/doc/pgm.html): two bytes with the most significant first where the
