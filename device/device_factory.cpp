@@ -29,7 +29,7 @@ DeviceResult refused(std::string why, DeviceKey about = DeviceKey::name)
 std::string unknown(std::string_view what, std::string_view name, const std::vector<std::string_view>& known)
 {
     std::string message = fmt::format("unknown {} '{}'", what, name.substr(0, 64));
-    const std::string_view nearest = nearest_name(name, known);
+    const std::string_view nearest = near_name(name, known).name;
     if (!nearest.empty()) return message + fmt::format(": did you mean '{}'?", nearest);
     return message + fmt::format(": there are {}", fmt::join(known, ", "));
 }

@@ -147,7 +147,7 @@ CompileResult compile(const SourceFile& main, const CompileOptions& options,
     if (!options.only_texture.empty()) {
         std::vector<std::string_view> names;
         for (const CheckedTexture& texture : checked.textures) names.push_back(texture.tree->name.text);
-        const std::string_view nearest = nearest_name(options.only_texture, names);
+        const std::string_view nearest = near_name(options.only_texture, names).name;
         if (std::ranges::find(names, options.only_texture) == names.end())
             diagnostics.error({}, "unknown-texture",
                               "this file has no texture '" + printable(options.only_texture) + "'",

@@ -36,7 +36,7 @@ std::string unknown_command(const CLI::App& app, int argc, char** argv)
     for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
         names.push_back(command->get_name());
     if (std::find(names.begin(), names.end(), word) != names.end()) return {};
-    const std::string_view meant = nearest_name(word, names);
+    const std::string_view meant = near_name(word, names).name;
     const std::string advice =
         meant.empty() ? "haptel --help lists them all" : fmt::format("did you mean '{}'?", meant);
     return fmt::format("there is no command '{}': {}", word, advice);

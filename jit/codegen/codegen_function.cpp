@@ -1,6 +1,6 @@
 #include "jit/codegen/codegen_function.h"
 
-#include "jit/codegen/codegen_operation.h"
+#include "jit/codegen/codegen_math.h"
 #include "lang/abi/abi.h"
 
 #include <algorithm>

@@ -2,8 +2,8 @@
 
 #include "lang/ir/elementary_functions.h"
 #include "lang/ir/op_info.h"
+#include "lang/math/elementary_constants.h"
 #include "lang/math/elementary_number.h"
-#include "lang/math/turn_polynomials.h"
 
 #include <llvm/IR/MDBuilder.h>
 #include <span>

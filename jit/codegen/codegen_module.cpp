@@ -2,7 +2,6 @@
 
 #include "jit/codegen/codegen_function.h"
 #include "jit/codegen/kernels.h"
-#include "jit/codegen/uniformity.h"
 #include "lang/ir/dead_code.h"
 
 #include <algorithm>

@@ -1,5 +1,4 @@
-#include "jit/codegen/codegen_operation.h"
-
+// One IR operation as LLVM instructions, all of them in one long page.
 #include "jit/codegen/codegen.h"
 #include "jit/codegen/codegen_math.h"
 #include "lang/math/elementary_number.h"

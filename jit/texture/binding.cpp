@@ -56,7 +56,7 @@ std::string did_you_mean(std::string_view name, const Items& items, const std::s
     std::vector<std::string_view> names;
     for (const auto& item : items) names.push_back(item.name);
     if (names.empty()) return "it has none";
-    const std::string_view nearest = nearest_name(name, names);
+    const std::string_view nearest = near_name(name, names).name;
     if (!nearest.empty()) return "did you mean '" + std::string(nearest) + "'?";
     return "it has the " + kind + " " + list_of(items);
 }

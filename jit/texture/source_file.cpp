@@ -28,7 +28,7 @@ std::string did_you_mean(const fs::path& path)
          entry.increment(unreadable))
         if (entry->path().extension() == ".haptel") names.push_back(entry->path().filename());
     const std::string wanted = path.filename();
-    const std::string_view nearest = nearest_name(wanted, {names.begin(), names.end()});
+    const std::string_view nearest = near_name(wanted, {names.begin(), names.end()}).name;
     if (!nearest.empty()) return "did you mean '" + lang::printable(nearest) + "'?";
     const std::string there = "'" + lang::printable(folder.lexically_normal().string()) + "'";
     if (!fs::is_directory(folder, ignored)) return "there is no folder " + there;

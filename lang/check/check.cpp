@@ -42,9 +42,7 @@ Type resolve_type(CheckContext& context, const TypeName& name)
     if (name.base.text.starts_with("mat") && name.base.text.find('x') != std::string::npos)
         reported.hint = "matrices are square: mat2, mat3 and mat4";
     else
-        propose(reported, name.base.span,
-                near_name(name.base.text,
-                          {"float", "int", "uint", "bool", "vec2", "vec3", "vec4", "mat2", "mat3", "mat4", "image"}));
+        propose(reported, name.base.span, near_name(name.base.text, {std::begin(own_types), std::end(own_types)}));
     return Type::error();
 }
 

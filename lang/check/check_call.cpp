@@ -360,8 +360,8 @@ void BodyChecker::report_unknown_function(const Call& call)
         if (takes(stem, call)) reported.fix = FixIt{span, std::string(stem)};
         return;
     }
-    std::vector<std::string_view> names{"float", "int",  "uint", "bool", "vec2", "vec3",
-                                        "vec4",  "mat2", "mat3", "mat4", "grad"};
+    std::vector<std::string_view> names(types_of_numbers.begin(), types_of_numbers.end());
+    names.push_back("grad");
     for (const Declarations* layer : scope.layers)
         for (const auto& [known, functions] : layer->functions) names.push_back(known);
     for (const auto& [known, overloads] : builtin_overloads()) names.push_back(known);

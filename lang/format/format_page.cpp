@@ -9,6 +9,12 @@ namespace haptel::lang {
 
 namespace {
 
+// Columns that a line of UTF-8 takes.
+size_t width_of(std::string_view text)
+{
+    return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
 bool ends_operand(const Piece& piece)
 {
     constexpr Token ends[] = {Token::name, Token::number, Token::string, Token::kw_true, Token::kw_false};

@@ -1,6 +1,5 @@
-#include "lang/format/format_pieces.h"
-
-#include <algorithm>
+// Tokens and the space between them to pieces.
+#include "lang/format/format_page.h"
 
 namespace haptel::lang {
 
@@ -77,11 +76,6 @@ std::vector<Piece> pieces_of(std::string_view text, const std::vector<PlacedToke
         done = tokens[i].end;
     }
     return pieces;
-}
-
-size_t width_of(std::string_view text)
-{
-    return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }
 
 } // namespace haptel::lang

@@ -21,12 +21,7 @@ static_assert(are_whole(all_ops()),
 // Adding a function to a module must not move the blocks of the others: they are held by pointer while it is built.
 static_assert(std::is_nothrow_move_constructible_v<Function>);
 
-constexpr std::string_view input_names[] = {
-#define INPUT(name) #name,
-#include "lang/ir/inputs.def"
-};
-
-// By type, input and continuity
+// By type and continuity
 constexpr std::string_view type_letters = "riubm", type_names[] = {"real", "i32", "u32", "bool", "image"};
 constexpr std::string_view continuity_names[] = {"unknown", "jump", "C0", "C1", "C2", "smooth"};
 constexpr Continuity of_derivative[] = {Continuity::unknown, Continuity::jump, Continuity::jump,
@@ -44,11 +39,6 @@ std::optional<Op> op_named(std::string_view name)
 std::string_view to_string(Type type)
 {
     return type_names[static_cast<size_t>(type)];
-}
-
-std::string_view to_string(Input input)
-{
-    return input_names[static_cast<size_t>(input)];
 }
 
 std::optional<Type> result_type(Op op, std::span<const Type> operands)

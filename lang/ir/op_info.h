@@ -128,7 +128,6 @@ constexpr bool is_length(Op op)
 std::optional<Op> op_named(std::string_view name);
 
 std::string_view to_string(Type type);             // "real", "i32", "u32", "bool", "image"
-std::string_view to_string(Input input);           // "p_x"
 std::string_view to_string(Continuity continuity); // "unknown", "jump", "C0", "C1", "C2", "smooth"
 std::optional<Continuity> continuity_named(std::string_view name);
 

@@ -9,8 +9,8 @@
 
 #include "lang/ir/elementary_exact.h"
 #include "lang/ir/ir.h"
+#include "lang/math/elementary_constants.h"
 #include "lang/math/spline.h"
-#include "lang/math/turn_polynomials.h"
 
 #include <bit>
 #include <cmath>

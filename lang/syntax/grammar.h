@@ -13,8 +13,10 @@ namespace haptel::lang {
 
 // A type that stands for each of some: a function whose parameters name it is read once for each.
 inline constexpr std::string_view any_size = "vecN", sizes_of_any[] = {"vec2", "vec3"};
+// Those that are made of numbers stand first.
 inline constexpr std::string_view own_types[] = {"float", "int",  "uint", "bool", "vec2",  "vec3",
                                                  "vec4",  "mat2", "mat3", "mat4", "image", "void"};
+inline constexpr std::span types_of_numbers = std::span(own_types).first<10>();
 bool is_own_type(std::string_view word);
 // Those of other languages too.
 bool is_type_word(std::string_view word);

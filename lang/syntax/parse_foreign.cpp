@@ -72,7 +72,7 @@ void Grammar::read_misspelt_keyword()
 void Grammar::read_misspelt_in()
 {
     const bool is_word = (at(Token::name) && !is_type_word(text())) || at(Token::kw_if);
-    if (lost || !is_word || nearest_name(text(), {"in"}).empty()) return;
+    if (lost || !is_word || near_name(text(), {"in"}).name.empty()) return;
     const Span word = span();
     list.tokens[position].kind = Token::kw_in;
     error(word, "syntax", "expected 'in', ',' or ')'" + found(), "did you mean 'in'?").fix = FixIt{word, "in"};

@@ -99,7 +99,7 @@ bool Grammar::top_level_name(File& result)
         return true;
     }
     std::string_view guess =
-        is_type_word(text()) ? std::string_view{} : nearest_name(text(), {"texture", "import", "const"});
+        is_type_word(text()) ? std::string_view{} : near_name(text(), {"texture", "import", "const"}).name;
     if (foreign) guess = foreign->replacement;
     const bool follows = kind(1) == Token::name || (guess == "import" && kind(1) == Token::string);
     if (!guess.empty() && follows) {

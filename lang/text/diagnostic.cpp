@@ -5,19 +5,10 @@
 
 namespace haptel::lang {
 
-Diagnostic& Diagnostics::error(Span span, ErrorCode code, std::string message, std::string_view hint)
+const DiagnosticInfo* find_diagnostic(std::string_view code)
 {
-    return add({Severity::error, code.string(), span, std::move(message), std::string(hint), {}, {}});
-}
-
-Diagnostic& Diagnostics::warning(Span span, WarningCode code, std::string message, std::string_view hint)
-{
-    return add({Severity::warning, code.string(), span, std::move(message), std::string(hint), {}, {}});
-}
-
-Diagnostic& Diagnostics::note(Span span, NoteCode code, std::string message, std::string_view hint)
-{
-    return add({Severity::note, code.string(), span, std::move(message), std::string(hint), {}, {}});
+    const auto found = std::ranges::find(all_diagnostics, code, &DiagnosticInfo::code);
+    return found == std::end(all_diagnostics) ? nullptr : found;
 }
 
 Diagnostic& Diagnostics::add(Diagnostic diagnostic)
@@ -30,10 +21,14 @@ Diagnostic& Diagnostics::add(Diagnostic diagnostic)
         return is_error ? other.severity == Severity::error
                         : other.span.end == span.end && other.code == diagnostic.code;
     };
-    const bool no_room = is_error ? full() : items.size() - error_count >= notice_limit;
-    if (no_room || std::ranges::any_of(items, is_same)) return scratch = std::move(diagnostic);
+    const auto no_room = [&] { return is_error ? full() : items.size() - error_count >= notice_limit; };
+    if (no_room() || std::ranges::any_of(items, is_same)) return scratch = std::move(diagnostic);
     if (is_error) ++error_count;
     items.push_back(std::move(diagnostic));
+    if (no_room()) {
+        const std::string kind = is_error ? "error" : "warning or note";
+        items.back().related.push_back({items.back().span, "this is the last " + kind + " that is told"});
+    }
     return items.back();
 }
 

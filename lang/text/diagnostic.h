@@ -1,14 +1,68 @@
-// What the compiler has to say, as data. Nothing in lang prints, exits or throws across its interface.
+// What the compiler has to say, as data. Nothing in lang prints, exits or throws across its interface. Each code of a
+// finding is listed once, in diagnostics.def; one that is not listed there, or there with another severity, does not
+// compile.
 #pragma once
 
-#include "lang/text/diagnostic_code.h"
 #include "lang/text/source.h"
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 namespace haptel::lang {
+
+enum class Severity : uint8_t { error, warning, note };
+
+// What is to be known of a code. `wrong` is a small text that has the finding, `right` the same text mended; both are
+// empty where no small text shows it.
+struct DiagnosticInfo {
+    Severity severity;
+    std::string_view code, meaning, explanation, wrong, right;
+};
+
+// In the order of diagnostics.def.
+inline constexpr DiagnosticInfo all_diagnostics[] = {
+#define DIAGNOSTIC(severity, code, meaning, explanation, wrong, right)                                                 \
+    {Severity::severity, code, meaning, explanation, wrong, right},
+#include "lang/text/diagnostics.def"
+#undef DIAGNOSTIC
+};
+// Null: there is no such code.
+const DiagnosticInfo* find_diagnostic(std::string_view code);
+constexpr std::string_view name_of(Severity severity)
+{
+    return severity == Severity::error ? "error" : severity == Severity::warning ? "warning" : "note";
+}
+
+constexpr bool is_listed(std::string_view code, Severity severity)
+{
+    for (const DiagnosticInfo& listed : all_diagnostics)
+        if (listed.code == code) return listed.severity == severity;
+    return false;
+}
+void this_code_is_not_in_diagnostics_def(); // never called: where the compiler says that it is, the code is not listed
+
+// A listed code of that severity, made from a literal when the program is compiled.
+template <Severity severity>
+class CodeOf {
+public:
+    consteval CodeOf(const char* code) : text(code)
+    {
+        if (!is_listed(code, severity)) this_code_is_not_in_diagnostics_def();
+    }
+    operator std::string_view() const { return text; }
+    std::string string() const { return std::string(text); }
+    friend bool operator==(CodeOf a, CodeOf b) { return a.text == b.text; }
+
+private:
+    std::string_view text;
+};
+using ErrorCode = CodeOf<Severity::error>;
+using WarningCode = CodeOf<Severity::warning>;
+using NoteCode = CodeOf<Severity::note>;
 
 // Replaces the text of `span` by `replacement`; `haptel check --fix` does so unseen. Hence it may only be what
 // certainly means the same, in the language that the author writes: an exact synonym, a mark that is missing, a word
@@ -39,9 +93,18 @@ struct Diagnostic {
 class Diagnostics {
 public:
     // Returns the stored diagnostic to add related places or a fix to; a dropped one goes to a scratch object.
-    Diagnostic& error(Span span, ErrorCode code, std::string message, std::string_view hint = {});
-    Diagnostic& warning(Span span, WarningCode code, std::string message, std::string_view hint = {});
-    Diagnostic& note(Span span, NoteCode code, std::string message, std::string_view hint = {});
+    Diagnostic& error(Span span, ErrorCode code, std::string message, std::string_view hint = {})
+    {
+        return add({Severity::error, code.string(), span, std::move(message), std::string(hint), {}, {}});
+    }
+    Diagnostic& warning(Span span, WarningCode code, std::string message, std::string_view hint = {})
+    {
+        return add({Severity::warning, code.string(), span, std::move(message), std::string(hint), {}, {}});
+    }
+    Diagnostic& note(Span span, NoteCode code, std::string message, std::string_view hint = {})
+    {
+        return add({Severity::note, code.string(), span, std::move(message), std::string(hint), {}, {}});
+    }
 
     // An error that follows from one that was reported is not said, but what it is in is not sound either.
     void count_consequence() { ++report_count; }

@@ -37,31 +37,32 @@ inline double edit_distance(std::string_view a, std::string_view b)
 
 struct NearName {
     std::string_view name; // empty: none is near enough to be meant
-    bool is_only = false;  // no other is as near
+    bool is_only = false;  // none other may be meant: others are farther by far, and most letters are the same
 };
 
 inline NearName near_name(std::string_view name, const std::vector<std::string_view>& candidates)
 {
+    constexpr double hardly = 0.2; // one that is nearer by this is hardly likelier: a letter too many, or another one
     NearName best;
-    double best_distance = std::max(1.0, static_cast<double>(name.size()) / 3) + 0.11;
+    double best_distance = std::max(1.0, static_cast<double>(name.size()) / 3) + 0.11, next_distance = near_name_max;
     for (const std::string_view candidate : candidates) {
         const size_t longer = std::max(name.size(), candidate.size()),
                      shorter = std::min(name.size(), candidate.size());
         const double keeps_length = longer > shorter ? 0.1 : 0; // as a slip does
-        if (0.5 * static_cast<double>(longer - shorter) + keeps_length > best_distance) continue;
+        const double least = 0.5 * static_cast<double>(longer - shorter) + keeps_length;
+        if (candidate == best.name || least > best_distance + hardly) continue;
         const double distance = edit_distance(name, candidate) + keeps_length;
         if (distance >= static_cast<double>(longer)) continue; // nothing is alike
-        if (distance == best_distance && candidate != best.name) best.is_only = false;
-        if (distance >= best_distance) continue;
-        best = {candidate, true};
-        best_distance = distance;
+        if (distance < best_distance) {
+            if (!best.name.empty()) next_distance = best_distance;
+            best.name = candidate;
+            best_distance = distance;
+        } else {
+            next_distance = std::min(next_distance, distance);
+        }
     }
+    best.is_only = next_distance > best_distance + hardly && 2 * best_distance < static_cast<double>(name.size());
     return best;
-}
-
-inline std::string_view nearest_name(std::string_view name, const std::vector<std::string_view>& candidates)
-{
-    return near_name(name, candidates).name;
 }
 
 } // namespace haptel

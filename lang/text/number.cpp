@@ -98,7 +98,7 @@ std::string hint_at_units(std::string_view suffix)
     if (suffix.starts_with("\xC2\xB5") || suffix.starts_with("\xCE\xBC")) return "write um for micrometres"; // both mu
     std::vector<std::string_view> names;
     for (const Unit& unit : units) names.push_back(unit.name);
-    const std::string guess(nearest_name(suffix, names));
+    const std::string guess(near_name(suffix, names).name);
     return (guess.empty() ? "" : "did you mean '" + guess + "'? ") +
            "units are m, cm, mm, um, nm, deg, rad, s, ms, Hz and kHz";
 }

@@ -2,7 +2,7 @@
 // once. 0.8mm is the f64 nearest to 0.0008, not 0.8 * 0.001.
 #pragma once
 
-#include "lang/text/diagnostic_code.h"
+#include "lang/text/diagnostic.h"
 
 #include <cstdint>
 #include <string>

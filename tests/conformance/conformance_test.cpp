@@ -120,7 +120,7 @@ TEST_CASE("conformance: every finding that a text can show has a file")
     const std::set<std::string_view> elsewhere = {
         "bad-value", "coarse-picture",    "dimension-limit", "internal-error",  "no-code",        "not-close-enough",
         "too-large", "unknown-parameter", "unknown-texture", "unreadable-file", "unwritable-file"};
-    for (const lang::DiagnosticInfo& info : lang::all_diagnostics()) {
+    for (const lang::DiagnosticInfo& info : lang::all_diagnostics) {
         CAPTURE(info.code);
         CHECK(shown.contains(std::string(info.code)) != elsewhere.contains(info.code));
     }

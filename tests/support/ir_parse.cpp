@@ -263,7 +263,7 @@ private:
     {
         std::vector<std::string_view> names;
         for (const OpInfo& info : all_ops()) names.push_back(info.name);
-        const std::string_view nearest = nearest_name(token().text, names);
+        const std::string_view nearest = near_name(token().text, names).name;
         return nearest.empty() ? "" : ", did you mean '" + std::string(nearest) + "'?";
     }
 

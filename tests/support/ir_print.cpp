@@ -6,6 +6,16 @@
 #include <cmath>
 
 namespace haptel::ir {
+
+std::string_view to_string(Input input)
+{
+    constexpr std::string_view names[] = {
+#define INPUT(name) #name,
+#include "lang/ir/inputs.def"
+    };
+    return names[static_cast<size_t>(input)];
+}
+
 namespace {
 
 // Shortest digits that read back as the same bits; a NaN other than the usual one shows its bits.

@@ -248,7 +248,7 @@ void CheckRun::report_unknown_parameters()
     for (size_t i = 0; i < is_set.size(); ++i) {
         if (is_set[i]) continue;
         const std::string& name = options.parameters[i].first;
-        const std::string_view nearest = nearest_name(name, names);
+        const std::string_view nearest = near_name(name, names).name;
         say("unknown-parameter", "no texture has a parameter '" + name + "'",
             nearest.empty() ? "" : "did you mean '" + std::string(nearest) + "'?", options.files.front());
     }

@@ -49,7 +49,7 @@ ExitCode explain(const std::string& code, bool json)
 {
     if (code.empty()) {
         Json all = Json::array();
-        for (const lang::DiagnosticInfo& info : lang::all_diagnostics()) {
+        for (const lang::DiagnosticInfo& info : lang::all_diagnostics) {
             all.push_back(to_json(info));
             if (!json) fmt::print("{:<24} {:<8} {}\n", info.code, lang::name_of(info.severity), info.meaning);
         }
@@ -59,8 +59,8 @@ ExitCode explain(const std::string& code, bool json)
     const lang::DiagnosticInfo* info = lang::find_diagnostic(code);
     if (!info) {
         std::vector<std::string_view> codes;
-        for (const lang::DiagnosticInfo& known : lang::all_diagnostics()) codes.push_back(known.code);
-        const std::string_view nearest = nearest_name(code, codes);
+        for (const lang::DiagnosticInfo& known : lang::all_diagnostics) codes.push_back(known.code);
+        const std::string_view nearest = near_name(code, codes).name;
         say_error(fmt::format("there is no code '{}': {}", lang::printable(code),
                               nearest.empty() ? "haptel check --explain lists them all"
                                               : fmt::format("did you mean '{}'?", nearest)));

@@ -41,7 +41,7 @@ ExitCode show_entry(const InfoOptions& options)
         text += (text.empty() ? "" : "\n") + to_text(entry);
     }
     if (found.empty()) {
-        const std::string_view meant = nearest_name(options.what, names);
+        const std::string_view meant = near_name(options.what, names).name;
         say_error(fmt::format("there is no function '{}': {}", lang::printable(options.what),
                               meant.empty() ? "haptel info lists them all; a file ends in .haptel"
                                             : fmt::format("did you mean '{}'?", meant)));
@@ -124,7 +124,7 @@ ExitCode show_file(const InfoOptions& options)
                 text += (text.empty() ? "" : "\n") + to_text(result.sources, written, texture);
     }
     if (all.empty() && !wanted.empty()) {
-        const std::string_view meant = nearest_name(wanted, names);
+        const std::string_view meant = near_name(wanted, names).name;
         say_error(fmt::format("{} has no texture '{}'{}", path, lang::printable(wanted),
                               meant.empty() ? "" : fmt::format(": did you mean '{}'?", meant)));
         return ExitCode::findings;

@@ -1,6 +1,6 @@
 // Iterations of a loop side by side, for one point: which loops allow it, and that it changes nothing but the order of
 // additions.
-#include "jit/codegen/uniformity.h"
+#include "jit/codegen/iteration_lanes.h"
 #include "tests/jit/codegen/samples.h"
 #include "tests/support/haptel_files.h"
 

@@ -1,5 +1,5 @@
 // Many points at once: each sample of a batch is that of the entry for one point, bit for bit.
-#include "jit/codegen/uniformity.h"
+#include "jit/codegen/iteration_lanes.h"
 #include "tests/jit/codegen/batch.h"
 #include "tests/jit/codegen/samples.h"
 #include "tests/support/haptel_files.h"

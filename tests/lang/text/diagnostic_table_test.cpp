@@ -46,7 +46,7 @@ std::set<std::string> said(const CompileResult& result)
 
 TEST_CASE("diagnostics: every wrong example has its finding, every right one has none")
 {
-    for (const DiagnosticInfo& info : all_diagnostics()) {
+    for (const DiagnosticInfo& info : all_diagnostics) {
         if (info.wrong.empty()) continue;
         CAPTURE(info.code, info.wrong, info.right);
         const std::string finding = std::string(name_of(info.severity)) + " " + std::string(info.code);
@@ -62,7 +62,7 @@ TEST_CASE("diagnostics: the table is complete and tidy")
         "bad-value", "coarse-picture",    "dimension-limit", "internal-error",  "no-code",        "not-close-enough",
         "too-large", "unknown-parameter", "unknown-texture", "unreadable-file", "unwritable-file"};
     std::set<std::string_view> codes, shown_nowhere;
-    for (const DiagnosticInfo& info : all_diagnostics()) {
+    for (const DiagnosticInfo& info : all_diagnostics) {
         CAPTURE(info.code);
         CHECK(codes.insert(info.code).second);
         CHECK(info.code.find_first_not_of("abcdefghijklmnopqrstuvwxyz-") == std::string_view::npos);

@@ -116,6 +116,7 @@ TEST_CASE("one error per place, a bounded number of them, the rest goes nowhere"
     CHECK(diagnostics.all().size() == 51);
     for (uint32_t i = 0; i < 1000; ++i) diagnostics.note({0, i, i + 1}, "replaces-library", "more");
     CHECK(diagnostics.all().size() == 250);
+    for (size_t i = 0; i < 250; ++i) CHECK(diagnostics.all()[i].related.size() == (i == 50 || i == 249)); // says so
 }
 
 TEST_CASE("findings are sorted by file and place")
@@ -154,22 +155,39 @@ TEST_CASE("colour wraps label and underline and changes no text")
     CHECK(colored == render({diagnostic}, one("a"), false));
 }
 
+TEST_CASE("a near name stands alone where no other may be meant")
+{
+    const std::vector<std::string_view> names = {"asin", "asinh", "min", "mins", "uv", "octaves", "floor", "p"};
+    const auto only = [&](std::string_view word) {
+        const haptel::NearName near = haptel::near_name(word, names);
+        return near.is_only ? std::string(near.name) : "";
+    };
+    CHECK(only("octave") == "octaves");
+    CHECK(only("flor") == "floor");
+    CHECK(only("mni") == "min");
+    CHECK(only("asing") == ""); // asinh by one letter, asin by one too many
+    CHECK(only("min3") == "");
+    CHECK(only("u1") == ""); // half of its letters say nothing
+    CHECK(only("v") == "");
+    CHECK(only("P") == "p");
+}
+
 TEST_CASE("the nearest name, if it is near enough")
 {
     const std::vector<std::string_view> names = {"octaves", "depth", "pitch", "fbm", "p"};
-    CHECK(haptel::nearest_name("octave", names) == "octaves");
-    CHECK(haptel::nearest_name("Depth", names) == "depth");
-    CHECK(haptel::nearest_name("dpeth", names) == "depth");
-    CHECK(haptel::nearest_name("fmb", names) == "fbm");
-    CHECK(haptel::nearest_name("width", names) == "");
-    CHECK(haptel::nearest_name("x", names) == "");
-    CHECK(haptel::nearest_name("", names) == "");
-    CHECK(haptel::nearest_name(std::string(1000, 'a'), names) == "");
-    CHECK(haptel::nearest_name("pitch", {}) == "");
+    CHECK(haptel::near_name("octave", names).name == "octaves");
+    CHECK(haptel::near_name("Depth", names).name == "depth");
+    CHECK(haptel::near_name("dpeth", names).name == "depth");
+    CHECK(haptel::near_name("fmb", names).name == "fbm");
+    CHECK(haptel::near_name("width", names).name == "");
+    CHECK(haptel::near_name("x", names).name == "");
+    CHECK(haptel::near_name("", names).name == "");
+    CHECK(haptel::near_name(std::string(1000, 'a'), names).name == "");
+    CHECK(haptel::near_name("pitch", {}).name == "");
     // A letter typed twice, or once where it stands twice, is likelier than another letter.
     const std::vector<std::string_view> functions = {"sign", "sinh", "sin", "cross", "floor"};
-    CHECK(haptel::nearest_name("sinn", functions) == "sin");
-    CHECK(haptel::nearest_name("sinhh", functions) == "sinh");
-    CHECK(haptel::nearest_name("cros", functions) == "cross");
-    CHECK(haptel::nearest_name("sinj", functions) == "sinh"); // no doubling: a slip keeps the length
+    CHECK(haptel::near_name("sinn", functions).name == "sin");
+    CHECK(haptel::near_name("sinhh", functions).name == "sinh");
+    CHECK(haptel::near_name("cros", functions).name == "cross");
+    CHECK(haptel::near_name("sinj", functions).name == "sinh"); // no doubling: a slip keeps the length
 }

@@ -106,7 +106,7 @@ TEST_CASE("fixes: line ends, marks and letters beside a fix are kept byte by byt
 TEST_CASE("fixes: of every example and golden file, none makes it worse, and a second run finds nothing more")
 {
     std::vector<std::string> texts;
-    for (const lang::DiagnosticInfo& info : lang::all_diagnostics()) texts.emplace_back(info.wrong);
+    for (const lang::DiagnosticInfo& info : lang::all_diagnostics) texts.emplace_back(info.wrong);
     for (const auto& entry : std::filesystem::directory_iterator(HAPTEL_SOURCE_DIR "/tests/lang/golden"))
         texts.push_back(read_file(entry.path()));
     size_t fixed = 0;
