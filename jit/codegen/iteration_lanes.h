@@ -54,8 +54,8 @@ std::vector<bool> varying_values(const ir::Function& function, const std::vector
 // Those of a function; where one is in another, the outer one. `varies`: varying_values.
 LaneLoops lane_loops(const ir::Function& function, const std::vector<bool>& varies);
 
-// The same between the iterations of one loop, for one point: of the body of each of `loops`, of the ordered ones or of
-// the others, or of everything where those of the function's parameters vary.
+// As varying_values, but between the iterations of one loop, for one point: of the body of each of `loops`, of the
+// ordered ones or of the others, or of everything where those of the function's parameters vary.
 std::vector<bool> varying_iterations(const ir::Function& function, const std::vector<bool>& parameters,
                                      const LaneLoops& loops, bool ordered);
 
