@@ -106,7 +106,7 @@ std::vector<CompileRow> bench_compile(bool quick, const FreshProcess& fresh_proc
         all.push_back(
             {{std::move(text.name), lines, {}, {}, {}, 0, 0, 0}, std::move(text.text), {}, {}, {}, {}, {}, {}});
     }
-    const uint32_t rounds = quick ? 11 : 101, fresh_rounds = quick ? 1 : 5;
+    const uint32_t rounds = quick ? 5 : 101, fresh_rounds = quick ? 1 : 5;
     const uint32_t rounds_of_long = quick ? 2 : 11; // a second each
     for (Measured& one : all) measure_warm(one, 0); // what is only done once per process is not warm
     for (Measured& one : all) one.front_end_ms.clear(), one.warm_ms.clear(), one.binding_ms.clear();

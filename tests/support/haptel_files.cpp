@@ -1,6 +1,7 @@
 #include "tests/support/haptel_files.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 namespace haptel::test {
 
@@ -14,14 +15,14 @@ std::vector<std::filesystem::path> haptel_files(const std::vector<std::string>& 
     return files;
 }
 
-std::vector<std::filesystem::path> texture_files()
+std::vector<std::filesystem::path> texture_files(const std::vector<std::string>& folders)
 {
-    const std::vector<std::filesystem::path> files = haptel_files({"stdlib/tests", "examples/textures"});
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    const size_t step = 3;
+    const size_t step = 10;
 #else
-    const size_t step = 1;
+    const size_t step = std::getenv("HAPTEL_ISA") ? 3 : 1;
 #endif
+    const std::vector<std::filesystem::path> files = haptel_files(folders);
     std::vector<std::filesystem::path> some;
     for (size_t i = 0; i < files.size(); i += step) some.push_back(files[i]);
     return some;

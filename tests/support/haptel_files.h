@@ -10,8 +10,10 @@ namespace haptel::test {
 // Every .haptel file that stands in one of the folders, which are named from the project's root; in order.
 std::vector<std::filesystem::path> haptel_files(const std::vector<std::string>& folders);
 
-// The library's textures and the examples', for tests of what compiled code computes. That code is not sanitized, only
-// what compiles it, and that is slow: then every third file is enough.
-std::vector<std::filesystem::path> texture_files();
+// The library's textures and the examples', for tests of what compiled code computes: every tenth file where the
+// program is sanitized, for that code is not, only what compiles it, which is then slow; every third one where the
+// instruction set is chosen, for those of the machine are tried with all of them.
+std::vector<std::filesystem::path> texture_files(const std::vector<std::string>& folders = {"stdlib/tests",
+                                                                                            "examples/textures"});
 
 } // namespace haptel::test

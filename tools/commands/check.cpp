@@ -216,7 +216,10 @@ void CheckRun::check(const std::string& path)
     lang::CompileResult result = compile_file(path);
     lang::Diagnostics& diagnostics = result.diagnostics;
     if (result.program) {
-        for (const ir::Texture& texture : result.program->module.textures) {
+        const auto& textures = result.program->module.textures;
+        Progress progress;
+        for (const ir::Texture& texture : textures) {
+            progress.show(static_cast<double>(&texture - textures.data()) / static_cast<double>(textures.size()));
             const std::vector<double> values = values_of(path, texture);
             const auto images = images_of(path, texture);
             std::vector<const ir::SplineImage*> views;
