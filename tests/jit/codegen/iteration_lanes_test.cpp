@@ -239,8 +239,9 @@ TEST_CASE("iterations in lanes: every texture's height is the same with and with
     const jit::Precision precision = GENERATE(jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32);
     std::mt19937_64 random(8);
     std::uniform_real_distribution<double> place(-0.02, 0.02);
+    const std::vector<std::filesystem::path> files = test::texture_files();
     size_t in_another_order = 0;
-    for (const std::filesystem::path& file : test::texture_files()) {
+    for (const std::filesystem::path& file : files) {
         jit::TextureOptions options;
         options.precision = precision;
         options.iterations_in_lanes = true;
@@ -272,7 +273,7 @@ TEST_CASE("iterations in lanes: every texture's height is the same with and with
             in_another_order += differs > 0;
         }
     }
-    CHECK(in_another_order > 10);
+    CHECK(3 * in_another_order > files.size());
 }
 
 // Bits, not numbers: no sum here is exact, so that any other order of operations would show.
