@@ -95,7 +95,7 @@ TEST_CASE("library and examples: gradients are those of the heights, heights sta
     const auto [footprint_m, folder] = GENERATE(table<double, std::string>(
         {{0.0, "stdlib/tests"}, {0.0, "examples/textures"}, {0.6e-3, "stdlib/tests"}, {0.6e-3, "examples/textures"}}));
     {
-        for (const std::filesystem::path& path : test::haptel_files({folder})) {
+        for (const std::filesystem::path& path : test::texture_files({folder})) {
             const jit::CompiledTextures compiled = jit::compile_texture_file(path.string());
             INFO(compiled.rendered());
             REQUIRE(compiled.program);

@@ -10,9 +10,9 @@ namespace haptel::test {
 // Every .haptel file that stands in one of the folders, which are named from the project's root; in order.
 std::vector<std::filesystem::path> haptel_files(const std::vector<std::string>& folders);
 
-// The library's textures and the examples', for tests of what compiled code computes: every tenth file where the
-// program is sanitized, for that code is not, only what compiles it, which is then slow; every third one where the
-// instruction set is chosen, for those of the machine are tried with all of them.
+// The library's textures and the examples', for tests of what compiled code computes. Only every tenth file where the
+// program is sanitized, for that code is not, only what compiles it, which is then slow; and where an instruction set
+// is chosen, for the operations are compared with the interpreter on each.
 std::vector<std::filesystem::path> texture_files(const std::vector<std::string>& folders = {"stdlib/tests",
                                                                                             "examples/textures"});
 

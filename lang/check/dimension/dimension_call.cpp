@@ -115,7 +115,7 @@ void DimensionBody::blame_call(const Call& call, const FunctionInfo& callee)
         const Dimension found = call.dimensions[i];
         Dimensions tried = call.dimensions;
         tried[i] = Dimension::any();
-        if (found.is_any() || !goes_with(tried)) continue;
+        if (!goes_with(tried)) continue;
         for (const Dimension expected : candidates) {
             tried[i] = expected;
             if (expected.is_any() || expected == found || !goes_with(tried)) continue;

@@ -6,6 +6,7 @@
 
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
+#include "tests/support/tries.h"
 
 #include <cmath>
 #include <random>
@@ -76,7 +77,7 @@ TEST_CASE("joined: nothing pierces any more, nothing is open that was closed, an
     const auto direction = [&] { return dvec3(any(random), any(random), any(random)); };
     const auto on_grid = [&] { return glm::round(4.0 * direction()) / 4.0; };
     int left = 0, joined_count = 0;
-    for (int trial = 0; trial < 120; ++trial) {
+    for (int trial = 0; trial < tries(120); ++trial) {
         const Mesh meshes[] = {make_box(), ball(1), make_torus(0.4, 32, 12), ball(0.7, 2), make_box({0.5, 0.25, 0.75})};
         std::vector<PlacedSurface> surfaces;
         const bool boxes = trial % 2 == 1; // face to face, most of them
@@ -113,7 +114,7 @@ TEST_CASE("joined: nothing pierces any more, nothing is open that was closed, an
         }
     }
     CAPTURE(joined_count, left);
-    CHECK(joined_count > 80);
+    CHECK(joined_count > tries(80));
     CHECK(20 * left < joined_count); // where too much comes together within rounding walls hold
 }
 

@@ -7,6 +7,7 @@
 #include "tests/runtime/contact/long_run.h"
 #include "tests/runtime/render/wild_hand.h"
 #include "tests/support/catch.h"
+#include "tests/support/tries.h"
 
 #include <cmath>
 #include <iostream>
@@ -163,14 +164,14 @@ TEST_CASE("every step of the proxy is possible, on any mesh")
     meshes.push_back({"cubes sharing corners", make_touching_cubes(Touching::corners)});
     for (const auto& [name, mesh] : meshes)
         for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}}) {
-            const Verdict verdict = judge(surface_of(mesh), 1000, 17, friction);
+            const Verdict verdict = judge(surface_of(mesh), tries(1000), 17, friction);
             CAPTURE(name, friction.static_coefficient, verdict);
             CHECK(verdict.impossible == 0);
             CHECK(verdict.differing == 0);
             CHECK(verdict.cut == 0);
             // Where a border meets a wall the proxy holds on to the border.
             CHECK(verdict.stuck <= (name.starts_with("soup") ? verdict.touching / 50 : 0));
-            CHECK(verdict.touching > 50);
+            CHECK(verdict.touching > tries(50u));
             CHECK(verdict.off_surface < 1e-9);
         }
 }

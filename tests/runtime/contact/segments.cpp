@@ -5,6 +5,7 @@
 #include "tests/runtime/contact/long_run.h"
 #include "tests/runtime/surface/exact_mesh.h"
 #include "tests/support/catch.h"
+#include "tests/support/tries.h"
 
 #include <iostream>
 #include <random>
@@ -118,10 +119,10 @@ TEST_CASE("two engines find the same first crossings, on any mesh")
     meshes.push_back({"stairs", make_stairs()});
     meshes.push_back({"plate 2e-10", make_box({1, 1, 2e-10})});
     for (const auto& [name, mesh] : meshes) {
-        const Agreement agreement = compare(*surface_of(mesh), 1500, 23, 0.5);
+        const Agreement agreement = compare(*surface_of(mesh), tries(1500), 23, 0.5);
         CAPTURE(name);
         CHECK(agreement.different == 0);
-        CHECK(agreement.hits > 50);
+        CHECK(agreement.hits > tries(50u));
     }
 }
 

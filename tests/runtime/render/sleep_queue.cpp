@@ -5,6 +5,7 @@
 #include "tests/runtime/contact/wild_motion.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
+#include "tests/support/tries.h"
 
 #include <atomic>
 #include <cmath>
@@ -140,9 +141,9 @@ TEST_CASE("objects that move and are left alone change no bit of what is felt")
             CAPTURE(int(kind), seed);
             Scene scene = moving_field(seed);
             scene.probe = {kind, kind == ProbeKind::gripper ? 0.03 : 0.1, kind == ProbeKind::sphere ? 3e-3 : 0.0};
-            const std::vector<DevicePose> hand = wild_hand(seed, 10'000, scene.probe);
+            const std::vector<DevicePose> hand = wild_hand(seed, test::tries(10'000), scene.probe);
             const Felt all = feel({scene}, hand, {});
-            CHECK(all.contacts > 300);
+            CHECK(all.contacts > test::tries(300));
             CHECK(all.skipped.objects > 20 * hand.size());
             const Felt looked_at = feel({scene}, hand, {.objects = false});
             CHECK(looked_at.skipped.objects == 0);

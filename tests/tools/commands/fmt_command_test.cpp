@@ -6,6 +6,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/haptel_files.h"
 #include "tests/support/ir_print.h"
+#include "tests/support/tries.h"
 #include "tests/tools/commands/run_command.h"
 
 #include <sys/stat.h>
@@ -66,7 +67,7 @@ TEST_CASE("fmt: the library and the examples are in its style")
 
 TEST_CASE("fmt: random programs mean what they meant")
 {
-    for (uint64_t seed = 1; seed <= 300; ++seed) {
+    for (uint64_t seed = 1; seed <= tries(300u); ++seed) {
         const std::string text = fuzz::random_source(seed), result = formatted(text);
         CAPTURE(text, result);
         REQUIRE(result != "");
