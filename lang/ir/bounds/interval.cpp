@@ -52,6 +52,7 @@ Interval interval_of(const IntRange& range)
 
 Interval add(const Interval& a, const Interval& b)
 {
+    if (a.is_zero() || b.is_zero()) return {a.minimum + b.minimum, a.maximum + b.maximum}; // exactly
     bool opposite =
         (a.minimum == -infinity && b.maximum == infinity) || (a.maximum == infinity && b.minimum == -infinity);
     auto end = [](double x, double y, double unknown) {
@@ -62,6 +63,7 @@ Interval add(const Interval& a, const Interval& b)
 
 Interval multiply(const Interval& a, const Interval& b)
 {
+    if ((a.is_zero() && !may_be_infinite(b)) || (b.is_zero() && !may_be_infinite(a))) return {0, 0};
     Interval all = at_ends(a, b, product);
     all.may_be_nan = (may_be_infinite(a) && b.contains(0)) || (may_be_infinite(b) && a.contains(0));
     return all;
@@ -80,8 +82,8 @@ Interval divide(const Interval& a, const Interval& b)
 
 Interval modulo(const Interval& a, const Interval& b)
 {
-    const bool is_bounded = !may_be_infinite(a) && !may_be_infinite(b) && !b.contains(0);
-    if (!is_bounded || may_be_infinite(divide(a, b))) return {-infinity, infinity, true};
+    const bool are_bounded = !may_be_infinite(a) && !may_be_infinite(b) && !b.contains(0);
+    if (!are_bounded || may_be_infinite(divide(a, b))) return {-infinity, infinity, true};
     if (b.is_point()) {
         double first = std::floor(a.minimum / b.minimum), last = std::floor(a.maximum / b.minimum);
         if (first == last) return add(a, negated(multiply(b, {first, first})));
@@ -238,11 +240,6 @@ bool holds_pole(Op op, std::span<const Interval> operands)
     if (row.shape == Shape::power) return a.contains(0) && operands[1].minimum < 0;
     if (row.shape == Shape::tangent) return may_be_infinite(by_shape(op, operands)); // in double never met, only 1e16
     return row.has_pole_at_ends && (a.contains(row.from) || a.contains(row.to));
-}
-
-double size_of(const Interval& a)
-{
-    return std::max(std::fabs(a.minimum), std::fabs(a.maximum));
 }
 
 bool are_close(const Interval& a, const Interval& b, double greatest)

@@ -7,6 +7,7 @@
 #include "lang/ir/ir.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -21,6 +22,7 @@ struct Interval {
 
     bool is_empty() const { return !(minimum <= maximum); }
     bool is_point() const { return minimum == maximum; }
+    bool is_zero() const { return minimum == 0 && maximum == 0; }
     bool contains(double value) const { return minimum <= value && value <= maximum; }
     bool is_finite() const { return !may_be_nan && minimum > -infinity && maximum < infinity && !is_empty(); }
 };
@@ -34,7 +36,14 @@ inline constexpr Interval any_image{-1, -1};
 Interval everything(Type type);
 Interval exactly(double value);
 Interval exactly(Type type, uint32_t bits); // of an integer or a boolean
-double size_of(const Interval& a);          // of what is farthest from 0
+inline double size_of(const Interval& a)    // of what is farthest from 0
+{
+    return std::max(std::fabs(a.minimum), std::fabs(a.maximum));
+}
+inline bool is_bounded(const Interval& a)
+{
+    return std::isfinite(size_of(a));
+}
 
 // Whether the two are equal but for rounding: by no more than that part of the greatest value that there is.
 inline constexpr double rounding_share = 1e-9;

@@ -10,11 +10,6 @@
 namespace haptel::ir {
 namespace {
 
-bool is_bounded(const Interval& a)
-{
-    return std::isfinite(size_of(a));
-}
-
 bool overlap_inside(const Interval& a, const Interval& b)
 {
     return a.minimum < b.maximum && b.minimum < a.maximum;
@@ -170,8 +165,7 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
         if (own == Continuity::jump && seams->begin(op, all, result, outside, variation)) own = Continuity::smooth;
     }
     roughen(variation, own, cause);
-    const auto is_zero = [](const Interval& part) { return part.minimum == 0 && part.maximum == 0; };
-    const bool is_to_zero = (op == Op::min || op == Op::max) && std::ranges::any_of(operands, is_zero);
+    const bool is_to_zero = (op == Op::min || op == Op::max) && std::ranges::any_of(operands, &Interval::is_zero);
     const bool at_zero = op == Op::abs || is_length(op) || is_to_zero;
     if (own == Continuity::c0 && was_smooth && at_zero) variation.kink = ++kinks, variation.kink_power = 1;
     return variation;

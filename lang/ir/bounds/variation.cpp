@@ -125,7 +125,6 @@ void keep_kink(Op op, std::span<const Variation> variations, Variation& made)
 // A gradient without bound, of partials and gradients that have some.
 bool overflows(const Partials& partials, std::span<const Variation> variations, const Variation& made)
 {
-    const auto is_bounded = [](const Interval& part) { return std::isfinite(size_of(part)); };
     for (size_t i = 0; i < variations.size(); ++i)
         if (variations[i].is_active &&
             !(is_bounded(partials.first[i]) && std::ranges::all_of(variations[i].gradient, is_bounded)))
@@ -242,7 +241,7 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
             made.hessian[j] = add(made.hessian[j], multiply(by.first[i], a.hessian[j]));
         for (size_t l = 0; l < variations.size(); ++l) {
             const Variation& b = variations[l];
-            if (!b.is_active) continue;
+            if (!b.is_active || by.second[i][l].is_zero()) continue;
             curvature += times(size_of(by.second[i][l]), times(a.slope, b.slope));
             for (size_t j = 0; j < axis_count; ++j)
                 for (size_t k = j; k < axis_count; ++k) {
