@@ -11,6 +11,16 @@ using namespace haptel::test;
 using haptel::tools::Json;
 namespace runtime = haptel::runtime;
 
+namespace {
+
+// For a shell: in the background, once the run that writes there feels something, however long it took to start.
+std::string once_felt(const std::string& out, const std::string& edits)
+{
+    return "(for i in $(seq 400); do [ -s '" + out + "/trace.csv' ] && break; sleep 0.05; done; " + edits + ") & ";
+}
+
+} // namespace
+
 TEST_CASE("a scene or a mesh that is edited is felt without a restart; a broken edit is explained and not felt")
 {
     const Folder folder;
@@ -34,9 +44,10 @@ TEST_CASE("a scene or a mesh that is edited is felt without a restart; a broken 
     const auto copy = [&](const char* from, const char* to) {
         return "cp " + folder.file(from) + " " + folder.file(to) + "; sleep 0.5; ";
     };
-    const std::string edits = "(sleep 2.2; " + copy("limited.toml", "scene.toml") + copy("wrong.toml", "scene.toml") +
-                              copy("faster.toml", "scene.toml") + copy("limited.toml", "scene.toml") +
-                              copy("higher.obj", "roof.obj") + ") & ";
+    const std::string edits =
+        once_felt(folder.file("run"), "sleep 1.7; " + copy("limited.toml", "scene.toml") +
+                                          copy("wrong.toml", "scene.toml") + copy("faster.toml", "scene.toml") +
+                                          copy("limited.toml", "scene.toml") + copy("higher.obj", "roof.obj"));
     const Ran ran = run_command("explore " + path + " --seconds 5.5 --json --out " + folder.file("run"), edits);
     INFO(ran.err);
     CHECK(ran.code == 0);
@@ -78,8 +89,8 @@ TEST_CASE("a probe that is edited is that of the next start, and that is said on
     const auto edit = [&](const char* to) {
         return "cp " + folder.file(to) + " " + folder.file("scene.toml") + "; sleep 0.6; ";
     };
-    const std::string edits =
-        "(sleep 1.7; " + edit("own.toml") + edit("point.toml") + edit("gripper.toml") + edit("softer.toml") + ") & ";
+    const std::string edits = once_felt(folder.file("run"), "sleep 1.2; " + edit("own.toml") + edit("point.toml") +
+                                                                edit("gripper.toml") + edit("softer.toml"));
     const Ran ran = run_command("explore " + path + " --seconds 6 --json --out " + folder.file("run"), edits);
     INFO(ran.err);
     CHECK(ran.code == 0);
@@ -125,10 +136,10 @@ TEST_CASE("a texture that is edited is felt without a restart; a broken edit is 
 {
     const Stage stage;
     stage.folder.write("deeper.haptel", std::string(grooves) + "// edited\n");
-    const std::string edit = "(sleep 0.5; cp " + stage.folder.file("deeper.haptel") + " " +
-                             stage.folder.file("grooves.haptel") + "; sleep 1; echo 'texture grooves() { return' > " +
-                             stage.folder.file("grooves.haptel") + ") & ";
-    const Ran ran = run_command("explore " + stage.scene + " --seconds 3 --json", edit);
+    const std::string edits = once_felt(
+        stage.out("run"), "cp " + stage.folder.file("deeper.haptel") + " " + stage.folder.file("grooves.haptel") +
+                              "; sleep 1; echo 'texture grooves() { return' > " + stage.folder.file("grooves.haptel"));
+    const Ran ran = run_command("explore " + stage.scene + " --seconds 3 --json --out " + stage.out("run"), edits);
     CHECK(ran.code == 0);
     const Json json = json_of(ran);
     CHECK(json["reloads"] == 1);
