@@ -92,10 +92,12 @@ private:
     const CheckOptions& options;
     std::vector<bool> is_set; // by options.parameters
     std::vector<std::string> parameter_names;
+    Progress progress; // over the textures of a file
 };
 
 void CheckRun::say(CheckFinding finding)
 {
+    progress.hide();
     fmt::print(stderr, "{}: {}: {} [{}]\n", finding.file, lang::name_of(finding.severity), finding.message,
                finding.code);
     if (!finding.hint.empty()) fmt::print(stderr, "     = hint: {}\n", finding.hint);
@@ -217,7 +219,6 @@ void CheckRun::check(const std::string& path)
     lang::Diagnostics& diagnostics = result.diagnostics;
     if (result.program) {
         const auto& textures = result.program->module.textures;
-        Progress progress;
         for (const ir::Texture& texture : textures) {
             progress.show(static_cast<double>(&texture - textures.data()) / static_cast<double>(textures.size()));
             const std::vector<double> values = values_of(path, texture);
@@ -237,6 +238,7 @@ void CheckRun::check(const std::string& path)
             note_grain(report.textures.back(), values, images);
             if (options.error_max && !diagnostics.has_errors()) pick_precision(report.textures.back());
         }
+        progress.hide();
         diagnostics.sort_by_place();
     }
     if (options.strict) diagnostics.make_warnings_errors(); // last: what is known of the textures stays known

@@ -31,9 +31,10 @@ void Progress::show(double share)
     fmt::print(stderr, "\r[{:=<{}}{: <{}}] {:3.0f} %", "", done, "", width - done, 100 * share);
 }
 
-Progress::~Progress()
+void Progress::hide()
 {
     if (is_shown) fmt::print(stderr, "\r{:40}\r", "");
+    is_shown = false;
 }
 
 void Steps::show(std::string_view doing)

@@ -19,8 +19,9 @@ public:
     Progress() = default;
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
-    ~Progress();
+    ~Progress() { hide(); }
     void show(double share); // 0 .. 1
+    void hide();             // before anything else is printed
 
 private:
     std::chrono::steady_clock::time_point next = std::chrono::steady_clock::now() + std::chrono::milliseconds(500);
