@@ -159,8 +159,7 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, const Touched& touche
         at.shading.normal_dp = glm::dmat3(0);
     }
 
-    TextureSample texture;
-    if (textured) texture = sample_texture(touched.texture, at);
+    TextureSample texture = textured ? sample_texture(touched.texture, at) : TextureSample();
     if (shares_.textures < 1) texture = mixed({}, texture, shares_.textures);
     result.textured = textured;
     result.band_limited =
