@@ -100,6 +100,16 @@ main.haptel:13:24: unknown function 'lerp'
 )");
 }
 
+TEST_CASE("compile: the unit of a parameter is that of its first number with one")
+{
+    const CompileResult result = compile_text("texture t(float a = -1mm, float b = 2 * 3mm, float c = 0 in -1mm .. "
+                                              "1mm, float d = 2.0) { return a + b + c * d; }");
+    REQUIRE(result.program);
+    std::string units;
+    for (const ir::Parameter& parameter : result.program->module.textures[0].parameters) units += parameter.unit + ",";
+    CHECK(units == "m,m,m,,");
+}
+
 TEST_CASE("compile: what a texture is made of")
 {
     const CompileResult result = compile_text(R"(/// A grating.

@@ -218,7 +218,7 @@ void IntervalEvaluator::cross_call(const Function& function, uint32_t index, con
     for (size_t r = 0; r < results.values.size(); ++r)
         seams->cross(
             operands, results.values[r],
-            [&](auto parts, auto, bool) {
+            [&](auto parts, auto) {
                 return seams->numbers.of(ValueNumbers::Other::call, uint64_t{index} << 32 | r, parts);
             },
             [&](auto values) { return values_inside(index, {values.begin(), values.end()}, span)[r]; },

@@ -196,7 +196,7 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadT
     if (seams)
         seams->cross(
             seam_operands(frame, made.operands), all,
-            [&](auto parts, auto, bool) { return seams->numbers.of(ValueNumbers::Other::table, read.table, parts); },
+            [&](auto parts, auto) { return seams->numbers.of(ValueNumbers::Other::table, read.table, parts); },
             [&](auto values) { return cells(values[0]); }, variation);
 }
 

@@ -41,7 +41,7 @@ Interval wave(const Interval& a, double period, double crest, const F& f)
 {
     const bool nan = may_be_infinite(a);
     const double size = size_of(a);
-    if (!(size < 1e9) || a.maximum - a.minimum >= period) return {-1, 1, nan};
+    if (!(size < 1e9)) return {-1, 1, nan};
     const double slack = 1e-15 * (size + period); // crests are placed with rounding
     auto meets = [&](double at) {
         double k = std::ceil((a.minimum - slack - at) / period);

@@ -24,11 +24,9 @@ bool is_whole(double value)
 }
 
 // Which operand the result is.
-std::optional<size_t> choice_of(Op op, std::span<const Interval> values, bool on_seam)
+std::optional<size_t> choice_of(Op op, std::span<const Interval> values)
 {
-    const auto is_below = [&](const Interval& a, const Interval& b) {
-        return on_seam ? a.maximum <= b.minimum : a.maximum < b.minimum;
-    };
+    const auto is_below = [](const Interval& a, const Interval& b) { return a.maximum <= b.minimum; };
     if (op == Op::select && values[0].is_point()) return values[0].minimum != 0 ? 1 : 2;
     if (op != Op::min && op != Op::max) return std::nullopt;
     if (is_below(values[0], values[1])) return op == Op::min ? 0 : 1;
@@ -73,7 +71,7 @@ void Seams::cross(std::span<const Operand> operands, const Interval& result, con
         whole.values.push_back(operand.value);
         for (const Crossing& crossing : operand.crossings) crossed.emplace(crossing.seam, crossing.cause);
     }
-    made.number = number(whole.numbers, whole.values, false);
+    made.number = number(whole.numbers, whole.values);
 
     std::vector<Crossing> crossings;
     for (const auto& [index, cause] : crossed) {
@@ -102,12 +100,12 @@ void Seams::cross(std::span<const Operand> operands, const Interval& result, con
             }
             Interval there = intersect(value(on.values), result);
             if (there.is_empty()) there = result;
-            const auto named = [&](const Interval& known, const Parts& parts, bool on_seam) {
+            const auto named = [&](const Interval& known, const Parts& parts) {
                 return known.is_point() && known.is_finite() ? numbers.constant(known.minimum)
-                                                             : number(parts.numbers, parts.values, on_seam);
+                                                             : number(parts.numbers, parts.values);
             };
             const Interval around = intersect(value(beside.values), result);
-            sides[is_after] = {named(around, beside, false), named(there, on, true), there};
+            sides[is_after] = {named(around, beside), named(there, on), there};
         }
         if (sides[0].near == sides[1].near) continue;
         const double size = size_of(result);
@@ -127,8 +125,8 @@ void Seams::cross(std::span<const Operand> operands, const Interval& result, con
 
 void Seams::cross(Op op, std::span<const Operand> operands, const Interval& result, Variation& made)
 {
-    const auto number = [&](std::span<const Number> parts, std::span<const Interval> values, bool on_seam) {
-        const std::optional<size_t> chosen = choice_of(op, values, on_seam);
+    const auto number = [&](std::span<const Number> parts, std::span<const Interval> values) {
+        const std::optional<size_t> chosen = choice_of(op, values);
         return chosen ? parts[*chosen] : numbers.of(op, parts);
     };
     cross(operands, result, number, [&](std::span<const Interval> values) { return evaluate(op, values); }, made);

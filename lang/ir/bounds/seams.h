@@ -32,9 +32,9 @@ public:
         bool is_real;
     };
     // What a function makes of its operands: as an interval, and as a number, for which it may be told by such values
-    // of them which one it is. `on_seam`: not only beside it.
+    // of them which one it is.
     using ValueOf = std::function<Interval(std::span<const Interval>)>;
-    using NumberOf = std::function<Number(std::span<const Number>, std::span<const Interval>, bool on_seam)>;
+    using NumberOf = std::function<Number(std::span<const Number>, std::span<const Interval>)>;
 
     ValueNumbers numbers;
 

@@ -196,6 +196,13 @@ TEST_CASE("image: without a picture a texture is flat, and that is said")
     CHECK(pictures.program->find("pressed")->parameters[0].type == HAPTEL_IMAGE);
 }
 
+TEST_CASE("image: each picture that is missing is said")
+{
+    const TextureResult result = Pictures().bind("passed", {});
+    CHECK(contains(result.diagnostics, "parameter 'first' of texture 'passed' has no picture"));
+    CHECK(contains(result.diagnostics, "parameter 'second' of texture 'passed' has no picture"));
+}
+
 TEST_CASE("image: what a hand may feel of a picture's file is noted")
 {
     const Pictures pictures;

@@ -41,6 +41,7 @@ TEST_CASE("builder: identities that keep every bit are used")
     CHECK(real("%a = neg %x %b = neg %a return %b") == "  return %0\n");
     CHECK(real("%a = neg %x %b = sub %y, %a return %b") == "  %2 = add %1, %0\n  return %2\n");
     CHECK(real("%a = floor %x %b = sub %x, %a return %b") == "  %2 = fract %0\n  return %2\n");
+    CHECK(real("%a = floor %x %b = ceil %a return %b") == "  %2 = floor %0\n  return %2\n");
     CHECK(real("%a = real 4 %b = div %x, %a return %b") == "  %2 = real 0.25\n  %3 = mul %0, %2\n  return %3\n");
     CHECK(real("%a = lt %x, %y %b = select %a, %x, %x return %b") == "  return %0\n");
     CHECK(real("%a = real 2 %b = real 3 %c = pow %a, %b return %c") == "  %2 = real 8\n  return %2\n");

@@ -1,5 +1,6 @@
 #include "runtime/surface/box_tree.h"
 
+#include "runtime/geometry/nearest_point.h"
 #include "runtime/surface/collision.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
@@ -138,6 +139,23 @@ TEST_CASE("a path through a closed surface goes in and out by turns, also throug
             for (size_t k = 0; k < crossings.size(); ++k) CHECK(crossings[k].side == k % 2);
         }
         CHECK(paths > 100);
+    }
+}
+
+TEST_CASE("a crossing lies in its triangle, however far out rounding has put it")
+{
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> any(-1, 1);
+    const auto s = surface_of(make_bumpy_sphere(2));
+    for (int i = 0; i < 10'000; ++i) {
+        Crossing crossing;
+        crossing.face = static_cast<uint32_t>(random() % s->faces.size());
+        const auto& v = s->faces[crossing.face].vertex;
+        const dvec3 a = s->vertices[v[0]], b = s->vertices[v[1]], c = s->vertices[v[2]];
+        const double size = std::max({glm::distance(a, b), glm::distance(b, c), glm::distance(c, a)});
+        const dvec3 from = a + 3 * size * dvec3(any(random), any(random), any(random));
+        const dvec3 point = crossing_point(*s, crossing, from, from + dvec3(1)); // at `from`: its numerator is 0
+        CHECK(glm::distance(nearest_point(a, b, c, point).at, point) < 1e-9 * size);
     }
 }
 

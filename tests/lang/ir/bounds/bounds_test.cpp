@@ -48,6 +48,10 @@ TEST_CASE("bounds: exact where the operations are")
     Interval hill = height("", "%x = input p_x %s = mul %x, %x %h = sub %x, %s return %h", {0, 1});
     CHECK((hill.minimum <= 0 && hill.minimum > -0.02));
     CHECK((hill.maximum >= 0.25 && hill.maximum < 0.26));
+    // 3 x - 2 x is x
+    Interval line =
+        height("", "%x = input p_x %t = real 3 %u = mul %x, %t %v = add %x, %x %h = sub %u, %v return %h", {-1, 1});
+    CHECK((line.minimum > -1 - 1e-12 && line.maximum < 1 + 1e-12));
     // the entry turns what is not finite into 0
     Interval log = height("", "%x = input p_x %h = log %x return %h", {2, 3});
     CHECK((!log.may_be_nan && log.minimum > 0.69 && log.maximum < 1.1));
