@@ -62,6 +62,8 @@ TEST_CASE("format: at most one empty line in a row, one round every function, no
     CHECK(formatted("\n\n// a\n\n\n\n// b\nfloat f()\n{\n\n\n    float x = 1.0;\n\n\n\n    return x;\n\n}\nfloat g() { "
                     "return 1.0; }\n\n") ==
           "// a\n\n// b\nfloat f()\n{\n    float x = 1.0;\n\n    return x;\n}\n\nfloat g()\n{\n    return 1.0;\n}\n");
+    CHECK(formatted("const float a = 1.0; float f() { return a; } const float b = 1.0;") ==
+          "const float a = 1.0;\n\nfloat f()\n{\n    return a;\n}\n\nconst float b = 1.0;\n");
 }
 
 TEST_CASE("format: parameters of a texture one per line, ranges below one another")

@@ -307,4 +307,7 @@ TEST_CASE("integer ranges hold what the operations give")
     }
     CHECK(range_of(Op::iand, Type::i32, std::vector<IntRange>{{INT32_MIN, INT32_MAX}, {255, 255}}) == IntRange{0, 255});
     CHECK(range_of(Op::urem, Type::u32, std::vector<IntRange>{{0, UINT32_MAX}, {32, 32}}) == IntRange{0, 31});
+    // Beyond 64 bits; it wraps to 1.
+    const std::vector<IntRange> ends = {{UINT32_MAX, UINT32_MAX}, {UINT32_MAX, UINT32_MAX}};
+    CHECK(range_of(Op::imul, Type::u32, ends) == IntRange{0, UINT32_MAX});
 }

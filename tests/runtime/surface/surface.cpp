@@ -272,6 +272,14 @@ TEST_CASE("cracks between borders are closed, and only cracks")
     }
     CHECK(lost == 0);
 
+    // An edge of a border that is shorter than a crack is wide stays.
+    Mesh narrow;
+    narrow.positions_m = {{0, 0, 0}, {1, 0, 0}, {1, 3e-7, 0}, {0, 1, 0}};
+    narrow.triangles = {{0, 1, 2}, {0, 2, 3}};
+    const SurfaceResult kept = build_surface(narrow);
+    CHECK(kept.report.cracks_closed == 0);
+    CHECK(kept.surface->faces.size() == 2);
+
     for (const Mesh& mesh : {make_plane(4), make_bumpy_sphere(2), make_star(3), make_stairs()})
         CHECK(build_surface(mesh).report.cracks_closed == 0);
 }
