@@ -49,6 +49,16 @@ TEST_CASE("a ball that an object swings against looks at so many triangles in a 
     CHECK(most < 4096);
 }
 
+TEST_CASE("a ball whose hand rests is spared the search, and only then")
+{
+    SphereContact contact(surface_of(make_icosphere(4)), 0.05);
+    for (int i = 0; i < 100; ++i) contact.update({0, 0, 2 + i * 1e-5});
+    CHECK(contact.counters().skipped <= 1); // put down where it is
+    for (int i = 0; i < 100; ++i) contact.update({0, 0, 2});
+    CHECK(contact.counters().skipped >= 99);
+    CHECK(contact.counters().ticks == 200);
+}
+
 TEST_CASE("a ball rests on a plane, an edge and a corner at its radius")
 {
     constexpr double r = 0.1;
