@@ -1,6 +1,7 @@
 // Where a texture is on a mesh: mesh coordinates, the two-stage maps, three planes; each with its exact gradient.
 #include "runtime/texture/shading.h"
 #include "runtime/texture/surface_texture.h"
+#include "tests/support/tries.h"
 #include "tests/surface/textured.h"
 
 #include <algorithm>
@@ -140,7 +141,7 @@ TEST_CASE("on every shape each map's gradient is that of its height along the su
             const TextureBinding binding = bound_for(program, texture, *surface);
             double steepest = 0, worst = 0;
             int seams = 0;
-            for (int i = 0; i < 400; ++i) {
+            for (int i = 0; i < tries(400); ++i) {
                 const uint32_t face = uint32_t(random() % surface->faces.size()), side = uint32_t(i % 2);
                 const dvec3 w = random_weights(random);
                 const TextureSample here = sample_texture(binding, point_on(*surface, face, side, w));
@@ -193,7 +194,7 @@ TEST_CASE("bounds of a texture that reads the normal hold on the mesh that it is
         const TextureBinding binding = bound_for(program, "in_three_planes", *surface);
         std::mt19937_64 random(8);
         double steepest = 0, highest = -1, lowest = 1;
-        for (int i = 0; i < 50000; ++i) {
+        for (int i = 0; i < tries(50000); ++i) {
             const SurfacePoint point =
                 point_on(*surface, uint32_t(random() % surface->faces.size()), uint32_t(i % 2), random_weights(random));
             steepest = std::max(steepest, slope_of(binding, point));
@@ -223,7 +224,7 @@ TEST_CASE("bounds of a texture that reads mesh coordinates hold on the mesh that
         const UvFigures figures = uv_figures(*surface);
         std::mt19937_64 random(8);
         double steepest = 0;
-        for (int i = 0; i < 50000; ++i) {
+        for (int i = 0; i < tries(50000); ++i) {
             const SurfacePoint point =
                 point_on(*surface, uint32_t(random() % surface->faces.size()), uint32_t(i % 2), random_weights(random));
             steepest = std::max(steepest, slope_of(binding, point));

@@ -4,6 +4,8 @@
 #include "tests/jit/codegen/samples.h"
 #include "tests/support/haptel_files.h"
 
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <random>
 
@@ -91,6 +93,18 @@ haptel_point random_point(std::mt19937_64& random)
     for (double& component : point.n) component = unit(random);
     for (double& coordinate : point.uv) coordinate = unit(random);
     return point;
+}
+
+// Whether code has FMA: the host, and HAPTEL_ISA lets it.
+bool fuses()
+{
+    const char* const wanted = std::getenv("HAPTEL_ISA");
+    if (wanted && std::string_view(wanted) == "baseline") return false;
+#if defined(__x86_64__)
+    return __builtin_cpu_supports("fma");
+#else
+    return true;
+#endif
 }
 
 double batch_height(const jit::Code& code, const std::string& name, const haptel_point& point, const void* block)
@@ -187,4 +201,37 @@ TEST_CASE("the height alone has the bits of the height beside its gradient: rand
         compiled += unequal.has_value();
     }
     CHECK(compiled > 40);
+}
+
+TEST_CASE("a product and a sum are rounded once in f32 where the processor can, and never in f64", "[code]")
+{
+    const jit::CompiledTextures compiled = jit::compile_texture("texture t() { return p.x * n.y + 1m * n.x; }");
+    REQUIRE(compiled.program);
+    const ir::Texture& source = compiled.program->source_of(*compiled.program->find("t"));
+    const TextureResult bound = jit::make_binding(compiled.program, "t", request_over(2));
+    REQUIRE(bound.binding);
+    const jit::EntryPoint entries[] = {{"f64", &source, Kind::height, jit::LaneForm::one, jit::Precision::f64},
+                                       {"f32", &source, Kind::height, jit::LaneForm::one, jit::Precision::f32}};
+    const jit::CodeResult made = jit::compile_code(compiled.program->module(), entries, {jit::Effort::full});
+    REQUIRE(made.code);
+    std::mt19937_64 random(6);
+    int once = 0;
+    for (int i = 0; i < 200; ++i) {
+        haptel_point point = random_point(random);
+        point.p[0] *= 50;
+        const auto height = [&](const char* entry) {
+            haptel_sample sample{};
+            made.code->entry(entry)(&point, bound.binding->block, &sample);
+            return sample.height_m;
+        };
+        const double x = point.p[0], n = point.n[1], base = point.n[0];
+        const volatile double product = x * n;
+        CHECK(height("f64") == product + base);
+        const auto x32 = static_cast<float>(x), n32 = static_cast<float>(n), base32 = static_cast<float>(base);
+        const volatile float product32 = x32 * n32;
+        const float twice = product32 + base32, fused = std::fmaf(x32, n32, base32);
+        CHECK(height("f32") == static_cast<double>(fuses() ? fused : twice));
+        once += fused != twice;
+    }
+    CHECK(once > 20); // there was something to see
 }
