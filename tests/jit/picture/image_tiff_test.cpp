@@ -55,6 +55,28 @@ TEST_CASE("picture: a TIFF of half floats as programs write it, packed and predi
     CHECK(odd.hint == "TIFF of 8, 16 or 32 bits, gray or RGB, whole numbers or real ones");
 }
 
+TEST_CASE("picture: a TIFF whose packed samples are damaged is refused")
+{
+    const Folder folder;
+    const std::string file = folder.file("packed.tif");
+    TIFF* const tiff = TIFFOpen(file.c_str(), "w");
+    REQUIRE(tiff);
+    TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, uint32_t{64});
+    TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, uint32_t{2});
+    TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 16);
+    TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+    TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_LZW);
+    std::array<uint16_t, 64> row;
+    for (size_t i = 0; i < row.size(); ++i) row[i] = static_cast<uint16_t>(2749 * i);
+    for (uint32_t k = 0; k < 2; ++k) CHECK(TIFFWriteScanline(tiff, row.data(), k, 0) == 1);
+    TIFFClose(tiff);
+    std::ifstream in(file, std::ios::binary);
+    std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    CHECK(jit::read_tiff(bytes).error.empty());
+    bytes.replace(16, 16, 16, '\xff'); // behind the header come the samples
+    CHECK(jit::read_tiff(bytes).error.find("is damaged") == 0);
+}
+
 // TIFF 6.0, section 8: of whole numbers that are WhiteIsZero 0 is white and the greatest is black. A real number has no
 // greatest one to be counted from, and is a height as it stands.
 TEST_CASE("picture: a TIFF in which white is 0 is turned over where it has whole numbers, and only there")

@@ -115,6 +115,10 @@ TEST_CASE("more devices, objects or regions than any scene has are refused, the 
           "scene.toml:131:1: error: a scene may have 64 devices, each with a thread of its own, and this one has 5000: "
           "leave some out\n");
     CHECK(opened == 0);
+    CHECK_FALSE(
+        contains(diagnostics_of(box + repeated("[[device]]\nname = \"simulated:premium\"\n", 64), resolve_flat, count),
+                 "may have"));
+    CHECK(opened == 64);
     CHECK(contains(diagnostics_of(repeated(box, 20'001)), "a scene may hold 20000 objects, and this one has 20001"));
     CHECK(contains(diagnostics_of(box + repeated("[[region]]\nshape = \"space\"\n", 10'001)),
                    "a scene may have 10000 regions"));

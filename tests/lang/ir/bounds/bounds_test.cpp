@@ -273,6 +273,8 @@ TEST_CASE("bounds: what may fault is told with the reason, and nothing of what c
         {"%n = i32 2000 %h = for %n max 2000 (%i, %a) from (%x) { %s = for %n max 2000 (%j, %b) from (%a) "
          "{ %t = sin %b yield %t } yield %s }",
          Why::not_looked_at},
+        {"%k = call \"flat\" (%x) %one = real 1 %c = lt %k, %one %v = select %c, %x, %one %h = log %v",
+         Why::domain}, // behind a call whose result is only compared
         // 0 by convention where they have no bound, and a number beside it
         {"%a = abs %x %h = sqrt %a", std::nullopt},
         {"%a = abs %x %b = real 0.3 %h = pow %a, %b", std::nullopt},

@@ -209,6 +209,17 @@ TEST_CASE("intervals: a wave stays between -1 and 1 beside its crests, too")
     }
 }
 
+TEST_CASE("intervals: a tangent is unbounded where an end lies on a pole but for rounding")
+{
+    const double quarter = std::acos(0.0);
+    for (const Interval& angles : {Interval{-quarter, 0}, Interval{0, quarter}, Interval{1, 2}}) {
+        const Interval operand[] = {angles};
+        CHECK((evaluate(Op::tan, operand).minimum == -infinity && evaluate(Op::tan, operand).maximum == infinity));
+    }
+    const Interval between[] = {{-1.5, 1.5}};
+    CHECK((evaluate(Op::tan, between).minimum > -14.2 && evaluate(Op::tan, between).maximum < 14.2)); // tan(1.5): 14.1
+}
+
 TEST_CASE("intervals: results with closed ranges stay within them, and every value within its interval")
 {
     struct Range {
