@@ -61,7 +61,7 @@ TEST_CASE("the distance to a surface is that of its nearest triangle, found by l
         }
         CAPTURE(name, worst_m, distance.queries(), distance.triangles());
         CHECK(wrong == 0);
-        CHECK(within > test::tries(300));
+        CHECK(within > test::tries(250));
         CHECK(worst_m < 1e-12);
         CHECK(distance.queries() <= 1000);
         CHECK(distance.triangles() < 150 * distance.queries()); // of 20 480
