@@ -3,7 +3,6 @@
 #include "tests/anchors/geodesic.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
-#include "tests/support/tries.h"
 
 #include <algorithm>
 #include <cmath>
@@ -117,7 +116,7 @@ TEST_CASE("anchors row 1: no tick above 1.5 times the ideal force on a bumpy sph
             for (const double step : {2e-4, 1e-3}) {
                 CAPTURE(parts, friction, step);
                 const Forces forces = stroke(
-                    scene_of(surface, friction), 1.2, step, test::tries(200'000),
+                    scene_of(surface, friction), 1.2, step, 200'000,
                     [&](const dvec3& d) { return d * (BumpySphere::radius_m(d) - depth_m); },
                     [](const dvec3& tip) { return glm::distance(tip, BumpySphere::nearest_m(tip)); });
                 CHECK(std::abs(forces.ideal_mean_n - 10) < 0.1); // the hand was where it was meant to be
@@ -136,7 +135,7 @@ TEST_CASE("anchors row 1: nor is a ball wedged, of a twentieth of the object's r
             for (const double step : {2e-4, 1e-3}) {
                 CAPTURE(parts, friction, step);
                 const Forces forces = stroke(
-                    scene_of(surface, friction, {ProbeKind::sphere, 0, radius_m}), 1.2, step, test::tries(20'000),
+                    scene_of(surface, friction, {ProbeKind::sphere, 0, radius_m}), 1.2, step, 20'000,
                     [&](const dvec3& d) { return d * (BumpySphere::radius_m(d) + radius_m - depth_m); },
                     [&](const dvec3& centre) {
                         return radius_m - glm::distance(centre, BumpySphere::nearest_m(centre));
@@ -156,8 +155,8 @@ TEST_CASE("anchors row 1: in a bowl of two million triangles the force is the id
     for (const bool friction : {false, true}) {
         CAPTURE(friction);
         const Forces forces = stroke(
-            scene_of(surface, friction), 0.9, 1e-3, test::tries(200'000),
-            [&](const dvec3& d) { return d * (1 + depth_m); }, [&](const dvec3&) { return depth_m; });
+            scene_of(surface, friction), 0.9, 1e-3, 200'000, [&](const dvec3& d) { return d * (1 + depth_m); },
+            [&](const dvec3&) { return depth_m; });
         check(forces, 2 * furthest_m); // between two shallow walls at most twice as deep as below one
         const double sliding_n = stiffness_n_per_m * depth_m * (friction ? std::hypot(1, dynamic_friction) : 1);
         CHECK(std::abs(forces.mean_n - sliding_n) < 1e-3 * sliding_n);
