@@ -115,7 +115,7 @@ TickResult Renderer::tick_in_scene(const DevicePose& pose) noexcept
         left_ = {};
         effects_.lose_hand();
     }
-    fade_shares(pose.degradation, periods);
+    if (pose.degradation != Degradation::none || shares_ != Shares()) fade_shares(pose.degradation, periods);
     const bool effects_act = effects_.act() && shares_.effects > 0;
     if (effects_act) effects_.begin(pose.tip_m, result.time_s, periods);
 

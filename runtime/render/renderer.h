@@ -127,6 +127,7 @@ private:
     };
     struct Shares { // of what is felt, while something is left out (DevicePose::degradation)
         double effects = 1, textures = 1, force = 1;
+        bool operator==(const Shares&) const = default;
     };
     struct OnHand {
         glm::dvec3 n{0}, n_m{0};
