@@ -4,13 +4,15 @@
 #include "lang/ir/bounds/interval.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 namespace haptel::ir {
 
 inline double down(double value, int steps = 1)
 {
-    for (int i = 0; i < steps; ++i) value = std::nextafter(value, -infinity);
+    for (int i = 0; i < steps && value > -infinity; ++i) // as nextafter(), which is a call
+        value = std::bit_cast<double>(std::bit_cast<int64_t>(value == 0 ? -0.0 : value) + (value > 0 ? -1 : 1));
     return value;
 }
 inline double up(double value, int steps = 1)
@@ -39,8 +41,9 @@ inline Interval absolute(const Interval& a)
 template <typename F>
 Interval at_ends(const Interval& a, const Interval& b, const F& f)
 {
-    const Interval least = join(join(no_value, f(a.minimum, b.minimum)), f(a.minimum, b.maximum));
-    return join(join(least, f(a.maximum, b.minimum)), f(a.maximum, b.maximum));
+    const Interval all = join(join(no_value, f(a.minimum, b.minimum)), f(a.maximum, b.maximum));
+    if (a.is_point() || b.is_point()) return all;
+    return join(join(all, f(a.minimum, b.maximum)), f(a.maximum, b.minimum));
 }
 
 // Of an operation that has a shape.
