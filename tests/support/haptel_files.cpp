@@ -1,5 +1,7 @@
 #include "tests/support/haptel_files.h"
 
+#include "tests/support/tries.h"
+
 #include <algorithm>
 #include <cstdlib>
 
@@ -17,11 +19,7 @@ std::vector<std::filesystem::path> haptel_files(const std::vector<std::string>& 
 
 std::vector<std::filesystem::path> texture_files(const std::vector<std::string>& folders)
 {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    const bool are_all = false;
-#else
-    const bool are_all = !std::getenv("HAPTEL_ISA");
-#endif
+    const bool are_all = !is_sanitized && !std::getenv("HAPTEL_ISA");
     const std::vector<std::filesystem::path> files = haptel_files(folders);
     std::vector<std::filesystem::path> some;
     for (size_t i = 0; i < files.size(); i += are_all ? 1 : 10) some.push_back(files[i]);

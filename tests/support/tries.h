@@ -3,15 +3,17 @@
 
 namespace haptel::test {
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool is_sanitized = true;
+#else
+constexpr bool is_sanitized = false;
+#endif
+
 // `count` tries, or what is expected to be seen in them: a fifth where the program is sanitized, which is some five
 // times slower and finds what it finds early.
 constexpr auto tries(auto count)
 {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-    return count / 5;
-#else
-    return count;
-#endif
+    return is_sanitized ? count / 5 : count;
 }
 
 } // namespace haptel::test

@@ -1,8 +1,8 @@
 // Library functions compiled apart change no bit, and are told apart by all that decides their code.
 #include "jit/codegen/content_hash.h"
-#include "stdlib/stdlib.h"
 #include "tests/jit/codegen/samples.h"
 #include "tests/support/catch.h"
+#include "tests/support/haptel_files.h"
 #include "tests/support/ir_parse.h"
 
 #include <cstring>
@@ -87,15 +87,15 @@ std::string hash_of(const std::string& text)
 
 TEST_CASE("every texture of the library has the same bits with kernels and without, one by one and in lanes")
 {
-    for (const stdlib::LibraryFile& file : stdlib::tests())
+    for (const std::filesystem::path& file : test::texture_files({"stdlib/tests"}))
         for (jit::Precision precision : {jit::Precision::f64, jit::Precision::mixed}) {
-            INFO(file.name);
+            INFO(file);
             jit::TextureOptions options;
             options.entries = jit::Entries::both_and_batches;
             options.precision = precision;
-            const auto with = jit::compile_texture(file.text, options);
+            const auto with = jit::compile_texture_file(file, options);
             options.kernels = false;
-            const auto without = jit::compile_texture(file.text, options);
+            const auto without = jit::compile_texture_file(file, options);
             REQUIRE(with.program);
             REQUIRE(without.program);
             for (size_t i = 0; i < with.program->textures().size(); ++i) {
