@@ -26,6 +26,27 @@ WalkFriction checked(const Friction& friction) noexcept
     return {rest, std::min(coefficient(friction.dynamic_coefficient), rest)};
 }
 
+bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const WalkFriction& friction) noexcept
+{
+    glm::dvec3 push_m(0), lag_m(0);
+    double pressed_m = 0;
+    for (const Contact& contact : held) {
+        push_m += contact.depth_m * contact.normal;
+        pressed_m += contact.depth_m;
+        lag_m += contact.lag_m;
+    }
+    const double length_m = glm::length(push_m);
+    if (!(length_m > 0)) return false;
+    const glm::dvec3 normal = push_m / length_m;
+    const auto across = [&](const glm::dvec3& v) { return v - glm::dot(v, normal) * normal; };
+    const glm::dvec3 from_m = -across(lag_m), along_m = across(way_m); // of the hand, seen from the proxy
+    const double square = glm::dot(along_m, along_m);
+    const double share =
+        square > 0 ? glm::clamp(-glm::dot(from_m, along_m) / square, 0.0, 1.0) : 0.0; // where it is nearest
+    const double then_m = std::max(0.0, pressed_m - share * glm::dot(way_m, normal));
+    return glm::length(from_m + share * along_m) >= sticks_again * friction.dynamic_coefficient * then_m;
+}
+
 PointContact::PointContact(std::shared_ptr<const Surface> surface, bool skips_free_space)
     : surface_(std::move(surface)), skips_free_space_(skips_free_space)
 {
@@ -45,6 +66,7 @@ void PointContact::reset() noexcept
 const Contact& PointContact::update(const glm::dvec3& hand_m, const glm::dvec3* tail, const Friction& friction) noexcept
 {
     if (!take(hand_m)) return contact_;
+    slide_on(surface_->lattice.metres(hand_) - contact_.hand_m, friction);
     if (placed_ && !proxy_.touches()) {
         move_freely(hand_);
     } else if (!placed_) {
@@ -57,6 +79,12 @@ const Contact& PointContact::update(const glm::dvec3& hand_m, const glm::dvec3* 
     finish(friction, nullptr);
     counters_.touching_ticks += contact_.touching;
     return contact_;
+}
+
+// At the beginning of a tick in which the hand goes by `way_m`.
+void PointContact::slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept
+{
+    proxy_.sliding = proxy_.sliding && slides_on({&contact_, 1}, way_m, checked(friction));
 }
 
 // To where it aims; `path`: where it went, as far as it touched. A tick may have several goes.

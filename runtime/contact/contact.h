@@ -21,6 +21,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 namespace haptel::runtime {
 
@@ -29,6 +30,9 @@ struct Friction {
     double static_coefficient = 0, dynamic_coefficient = 0;
 };
 WalkFriction checked(const Friction& friction) noexcept;
+
+// Of what dynamic friction holds: below this share what slid sticks again.
+inline constexpr double sticks_again = 0.5;
 
 // Of a probe that has two ends, which may touch what is different. One for both of them: Friction.
 struct EndsFriction {
@@ -42,7 +46,7 @@ struct EndsFriction {
 // Where and how the probe touches after a tick. If !touching, proxy_m is the hand and the rest is meaningless.
 struct Contact {
     bool touching = false;
-    bool sliding = false;        // friction: the proxy moved this tick and dynamic friction holds
+    bool sliding = false;        // dynamic friction holds: the proxy slides, or slid and does not stick yet
     bool hand_held = false;      // the pose was not finite: the last good one was used
     bool hand_clamped = false;   // the hand was farther than four half extents from the object's centre
     uint32_t face = 0, side = 0; // the face under the proxy and the side touched; 0: front
@@ -65,6 +69,12 @@ struct Contact {
     bool on_crease = false;
     glm::dvec3 lag_m{0}; // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
 };
+
+// Whether what slid, and was held so, goes on to slide while the hand goes by `way_m`. It sticks where the hand has
+// come back until less than `sticks_again` holds it: friction depends on displacement alone (Hayward and Armstrong
+// 2000), not on how long the hand rests, which it does between the counts of its encoder, more often the higher the
+// rate.
+bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const WalkFriction& friction) noexcept;
 
 // Since construction or reset().
 struct ContactCounters {
@@ -113,6 +123,7 @@ private:
     const Contact& update(const glm::dvec3& hand_m, const glm::dvec3* tail, const Friction& friction) noexcept;
     bool take(const glm::dvec3& hand_m) noexcept;
     void aim(const glm::dvec3& hand) noexcept;
+    void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept;
     void go(const Friction& friction, WalkPath* path) noexcept;
     void move_freely(const glm::dvec3& hand) noexcept;
     bool sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept;

@@ -227,6 +227,8 @@ SphereContact::Way SphereContact::go(bool until_it_touches) noexcept
 void SphereContact::move(const Friction& friction) noexcept
 {
     const bool in_air = contact_count_ == 0;
+    sliding_ =
+        sliding_ && slides_on(contacts(), surface_->lattice.metres(hand_) - contacts_[0].hand_m, checked(friction));
     const glm::dvec3 start = centre_;
     Way way = go(in_air);
     // How far it had looked around before decides how its way is cut into steps, and friction feels them: where it
@@ -262,7 +264,7 @@ void SphereContact::move(const Friction& friction) noexcept
         return;
     }
     const glm::dvec3 nearest = centre_;
-    hold_by_friction(friction);
+    hold_by_friction(found, friction);
     describe(found, nearest);
     lag_ = glm::distance(centre_, nearest);
     const glm::dvec3 lag_m = (centre_ - nearest) * surface_->lattice.unit_m;
@@ -285,25 +287,45 @@ void SphereContact::push_no_harder_than(double way_m) noexcept
     }
 }
 
-// Friction is a way that ends early, by coefficient times depth, or does not begin.
-void SphereContact::hold_by_friction(const Friction& friction) noexcept
+// Friction is a way that ends early, where what is left of it is the coefficient times what presses, or does not begin.
+void SphereContact::hold_by_friction(const NearestInHalfSpaces& found, const Friction& friction) noexcept
 {
     const auto [rest, slide] = checked(friction);
-    const double depth = glm::distance(centre_, hand_);
-    double way = 0;
-    for (uint32_t i = 1; i < path_length_; ++i) way += glm::distance(path_[i - 1], path_[i]);
-    if (rest > 0 && way <= (sliding_ ? slide : rest) * depth) {
+    const glm::dvec3 nearest = centre_;
+    const double depth = glm::distance(nearest, hand_);
+    if (depth == 0) return;
+    const glm::dvec3 normal = (nearest - hand_) / depth;
+    const double pressed = (found.push[0] + found.push[1] + found.push[2]) / depth; // in a groove by both its walls
+    struct Held {
+        glm::dvec3 across; // at a right angle to the push
+        double limit;      // of `across`, by a coefficient of 1
+    };
+    const auto held_at = [&](const glm::dvec3& place) {
+        const glm::dvec3 lag = place - nearest;
+        const double up = glm::dot(lag, normal);
+        return Held{lag - up * normal, pressed * std::max(0.0, depth + up)};
+    };
+    const auto holds = [&](const Held& held, double coefficient) {
+        return glm::length(held.across) <= coefficient * held.limit;
+    };
+    const Held first = held_at(path_[0]);
+    if (rest > 0 && holds(first, sliding_ ? slide : rest)) {
         centre_ = path_[0];
-        sliding_ = false;
         return;
     }
-    double back = slide * depth;
-    sliding_ = way - back > distance_rounding;
-    for (uint32_t i = path_length_ - 1; i > 0 && back > 0; --i) {
-        const double length = glm::distance(path_[i - 1], path_[i]);
-        centre_ = length <= back ? path_[i - 1] : path_[i] + back / length * (path_[i - 1] - path_[i]);
-        back -= length;
-    }
+    sliding_ = sliding_ || glm::length(first.across) - slide * first.limit > distance_rounding;
+    uint32_t end = path_length_ - 1;
+    while (end > 0 && holds(held_at(path_[end - 1]), slide)) --end;
+    if (end == 0) return;
+    // Where along this piece, beginning at its end, the two are equal: a quadratic equation.
+    const Held at_end = held_at(path_[end]), at_begin = held_at(path_[end - 1]);
+    const glm::dvec3 across = at_begin.across - at_end.across;
+    const double limit = slide * at_end.limit, more = slide * at_begin.limit - limit;
+    const double a = glm::dot(across, across) - more * more, b = glm::dot(at_end.across, across) - limit * more;
+    const double c = std::min(0.0, glm::dot(at_end.across, at_end.across) - limit * limit);
+    const double root = std::sqrt(std::max(0.0, b * b - a * c));
+    const double share = b > 0 ? -c / (b + root) : a > 0 ? (root - b) / a : 0.0;
+    centre_ = path_[end] + std::min(1.0, share) * (path_[end - 1] - path_[end]);
 }
 
 // Of the faces that meet where the ball touches one the one that turns to it most: another may be the bottom of an

@@ -73,7 +73,7 @@ private:
     void move(const Friction& friction) noexcept;
     void push_no_harder_than(double way_m) noexcept;
     uint32_t outermost(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) const noexcept;
-    void hold_by_friction(const Friction& friction) noexcept;
+    void hold_by_friction(const NearestInHalfSpaces& found, const Friction& friction) noexcept;
     void describe(const NearestInHalfSpaces& found, const glm::dvec3& nearest) noexcept;
 
     std::shared_ptr<const Surface> surface_;

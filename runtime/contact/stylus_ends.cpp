@@ -75,7 +75,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     Place nearest = place();
     double nearest_away = away_first;
     if (astray_) restart_ends();
-    bool stopped = false, tip_slides = false, tail_slides = false;
+    bool stopped = false;
     WalkPath tip_path, tail_path;
     double stride = 1; // share of the hand's way that is tried at once
     uint32_t round = 0;
@@ -83,8 +83,11 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     FrictionOfEnds ends;
     ends.tip.friction = checked(friction.tip);
     ends.tail.friction = checked(friction.tail);
-    ends.tip.slides = tip_.proxy_.sliding;
-    ends.tail.slides = tail_.proxy_.sliding;
+    const double unit_m = surface().lattice.unit_m;
+    tip_.slide_on(unit_m * (hand_.tip - reached_.tip), friction.tip);
+    tail_.slide_on(unit_m * (hand_.tail - reached_.tail), friction.tail);
+    bool tip_slides = ends.tip.slides = tip_.proxy_.sliding;
+    bool tail_slides = ends.tail.slides = tail_.proxy_.sliding;
     for (; round < rounds_max && sweeps_left_ > 0; ++round) {
         Shaft aim, to = hand_;
         const double share = std::min(stride, solve(to, aim, ends));

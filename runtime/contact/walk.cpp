@@ -32,7 +32,7 @@ void Walk::run(uint32_t step_limit, WalkPath* path)
         if (path && proxy_.touches()) path->add(beside(surface_, proxy_));
     }
     count_.cut = step == Step::again || count_.wall_turns > WalkCount::most_wall_turns;
-    proxy_.sliding = moved_;
+    proxy_.sliding = proxy_.sliding || moved_;
 }
 
 // Onto the lowest feature at the proxy's place: what may be reached next is decided there.
@@ -282,6 +282,20 @@ Walk::Step Walk::go_within(uint32_t face, uint32_t side, const glm::dvec3& targe
     return step_onto_edge(face, side, exit) ? Step::again : went(from);
 }
 
+// How deep the hand is below an edge, as friction feels it: in a groove below both its walls together.
+double Walk::pressed_at_edge(uint32_t face, uint32_t edge, uint32_t side) const
+{
+    const glm::dvec3& begin = vertex(face, edge);
+    const glm::dvec3 along = edge_vector(face, edge), from_hand = begin - hand_;
+    const double depth = glm::length(glm::cross(from_hand, along)) / glm::length(along);
+    const SideEdge link = surface_.faces[face].link[edge][side];
+    const glm::dvec3 here = surface_.facet_normal(face, side);
+    const glm::dvec3 both = here + surface_.facet_normal(link.face(), link.side());
+    const double square = glm::dot(both, both);
+    const bool groove = glm::dot(vertex(link.face(), previous(link.edge())) - begin, here) > 0;
+    return groove && square > sharp * sharp ? std::max(depth, 2 * glm::dot(from_hand, both) / square) : depth;
+}
+
 // Along the edge toward the foot of the hand on it, at most to its end.
 Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
 {
@@ -290,8 +304,7 @@ Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
     const double length = glm::length(along);
     const double here = glm::dot(proxy_.at - begin, along) / length;
     const double way = glm::dot(hand_ - begin, along) / length - here;
-    const double depth = glm::length(glm::cross(hand_ - begin, along)) / length;
-    const double share = share_past_friction(std::abs(way), depth);
+    const double share = share_past_friction(std::abs(way), pressed_at_edge(face, edge, side));
     proxy_.on = Proxy::On::edge;
     proxy_.face = face;
     proxy_.side = side;

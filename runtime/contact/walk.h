@@ -54,6 +54,7 @@ private:
 
     Step leave(const StartsOn& start, const glm::dvec3& offset);
     double share_past_friction(double way, double depth);
+    double pressed_at_edge(uint32_t face, uint32_t edge, uint32_t side) const;
     Step slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge);
     Step go_within(uint32_t face, uint32_t side, const glm::dvec3& target, uint32_t from_edge, uint32_t or_edge);
     Step slide_along(uint32_t face, uint32_t edge, uint32_t side);

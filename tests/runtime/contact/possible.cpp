@@ -33,9 +33,11 @@ public:
         before_ = surface_.lattice.units(hand_m);
     }
 
+    // `slides`: what slid before goes on to.
     template <class Followed>
-    bool tick(const dvec3& hand_m, const WalkFriction& friction, Followed&& followed)
+    bool tick(const dvec3& hand_m, const WalkFriction& friction, bool slides, Followed&& followed)
     {
+        proxy_.sliding = proxy_.sliding && slides;
         const dvec3 hand = surface_.lattice.snap(hand_m);
         WalkCount count;
         dvec3 from = before_, to = before_ = surface_.lattice.units(hand_m);
@@ -58,15 +60,10 @@ public:
             }
             if (proxy_.on == Proxy::On::nothing) return true;
         }
-        const bool slid_before = proxy_.sliding;
-        bool slid = false;
         do {
-            proxy_.sliding = slid_before || slid;
             walk(surface_, proxy_, hand, friction, count, 1);
-            slid = slid || proxy_.sliding;
             if (!followed(proxy_)) return false;
         } while (count.cut && count.wall_turns <= WalkCount::most_wall_turns);
-        proxy_.sliding = slid;
         return true;
     }
 
@@ -123,13 +120,15 @@ Verdict judge(const std::shared_ptr<const Surface>& shared, uint64_t ticks, uint
     Verdict verdict;
     for (uint64_t i = 0; i < ticks; ++i) {
         const dvec3 at_m = hand.next();
+        const WalkFriction coefficients = checked(friction);
+        const dvec3 way_m = surface.lattice.metres(surface.lattice.snap(at_m)) - contact.contact().hand_m;
+        const bool slides = slides_on({&contact.contact(), 1}, way_m, coefficients);
         const Contact& touch = contact.update(at_m, friction);
-        const bool possible =
-            stepped.tick(at_m, {friction.static_coefficient, friction.dynamic_coefficient}, [&](const Proxy& proxy) {
-                ++verdict.steps;
-                verdict.off_surface = std::max(verdict.off_surface, off_surface(surface, exact, proxy));
-                return accomplice.follow(proxy);
-            });
+        const bool possible = stepped.tick(at_m, coefficients, slides, [&](const Proxy& proxy) {
+            ++verdict.steps;
+            verdict.off_surface = std::max(verdict.off_surface, off_surface(surface, exact, proxy));
+            return accomplice.follow(proxy);
+        });
         const Proxy& proxy = stepped.proxy();
         const bool differs = touch.touching != (proxy.on != Proxy::On::nothing) ||
                              touch.proxy_m != surface.lattice.metres(proxy.at) ||

@@ -139,7 +139,7 @@ TEST_CASE("the end of a stylus has its friction while the shaft rests on an edge
     CHECK(std::abs(result.force_n.y + mu * stiffness * tail) < 1e-4);
 }
 
-TEST_CASE("what has slid sticks again once it rests, and needs the static force to slide again")
+TEST_CASE("what has slid sticks again once the hand has come back, not when it rests, and then needs the static force")
 {
     Scene scene = bare_scene(plane_mesh());
     scene.objects[0].material = {stiffness, 0, mu_static, mu_dynamic};
@@ -158,6 +158,10 @@ TEST_CASE("what has slid sticks again once it rests, and needs the static force 
         CHECK(std::abs(last_n - mu_dynamic * normal_n) < 1e-8);
         for (int i = 0; i < 3; ++i) last_n = -renderer.tick(at(x, 0, -depth_m)).force_n.x; // rest
         CHECK(std::abs(last_n - mu_dynamic * normal_n) < 1e-8);
+        for (int i = 0; i < 100; ++i) last_n = -renderer.tick(at(x += step_m, 0, -depth_m)).force_n.x;
+        CHECK(std::abs(last_n - mu_dynamic * normal_n) < 1e-8);
+        x -= 0.6 * mu_dynamic * depth_m; // back
+        renderer.tick(at(x, 0, -depth_m));
     }
 }
 
