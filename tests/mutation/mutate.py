@@ -7,8 +7,8 @@ A mutant differs by one token: a comparison, a sign, a constant, a condition tur
 arguments swapped, nothing returned. Places are drawn kind by kind from the folders or files that are named (all of the
 product's otherwise); the same tree and seed give the same mutants. Each is built as far as a test program needs, the
 programs of the nearest tests first and the quick ones before the slow, and is killed by the first one that fails,
-crashes or takes many times as long as it does otherwise. One that does not compile is replaced by the next. Exit code 1
-where one survives.
+crashes or takes many times as long as it does otherwise. One that does not compile is replaced by the next, and so is one
+that leaves every program as it is to the byte: no test can tell it apart. Exit code 1 where one survives.
 
 Works in copies of the tree under build-mutate, one for each job, so that nothing here is touched. Some seconds to
 minutes for each mutant, and a build and a run of all tests before the first: not part of CI. --resume goes on where a
@@ -18,6 +18,7 @@ run was stopped.
 import argparse
 import collections
 import concurrent.futures
+import hashlib
 import itertools
 import json
 import math
@@ -45,7 +46,9 @@ quiet = "".join(
                     "unused-parameter", "unused-function", "unused-value", "div-by-zero", "parentheses", "conversion",
                     "unused-const-variable", "unused-private-field", "unused-lambda-capture", "bool-compare",
                     "tautological-compare", "float-conversion", "int-in-bool-context", "sign-compare", "empty-body"])
+quiet += "#line 1\n"  # every line keeps its number, or programs would differ by that
 
+no_mutant = ["does not compile", "cannot differ"]
 Place = collections.namedtuple("Place", "file line kind start end before after")  # start, end: in the file's text
 
 
@@ -92,7 +95,7 @@ patterns += [
      lambda m: f"{m.group(1)} (!{m.group(2)})"),
     ("statement", re.compile(r"(?<=[;{}\n])(?<!,\n)[ \t]*(?:\+\+|--)?[\w:]+(?:(?:\.|->)\w+|\[[^;\[\]]*\])*"
                              r"(?: [-+*/|&]?= [^;{}]*|\([^;{}]*\))?;(?=\n)"), lambda m: ";"),
-    ("arguments", re.compile(r"(?<=\w)(?<!::min)(?<!::max)(?<!glm::dot)\(([\w.]+(?:\([\w., ]*\))?), ([\w.]+(?:\([\w., ]*\))?)\)"),
+    ("arguments", re.compile(r"(?<=\w)(?<!::min)(?<!::max)(?<!::swap)(?<!::dot)(?<!::distance)\(([\w.]+(?:\([\w., ]*\))?), ([\w.]+(?:\([\w., ]*\))?)\)"),
      lambda m: f"({m.group(2)}, {m.group(1)})"),
     ("return", re.compile(r"\breturn (?!(?:false|0|0\.0|nullptr|std::nullopt);)[^;{}]+;"), lambda m: "return {};"),
 ]
@@ -154,13 +157,20 @@ def tracked():
     return [name for name in listed.decode().split("\0") if name and (root / name).is_file()]
 
 
+def digest(program):
+    """Of all that runs."""
+    with tempfile.NamedTemporaryFile(dir=work) as bare:
+        subprocess.run(["objcopy", "--strip-debug", "--remove-section=.note.gnu.build-id", program, bare.name], check=True)
+        return hashlib.sha256(pathlib.Path(bare.name).read_bytes()).digest()
+
+
 class Tree:
     """A copy of the tree, built, with its tests as (folder, name, programs, whether a program alone is the command)."""
 
     def __init__(self, number):
         self.copy = work / f"tree{number}"
         self.build = self.copy / "build-test"  # where the preset has it: a compiler cache finds what another tree built
-        self.tests, self.cost_s, self.made_of = [], {}, {}
+        self.tests, self.cost_s, self.made_of, self.unbroken = [], {}, {}, {}
 
     def prepare(self):
         """As the tree is, with the times of what is the same; everything built, every test green and its cost known."""
@@ -212,6 +222,7 @@ class Tree:
             _, said = run(["ninja", "-C", self.build, "-t", "inputs", program.relative_to(self.build)])
             files = set().union(*(reads[line] for line in said.splitlines() if line in reads))
             self.made_of[program] = {os.path.relpath(file, self.copy) for file in files}
+            self.unbroken[program] = digest(program)
 
     def nearest(self, file):
         """Tests of programs that the file is in: those of its top folder first, and the quick before the slow."""
@@ -235,24 +246,29 @@ class Tree:
                 return None
 
     def verdict(self, place, seconds):
-        """(word, by which test) of a mutant; "does not compile"."""
+        """(word, by which test) of a mutant; one of `no_mutant`, by none."""
         target = self.copy / place.file
         original = target.read_text()
-        spent_s = 0
-        target.write_text(quiet + original[:place.start] + place.after + original[place.end:])
+        tests, spent_s = self.nearest(place.file), 0
+        same = bool(tests)
+        lines = "\n" * (original.count("\n", place.start, place.end) - place.after.count("\n"))
+        target.write_text(quiet + original[:place.start] + place.after + lines + original[place.end:])
         try:
-            for test in self.nearest(place.file):
+            for test in tests:
                 cost_s = self.cost_s.get(test[1], 0)
                 if spent_s and spent_s + cost_s > seconds:
                     continue
                 code, _ = run(["cmake", "--build", self.build, "--target", *{program.name for program in test[2]}])
                 if code:
                     return "does not compile", ""
+                if all(digest(program) == self.unbroken[program] for program in test[2]):
+                    continue
+                same = False
                 spent_s += cost_s
                 green = self.is_green(test)
                 if not green:
                     return "killed" if green is False else "killed by time", test[1]
-            return "SURVIVED", ""
+            return "cannot differ" if same else "SURVIVED", ""
         finally:
             target.write_text(original)
 
@@ -280,7 +296,7 @@ def shown(place):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--folder", action="append", help=f"or a file; {' '.join(everything)} where none is named")
-    parser.add_argument("--count", type=int, default=20, help="mutants that compile; 0: all there are")
+    parser.add_argument("--count", type=int, default=20, help="mutants that compile to something else; 0: all there are")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--seconds", type=float, default=math.inf, help="what the tests of a mutant may cost together")
     parser.add_argument("--jobs", type=int, default=1, help="mutants at once, each in a copy of some gigabytes")
@@ -330,7 +346,7 @@ def main():
         while len(results) < wanted:
             places = list(itertools.islice(mutants, min(wanted - len(results), 20)))
             for place, word, by in pool.map(judged, places):
-                if word == "does not compile":
+                if word in no_mutant:
                     continue
                 results.append((place, word, by))
                 print(f"{len(results)} {word}{f' by {by}' if by else ''}: {shown(place)}", flush=True)
