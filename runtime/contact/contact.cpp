@@ -35,6 +35,9 @@ bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const Wal
         pressed_m += contact.depth_m;
         lag_m += contact.lag_m;
     }
+    const double least = sticks_again * friction.dynamic_coefficient;
+    if (glm::dot(lag_m, way_m) <= 0) // farther away, as while it slides
+        return glm::dot(lag_m, lag_m) >= least * pressed_m * (least * pressed_m);
     const double length_m = glm::length(push_m);
     if (!(length_m > 0)) return false;
     const glm::dvec3 normal = push_m / length_m;
@@ -44,7 +47,7 @@ bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const Wal
     const double share =
         square > 0 ? glm::clamp(-glm::dot(from_m, along_m) / square, 0.0, 1.0) : 0.0; // where it is nearest
     const double then_m = std::max(0.0, pressed_m - share * glm::dot(way_m, normal));
-    return glm::length(from_m + share * along_m) >= sticks_again * friction.dynamic_coefficient * then_m;
+    return glm::length(from_m + share * along_m) >= least * then_m;
 }
 
 PointContact::PointContact(std::shared_ptr<const Surface> surface, bool skips_free_space)
@@ -58,6 +61,7 @@ void PointContact::reset() noexcept
     counters_ = {};
     proxy_ = {};
     clear_ = {};
+    unspared_ = -1;
     placed_ = false;
 }
 
@@ -152,7 +156,7 @@ void PointContact::move_freely(const glm::dvec3& hand) noexcept
         return;
     }
     proxy_.at = hand;
-    if (skips_free_space_) refresh_clearance(step);
+    if (skips_free_space_) unspared_ = step;
 }
 
 bool PointContact::sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept
@@ -166,8 +170,10 @@ bool PointContact::sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing&
 }
 
 // Looks somewhat farther than the last ball was large, and not at all where the hand would leave a ball at once.
-void PointContact::refresh_clearance(double step) noexcept
+void PointContact::look_around() noexcept
 {
+    const double step = std::exchange(unspared_, -1);
+    if (step < 0 || proxy_.touches()) return;
     clear_.radius = 0;
     if (clear_.next_radius < ticks_per_ball * step) {
         clear_.next_radius = clear_.next_radius == 0 ? 0.25 * Lattice::extent : 1.1 * clear_.next_radius;

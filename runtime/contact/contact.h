@@ -64,8 +64,8 @@ struct Contact {
     // solution for the two ends and that for the shaft did not converge. It acts at an end of the stylus, and `normal`
     // is its direction. `face` is that of the nearest known contact, whose material counts; the end need not be there.
     bool unsettled = false;
-    // A crease where its own surface may have no edge: with an object that it is joined to (body.h), or of sheets that
-    // pierce each other.
+    // No shading normal is right here, but `normal`: where it meets an object that it is joined to (body.h), where
+    // sheets pierce each other, on a border, or at a vertex of more facets than are told apart (crease_rows.h).
     bool on_crease = false;
     glm::dvec3 lag_m{0}; // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
 };
@@ -108,6 +108,9 @@ public:
     }
     // One tick of a probe that is free and known to have met nothing on its way: the same as update, for nothing.
     void follow(const glm::dvec3& hand_m) noexcept;
+    // Between two ticks: looks how far it is free around a hand that the last tick could not spare a query. For ticks
+    // to come; changes no contact.
+    void look_around() noexcept;
     void reset() noexcept;
 
     // At least so far is it from the hand to the nearest triangle; 0: not known.
@@ -127,7 +130,6 @@ private:
     void go(const Friction& friction, WalkPath* path) noexcept;
     void move_freely(const glm::dvec3& hand) noexcept;
     bool sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept;
-    void refresh_clearance(double step) noexcept;
     void finish(const Friction& friction, WalkPath* path) noexcept;
     void describe() noexcept;
 
@@ -140,6 +142,7 @@ private:
     glm::dvec3 true_hand_{0}, before_{0}; // neither rounded nor clamped: the hand in this tick and in the last
     bool placed_ = false;
     Clearance clear_;
+    double unspared_ = -1; // the hand's way in a free tick that no clearance spared a query; < 0: there was none
 };
 
 // Torque (N m) about the grip of a force (N) that acts at a point.

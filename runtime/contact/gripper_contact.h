@@ -18,6 +18,8 @@ public:
                                     const EndsFriction& friction = {}) noexcept;
     // One tick of a probe that is free and known to have met nothing on its way.
     void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
+    // Between two ticks, as PointContact's.
+    void look_around() noexcept { tip_.look_around(), tail_.look_around(); }
 
     void reset() noexcept;
 

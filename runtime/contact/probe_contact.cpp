@@ -28,19 +28,15 @@ bool is_shared(const ProbeSettings& probe, const Surface& surface)
 // Out of where a point touches: in a narrow pit its contact's normal, from the hand, leads into a wall.
 glm::dvec3 way_out(const Surface& surface, const Contact& contact)
 {
-    constexpr double on_feature = 1e-9; // of a corner's weight
     const auto unit = [&](const glm::dvec3& sum) {
         return glm::length(sum) > Surface::least_normal ? glm::normalize(sum) : contact.normal;
     };
     const Face& face = surface.faces[contact.face];
-    for (uint32_t i = 0; i < 3; ++i)
-        if (contact.barycentric[int(i)] > 1 - on_feature) return unit(surface.fans[face.fan[i][contact.side]].normal);
-    for (uint32_t i = 0; i < 3; ++i) {
-        if (contact.barycentric[int(previous(i))] > on_feature) continue;
-        const SideEdge link = face.link[i][contact.side];
-        return unit(contact.facet_normal + surface.facet_normal(link.face(), link.side()));
-    }
-    return contact.normal;
+    const auto [on, i] = feature_at(contact.barycentric);
+    if (on == Feature::On::face) return contact.normal;
+    if (on == Feature::On::vertex) return unit(surface.fans[face.fan[i][contact.side]].normal);
+    const SideEdge link = face.link[i][contact.side];
+    return unit(contact.facet_normal + surface.facet_normal(link.face(), link.side()));
 }
 
 std::span<const Contact> any(const Contact& contact)
@@ -127,17 +123,20 @@ std::optional<ProbePose> ProbeContact::held(const ProbePose& hand, double off_m)
 }
 
 // A ball keeps the faces around it by itself.
-uint32_t ProbeContact::read_ahead() const noexcept
+uint32_t ProbeContact::read_ahead() noexcept
 {
-    const auto around = [](const auto& tip) {
+    const auto around = [](auto& tip) {
+        tip.look_around();
         const Contact& at = tip.contact();
         return at.touching ? runtime::read_ahead(tip.surface(), at.face, at.side) : 0;
     };
-    if (const auto* point = std::get_if<PointContact>(&contact_)) return around(*point);
-    if (const auto* stylus = std::get_if<StylusContact>(&contact_)) return around(*stylus);
+    if (auto* point = std::get_if<PointContact>(&contact_)) return around(*point);
+    if (auto* stylus = std::get_if<StylusContact>(&contact_)) return around(*stylus);
     uint32_t seen = 0;
-    if (const auto* gripper = std::get_if<GripperContact>(&contact_))
+    if (auto* gripper = std::get_if<GripperContact>(&contact_)) {
+        gripper->look_around();
         for (const Contact& at : gripper->contacts()) seen += runtime::read_ahead(gripper->surface(), at.face, at.side);
+    }
     return seen;
 }
 

@@ -38,11 +38,13 @@ public:
     // is moved `off_m` metres away from the surface. Nothing if the probe touched nothing.
     std::optional<ProbePose> held(const ProbePose& hand, double off_m) const noexcept;
 
-    // Brings what the next tick may need into the cache. Returns how many faces it looked at.
-    uint32_t read_ahead() const noexcept;
+    // Between two ticks: brings what the next one may need into the cache, and looks how far it is free around the
+    // hand. Changes no contact. Returns how many faces it looked at.
+    uint32_t read_ahead() noexcept;
 
     // A lower bound, in metres, of the distance from the probe in this pose to the nearest triangle; 0: not known.
     double gap_m(const ProbePose& pose) const noexcept;
+    bool touches() const noexcept { return !contacts().empty(); } // in the last tick
     const ContactCounters& counters() const noexcept;
 
 private:

@@ -90,7 +90,10 @@ double SphereContact::gap_m(const glm::dvec3& centre_m) const noexcept
 void SphereContact::place() noexcept
 {
     centre_ = hand_;
-    if (!look_around(0)) return;
+    if (!look_around(0)) {
+        ++counters_.walks_cut;
+        return;
+    }
     grown_ = faces_.distance(centre_, radius_);
     placed_ = grown_ >= std::min(least_radius, radius_);
 }
@@ -306,7 +309,7 @@ void SphereContact::hold_by_friction(const NearestInHalfSpaces& found, const Fri
         return Held{lag - up * normal, pressed * std::max(0.0, depth + up)};
     };
     const auto holds = [&](const Held& held, double coefficient) {
-        return glm::length(held.across) <= coefficient * held.limit;
+        return glm::dot(held.across, held.across) <= coefficient * held.limit * (coefficient * held.limit);
     };
     const Held first = held_at(path_[0]);
     if (rest > 0 && holds(first, sliding_ ? slide : rest)) {

@@ -67,6 +67,7 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
         count();
         return tip_.contact();
     }
+    unspared_ = -1;
     const bool had_tip = begin_ == 0, had_tail = end_ == 1;
     const uint64_t sweeps = counters_.sweeps;
     has_shaft_ = take(tip_m, tail_m);
@@ -178,7 +179,7 @@ bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_
         if (!tree_->is_empty(SweptRegion(shaft_.tip, shaft_.tail, to.tip, to.tail, rest_gap + reach))) return false;
         const double step = farther(shaft_, to);
         shaft_ = to;
-        if (skips_free_space_) refresh_clearance(step);
+        if (skips_free_space_) unspared_ = step;
     }
     shaft_ = to;
     aim_ = reached_ = hand_;
@@ -188,8 +189,12 @@ bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_
 }
 
 // Tries larger regions after success and smaller ones after failure, and none while even a success would not pay.
-void StylusContact::refresh_clearance(double step) noexcept
+void StylusContact::look_around() noexcept
 {
+    tip_.look_around();
+    tail_.look_around();
+    const double step = std::exchange(unspared_, -1);
+    if (step < 0) return;
     if (clear_.next_radius == 0) clear_.next_radius = 0.25 * Lattice::extent;
     if (clear_.next_radius < ticks_per_region * step) {
         clear_.next_radius *= 1.1;

@@ -52,6 +52,8 @@ public:
     const Contact& update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
                           const EndsFriction& friction = {}) noexcept;
     void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
+    // Between two ticks, as PointContact's.
+    void look_around() noexcept;
     void reset() noexcept;
 
     // Where the stylus touches: the tip first, then the shaft, then the tail, then what no contact accounts for
@@ -125,7 +127,6 @@ private:
     Shaft goal() const noexcept;
     void start(const glm::dvec3& tip_m, const Friction& friction) noexcept;
     bool pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
-    void refresh_clearance(double step) noexcept;
     void restart(PointContact& end, const glm::dvec3& at) noexcept;
     void restart_ends() noexcept;
 
@@ -170,6 +171,7 @@ private:
     std::array<Side, sides_max> sides_;
     uint32_t side_count_ = 0;
     Clear clear_;
+    double unspared_ = -1; // as a point's
     std::array<Contact, sides_max + 4> contacts_;
     uint32_t contact_count_ = 0;
     uint32_t sweeps_left_ = 0; // in this tick

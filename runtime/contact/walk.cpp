@@ -234,9 +234,10 @@ Walk::Step Walk::leave(const StartsOn& start, const glm::dvec3& offset)
 double Walk::share_past_friction(double way, double depth)
 {
     const double coefficient = proxy_.sliding || moved_ ? friction_.dynamic_coefficient : friction_.static_coefficient;
-    if (way <= coefficient * depth) return 0;
     const double remaining = way - friction_.dynamic_coefficient * depth;
-    if (remaining > 1) moved_ = true; // one lattice unit: less is rounding
+    const bool rounding = remaining <= 1; // lattice unit
+    if (way <= coefficient * depth || (rounding && friction_.dynamic_coefficient > 0)) return 0;
+    moved_ = moved_ || !rounding;
     return remaining / way;
 }
 

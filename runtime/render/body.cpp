@@ -117,8 +117,6 @@ Contact on_part(const Contact& contact, const Surface& joined, const SceneObject
     result.facet_normal = own.facet_normal(result.face, contact.side);
     result.normal = on_facet ? result.facet_normal : placement.direction_to_object(contact.normal);
     result.lag_m = placement.direction_to_object(contact.lag_m);
-    result.on_crease =
-        contact.on_crease || (!on_facet && on_crease(joined, contact.face, contact.side, contact.barycentric));
     return result;
 }
 

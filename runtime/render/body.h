@@ -1,6 +1,7 @@
 // What is touched as one, with one proxy: an object by itself, or several at rest that are joined (Scene::joined).
 #pragma once
 
+#include "runtime/contact/crease_rows.h"
 #include "runtime/contact/probe_contact.h"
 #include "runtime/geometry/placement.h"
 #include "runtime/hand/hand_velocity.h"
@@ -105,9 +106,7 @@ struct PartContacts {
 // Contacts with a joined surface, object by object.
 class ContactsByPart {
 public:
-    // The most contacts that any probe has: of a stylus each end rests on up to three faces, and its shaft on up to
-    // four edges; two more are Contact::unsettled.
-    static constexpr std::size_t most = 12;
+    static constexpr std::size_t most = CreaseRows::rows_most; // contacts
 
     // The contacts grouped by object and converted to its space. Groups are in the order of their first contact. Valid
     // until the next call.

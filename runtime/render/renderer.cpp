@@ -120,9 +120,10 @@ TickResult Renderer::tick_in_scene(const DevicePose& pose) noexcept
     if (effects_act) effects_.begin(pose.tip_m, result.time_s, periods);
 
     held_j_ = 0;
-    const double way = way_m(pose), near_m = far_enough_m(pose.tip_m, pose.tail_m, way);
+    const double way = way_m(pose);
+    near_m_ = far_enough_m(pose.tip_m, pose.tail_m, way);
     if (turned_rad() > turn_max_rad) sleep_queue_.wake_who_turns();
-    sleep_queue_.go(way, pose.tip_m, pose.tail_m, near_m);
+    sleep_queue_.go(way, pose.tip_m, pose.tail_m, near_m_);
     Skipped skipped;
     skipped_.objects += objects_.size();
     for (std::size_t i = 0; i < sleep_queue_.awake().size(); ++i) {
@@ -131,11 +132,13 @@ TickResult Renderer::tick_in_scene(const DevicePose& pose) noexcept
         if (!take_pose(body, pose, periods)) continue;
         skipped_.objects -= body.objects.numbers().size();
         work_.objects += body.objects.numbers().size();
-        const uint64_t spared = body.contact.counters().skipped;
-        const std::span<const Contact> contacts =
+        const uint64_t spared = body.contact.counters().skipped, cut = body.contact.counters().walks_cut;
+        std::span<const Contact> contacts =
             update_contact(body, body.pose_of(pose), {body.tip_friction.mean, body.tail_friction.mean});
+        contacts = crease_rows_.of(*body.objects.surface(*scene_), contacts);
         if (body.bounded) track_velocity(number, pose, periods, !contacts.empty());
         skipped.query = skipped.query && body.contact.counters().skipped > spared;
+        if (body.contact.counters().walks_cut > cut) result.faults |= fault_contact_unfinished;
         const PartContacts alone{0, contacts};
         const std::span<const PartContacts> parts =
             body.objects.joined ? by_part_.of(*scene_, *body.objects.joined, contacts) : std::span(&alone, 1);
@@ -143,12 +146,7 @@ TickResult Renderer::tick_in_scene(const DevicePose& pose) noexcept
         body.tip_friction = body.tail_friction = {};
         if (contacts.empty()) {
             skipped.texture = skipped.texture && (scene_->servo.skips.texture || !feels_in_air(body, pose));
-            const double gap = gap_to_sleep_m(number, pose, near_m);
-            body.asleep = gap > 0;
-            if (body.asleep && !(body.motion && !body.bounded)) {
-                sleep_queue_.sleep(number, gap);
-                --i;
-            }
+            if (sleeps(number, pose)) --i;
             continue;
         }
         for (const PartContacts& part : parts) render_object(body, contacts, part, pose, result, skipped);
@@ -195,8 +193,13 @@ void Renderer::between_ticks() noexcept
 {
     // Now and then, in turn: so that nobody keeps a texture that is to be freed.
     if (!objects_.empty() && texture_period_ % 8 == 0) advance_texture(objects_[texture_period_ / 8 % objects_.size()]);
-    for (const uint32_t body : sleep_queue_.awake())
-        if (!bodies_[body].asleep) work_.read_ahead += bodies_[body].contact.read_ahead();
+    for (std::size_t i = 0; i < sleep_queue_.awake().size(); ++i) {
+        const uint32_t number = sleep_queue_.awake()[i];
+        if (bodies_[number].asleep) continue;
+        work_.read_ahead += bodies_[number].contact.read_ahead();
+        // How far it is free may be known by now.
+        if (last_pose_ && !bodies_[number].contact.touches() && sleeps(number, *last_pose_)) --i;
+    }
 }
 
 void Renderer::advance_texture(Touched& touched) noexcept
@@ -264,8 +267,19 @@ void Renderer::wake(Body& body) noexcept
     advance_textures(body);
 }
 
+// Puts a body that is awake to sleep where the hand is far enough. True: it is not among the awake any more.
+bool Renderer::sleeps(uint32_t number, const DevicePose& pose) noexcept
+{
+    Body& body = bodies_[number];
+    const double gap = gap_to_sleep_m(number, pose);
+    body.asleep = gap > 0;
+    if (!body.asleep || (body.motion && !body.bounded)) return false;
+    sleep_queue_.sleep(number, gap);
+    return true;
+}
+
 // How far the hand must go before a body that it does not touch is looked at again; 0: look at it every tick.
-double Renderer::gap_to_sleep_m(uint32_t number, const DevicePose& pose, double near_m) const noexcept
+double Renderer::gap_to_sleep_m(uint32_t number, const DevicePose& pose) const noexcept
 {
     if (!scene_->servo.skips.objects) return 0;
     const Body& body = bodies_[number];
@@ -276,7 +290,7 @@ double Renderer::gap_to_sleep_m(uint32_t number, const DevicePose& pose, double 
     double gap = body.contact.gap_m(probe) - awake_within_m;
     if (body.bounded) gap = std::min(gap, gap_m(sleep_queue_.around(number), pose.tip_m, pose.tail_m));
     const glm::dvec3 farthest = glm::abs(probe.tip_m); // in its space, where coordinates may be larger
-    return gap > std::max({near_m, 1e-6 * farthest.x, 1e-6 * farthest.y, 1e-6 * farthest.z}) ? gap : 0;
+    return gap > std::max({near_m_, 1e-6 * farthest.x, 1e-6 * farthest.y, 1e-6 * farthest.z}) ? gap : 0;
 }
 
 // Of a body that moves within bounds. Whether it slept does not matter: it is told from the poses of late when it is

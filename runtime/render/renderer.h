@@ -38,7 +38,9 @@ inline constexpr double full_damping_depth_m = 1e-3;
 enum : uint32_t {
     fault_pose_not_finite = 1u << 16,  // force zero, contact kept as it was
     fault_force_not_finite = 1u << 17, // force zero
-    fault_scene_refused = 1u << 18     // force zero: Renderer::refused() says why
+    fault_scene_refused = 1u << 18,    // force zero: Renderer::refused() says why
+    // The probe could not go all its way in one tick, which is bounded; the next goes on. The force is of where it is.
+    fault_contact_unfinished = 1u << 19
 };
 
 struct TickResult {
@@ -104,6 +106,7 @@ private:
     struct Touched {
         const SceneObject* object;
         TextureReader texture;
+        LastSample sample = {};
         uint64_t texture_period = 0; // up to which its texture has faded
     };
     struct HeldBodies { // that hold the probe, the first so many
@@ -155,13 +158,14 @@ private:
     bool take_pose(Body& body, const DevicePose& pose, uint64_t periods) noexcept;
     ProbePose pose_before(Body& body) const noexcept;
     void wake(Body& body) noexcept;
-    double gap_to_sleep_m(uint32_t body, const DevicePose& pose, double near_m) const noexcept;
+    bool sleeps(uint32_t body, const DevicePose& pose) noexcept;
+    double gap_to_sleep_m(uint32_t body, const DevicePose& pose) const noexcept;
     void track_velocity(uint32_t body, const DevicePose& pose, uint64_t periods, bool touching) noexcept;
     void update_effects(const Body& body, std::span<const Contact> contacts,
                         std::span<const PartContacts> parts) noexcept;
-    bool feels_in_air(const Body& body, const DevicePose& pose) const noexcept;
-    ObjectForce force_of(const Body& body, const Touched& touched, const Placement& placement,
-                         const Contact& contact) const noexcept;
+    bool feels_in_air(const Body& body, const DevicePose& pose) noexcept;
+    ObjectForce force_of(const Body& body, Touched& touched, const Placement& placement,
+                         const Contact& contact) noexcept;
     double damping_n(const Body& body, const Material& material, const Placement& placement, const Contact& contact,
                      const glm::dvec3& normal, double depth_m, double stiffness_n_per_m) const noexcept;
     double work_j(const OnHand& on_hand, const DevicePose& from, const DevicePose& to) const noexcept;
@@ -179,6 +183,7 @@ private:
     std::vector<Body> bodies_;
     Effects effects_;
     SleepQueue sleep_queue_;        // of bodies
+    double near_m_ = 0;             // nearer than this to the hand nobody sleeps, in this tick
     double turn_max_rad_per_s_ = 0; // of those that move within bounds
     bool started_ = false;
     uint64_t period_ = 0;         // number of this tick's period, 0 at the first pose
@@ -205,6 +210,7 @@ private:
     double left_work_j_ = 0;     // what it would have done on the hand since, had it not faded,
     double left_work_max_j_ = 0; // and the most of that
 
+    CreaseRows crease_rows_;
     ContactsByPart by_part_;
 };
 

@@ -58,7 +58,7 @@ void Renderer::add_force(TickResult& result, const DevicePose& pose, double alon
 void Renderer::render_object(Body& body, std::span<const Contact> contacts, const PartContacts& part,
                              const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept
 {
-    const Touched& touched = objects_[body.objects.number(part.part)];
+    Touched& touched = objects_[body.objects.number(part.part)];
     const Placement& placement = body.placement_of(*touched.object);
     ++result.contacts;
     for (const Contact& contact : part.contacts) { // what presses most first, of a stylus its tip
@@ -96,11 +96,11 @@ void Renderer::render_object(Body& body, std::span<const Contact> contacts, cons
 }
 
 // What a tick without contact is spared: the texture where the hand is, and whether there is one.
-bool Renderer::feels_in_air(const Body& body, const DevicePose& pose) const noexcept
+bool Renderer::feels_in_air(const Body& body, const DevicePose& pose) noexcept
 {
     bool textured = false;
     for (const uint32_t object : body.objects.numbers()) {
-        const Touched& touched = objects_[object];
+        Touched& touched = objects_[object];
         const Placement& placement = body.placement_of(*touched.object);
         Contact here;
         here.proxy_m = here.hand_m = placement.to_object(pose.tip_m);
@@ -125,8 +125,8 @@ double Renderer::damping_n(const Body& body, const Material& material, const Pla
     return std::max(damping, -stiffness_n_per_m * depth_m);
 }
 
-Renderer::ObjectForce Renderer::force_of(const Body& body, const Touched& touched, const Placement& placement,
-                                         const Contact& contact) const noexcept
+Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, const Placement& placement,
+                                         const Contact& contact) noexcept
 {
     const SceneObject& object = *touched.object;
     const Surface& surface = *object.surface;
@@ -153,13 +153,12 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, const Touched& touche
                       !skips.mapping || (reads & HAPTEL_READS_UV)};
     result.unmapped = (curved && !read.normal_dp) || (drawn && !read.uv);
     SurfacePoint at{contact.proxy_m, shade(surface, contact.face, contact.side, contact.barycentric, read), time_s()};
-    if (contact.normal != contact.facet_normal &&
-        (contact.on_crease || on_crease(surface, contact.face, contact.side, contact.barycentric))) {
+    if (contact.on_crease) {
         at.shading.normal = contact.normal;
         at.shading.normal_dp = glm::dmat3(0);
     }
 
-    TextureSample texture = textured ? sample_texture(touched.texture, at) : TextureSample();
+    TextureSample texture = textured ? sample_texture(touched.texture, at, touched.sample) : TextureSample();
     if (shares_.textures < 1) texture = mixed({}, texture, shares_.textures);
     result.textured = textured;
     result.band_limited =

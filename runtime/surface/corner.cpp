@@ -33,6 +33,31 @@ bool NearestInFan::consider(const Surface& surface, const Sector& start, const g
     });
 }
 
+Feature feature_at(const glm::dvec3& barycentric) noexcept
+{
+    constexpr double on_feature = 1e-9; // of a corner's weight
+    for (uint32_t i = 0; i < 3; ++i)
+        if (barycentric[int(i)] > 1 - on_feature) return {Feature::On::vertex, i};
+    for (uint32_t i = 0; i < 3; ++i)
+        if (barycentric[int(previous(i))] <= on_feature) return {Feature::On::edge, i};
+    return {};
+}
+
+bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept
+{
+    const auto& of_corner = surface.shading_normal_of[face];
+    const auto [on, i] = feature_at(barycentric);
+    if (on == Feature::On::face) return false;
+    if (on == Feature::On::vertex) return !surface.shading_normals[of_corner[i][side]].whole;
+    const SideEdge link = surface.faces[face].link[i][side];
+    if (link.face() == face) return true; // a border
+    const auto& there = surface.shading_normal_of[link.face()];
+    const bool same_way = surface.faces[link.face()].vertex[link.edge()] == surface.faces[face].vertex[i];
+    const uint32_t first = same_way ? link.edge() : next(link.edge());
+    const uint32_t second = same_way ? next(link.edge()) : link.edge();
+    return of_corner[i][side] != there[first][link.side()] || of_corner[next(i)][side] != there[second][link.side()];
+}
+
 glm::dvec3 weighted_normal(const Surface& surface, const Sector& sector) noexcept
 {
     const Face& face = surface.faces[sector.face];

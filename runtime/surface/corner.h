@@ -23,6 +23,14 @@ inline uint32_t previous(uint32_t i)
     return i == 0 ? 2 : i - 1;
 }
 
+// What of its face a point lies on, by its barycentric coordinates, which are 0 there but for rounding.
+struct Feature {
+    enum class On : uint8_t { face, edge, vertex };
+    On on = On::face;
+    uint32_t index = 0; // of the edge or the corner
+};
+Feature feature_at(const glm::dvec3& barycentric) noexcept;
+
 // Over `edge`, one of the two at the sector's corner, into the neighbour; `edge` becomes the neighbour's other edge at
 // the vertex. False at a border of the surface.
 inline bool turn(const Surface& surface, Sector& sector, uint32_t& edge)
@@ -54,6 +62,10 @@ bool for_each_sector(const Surface& surface, const Sector& start, Visit&& visit)
     while (turn(surface, sector, edge)) visit(sector);
     return false;
 }
+
+// Whether the point lies on an edge or a vertex at which the shading normals of the faces around differ, or on a
+// border, off which a ball is held by its rim.
+bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept;
 
 // The facet's normal toward the side that is seen times the angle at the vertex.
 glm::dvec3 weighted_normal(const Surface& surface, const Sector& sector) noexcept;

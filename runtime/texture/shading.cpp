@@ -28,26 +28,6 @@ glm::dvec3 shading_normal(const Surface& surface, uint32_t face, uint32_t side, 
     return length > Surface::least_normal ? sum / length : surface.facet_normal(face, side);
 }
 
-bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept
-{
-    constexpr double on_feature = 1e-9; // of a corner's weight, which is 0 there but for rounding
-    const auto& of_corner = surface.shading_normal_of[face];
-    for (uint32_t i = 0; i < 3; ++i)
-        if (barycentric[int(i)] > 1 - on_feature) return !surface.shading_normals[of_corner[i][side]].whole;
-    for (uint32_t i = 0; i < 3; ++i) {
-        if (barycentric[int(previous(i))] > on_feature) continue;
-        const SideEdge link = surface.faces[face].link[i][side];
-        if (link.face() == face) return true; // a border
-        const auto& there = surface.shading_normal_of[link.face()];
-        const bool same_way = surface.faces[link.face()].vertex[link.edge()] == surface.faces[face].vertex[i];
-        const uint32_t first = same_way ? link.edge() : next(link.edge());
-        const uint32_t second = same_way ? next(link.edge()) : link.edge();
-        return of_corner[i][side] != there[first][link.side()] ||
-               of_corner[next(i)][side] != there[second][link.side()];
-    }
-    return false;
-}
-
 Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric, Shaded what) noexcept
 {
     Shading shading;

@@ -13,10 +13,6 @@ namespace haptel::runtime {
 // where they cancel.
 glm::dvec3 shading_normal(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept;
 
-// Whether the point lies on an edge or a vertex at which the shading normals of the faces around differ, or on a
-// border, off which a ball is held by its rim.
-bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept;
-
 struct Shading {
     glm::dvec3 normal{0, 0, 1};
     glm::dmat3 normal_dp{0}; // 1/m: column j is d normal / d p_j, along the facet; 0 across it

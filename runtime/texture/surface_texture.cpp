@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace haptel::runtime {
 
@@ -53,23 +54,22 @@ void distrust(haptel_sample& sample)
         }
 }
 
-} // namespace
-
-TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& at) noexcept
+haptel_sample evaluate(const TextureBinding& binding, const haptel_point& point)
 {
-    TextureSample result;
-    if (!binding.texture) return result;
-
     haptel_sample sample = {0, {0, 0, 0}, 1, 1, 0};
-    const haptel_point point = inputs(at, binding.texture->reads);
     binding.texture->height_gradient(&point, binding.block, &sample);
     distrust(sample);
+    return sample;
+}
 
+TextureSample felt(const TextureBinding& binding, const haptel_sample& sample, const glm::dvec3& normal)
+{
+    TextureSample result;
     result.height_m = sample.height_m;
     result.envelope_m = std::min(0.0, sample.height_m - binding.facts.height_max_m);
     result.raised_m = std::max(0.0, sample.height_m - std::min(0.0, binding.facts.height_min_m));
     result.surface_gradient =
-        tangential(glm::dvec3(sample.gradient[0], sample.gradient[1], sample.gradient[2]), at.shading.normal);
+        tangential(glm::dvec3(sample.gradient[0], sample.gradient[1], sample.gradient[2]), normal);
     result.stiffness_scale = sample.stiffness_scale;
     result.friction_scale = sample.friction_scale;
     result.faults = sample.faults;
@@ -80,9 +80,24 @@ TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& 
     return result;
 }
 
-TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at) noexcept
+} // namespace
+
+TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& at) noexcept
 {
-    const TextureSample to = sample_texture(reader.to().binding, at);
+    if (!binding.texture) return {};
+    return felt(binding, evaluate(binding, inputs(at, binding.texture->reads)), at.shading.normal);
+}
+
+TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at, LastSample& last) noexcept
+{
+    const auto& [serial, binding] = reader.to();
+    TextureSample to;
+    if (binding.texture) {
+        const haptel_point point = inputs(at, binding.texture->reads);
+        if (last.serial != serial || std::memcmp(&last.point, &point, sizeof point) != 0)
+            last = {serial, point, evaluate(binding, point)};
+        to = felt(binding, last.sample, at.shading.normal);
+    }
     return reader.fading() ? mixed(sample_texture(reader.from().binding, at), to, reader.weight()) : to;
 }
 

@@ -39,8 +39,16 @@ struct TextureSample {
 // One binding at one point. Never returns NaN or infinity, whatever the texture does.
 TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& point) noexcept;
 
+// What a texture gave when it was evaluated last: it gives that again where nothing that it reads has changed, under a
+// probe that sticks or a hand that rests.
+struct LastSample {
+    uint64_t serial = 0; // of the binding; 0: none
+    haptel_point point{};
+    haptel_sample sample{};
+};
+
 // What the reader feels at that point: its binding, or the linear mixture of two during a fade.
-TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& point) noexcept;
+TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& point, LastSample& last) noexcept;
 
 // The linear mixture of two, `share` of the second; TextureSample() is a flat surface.
 TextureSample mixed(const TextureSample& from, const TextureSample& to, double share) noexcept;

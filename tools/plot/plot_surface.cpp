@@ -31,7 +31,8 @@ NormalBelow textured_normal_below(const std::shared_ptr<const Scene>& scene, con
         const auto hit = seen.surface->first_hit(to_object(middle_m.z + reach_m), to_object(middle_m.z - reach_m));
         if (!hit) return std::nullopt;
         const SurfacePoint at{hit->point_m, shade(*seen.surface, hit->face, hit->side, hit->barycentric), 0};
-        const glm::dvec3 bent = at.shading.normal - exaggeration * sample_texture(*reader, at).surface_gradient;
+        const glm::dvec3 bent =
+            at.shading.normal - exaggeration * sample_texture(reader->to().binding, at).surface_gradient;
         return glm::normalize(workspace.direction_to_hand(seen.placement.direction_to_world(bent)));
     };
 }

@@ -64,6 +64,7 @@ std::string faults_text(uint32_t bits)
         {runtime::fault_pose_not_finite, "the device gave a pose that is not finite (no force)"},
         {runtime::fault_force_not_finite, "the force was not finite (none was sent)"},
         {runtime::fault_scene_refused, "the scene was refused (no force)"},
+        {runtime::fault_contact_unfinished, "the probe could not go all its way in one tick (it went on in the next)"},
     };
     std::string text;
     for (const auto& [bit, meaning] : meanings) {

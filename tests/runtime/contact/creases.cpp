@@ -1,6 +1,7 @@
 // Where force shading ends: creases, and how fast shading normals turn between them.
 #include "runtime/contact/contact.h"
 #include "runtime/render/renderer.h"
+#include "runtime/surface/corner.h"
 #include "runtime/texture/shading.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"

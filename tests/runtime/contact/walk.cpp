@@ -287,6 +287,7 @@ TEST_CASE("equal poses give equal bits")
     for (int i = 0; i < 5000; ++i) {
         hand = 0.999 * hand + 0.02 * dvec3(normal(random), normal(random), normal(random));
         const Contact& a = one.update(hand, {0.3, 0.2});
+        one.look_around(); // which changes no contact
         const Contact& b = two.update(hand, {0.3, 0.2});
         REQUIRE(a.touching == b.touching);
         REQUIRE(a.proxy_m == b.proxy_m);
@@ -307,6 +308,7 @@ TEST_CASE("a known clearance spares queries and never hides the surface")
     for (int i = 0; i <= 2000; ++i) { // 0.2 mm per tick toward the sphere of radius 0.5
         const double height = 0.9 - 2e-4 * i;
         if (!contact.update({0.01, 0.02, height}).touching) last_free = height;
+        contact.look_around();
     }
     CHECK(contact.contact().touching == false);
     contact.update({0.01, 0.02, 0.49});
@@ -355,7 +357,10 @@ TEST_CASE("a stylus whose tail is inside, or whose shaft crosses the surface, is
 TEST_CASE("a stylus far from the surface is spared the query, its shaft included")
 {
     StylusContact stylus(surface_of(make_icosphere(4)));
-    for (int i = 0; i < 1000; ++i) stylus.update({0, 0, 2 + i * 1e-5}, {0, 0, 2.2 + i * 1e-5});
+    for (int i = 0; i < 1000; ++i) {
+        stylus.update({0, 0, 2 + i * 1e-5}, {0, 0, 2.2 + i * 1e-5});
+        stylus.look_around();
+    }
     const ContactCounters& counters = stylus.counters();
     CHECK(counters.skipped > 950);
     CHECK(counters.sweeps + counters.skipped <= counters.ticks); // a tick queries or is spared it, not both

@@ -5,6 +5,7 @@
 #include "runtime/render/renderer_slot.h"
 #include "runtime/servo/allocation_count.h"
 #include "runtime/surface/collision.h"
+#include "runtime/surface/corner.h"
 #include "runtime/texture/shading.h"
 #include "tests/support/catch.h"
 #include "tests/support/lambda_texture.h"
@@ -328,9 +329,6 @@ TEST_CASE("a contact with joined objects is, for the one it belongs to, the cont
         REQUIRE(glm::distance(found.normal, expected.normal) * expected.depth_m < 1e-11);
         REQUIRE(std::abs(found.depth_m - expected.depth_m) < 1e-11);
         REQUIRE(glm::distance(found.lag_m, expected.lag_m) < 1e-11);
-        const bool crease = expected.normal != expected.facet_normal &&
-                            on_crease(*object.surface, expected.face, expected.side, expected.barycentric);
-        REQUIRE(found.on_crease == crease);
         turned += number == 2;
         // As far beside its triangle as joining may put it.
         for (uint32_t corner = 0; corner < 3; ++corner) {
@@ -373,6 +371,6 @@ TEST_CASE("contacts with joined objects go to each object in their order")
     for (const PartContacts& part : found)
         for (const Contact& contact : part.contacts) order.push_back(contact.depth_m);
     CHECK(order == std::vector<double>{0, 2, 3, 1, 4});
-    const std::vector<Contact> many(20, contacts[0]);
+    const std::vector<Contact> many(30, contacts[0]);
     CHECK(by_part.of(scene, scene.joined[0], many)[0].contacts.size() == ContactsByPart::most);
 }

@@ -3,6 +3,7 @@
 #include "runtime/render/body.h"
 #include "runtime/render/renderer.h"
 #include "runtime/surface/collision.h"
+#include "runtime/surface/corner.h"
 #include "runtime/texture/shading.h"
 #include "tests/support/catch.h"
 #include "tests/support/touch_scenes.h"
@@ -39,10 +40,16 @@ TEST_CASE("where a floor and a wall meet the hand is pushed out of both, though 
     PointContact contact(surface);
     contact.update({-0.02, 0.03, 0.02});
     contact.update({0.001, 0.03, -0.002});
-    const SceneObject& object = scene.objects[surface->origins[contact.contact().face].part];
-    const Contact found = on_part(contact.contact(), *surface, object);
-    CHECK(found.on_crease);
-    CHECK_FALSE(on_crease(*object.surface, found.face, found.side, found.barycentric));
+    CreaseRows crease_rows;
+    const auto rows = crease_rows.of(*surface, {&contact.contact(), 1});
+    REQUIRE(rows.size() == 2);
+    for (const Contact& row : rows) {
+        const SceneObject& object = scene.objects[surface->origins[row.face].part];
+        const Contact found = on_part(row, *surface, object);
+        CHECK_FALSE(found.on_crease);
+        CHECK_FALSE(on_crease(*object.surface, found.face, found.side, found.barycentric));
+        CHECK(found.normal == found.facet_normal);
+    }
 
     Renderer renderer(shared(std::move(scene)));
     renderer.tick(at(-0.02, 0.03, 0.02));

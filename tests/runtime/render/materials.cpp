@@ -179,3 +179,39 @@ TEST_CASE("friction grows with the force that presses")
         CHECK(std::abs(force.x + mu_dynamic * force.z) < 1e-8);
     }
 }
+
+TEST_CASE("a texture is not evaluated again where nothing has changed that it reads")
+{
+    uint64_t evaluated = 0;
+    const auto texture = [&](uint32_t reads) {
+        return sample_lambda(
+            [&evaluated](const haptel_point& at, haptel_sample& sample) {
+                ++evaluated;
+                sample.height_m = 20e-6 * std::sin(1000 * at.p[0] + at.time_s);
+            },
+            -20e-6, 20e-6, HAPTEL_READS_POINT | reads);
+    };
+    Scene scene = bare_scene(plane_mesh(), texture(0));
+    scene.objects[0].material = {stiffness, 0, mu_static, mu_dynamic};
+    const std::shared_ptr<TextureSlot> slot = scene.objects[0].texture;
+    Renderer renderer(shared(std::move(scene)));
+    constexpr double depth_m = 1e-3;
+    double x = 0;
+    press(renderer, x, depth_m);
+    const auto evaluations = [&](double step_m) { // of ten ticks
+        const uint64_t before = evaluated;
+        for (int i = 0; i < 10; ++i) renderer.tick(at(x += step_m, 0, -depth_m));
+        return evaluated - before;
+    };
+    CHECK(evaluations(0) == 0);    // it rests
+    CHECK(evaluations(1e-6) == 0); // it sticks
+    evaluations(100e-6);
+    CHECK(evaluations(100e-6) == 10); // it slides
+    slot->publish(texture(0));
+    CHECK(evaluations(0) > 0);
+    for (int i = 0; i < 10; ++i) evaluations(0); // until it has faded
+    CHECK(evaluations(0) == 0);
+    slot->publish(texture(HAPTEL_READS_TIME));
+    for (int i = 0; i < 10; ++i) evaluations(0);
+    CHECK(evaluations(0) == 10);
+}

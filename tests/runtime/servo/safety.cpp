@@ -164,3 +164,19 @@ TEST_CASE("forces rise from zero after every interruption")
     back.interrupted = false;
     CHECK(std::abs(renderer.tick(back).force_n.z - 1) < 1e-9);
 }
+
+TEST_CASE("a probe that cannot go all its way in a tick says so, and only then")
+{
+    // A ball that fills a hollow ball of more triangles than a tick looks at.
+    for (const bool fits : {true, false}) {
+        CAPTURE(fits);
+        Mesh mesh = make_icosphere(fits ? 3 : 6);
+        scale_to_size(mesh, 0.1);
+        Scene scene = bare_scene(mesh);
+        scene.probe = {ProbeKind::sphere, 0, 0.0495};
+        Renderer renderer(shared(std::move(scene)));
+        uint32_t faults = 0;
+        for (int i = 0; i < 300; ++i) faults |= renderer.tick(at(i * 3e-5, 0, 0)).faults;
+        CHECK(faults == (fits ? 0u : uint32_t{fault_contact_unfinished}));
+    }
+}

@@ -20,7 +20,8 @@ namespace {
 
 double felt_height_m(const TextureReader& reader)
 {
-    return sample_texture(reader, SurfacePoint{}).height_m;
+    LastSample none;
+    return sample_texture(reader, SurfacePoint{}, none).height_m;
 }
 
 constexpr double period_s = 1e-3;
