@@ -32,7 +32,7 @@ bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const Wal
     double pressed_m = 0;
     for (const Contact& contact : held) {
         push_m += contact.depth_m * contact.normal;
-        pressed_m += contact.depth_m;
+        pressed_m += contact.pressed_m;
         lag_m += contact.lag_m;
     }
     const double least = sticks_again * friction.dynamic_coefficient;
@@ -88,7 +88,7 @@ const Contact& PointContact::update(const glm::dvec3& hand_m, const glm::dvec3* 
 // At the beginning of a tick in which the hand goes by `way_m`.
 void PointContact::slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept
 {
-    proxy_.sliding = proxy_.sliding && slides_on({&contact_, 1}, way_m, checked(friction));
+    proxy_.sliding = proxy_.sliding && contact_.touching && slides_on({&contact_, 1}, way_m, checked(friction));
 }
 
 // To where it aims; `path`: where it went, as far as it touched. A tick may have several goes.
@@ -232,6 +232,7 @@ void PointContact::describe() noexcept
     else
         depth = std::max(0.0, glm::dot(from_hand, contact_.normal));
     contact_.depth_m = depth * lattice.unit_m;
+    contact_.pressed_m = proxy_.pressed * lattice.unit_m;
     contact_.lag_m = (from_hand - depth * contact_.normal) * lattice.unit_m;
 }
 

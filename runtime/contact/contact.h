@@ -58,6 +58,7 @@ struct Contact {
     // where they pierce each other.
     glm::dvec3 normal{0, 0, 1};
     double depth_m = 0;    // >= 0: how deep the hand is below the proxy along `normal`
+    double pressed_m = 0;  // what friction bears by: the depth, but in a groove that below both its walls together
     double along = 0;      // of a stylus or a gripper: where it touches, 0 at its tip, 1 at its tail
     bool by_shaft = false; // of a stylus: between its ends, on an edge
     // Of a stylus, together with `by_shaft`: the part of its force that no contact accounts for, in a tick in which the
@@ -73,7 +74,7 @@ struct Contact {
 // Whether what slid, and was held so, goes on to slide while the hand goes by `way_m`. It sticks where the hand has
 // come back until less than `sticks_again` holds it: friction depends on displacement alone (Hayward and Armstrong
 // 2000), not on how long the hand rests, which it does between the counts of its encoder, more often the higher the
-// rate.
+// rate. Without dynamic friction it never does: what slid sticks again where it comes down anew.
 bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const WalkFriction& friction) noexcept;
 
 // Since construction or reset().
@@ -84,7 +85,8 @@ struct ContactCounters {
     uint64_t object_boxes_missed = 0;            // of those, ended by the first stage: the object's box
     uint64_t triangles_tested = 0;               // by the last stage: triangles whose box the tree delivered
     uint64_t walk_steps = 0, walk_steps_max = 0; // over all ticks; in one tick
-    uint64_t walks_cut = 0;  // ticks that reached the step limit; the proxy is valid and goes on next tick
+    uint64_t walks_cut =
+        0; // ticks that reached a limit; the proxy is valid, or not put down yet, and goes on next tick
     uint64_t hands_held = 0; // poses that were not finite
 };
 

@@ -4,10 +4,15 @@
 #include "runtime/surface/corner.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace haptel::runtime {
 
 namespace {
+
+// Walls of a groove narrower than some 30 degrees bear more than so many times what presses, against each other: there
+// it stays one contact. And what rounding alone leaves to a piece is none.
+constexpr double opposed_most = 4, least_share = 1e-12;
 
 bool may_be_on_crease(const Surface& surface, const Contact& contact)
 {
@@ -60,7 +65,8 @@ void CreaseRows::add(const Surface& surface, const Contact& contact, std::size_t
     NearestInHalfSpaces held;
     if (closed && count <= facets_most)
         held = nearest_in({free.data(), count}, -pushed_m, glm::dvec3(0), surface.lattice.unit_m);
-    if (held.count == 0 || held.count > room) {
+    const double pushes_m = std::accumulate(held.push.begin(), held.push.begin() + std::ptrdiff_t(held.count), 0.0);
+    if (held.count == 0 || held.count > room || pushes_m > opposed_most * contact.depth_m) {
         rows_[count_] = contact;
         rows_[count_++].on_crease |= is_on_crease;
         return;
@@ -78,14 +84,15 @@ void CreaseRows::add(const Surface& surface, const Contact& contact, std::size_t
             told |= j < i;
             push_m += held.push[j] * free[held.active[j]].normal;
         }
-        if (told) continue;
+        const double piece_m = glm::length(push_m);
+        if (told || !(piece_m > least_share * contact.depth_m)) continue;
         Contact& row = rows_[count_++] = contact;
         row.face = facet.face;
         row.side = facet.side;
         row.barycentric = barycentric_of(surface, row.face, surface.lattice.units(contact.proxy_m));
         row.facet_normal = normal;
-        row.depth_m = glm::length(push_m);
-        row.normal = push_m / row.depth_m;
+        row.depth_m = row.pressed_m = piece_m;
+        row.normal = push_m / piece_m;
         depth_m += row.depth_m;
         lag_m -= push_m;
     }

@@ -12,8 +12,8 @@
 namespace haptel::runtime {
 
 // Of all contacts of a probe, those on creases by their rows. The rows of one add up to what it was: their depths times
-// their normals, and their lags. On a border, or at a vertex of more than `facets_most` facets, it stays one contact,
-// as Contact::on_crease. At most 16 contacts; valid until the next call.
+// their normals, and their lags. On a border, in a narrow groove, or at a vertex of more than `facets_most` facets, it
+// stays one contact, as Contact::on_crease. At most 16 contacts; valid until the next call.
 class CreaseRows {
 public:
     static constexpr std::size_t rows_most = 24; // of 16 contacts, four of them on creases

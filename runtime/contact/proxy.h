@@ -15,6 +15,7 @@ struct Proxy {
     uint32_t face = 0, side = 0; // of the sheet it touches; a face next to the feature it is on
     uint32_t index = 0;          // the edge or corner of `face`
     bool sliding = false;        // friction: it moved since it last stuck
+    double pressed = 0;          // how deep the hand is below it, as friction felt it last
     bool at_wall = false;        // a sheet that pierces its own holds it, too
     glm::dvec3 crease{0};        // then: the direction in which it may slide, unit; zero in a corner of three
     glm::dvec3 at{0};            // on nothing: the hand, a lattice point; else within rounding of the feature

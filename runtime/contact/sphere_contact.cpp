@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 namespace haptel::runtime {
@@ -230,8 +231,8 @@ SphereContact::Way SphereContact::go(bool until_it_touches) noexcept
 void SphereContact::move(const Friction& friction) noexcept
 {
     const bool in_air = contact_count_ == 0;
-    sliding_ =
-        sliding_ && slides_on(contacts(), surface_->lattice.metres(hand_) - contacts_[0].hand_m, checked(friction));
+    sliding_ = sliding_ && !in_air &&
+               slides_on(contacts(), surface_->lattice.metres(hand_) - contacts_[0].hand_m, checked(friction));
     const glm::dvec3 start = centre_;
     Way way = go(in_air);
     // How far it had looked around before decides how its way is cut into steps, and friction feels them: where it
@@ -298,18 +299,22 @@ void SphereContact::hold_by_friction(const NearestInHalfSpaces& found, const Fri
     const double depth = glm::distance(nearest, hand_);
     if (depth == 0) return;
     const glm::dvec3 normal = (nearest - hand_) / depth;
-    const double pressed = (found.push[0] + found.push[1] + found.push[2]) / depth; // in a groove by both its walls
+    const double pushes = std::accumulate(found.push.begin(), found.push.begin() + std::ptrdiff_t(found.count), 0.0);
+    const double pressed = pushes / depth; // in a groove by both its walls
     struct Held {
         glm::dvec3 across; // at a right angle to the push
+        double up;         // along it
         double limit;      // of `across`, by a coefficient of 1
     };
     const auto held_at = [&](const glm::dvec3& place) {
         const glm::dvec3 lag = place - nearest;
         const double up = glm::dot(lag, normal);
-        return Held{lag - up * normal, pressed * std::max(0.0, depth + up)};
+        return Held{lag - up * normal, up, pressed * std::max(0.0, depth + up)};
     };
+    // Nor is a way that leads down held higher than the end of it bears.
     const auto holds = [&](const Held& held, double coefficient) {
-        return glm::dot(held.across, held.across) <= coefficient * held.limit * (coefficient * held.limit);
+        const double most = coefficient * held.limit;
+        return glm::dot(held.across, held.across) <= most * most && held.up <= coefficient * pushes;
     };
     const Held first = held_at(path_[0]);
     if (rest > 0 && holds(first, sliding_ ? slide : rest)) {
@@ -327,8 +332,10 @@ void SphereContact::hold_by_friction(const NearestInHalfSpaces& found, const Fri
     const double a = glm::dot(across, across) - more * more, b = glm::dot(at_end.across, across) - limit * more;
     const double c = std::min(0.0, glm::dot(at_end.across, at_end.across) - limit * limit);
     const double root = std::sqrt(std::max(0.0, b * b - a * c));
-    const double share = b > 0 ? -c / (b + root) : a > 0 ? (root - b) / a : 0.0;
-    centre_ = path_[end] + std::min(1.0, share) * (path_[end - 1] - path_[end]);
+    double share = std::min(1.0, b > 0 ? -c / (b + root) : a > 0 ? (root - b) / a : 1.0);
+    if (at_begin.up > slide * pushes && at_begin.up > at_end.up)
+        share = std::min(share, std::max(0.0, slide * pushes - at_end.up) / (at_begin.up - at_end.up));
+    centre_ = path_[end] + share * (path_[end - 1] - path_[end]);
 }
 
 // Of the faces that meet where the ball touches one the one that turns to it most: another may be the bottom of an
@@ -375,7 +382,7 @@ void SphereContact::describe(const NearestInHalfSpaces& found, const glm::dvec3&
         contact.barycentric = point.barycentric;
         contact.proxy_m = surface_->lattice.metres(point.at);
         contact.hand_m = surface_->lattice.metres(hand_);
-        contact.depth_m = found.push[order[i]] * surface_->lattice.unit_m;
+        contact.depth_m = contact.pressed_m = found.push[order[i]] * surface_->lattice.unit_m;
     }
 }
 

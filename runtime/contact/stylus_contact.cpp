@@ -49,6 +49,7 @@ void StylusContact::reset() noexcept
     has_tail_ = tracked_ = astray_ = false;
     side_count_ = contact_count_ = 0;
     clear_ = {};
+    unspared_ = -1;
     collision_ = {};
     counters_ = {};
 }
@@ -71,11 +72,14 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
     const bool had_tip = begin_ == 0, had_tail = end_ == 1;
     const uint64_t sweeps = counters_.sweeps;
     has_shaft_ = take(tip_m, tail_m);
+    const uint64_t cut = tip_.counters().walks_cut;
     if (!has_shaft_) {
         tracked_ = false;
         tip_.update(tip_m, friction.tip);
+        counters_.walks_cut += tip_.counters().walks_cut - cut;
     } else if (!tracked_) {
         start(tip_m, friction.tip);
+        counters_.walks_cut += tip_.counters().walks_cut - cut;
     } else if (!pass_freely(tip_m, tail_m)) {
         if (!had_tip || begin_ > 0) restart(tip_, begin_ > 0 ? Lattice::snap_units(hand_.tip) : shaft_.tip);
         if (!had_tail || end_ < 1) restart(tail_, end_ < 1 ? Lattice::snap_units(hand_.tail) : shaft_.tail);

@@ -18,7 +18,7 @@ namespace haptel::runtime {
 struct EndFriction {
     WalkFriction friction;
     bool touches = false;
-    bool slides = false; // the dynamic coefficient holds: it slid in the last tick, or slips in this one
+    bool slides = false; // the dynamic coefficient holds: it slid since it last stuck, or slips in this tick
     bool slips = false;  // static friction was exceeded in this tick
     bool sticks = false; // this iteration takes it as fixed, whatever pushes it
     bool moves = false;  // it moves under the friction of the last iteration

@@ -234,6 +234,7 @@ Walk::Step Walk::leave(const StartsOn& start, const glm::dvec3& offset)
 double Walk::share_past_friction(double way, double depth)
 {
     const double coefficient = proxy_.sliding || moved_ ? friction_.dynamic_coefficient : friction_.static_coefficient;
+    proxy_.pressed = depth;
     const double remaining = way - friction_.dynamic_coefficient * depth;
     const bool rounding = remaining <= 1; // lattice unit
     if (way <= coefficient * depth || (rounding && friction_.dynamic_coefficient > 0)) return 0;

@@ -39,7 +39,8 @@ enum : uint32_t {
     fault_pose_not_finite = 1u << 16,  // force zero, contact kept as it was
     fault_force_not_finite = 1u << 17, // force zero
     fault_scene_refused = 1u << 18,    // force zero: Renderer::refused() says why
-    // The probe could not go all its way in one tick, which is bounded; the next goes on. The force is of where it is.
+    // The probe could not go all its way in one tick, which is bounded; the next goes on. The force is of where it is;
+    // a ball round which there is too much is not put down, and has none.
     fault_contact_unfinished = 1u << 19
 };
 
@@ -88,8 +89,9 @@ public:
     // to wait for that.
     TickResult tick(const DevicePose& pose) noexcept;
 
-    // Between two ticks, when the force is with the device: brings what the next one may need into the cache, and lets
-    // go of textures replaced on objects out of reach. Changes no force.
+    // Between two ticks, when the force is with the device: brings what the next one may need into the cache, looks how
+    // far it is free around the hand, puts to sleep what is far, and lets go of textures replaced on objects out of
+    // reach. Changes no force, but of a texture published meanwhile when it begins to fade in.
     void between_ticks() noexcept;
 
     // Why nothing is rendered, a line for each reason; empty: all is well.
@@ -183,7 +185,7 @@ private:
     std::vector<Body> bodies_;
     Effects effects_;
     SleepQueue sleep_queue_;        // of bodies
-    double near_m_ = 0;             // nearer than this to the hand nobody sleeps, in this tick
+    double near_m_ = 1e-6;          // nearer than this to the hand nobody sleeps, in this tick
     double turn_max_rad_per_s_ = 0; // of those that move within bounds
     bool started_ = false;
     uint64_t period_ = 0;         // number of this tick's period, 0 at the first pose

@@ -212,3 +212,19 @@ TEST_CASE("in a groove both walls have their friction")
             CHECK(std::abs(glm::length(held.lag_m) - material.dynamic_coefficient * std::sqrt(2) * depth_m) < 1e-9);
         }
 }
+
+TEST_CASE("a ball that sticks to a wall is not held above a floor that its hand has gone through")
+{
+    // Wall x = 0 and floor y = 0, as the ball's centre has them.
+    Mesh mesh;
+    mesh.positions_m = {{0, 0, -1}, {0, 0, 1}, {0, 1, -1}, {0, 1, 1}, {1, 0, -1}, {1, 0, 1}};
+    mesh.triangles = {{0, 1, 3}, {0, 3, 2}, {0, 5, 1}, {0, 4, 5}};
+    SphereContact contact(surface_of(mesh), ball_m);
+    const auto go = [&](double x, double y) { return contact.update({ball_m + x, ball_m + y, 0.013}, {0.5, 0.5}); };
+    go(5e-3, 5e-3);
+    go(1e-3, 1e-3);
+    go(-0.1e-3, 1e-3);
+    for (int i = 0; i < 3; ++i) go(-0.1e-3, -0.3e-3);
+    CHECK(glm::distance(contact.proxy_m(), dvec3(ball_m, ball_m, 0.013)) <
+          0.22e-3); // the coefficient times what presses, along the push
+}
