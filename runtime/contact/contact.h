@@ -66,7 +66,7 @@ struct Contact {
     // is its direction. `face` is that of the nearest known contact, whose material counts; the end need not be there.
     bool unsettled = false;
     // No shading normal is right here, but `normal`: where it meets an object that it is joined to (body.h), where
-    // sheets pierce each other, on a border, or at a vertex of more facets than are told apart (crease_rows.h).
+    // sheets pierce each other, and on a crease that is not told by its rows (crease_rows.h).
     bool on_crease = false;
     glm::dvec3 lag_m{0}; // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
 };
@@ -85,8 +85,7 @@ struct ContactCounters {
     uint64_t object_boxes_missed = 0;            // of those, ended by the first stage: the object's box
     uint64_t triangles_tested = 0;               // by the last stage: triangles whose box the tree delivered
     uint64_t walk_steps = 0, walk_steps_max = 0; // over all ticks; in one tick
-    uint64_t walks_cut =
-        0; // ticks that reached a limit; the proxy is valid, or not put down yet, and goes on next tick
+    uint64_t walks_cut = 0;  // ticks that reached a limit; the proxy is valid, or not yet put down, and goes on
     uint64_t hands_held = 0; // poses that were not finite
 };
 
