@@ -5,6 +5,8 @@
 #include "tests/jit/codegen/engines.h"
 
 #include <array>
+#include <chrono>
+#include <thread>
 
 namespace haptel::test {
 
@@ -35,6 +37,16 @@ inline haptel_sample sample_at(const TextureBinding& binding, const std::array<d
     haptel_sample sample{};
     binding.texture->height_gradient(&point, binding.block, &sample);
     return sample;
+}
+
+// With patience: what compiles in the background keeps the program at which it is until it is done with it.
+inline bool programs_fall_to(size_t most)
+{
+    using namespace std::chrono_literals;
+    const auto patience = std::chrono::steady_clock::now() + 60s;
+    while (jit::programs_alive() > most && std::chrono::steady_clock::now() < patience)
+        std::this_thread::sleep_for(1ms);
+    return jit::programs_alive() <= most;
 }
 
 inline bool contains(const std::string& text, const std::string& part)

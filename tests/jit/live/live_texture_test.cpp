@@ -328,7 +328,7 @@ TEST_CASE("a texture too slow for the servo is refused with the figure")
 
 TEST_CASE("200 edits in a row, every fourth broken: the last good one is felt, and old code goes")
 {
-    const size_t before = jit::programs_alive();
+    REQUIRE(test::programs_fall_to(0)); // those of the tests before
     {
         const test::Folder folder;
         folder.write("t.haptel", constant("1"));
@@ -344,9 +344,9 @@ TEST_CASE("200 edits in a row, every fourth broken: the last good one is felt, a
         folder.write("t.haptel", constant("199.5"));
         CHECK(follower.comes_to(199.5));
         CHECK(follower.publications() > 3);
-        CHECK(jit::programs_alive() <= before + 3);
+        CHECK(test::programs_fall_to(2)); // a draft and its fast code
     }
-    CHECK(jit::programs_alive() == before);
+    CHECK(test::programs_fall_to(0));
 }
 
 TEST_CASE("a callback may make another live texture, and destroy it")

@@ -264,22 +264,22 @@ TEST_CASE("what is wrong with a text is data, and rendered")
 
 TEST_CASE("dropping a program frees its code; bindings keep it")
 {
-    const size_t before = jit::programs_alive();
+    REQUIRE(test::programs_fall_to(0)); // those of the tests before
     std::optional<TextureBinding> binding;
     {
         const auto program = compiled(grooves);
-        CHECK(jit::programs_alive() == before + 1);
+        CHECK(jit::programs_alive() == 1);
         binding = jit::make_binding(program, "grooves", request_over(0.05)).binding;
     }
-    CHECK(jit::programs_alive() == before + 1);
+    CHECK(jit::programs_alive() == 1);
     CHECK(sample_at(*binding, {1e-4, 0, 0}).height_m > 0);
     binding.reset();
-    CHECK(jit::programs_alive() == before);
+    CHECK(test::programs_fall_to(0));
 }
 
 TEST_CASE("many programs, from several threads, each its own")
 {
-    const size_t before = jit::programs_alive();
+    REQUIRE(test::programs_fall_to(0)); // those of the tests before
     std::atomic<int> wrong{0};
     const auto work = [&](int first) {
         for (int i = first; i < first + 20; ++i) {
@@ -294,7 +294,7 @@ TEST_CASE("many programs, from several threads, each its own")
     std::thread threads[] = {std::thread(work, 0), std::thread(work, 100), std::thread(work, 200)};
     for (std::thread& thread : threads) thread.join();
     CHECK(wrong == 0);
-    CHECK(jit::programs_alive() == before);
+    CHECK(test::programs_fall_to(0));
 }
 
 TEST_CASE("a binding says whether its footprint takes detail away")
