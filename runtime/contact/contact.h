@@ -1,26 +1,11 @@
-// Contact of a probe with one surface: the proxy, a point that stays on the free side of the surface, as near to the
-// hand as it can slide.
-//
-// The proxy is (position, feature, side). In free space it is the hand, and each move is swept against the object: its
-// box, then the boxes of its triangles, then triangles, all decided exactly. On the surface it walks by steepest
-// descent of its distance to the hand, from feature to feature by the links of surface.h: a cost that does not depend
-// on the size of the mesh, no wedging in creases, and no query. It lifts off only when the hand lies on the free side
-// of the nearest feature around it. Which side it is on is a stored bit, not a distance, so that no tolerance can lose
-// it.
-//
-// One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
-// sequence of poses. Everything is in the object's space, metres: transform the hand into it first.
-//
-// Where faces pierce each other without sharing edges (intersecting_faces.h), up to three sheets at once hold the
-// proxy. Known limit: where a vertex lies within rounding on another sheet, the proxy may rest before the nearest point
-// for a tick.
+// Where and how a probe touches: what every kind of contact says, and friction, which all of them feel.
 #pragma once
 
 #include "runtime/contact/proxy.h"
-#include "runtime/surface/surface.h"
+
+#include <glm/glm.hpp>
 
 #include <cstdint>
-#include <memory>
 #include <span>
 
 namespace haptel::runtime {
@@ -87,63 +72,6 @@ struct ContactCounters {
     uint64_t walk_steps = 0, walk_steps_max = 0; // over all ticks; in one tick
     uint64_t walks_cut = 0;  // ticks that reached a limit; the proxy is valid, or not yet put down, and goes on
     uint64_t hands_held = 0; // poses that were not finite
-};
-
-// A ball that holds no triangle: while the hand is inside, there is nothing to collide with. Lattice units.
-struct Clearance {
-    glm::dvec3 centre{0};
-    double radius = 0;
-    double next_radius = 0; // to try when the hand has left the ball; 0: not tried yet
-};
-
-class PointContact {
-public:
-    // `skips_free_space`: a known clearance spares queries.
-    explicit PointContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true);
-
-    // One tick. The first after construction or reset() puts the probe down where the hand is, wherever that is: a hand
-    // that starts inside a closed object is inside it, free, and feels the wall from within.
-    const Contact& update(const glm::dvec3& hand_m, const Friction& friction = {}) noexcept
-    {
-        return update(hand_m, nullptr, friction);
-    }
-    // One tick of a probe that is free and known to have met nothing on its way: the same as update, for nothing.
-    void follow(const glm::dvec3& hand_m) noexcept;
-    // Between two ticks: looks how far it is free around a hand that the last tick could not spare a query. For ticks
-    // to come; changes no contact.
-    void look_around() noexcept;
-    void reset() noexcept;
-
-    // At least so far is it from the hand to the nearest triangle; 0: not known.
-    double gap_m(const glm::dvec3& hand_m) const noexcept;
-
-    const Contact& contact() const noexcept { return contact_; }
-    const ContactCounters& counters() const noexcept { return counters_; }
-    const Surface& surface() const noexcept { return *surface_; }
-
-private:
-    friend class StylusContact;
-
-    const Contact& update(const glm::dvec3& hand_m, const glm::dvec3* tail, const Friction& friction) noexcept;
-    bool take(const glm::dvec3& hand_m) noexcept;
-    void aim(const glm::dvec3& hand) noexcept;
-    void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept;
-    void go(const Friction& friction, WalkPath* path) noexcept;
-    void move_freely(const glm::dvec3& hand) noexcept;
-    bool sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept;
-    void finish(const Friction& friction, WalkPath* path) noexcept;
-    void describe() noexcept;
-
-    std::shared_ptr<const Surface> surface_;
-    bool skips_free_space_;
-    Contact contact_;
-    ContactCounters counters_;
-    Proxy proxy_;
-    glm::dvec3 hand_{0};                  // lattice units, and below: a lattice point of the workspace
-    glm::dvec3 true_hand_{0}, before_{0}; // neither rounded nor clamped: the hand in this tick and in the last
-    bool placed_ = false;
-    Clearance clear_;
-    double unspared_ = -1; // the hand's way in a free tick that no clearance spared a query; < 0: there was none
 };
 
 // Torque (N m) about the grip of a force (N) that acts at a point.

@@ -5,19 +5,19 @@
 namespace haptel::runtime {
 
 GripperContact::GripperContact(const std::shared_ptr<const Surface>& surface, bool skips_free_space)
-    : tip_(surface, skips_free_space), tail_(surface, skips_free_space)
+    : tip_(make_point(surface, skips_free_space)), tail_(make_point(surface, skips_free_space))
 {
 }
 
 std::span<const Contact> GripperContact::update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
                                                 const EndsFriction& friction) noexcept
 {
-    tip_.update(tip_m, friction.tip);
-    tail_.update(tail_m, friction.tail);
+    tip_->tick(tip_m, friction.tip);
+    tail_->tick(tail_m, friction.tail);
     count_ = 0;
-    if (tip_.contact().touching) contacts_[count_++] = tip_.contact();
-    if (tail_.contact().touching) {
-        contacts_[count_] = tail_.contact();
+    for (const Contact& contact : tip_->contacts()) contacts_[count_++] = contact;
+    for (const Contact& contact : tail_->contacts()) {
+        contacts_[count_] = contact;
         contacts_[count_++].along = 1;
     }
     count();
@@ -26,16 +26,16 @@ std::span<const Contact> GripperContact::update(const glm::dvec3& tip_m, const g
 
 void GripperContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
 {
-    tip_.follow(tip_m);
-    tail_.follow(tail_m);
+    tip_->follow(tip_m);
+    tail_->follow(tail_m);
     count_ = 0;
     count();
 }
 
 void GripperContact::reset() noexcept
 {
-    tip_.reset();
-    tail_.reset();
+    tip_->reset();
+    tail_->reset();
     count_ = 0;
     counters_ = {};
     skipped_before_ = 0;
@@ -43,12 +43,12 @@ void GripperContact::reset() noexcept
 
 double GripperContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept
 {
-    return std::min(tip_.gap_m(tip_m), tail_.gap_m(tail_m));
+    return std::min(tip_->gap_m(tip_m), tail_->gap_m(tail_m));
 }
 
 void GripperContact::count() noexcept
 {
-    const ContactCounters &a = tip_.counters(), &b = tail_.counters();
+    const ContactCounters &a = tip_->counters(), &b = tail_->counters();
     counters_.skipped += a.skipped + b.skipped == skipped_before_ + 2;
     skipped_before_ = a.skipped + b.skipped;
     ++counters_.ticks;

@@ -2,7 +2,7 @@
 // the other; between them is nothing, so that an object fits there.
 #pragma once
 
-#include "runtime/contact/contact.h"
+#include "runtime/contact/end_contact.h"
 
 #include <memory>
 #include <span>
@@ -18,8 +18,8 @@ public:
                                     const EndsFriction& friction = {}) noexcept;
     // One tick of a probe that is free and known to have met nothing on its way.
     void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
-    // Between two ticks, as PointContact's.
-    void look_around() noexcept { tip_.look_around(), tail_.look_around(); }
+    // Between two ticks, as EndContact's.
+    void look_around() noexcept { tip_->look_around(), tail_->look_around(); }
 
     void reset() noexcept;
 
@@ -29,13 +29,13 @@ public:
     std::span<const Contact> contacts() const noexcept { return {contacts_, count_}; }
     // Of both fingers; a tick is skipped if both are spared a query.
     const ContactCounters& counters() const noexcept { return counters_; }
-    const Surface& surface() const noexcept { return tip_.surface(); }
+    const Surface& surface() const noexcept { return tip_->surface(); }
 
 private:
     void count() noexcept;
 
-    PointContact tip_, tail_;
-    Contact contacts_[2];
+    std::unique_ptr<EndContact> tip_, tail_;
+    Contact contacts_[6]; // of each finger three
     std::size_t count_ = 0;
     ContactCounters counters_;
     uint64_t skipped_before_ = 0; // by the two together

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace haptel::runtime {
 
@@ -12,6 +13,11 @@ namespace {
 
 // Faces that follow each other here are far apart in memory: each is asked for so many ahead.
 constexpr std::size_t lookahead = 8;
+
+// Behind how many planes others are left out, and by how many lattice units they may rise above one: faces in one plane
+// do, as their vertices are rounded.
+constexpr std::size_t screens_most = 4;
+constexpr double rises = 1024;
 
 } // namespace
 
@@ -64,7 +70,7 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
     return all;
 }
 
-void NearFaces::pick(const glm::dvec3& centre, double radius, double reach) noexcept
+void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Screened screened) noexcept
 {
     picked_.clear();
     see_from(centre);
@@ -81,10 +87,14 @@ void NearFaces::pick(const glm::dvec3& centre, double radius, double reach) noex
         const uint32_t place = place_of_[i];
         if (laid_[place] != centres_) lay(place);
         if (ahead(planes_[place]) > near) continue;
-        picked_.push_back({planes_[place].normal, planes_[place].offset + radius});
+        if (screened == Screened::yes)
+            picked_.push_back(before(place));
+        else
+            picked_.push_back({planes_[place].normal, planes_[place].offset + radius});
         place_of_[picked++] = place;
     }
     place_of_.resize(picked);
+    if (screened == Screened::yes) screen();
 }
 
 bool NearFaces::renew(uint32_t picked, const glm::dvec3& centre) noexcept
@@ -95,6 +105,48 @@ bool NearFaces::renew(uint32_t picked, const glm::dvec3& centre) noexcept
     lay(place);
     picked_[picked] = {planes_[place].normal, planes_[place].offset + radius_};
     return true;
+}
+
+// Of a triangle that the ball touches the triangle's own plane, where that makes no difference: rounding does not tilt
+// it.
+HalfSpace NearFaces::before(std::size_t place) const noexcept
+{
+    const HalfSpace& plane = planes_[place];
+    if (ahead(plane) < radius_ + rises) {
+        const glm::dvec3& facet = surface_->faces[faces_[place]].normal;
+        const double cosine = glm::dot(plane.normal, facet);
+        if (std::fabs(cosine) > 1 - rises / radius_) {
+            const glm::dvec3 normal = cosine < 0 ? -facet : facet;
+            const auto& [a, b, c] = corners_[place];
+            return {normal, std::max({glm::dot(normal, a), glm::dot(normal, b), glm::dot(normal, c)}) + radius_};
+        }
+    }
+    return {plane.normal, plane.offset + radius_};
+}
+
+void NearFaces::screen() noexcept
+{
+    std::size_t kept = picked_.size();
+    for (std::size_t screen = 0; screen < screens_most && screen + 1 < kept; ++screen) {
+        std::size_t nearest = screen;
+        for (std::size_t i = screen + 1; i < kept; ++i)
+            if (ahead(picked_[i]) < ahead(picked_[nearest])) nearest = i;
+        std::swap(picked_[screen], picked_[nearest]);
+        std::swap(place_of_[screen], place_of_[nearest]);
+        const glm::dvec3& normal = picked_[screen].normal;
+        const double behind = picked_[screen].offset - radius_ + rises;
+        std::size_t left = screen + 1;
+        for (std::size_t i = left; i < kept; ++i) {
+            const auto& [a, b, c] = corners_[place_of_[i]];
+            if (glm::dot(normal, a) <= behind && glm::dot(normal, b) <= behind && glm::dot(normal, c) <= behind)
+                continue;
+            picked_[left] = picked_[i];
+            place_of_[left++] = place_of_[i];
+        }
+        kept = left;
+    }
+    picked_.resize(kept);
+    place_of_.resize(kept);
 }
 
 double NearFaces::distance(const glm::dvec3& centre, double most) noexcept

@@ -32,13 +32,24 @@ public:
     bool find(const glm::dvec3& centre, double radius, std::size_t most = faces_most) noexcept;
     std::size_t count() const noexcept { return faces_.size(); }
     std::size_t boxes() const noexcept { return boxes_; } // that the tree delivered
+    // Of them all that may come within `radius` of a place, and some others.
+    template <class Visit>
+    void for_each_near(const glm::dvec3& at, double radius, Visit&& visit) const
+    {
+        for (std::size_t i = 0; i < faces_.size(); ++i)
+            if (glm::dot(planes_[i].normal, at) - planes_[i].offset <= radius) visit(faces_[i]);
+    }
 
     // Picks the triangles that a ball of this radius may touch while its centre stays within `reach` of this one, and
-    // computes their planes as seen from it.
-    void pick(const glm::dvec3& centre, double radius, double reach) noexcept;
+    // computes their planes as seen from it. Screened: what lies behind the plane of a nearer one is left out. A ball
+    // that keeps before that plane does not come to it, and one that slides over an edge is not held by what falls off
+    // beyond; a plane that screens others cannot be renewed.
+    enum class Screened : uint8_t { no, yes };
+    void pick(const glm::dvec3& centre, double radius, double reach, Screened screened) noexcept;
     // Where its centre may be: in front of each of them by the radius.
     std::span<const HalfSpace> picked() const noexcept { return picked_; }
     uint32_t face(uint32_t picked) const noexcept { return faces_[place_of_[picked]]; }
+
     // Computes the plane of a picked triangle again, as seen from this centre; false if it is already that one.
     bool renew(uint32_t picked, const glm::dvec3& centre) noexcept;
 
@@ -48,6 +59,8 @@ public:
 private:
     void see_from(const glm::dvec3& centre) noexcept;
     void lay(std::size_t place) noexcept;
+    HalfSpace before(std::size_t place) const noexcept;
+    void screen() noexcept;
     double ahead(const HalfSpace& plane) const noexcept { return glm::dot(plane.normal, centre_) - plane.offset; }
 
     const Surface* surface_;

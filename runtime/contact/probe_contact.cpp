@@ -1,28 +1,23 @@
 #include "runtime/contact/probe_contact.h"
 
 #include "runtime/contact/read_ahead.h"
+#include "runtime/contact/sphere_contact.h"
 #include "runtime/surface/corner.h"
 
 namespace haptel::runtime {
 
 namespace {
 
-std::variant<PointContact, SphereContact, StylusContact, GripperContact>
+std::variant<std::unique_ptr<EndContact>, StylusContact, GripperContact>
 make(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface, bool skips_free_space, double rate_hz)
 {
     switch (probe.kind) {
-    case ProbeKind::point: return PointContact(surface, skips_free_space);
-    case ProbeKind::sphere: return SphereContact(surface, probe.radius_m);
+    case ProbeKind::point: break;
+    case ProbeKind::sphere: return std::make_unique<SphereContact>(surface, probe.radius_m);
     case ProbeKind::stylus: return StylusContact(surface, skips_free_space, rate_hz);
     case ProbeKind::gripper: return GripperContact(surface, skips_free_space);
     }
-    return PointContact(surface, skips_free_space);
-}
-
-// Whether several parts, sheets or faces may hold the same end of the probe.
-bool is_shared(const ProbeSettings& probe, const Surface& surface)
-{
-    return probe.kind == ProbeKind::sphere || !surface.origins.empty() || !surface.pierced_by.empty();
+    return make_point(surface, skips_free_space);
 }
 
 // Out of where a point touches: in a narrow pit its contact's normal, from the hand, leads into a wall.
@@ -39,61 +34,50 @@ glm::dvec3 way_out(const Surface& surface, const Contact& contact)
     return unit(contact.facet_normal + surface.facet_normal(link.face(), link.side()));
 }
 
-std::span<const Contact> any(const Contact& contact)
-{
-    return {&contact, contact.touching ? std::size_t{1} : std::size_t{0}};
-}
-
 } // namespace
 
 ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
                            bool skips_free_space, double rate_hz)
     : surface_(surface.get())
-    , shares_(is_shared(probe, *surface) ? std::make_unique<PartShares>() : nullptr)
+    , by_planes_(probe.kind == ProbeKind::sphere || !surface->is_clean())
     , contact_(make(probe, surface, skips_free_space, rate_hz))
 {
 }
 
 std::span<const Contact> ProbeContact::update(const ProbePose& pose, const EndsFriction& friction) noexcept
 {
-    const std::span<const Contact> contacts = touched(pose, friction);
-    return shares_ ? shares_->of(*surface_, contacts) : contacts;
-}
-
-std::span<const Contact> ProbeContact::touched(const ProbePose& pose, const EndsFriction& friction) noexcept
-{
-    if (auto* point = std::get_if<PointContact>(&contact_)) return any(point->update(pose.tip_m, friction.tip));
-    if (auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->update(pose.tip_m, friction.tip);
-    if (auto* gripper = std::get_if<GripperContact>(&contact_))
-        return gripper->update(pose.tip_m, pose.tail_m, friction);
-    auto& stylus = *std::get_if<StylusContact>(&contact_);
-    stylus.update(pose.tip_m, pose.tail_m, friction);
-    return stylus.contacts();
+    if (auto* end = std::get_if<End>(&contact_))
+        (*end)->tick(pose.tip_m, friction.tip);
+    else if (auto* gripper = std::get_if<GripperContact>(&contact_))
+        gripper->update(pose.tip_m, pose.tail_m, friction);
+    else
+        std::get_if<StylusContact>(&contact_)->update(pose.tip_m, pose.tail_m, friction);
+    return contacts();
 }
 
 void ProbeContact::follow(const ProbePose& pose) noexcept
 {
-    if (auto* point = std::get_if<PointContact>(&contact_)) return point->follow(pose.tip_m);
-    if (auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->follow(pose.tip_m);
+    if (auto* end = std::get_if<End>(&contact_)) return (*end)->follow(pose.tip_m);
     if (auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->follow(pose.tip_m, pose.tail_m);
     std::get_if<StylusContact>(&contact_)->follow(pose.tip_m, pose.tail_m);
 }
 
 void ProbeContact::reset() noexcept
 {
-    std::visit([](auto& contact) { contact.reset(); }, contact_);
+    if (auto* end = std::get_if<End>(&contact_)) return (*end)->reset();
+    if (auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->reset();
+    std::get_if<StylusContact>(&contact_)->reset();
 }
 
 bool ProbeContact::move_out(double most_m) noexcept
 {
-    auto* sphere = std::get_if<SphereContact>(&contact_);
-    return sphere && sphere->move_out(most_m);
+    auto* end = std::get_if<End>(&contact_);
+    return end && (*end)->move_out(most_m);
 }
 
 std::span<const Contact> ProbeContact::contacts() const noexcept
 {
-    if (const auto* point = std::get_if<PointContact>(&contact_)) return any(point->contact());
-    if (const auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->contacts();
+    if (const auto* end = std::get_if<End>(&contact_)) return (*end)->contacts();
     if (const auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->contacts();
     return std::get_if<StylusContact>(&contact_)->contacts();
 }
@@ -105,8 +89,8 @@ std::optional<ProbePose> ProbeContact::held(const ProbePose& hand, double off_m)
     ProbePose at = hand;
     const auto* stylus = std::get_if<StylusContact>(&contact_);
     const std::optional<Shaft> ideal = stylus ? stylus->ideal() : std::nullopt;
-    if (const auto* sphere = std::get_if<SphereContact>(&contact_))
-        at.tip_m = sphere->proxy_m();
+    if (const auto* end = std::get_if<End>(&contact_))
+        at.tip_m = surface_->lattice.metres((*end)->proxy().at);
     else if (ideal)
         at = {surface_->lattice.metres(ideal->tip), surface_->lattice.metres(ideal->tail)};
     else
@@ -114,8 +98,7 @@ std::optional<ProbePose> ProbeContact::held(const ProbePose& hand, double off_m)
     for (const Contact& contact : touching) { // the least move of both ends that moves the place so far
         if (contact.unsettled) continue;      // its normal is no surface's
         const double tail = contact.along, tip = 1 - tail, squares = tip * tip + tail * tail;
-        const bool by_place = !contact.by_shaft && !std::holds_alternative<SphereContact>(contact_);
-        const glm::dvec3 out = by_place ? way_out(*surface_, contact) : contact.normal;
+        const glm::dvec3 out = contact.by_shaft || by_planes_ ? contact.normal : way_out(*surface_, contact);
         at.tip_m += tip / squares * off_m * out;
         at.tail_m += tail / squares * off_m * out;
     }
@@ -125,33 +108,29 @@ std::optional<ProbePose> ProbeContact::held(const ProbePose& hand, double off_m)
 // A ball keeps the faces around it by itself.
 uint32_t ProbeContact::read_ahead() noexcept
 {
-    const auto around = [](auto& tip) {
-        tip.look_around();
-        const Contact& at = tip.contact();
-        return at.touching ? runtime::read_ahead(tip.surface(), at.face, at.side) : 0;
-    };
-    if (auto* point = std::get_if<PointContact>(&contact_)) return around(*point);
-    if (auto* stylus = std::get_if<StylusContact>(&contact_)) return around(*stylus);
+    auto* end = std::get_if<End>(&contact_);
+    auto* gripper = std::get_if<GripperContact>(&contact_);
+    auto* stylus = std::get_if<StylusContact>(&contact_);
+    if (end) (*end)->look_around();
+    if (gripper) gripper->look_around();
+    if (stylus) stylus->look_around();
+    if (by_planes_) return 0;
     uint32_t seen = 0;
-    if (auto* gripper = std::get_if<GripperContact>(&contact_)) {
-        gripper->look_around();
-        for (const Contact& at : gripper->contacts()) seen += runtime::read_ahead(gripper->surface(), at.face, at.side);
-    }
+    for (const Contact& at : contacts())
+        if (!at.by_shaft) seen += runtime::read_ahead(*surface_, at.face, at.side);
     return seen;
 }
 
 double ProbeContact::gap_m(const ProbePose& pose) const noexcept
 {
-    if (const auto* point = std::get_if<PointContact>(&contact_)) return point->gap_m(pose.tip_m);
-    if (const auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->gap_m(pose.tip_m);
+    if (const auto* end = std::get_if<End>(&contact_)) return (*end)->gap_m(pose.tip_m);
     if (const auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->gap_m(pose.tip_m, pose.tail_m);
     return std::get_if<StylusContact>(&contact_)->gap_m(pose.tip_m, pose.tail_m);
 }
 
 const ContactCounters& ProbeContact::counters() const noexcept
 {
-    if (const auto* point = std::get_if<PointContact>(&contact_)) return point->counters();
-    if (const auto* sphere = std::get_if<SphereContact>(&contact_)) return sphere->counters();
+    if (const auto* end = std::get_if<End>(&contact_)) return (*end)->counters();
     if (const auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->counters();
     return std::get_if<StylusContact>(&contact_)->counters();
 }

@@ -1,10 +1,8 @@
 // The contact of the scene's probe with one object, whatever the probe is. Object space, metres.
 #pragma once
 
-#include "runtime/contact/contact.h"
+#include "runtime/contact/end_contact.h"
 #include "runtime/contact/gripper_contact.h"
-#include "runtime/contact/part_shares.h"
-#include "runtime/contact/sphere_contact.h"
 #include "runtime/contact/stylus_contact.h"
 #include "runtime/hand/probe.h"
 
@@ -21,8 +19,7 @@ public:
     ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
                  bool skips_free_space = true, double rate_hz = 1000);
 
-    // One tick: the contacts, none if the probe is free. On a joined surface each belongs to one object
-    // (part_shares.h), and where faces pierce each other to one of these.
+    // One tick: the contacts, none if the probe is free. On a joined surface each belongs to one object.
     std::span<const Contact> update(const ProbePose& pose, const EndsFriction& friction) noexcept;
     // One tick of a probe that is free and known to have met nothing on its way.
     void follow(const ProbePose& pose) noexcept;
@@ -44,16 +41,17 @@ public:
 
     // A lower bound, in metres, of the distance from the probe in this pose to the nearest triangle; 0: not known.
     double gap_m(const ProbePose& pose) const noexcept;
-    bool touches() const noexcept { return !contacts().empty(); } // in the last tick
+    bool touches() const noexcept { return !contacts().empty(); }
     const ContactCounters& counters() const noexcept;
 
 private:
-    std::span<const Contact> contacts() const noexcept; // of the last tick, undivided
-    std::span<const Contact> touched(const ProbePose& pose, const EndsFriction& friction) noexcept;
+    using End = std::unique_ptr<EndContact>; // of a point, or a ball
+
+    std::span<const Contact> contacts() const noexcept; // of the last tick
 
     const Surface* surface_;
-    std::unique_ptr<PartShares> shares_; // of a joined surface, or one that pierces itself
-    std::variant<PointContact, SphereContact, StylusContact, GripperContact> contact_;
+    bool by_planes_; // contacts know the normal of what holds them: of a ball, whatever it touches
+    std::variant<End, StylusContact, GripperContact> contact_;
 };
 
 } // namespace haptel::runtime

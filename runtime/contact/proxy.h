@@ -16,22 +16,15 @@ struct Proxy {
     uint32_t index = 0;          // the edge or corner of `face`
     bool sliding = false;        // friction: it moved since it last stuck
     double pressed = 0;          // how deep the hand is below it, as friction felt it last
-    bool at_wall = false;        // a sheet that pierces its own holds it, too
-    glm::dvec3 crease{0};        // then: the direction in which it may slide, unit; zero in a corner of three
     glm::dvec3 at{0};            // on nothing: the hand, a lattice point; else within rounding of the feature
 
     bool touches() const { return on != On::nothing; }
 };
 
 struct WalkCount {
-    // Turns from wall to wall in one walk. Each but the last few leads nearer; those may go round in a corner that
-    // rounding does not resolve.
-    static constexpr uint32_t most_wall_turns = 64;
-
     CollisionCount collision;
-    uint32_t steps = 0;      // in this walk
-    uint32_t wall_turns = 0; // of these, decided beside walls; goes on from walk to walk
-    bool cut = false;        // ended by the step limit, or by too many turns
+    uint32_t steps = 0; // in this walk
+    bool cut = false;   // ended by the step limit
 };
 
 // Coulomb coefficients, checked: 0 <= dynamic <= static, finite.

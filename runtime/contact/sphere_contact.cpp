@@ -1,11 +1,10 @@
 #include "runtime/contact/sphere_contact.h"
 
 #include "runtime/geometry/finite.h"
-#include "runtime/geometry/nearest_point.h"
+#include "runtime/surface/collision.h"
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 namespace haptel::runtime {
@@ -17,6 +16,9 @@ constexpr double least_radius = 0x1p20;
 
 // Of the radius: how far around is looked at once at least, and when anew; and what is left of a way counts as none.
 constexpr double margin_most = 1.0 / 16, margin_least = 1.0 / 64, centre_settled = 1e-8;
+
+// A point looks anew where it knows less far than this share of what a look may tell.
+constexpr double look_again = 0.25;
 
 // Where there are fewer faces the ball looks farther around, where there are more less far.
 constexpr std::size_t few_faces = 16, many_faces = 64;
@@ -43,43 +45,97 @@ constexpr uint64_t faces_out_most = 1 << 15;
 
 } // namespace
 
+constinit thread_local std::array<SphereContact::Step, SphereContact::rounds_max + 2 + SphereContact::landing_turns>
+    SphereContact::path_{};
+
 SphereContact::SphereContact(std::shared_ptr<const Surface> surface, double radius_m)
-    : surface_(std::move(surface)), radius_(radius_m / surface_->lattice.unit_m), grown_(radius_), faces_(*surface_)
+    : surface_(std::move(surface))
+    , radius_(radius_m / surface_->lattice.unit_m)
+    , grown_(radius_)
+    , faces_(*surface_)
+    , margin_at_first_(radius_ > Lattice::point_radius ? 0 : Lattice::extent)
+    , margin_(margin_at_first_)
 {
 }
 
 void SphereContact::reset() noexcept
 {
-    placed_ = sliding_ = false;
+    placed_ = false;
+    proxy_ = {};
     around_ = close_ = {};
     lag_ = 0;
     contact_count_ = 0;
+    contacts_[0] = {};
     counters_ = {};
 }
 
-std::span<const Contact> SphereContact::update(const glm::dvec3& centre_m, const Friction& friction) noexcept
+void SphereContact::tick(const glm::dvec3& hand_m, const Friction& friction, const glm::dvec3* tail) noexcept
 {
     ++counters_.ticks;
-    if (!finite(centre_m)) {
+    if (!finite(hand_m)) {
         ++counters_.hands_held;
         for (Contact& contact : contacts_) contact.hand_held = true;
-        return {contacts_, contact_count_};
+        return;
     }
-    hand_before_ = hand_;
-    hand_ = surface_->lattice.snap(centre_m);
-    if (!placed_) place();
-    if (placed_) move(friction);
+    aim(surface_->lattice.units(hand_m));
+    slide_on(surface_->lattice.metres(hand_) - contacts_[0].hand_m, friction);
+    if (!placed_) {
+        Crossing crossing;
+        CollisionCount count;
+        const bool enters =
+            tail && first_crossing(*surface_, *tail, hand_, StartsOn::nothing(), crossing, count) && crossing.side == 0;
+        place(enters ? *tail : hand_);
+    }
+    move(friction);
     counters_.touching_ticks += contact_count_ > 0;
-    return {contacts_, contact_count_};
 }
 
-void SphereContact::follow(const glm::dvec3& centre_m) noexcept
+void SphereContact::follow(const glm::dvec3& hand_m) noexcept
 {
     ++counters_.ticks;
     ++counters_.skipped;
-    if (!finite(centre_m)) return;
-    centre_ = hand_ = surface_->lattice.snap(centre_m);
+    if (!finite(hand_m)) return;
+    aim(surface_->lattice.units(hand_m));
+    proxy_.at = hand_;
     placed_ = true; // as large as it is, where there is nothing
+    tell_free();
+}
+
+// Lattice units.
+void SphereContact::aim(const glm::dvec3& hand) noexcept
+{
+    hand_before_ = std::exchange(hand_, Lattice::snap_units(hand));
+    clamped_ = Lattice::beyond(hand_ - hand, Lattice::vertex_spacing);
+}
+
+void SphereContact::slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept
+{
+    proxy_.sliding = proxy_.sliding && proxy_.touches() && slides_on(contacts(), way_m, checked(friction));
+}
+
+void SphereContact::go(const Friction& friction, WalkPath* path) noexcept
+{
+    if (!placed_) place(hand_);
+    move(friction);
+    for (uint32_t i = 0; path && i < path_length_; ++i) path->add(glm::round(path_[i].at));
+}
+
+// Where there is too little room for a ball it stays, and rounding may take it through a face.
+void SphereContact::restart(const glm::dvec3& at) noexcept
+{
+    hand_ = hand_before_ = at;
+    lag_ = 0;
+    proxy_ = {};
+    place(at);
+    placed_ = true;
+    tell_free();
+}
+
+void SphereContact::go_back(const State& to) noexcept
+{
+    proxy_ = to.proxy;
+    grown_ = to.grown;
+    describe(true);
 }
 
 double SphereContact::gap_m(const glm::dvec3& centre_m) const noexcept
@@ -87,15 +143,15 @@ double SphereContact::gap_m(const glm::dvec3& centre_m) const noexcept
     return std::max(0.0, surface_->gap_to_box_m(centre_m, centre_m) - radius_ * surface_->lattice.unit_m);
 }
 
-// As large as fits where the hand is.
-void SphereContact::place() noexcept
+// As large as fits there.
+void SphereContact::place(const glm::dvec3& at) noexcept
 {
-    centre_ = hand_;
-    if (!look_around(0)) {
+    proxy_.at = at;
+    if (!find_around(0)) {
         ++counters_.walks_cut;
         return;
     }
-    grown_ = faces_.distance(centre_, radius_);
+    grown_ = faces_.distance(at, radius_);
     placed_ = grown_ >= std::min(least_radius, radius_);
 }
 
@@ -110,40 +166,40 @@ bool SphereContact::move_out(double most_m) noexcept
     bool looked = false; // from here
     for (int tries = 0; tries < ways_out_most && radius_ - grown_ > centre_settled * radius_; ++tries) {
         const double lacks = radius_ - grown_;
-        if (!looked && around_.room(centre_) < 0.5 * lacks) {
-            if (counters_.triangles_tested - seen > faces_out_most || !look_around(out_most * lacks)) break;
+        if (!looked && around_.room(proxy_.at) < 0.5 * lacks) {
+            if (counters_.triangles_tested - seen > faces_out_most || !find_around(out_most * lacks)) break;
             looked = true;
         }
-        const double room = around_.room(centre_), more = share * std::min(lacks, out_of_room * room);
-        faces_.pick(centre_, grown_ + more + 2 * distance_rounding, room);
-        const glm::dvec3 out = nearest_in(faces_.picked(), centre_, centre_, distance_rounding).at;
-        bool free = glm::distance(centre_, out) <= room;
+        const double room = around_.room(proxy_.at), more = share * std::min(lacks, out_of_room * room);
+        faces_.pick(proxy_.at, grown_ + more + 2 * distance_rounding, room, NearFaces::Screened::no);
+        const glm::dvec3 out = nearest_in(faces_.picked(), proxy_.at, proxy_.at, distance_rounding).at;
+        bool free = glm::distance(proxy_.at, out) <= room;
         for (const HalfSpace& space : faces_.picked())
             free = free && glm::dot(space.normal, out) - space.offset >= -2 * distance_rounding;
         share = free ? std::min(1.0, 2 * share) : 0.5 * share;
         if (!free) continue;
-        centre_ = out;
+        proxy_.at = out;
         looked = false;
-        grown_ = std::max(grown_, faces_.distance(centre_, radius_ + distance_rounding) - distance_rounding);
+        grown_ = std::max(grown_, faces_.distance(proxy_.at, radius_ + distance_rounding) - distance_rounding);
     }
     around_ = close_ = {};
-    margin_ = 0;
+    margin_ = margin_at_first_;
     return grown_ > before;
 }
 
 // Finds the faces within the radius and a margin, or within less where there are too many. False: nothing less is left.
-bool SphereContact::look_around(double margin) noexcept
+bool SphereContact::find_around(double margin) noexcept
 {
     close_.margin = -1;
     const double near = margin_most * radius_;
     for (int looks = 0; looks < looks_most;) {
         const bool far = margin > near;
         const bool all =
-            faces_.find(centre_, radius_ + margin + distance_rounding, far ? far_faces : NearFaces::faces_most);
+            faces_.find(proxy_.at, radius_ + margin + distance_rounding, far ? far_faces : NearFaces::faces_most);
         ++counters_.sweeps;
         counters_.triangles_tested += faces_.boxes();
         if (all) {
-            around_ = {centre_, margin};
+            around_ = {proxy_.at, margin};
             if (faces_.count() < few_faces) margin_ = std::min(2 * std::max(margin, margin_), Lattice::extent);
             if (faces_.count() > many_faces) margin_ = 0.5 * margin;
             return true;
@@ -156,73 +212,127 @@ bool SphereContact::look_around(double margin) noexcept
     return false;
 }
 
-// One straight step toward the hand, or to where the planes around let it come. Those that hold it are seen from here.
-NearestInHalfSpaces SphereContact::approach(double step_max) noexcept
+// Straight on toward the hand, at most so far. The plane that ends a way is seen from where it began: a point touches
+// where it cannot go on.
+void SphereContact::fly(double step_max) noexcept
 {
-    const glm::dvec3 to_hand = hand_ - centre_;
-    if (path_length_ == 0) { // in the air: first straight on, to where it touches
-        const double length = glm::length(to_hand);
-        const double within = length > step_max ? step_max / length : 1;
-        OpenShare open;
-        do open = open_share(faces_.picked(), centre_, within * to_hand, 0);
-        while (open.share < 1 && faces_.renew(open.ended_by, centre_));
-        centre_ += open.share * within * to_hand;
-        if (open.share == 1) return {centre_, 0, {}, {}};
-        path_[path_length_++] = centre_;
-        step_max -= open.share * within * length;
-    }
+    const glm::dvec3 to_hand = hand_ - proxy_.at;
+    const double length = glm::length(to_hand), within = std::min(length, step_max);
+    if (!(length > 0)) return;
+    const double share = open_share(faces_.picked(), proxy_.at, within / length * to_hand, 0).share;
+    proxy_.at += share * within / length * to_hand;
+    if (share < 1 && (!is_point() || share * within <= touching_gap)) pass({});
+}
+
+// One straight step to where the planes around let it come nearest to the hand. Those that hold it are seen from here.
+SphereContact::Held SphereContact::slide(double step_max) noexcept
+{
+    const Held held = held_by_picked();
+    if (held.count == 0) path_begin_ = path_length_; // off again
+    const glm::dvec3 way = held.at - proxy_.at;
+    const double length = glm::length(way);
+    proxy_.at += length > step_max ? step_max / length * way : way;
+    if (held.count > 0) pass(held);
+    return held;
+}
+
+void SphereContact::pass(const Held& held) noexcept
+{
+    path_[path_length_++] = {proxy_.at, held};
+}
+
+// A point meets few faces, and what lies behind others does not hold it at every edge. A ball meets hundreds: its
+// planes serve for several rounds, but for those that hold it.
+void SphereContact::pick(double reach) noexcept
+{
+    close_ = {proxy_.at, reach};
+    faces_.pick(proxy_.at, grown_, reach, is_point() ? NearFaces::Screened::yes : NearFaces::Screened::no);
+}
+
+SphereContact::Held SphereContact::held_by_picked() noexcept
+{
+    const std::span<const HalfSpace> planes = faces_.picked();
     NearestInHalfSpaces found;
     for (bool renewed = true; renewed;) {
-        found = nearest_in(faces_.picked(), hand_, centre_, distance_rounding);
+        found = nearest_in(planes, hand_, proxy_.at, distance_rounding);
         renewed = false;
-        for (std::size_t i = 0; i < found.count; ++i) renewed |= faces_.renew(found.active[i], centre_);
+        for (std::size_t i = 0; i < found.count && !is_point(); ++i)
+            renewed |= faces_.renew(found.active[i], proxy_.at);
     }
-    const glm::dvec3 way = found.at - centre_;
-    const double length = glm::length(way);
-    centre_ += length > step_max ? step_max / length * way : way;
-    return found;
+    Held held{found.at, found.count, {}};
+    for (std::size_t i = 0; i < found.count; ++i)
+        held.row[i] = {faces_.face(found.active[i]), planes[found.active[i]].normal, found.push[i]};
+    take_off_radius(held);
+    return held;
+}
+
+// A point is felt as a point, though it is held as a ball: what pushes it is what would hold its middle on the planes
+// themselves. Who presses most comes first.
+void SphereContact::take_off_radius(Held& held) const noexcept
+{
+    if (is_point()) {
+        std::array<HalfSpace, 3> planes;
+        for (std::size_t i = 0; i < held.count; ++i)
+            planes[i] = {held.row[i].normal, glm::dot(held.row[i].normal, held.at) - grown_};
+        const NearestInHalfSpaces found = nearest_in({planes.data(), held.count}, hand_, held.at, distance_rounding);
+        for (Row& row : held.row) row.push = 0;
+        for (std::size_t i = 0; i < found.count; ++i) held.row[found.active[i]].push = found.push[i];
+    }
+    std::sort(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
+              [](const Row& a, const Row& b) { return a.push > b.push; });
 }
 
 // Toward the hand, as near as it can slide, or to where it touches.
-SphereContact::Way SphereContact::go(bool until_it_touches) noexcept
+SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
 {
-    path_length_ = 0;
-    if (contact_count_ > 0) path_[path_length_++] = centre_;
+    path_begin_ = path_length_ = 0;
+    if (proxy_.touches()) {
+        Held held{proxy_.at, contact_count_, {}};
+        for (std::size_t i = 0; i < contact_count_; ++i) held.row[i].normal = contacts_[i].normal;
+        pass(held);
+    }
     Way done;
-    auto& [found, round, cut, on_the_way, blind] = done;
+    auto& [held, round, cut, on_the_way, blind] = done;
     double stride = stride_of_hand * glm::distance(hand_, hand_before_) + lag_;
+    // A point meets few faces: what it slides by is looked at once.
+    const double stride_min = is_point() ? stride : stride_least * radius_;
     const uint64_t seen = counters_.triangles_tested;
     for (;; ++round) {
-        const double want = glm::distance(hand_, centre_);
+        const double want = glm::distance(hand_, proxy_.at);
         if (want == 0) break;
         cut = round == rounds_max;
         if (cut) break;
-        if (around_.room(centre_) < std::min(want, margin_least * radius_)) {
+        if (around_.room(proxy_.at) < std::min(want, is_point() ? look_again * margin_ : margin_least * radius_)) {
             if (round > 0 && counters_.triangles_tested - seen > faces_per_tick) {
                 cut = on_the_way = true;
                 break;
             }
             const double most = std::max(margin_, margin_most * radius_);
-            if (!look_around(std::clamp(2 * want, margin_least * radius_, most))) {
+            if (!find_around(std::clamp(2 * want, margin_least * radius_, most))) {
                 blind = true;
                 return done;
             }
         }
-        const double open = std::min(want, around_.room(centre_));
-        stride = std::max(stride, stride_least * radius_);
-        if (round == 0 || close_.room(centre_) < std::min(open, stride) || close_.margin > stride_most * stride) {
-            close_ = {centre_, path_length_ == 0 ? open : std::min(open, stride)};
-            faces_.pick(centre_, grown_, close_.margin);
-        }
-        const glm::dvec3 before = centre_;
-        const double step_max = std::min(open, close_.room(centre_));
-        found = approach(step_max);
-        if (until_it_touches && path_length_ > 0) break;
-        if (found.count == 0) path_length_ = 0;
-        if (path_length_ > 0 && path_length_ <= rounds_max) path_[path_length_++] = centre_;
-        const double step = glm::distance(before, centre_);
-        if (step <= std::max(4 * distance_rounding, centre_settled * radius_)) break;
+        const bool in_air = is_in_air();
+        const double open = std::min(want, around_.room(proxy_.at));
+        stride = std::max(stride, stride_min);
+        if (round == 0 || in_air || is_point() || close_.room(proxy_.at) < std::min(open, stride) ||
+            close_.margin > stride_most * stride)
+            pick(in_air ? open : std::min(open, stride));
+        const double step_max = std::min(open, close_.room(proxy_.at));
+        const glm::dvec3 before = proxy_.at;
+        if (in_air)
+            fly(step_max);
+        else
+            held = slide(step_max);
+        const double step = glm::distance(before, proxy_.at);
         on_the_way = step > 0.5 * open;
+        if (in_air || is_in_air()) {
+            if (until_it_touches && !is_in_air()) break;
+            continue;
+        }
+        if (step <= std::max(4 * distance_rounding, centre_settled * radius_)) break;
+        if (!in_air && glm::distance(hand_, proxy_.at) >= want) break; // to and fro, by rounding
         stride = (step > 0.9 * step_max ? stride_of_end : stride_of_step) * step;
     }
     return done;
@@ -230,160 +340,54 @@ SphereContact::Way SphereContact::go(bool until_it_touches) noexcept
 
 void SphereContact::move(const Friction& friction) noexcept
 {
-    const bool in_air = contact_count_ == 0;
-    sliding_ = sliding_ && !in_air &&
-               slides_on(contacts(), surface_->lattice.metres(hand_) - contacts_[0].hand_m, checked(friction));
-    const glm::dvec3 start = centre_;
-    Way way = go(in_air);
+    if (!placed_) return tell_free();
+    const bool in_air = !proxy_.touches();
+    const glm::dvec3 start = proxy_.at;
+    Way way = travel(in_air);
     // How far it had looked around before decides how its way is cut into steps, and friction feels them: where it
     // comes to touch it goes there once more, knowing nothing. Whoever comes the same way then feels the same.
-    if (in_air && !way.blind && (way.cut || path_length_ > 0)) {
-        centre_ = start;
+    if (in_air && !way.blind && (way.cut || !is_in_air())) {
+        proxy_.at = start;
         around_ = close_ = {};
-        margin_ = 0;
-        way = go(false);
+        margin_ = margin_at_first_;
+        way = travel(false);
     }
     if (way.blind) {
         ++counters_.walks_cut; // too much at once: what is touched stays touched
         return;
     }
-    const auto& [found, round, cut, on_the_way, blind] = way;
-    if (in_air && found.count == 0 && glm::distance(centre_, hand_) <= distance_rounding) centre_ = hand_;
+    auto& [held, round, cut, on_the_way, blind] = way;
+    if (in_air && held.count == 0 && glm::distance(proxy_.at, hand_) <= distance_rounding) proxy_.at = hand_;
     counters_.walk_steps += round;
     counters_.walk_steps_max = std::max<uint64_t>(counters_.walk_steps_max, round);
     counters_.walks_cut += cut;
     counters_.skipped += round == 0;
-    if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(centre_, radius_) - distance_rounding);
+    if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(proxy_.at, radius_) - distance_rounding);
     // The planes here do not know how deep the hand is where it is: until the ball is there what was felt is felt, but
     // of what the hand has left.
     if (cut && on_the_way) {
-        if (contact_count_ > 0 && glm::dot(hand_ - centre_, contacts_[0].normal) >= 0) contact_count_ = 0;
-        push_no_harder_than(glm::distance(centre_, hand_) * surface_->lattice.unit_m);
+        if (contact_count_ == 0 || glm::dot(hand_ - proxy_.at, contacts_[0].normal) >= 0) return tell_free();
+        push_no_harder_than(glm::distance(proxy_.at, hand_) * surface_->lattice.unit_m);
         return;
     }
-    if (found.count == 0) {
-        sliding_ = false;
-        lag_ = 0;
-        contact_count_ = 0;
-        return;
-    }
-    const glm::dvec3 nearest = centre_;
-    hold_by_friction(found, friction);
-    describe(found, nearest);
-    lag_ = glm::distance(centre_, nearest);
-    const glm::dvec3 lag_m = (centre_ - nearest) * surface_->lattice.unit_m;
-    double depth_m = 0;
-    for (std::size_t i = 0; i < contact_count_; ++i) depth_m += contacts_[i].depth_m;
-    for (std::size_t i = 0; i < contact_count_; ++i)
-        contacts_[i].lag_m = depth_m > 0 ? contacts_[i].depth_m / depth_m * lag_m : glm::dvec3(0);
+    held.at = proxy_.at;
+    hold_by_friction(held, friction);
+    lag_ = held.count > 0 ? glm::distance(proxy_.at, held.at) : 0;
+    if (held.count == 0) return tell_free();
+    if (lag_ > distance_rounding && is_point()) land(lag_);
+    tell(held, held.at, true);
 }
 
-// What was felt where the hand has been is no more than its spring pulls now.
-void SphereContact::push_no_harder_than(double way_m) noexcept
+// It stays where it is: what touches there holds the hand, whatever else it would meet on its way.
+void SphereContact::describe(bool lags) noexcept
 {
-    glm::dvec3 told_m(0);
-    for (std::size_t i = 0; i < contact_count_; ++i)
-        told_m += contacts_[i].depth_m * contacts_[i].normal + contacts_[i].lag_m;
-    const double told = glm::length(told_m);
-    for (std::size_t i = 0; i < contact_count_ && told > way_m; ++i) {
-        contacts_[i].depth_m *= way_m / told;
-        contacts_[i].lag_m *= way_m / told;
-    }
-}
-
-// Friction is a way that ends early, where what is left of it is the coefficient times what presses, or does not begin.
-void SphereContact::hold_by_friction(const NearestInHalfSpaces& found, const Friction& friction) noexcept
-{
-    const auto [rest, slide] = checked(friction);
-    const glm::dvec3 nearest = centre_;
-    const double depth = glm::distance(nearest, hand_);
-    if (depth == 0) return;
-    const glm::dvec3 normal = (nearest - hand_) / depth;
-    const double pushes = std::accumulate(found.push.begin(), found.push.begin() + std::ptrdiff_t(found.count), 0.0);
-    const double pressed = pushes / depth; // in a groove by both its walls
-    struct Held {
-        glm::dvec3 across; // at a right angle to the push
-        double up;         // along it
-        double limit;      // of `across`, by a coefficient of 1
-    };
-    const auto held_at = [&](const glm::dvec3& place) {
-        const glm::dvec3 lag = place - nearest;
-        const double up = glm::dot(lag, normal);
-        return Held{lag - up * normal, up, pressed * std::max(0.0, depth + up)};
-    };
-    // Nor is a way that leads down held higher than the end of it bears.
-    const auto holds = [&](const Held& held, double coefficient) {
-        const double most = coefficient * held.limit;
-        return glm::dot(held.across, held.across) <= most * most && held.up <= coefficient * pushes;
-    };
-    const Held first = held_at(path_[0]);
-    if (rest > 0 && holds(first, sliding_ ? slide : rest)) {
-        centre_ = path_[0];
-        return;
-    }
-    sliding_ = sliding_ || glm::length(first.across) - slide * first.limit > distance_rounding;
-    uint32_t end = path_length_ - 1;
-    while (end > 0 && holds(held_at(path_[end - 1]), slide)) --end;
-    if (end == 0) return;
-    // Where along this piece, beginning at its end, the two are equal: a quadratic equation.
-    const Held at_end = held_at(path_[end]), at_begin = held_at(path_[end - 1]);
-    const glm::dvec3 across = at_begin.across - at_end.across;
-    const double limit = slide * at_end.limit, more = slide * at_begin.limit - limit;
-    const double a = glm::dot(across, across) - more * more, b = glm::dot(at_end.across, across) - limit * more;
-    const double c = std::min(0.0, glm::dot(at_end.across, at_end.across) - limit * limit);
-    const double root = std::sqrt(std::max(0.0, b * b - a * c));
-    double share = std::min(1.0, b > 0 ? -c / (b + root) : a > 0 ? (root - b) / a : 1.0);
-    if (at_begin.up > slide * pushes && at_begin.up > at_end.up)
-        share = std::min(share, std::max(0.0, slide * pushes - at_end.up) / (at_begin.up - at_end.up));
-    centre_ = path_[end] + share * (path_[end - 1] - path_[end]);
-}
-
-// Of the faces that meet where the ball touches one the one that turns to it most: another may be the bottom of an
-// object that lies on the other's top, and ends in the same edge where nobody can come to it.
-uint32_t SphereContact::outermost(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) const noexcept
-{
-    constexpr double same_place = 64; // lattice units
-    const auto nearest = [&](uint32_t number) {
-        const auto& vertex = surface_->faces[number].vertex;
-        return nearest_point(surface_->vertices[vertex[0]], surface_->vertices[vertex[1]],
-                             surface_->vertices[vertex[2]], centre)
-            .at;
-    };
-    const auto turned = [&](uint32_t number) { return std::fabs(glm::dot(surface_->faces[number].normal, normal)); };
-    const glm::dvec3 at = nearest(face);
-    for (std::size_t i = 0; i < faces_.picked().size(); ++i) {
-        const uint32_t other = faces_.face(static_cast<uint32_t>(i));
-        if (turned(other) > (1 + 1e-9) * turned(face) && glm::distance(nearest(other), at) < same_place) face = other;
-    }
-    return face;
-}
-
-void SphereContact::describe(const NearestInHalfSpaces& found, const glm::dvec3& nearest) noexcept
-{
-    std::array<uint32_t, 3> order{0, 1, 2}; // who presses most first
-    for (const auto& [a, b] : {std::pair{0, 1}, {1, 2}, {0, 1}})
-        if (b < static_cast<int>(found.count) && found.push[order[b]] > found.push[order[a]])
-            std::swap(order[a], order[b]);
-    contact_count_ = found.count;
-    for (std::size_t i = 0; i < found.count; ++i) {
-        const uint32_t picked = found.active[order[i]];
-        Contact& contact = contacts_[i];
-        contact = {};
-        contact.touching = true;
-        contact.sliding = sliding_;
-        contact.face = faces_.face(picked);
-        if (!surface_->origins.empty()) contact.face = outermost(contact.face, faces_.picked()[picked].normal, nearest);
-        const Face& face = surface_->faces[contact.face];
-        contact.normal = faces_.picked()[picked].normal;
-        contact.side = glm::dot(contact.normal, face.normal) >= 0 ? 0 : 1;
-        contact.facet_normal = surface_->facet_normal(contact.face, contact.side);
-        const NearestPoint point = nearest_point(surface_->vertices[face.vertex[0]], surface_->vertices[face.vertex[1]],
-                                                 surface_->vertices[face.vertex[2]], nearest);
-        contact.barycentric = point.barycentric;
-        contact.proxy_m = surface_->lattice.metres(point.at);
-        contact.hand_m = surface_->lattice.metres(hand_);
-        contact.depth_m = contact.pressed_m = found.push[order[i]] * surface_->lattice.unit_m;
-    }
+    if (!proxy_.touches()) return tell_free();
+    const double reach = margin_least * radius_;
+    if (around_.room(proxy_.at) < reach && !find_around(reach)) return;
+    pick(reach);
+    const Held held = held_by_picked();
+    if (held.count == 0) return tell_free();
+    tell(held, held.at, lags);
 }
 
 } // namespace haptel::runtime

@@ -7,47 +7,68 @@
 // mesh, self-piercing ones included. The nearest point of the intersection to the hand is exact (half_spaces.h); the
 // planes that hold the ball are laid anew there, until that moves nothing. What one tick may look at is bounded: where
 // there are many triangles the ball may have a part of its way left for the next, and until then it touches as it did.
-//
-// One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
-// sequence of poses. Everything is in the object's space, metres.
 #pragma once
 
-#include "runtime/contact/contact.h"
+#include "runtime/contact/end_contact.h"
 #include "runtime/contact/near_faces.h"
+#include "runtime/geometry/nearest_point.h"
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
 
 namespace haptel::runtime {
 
-class SphereContact {
+class SphereContact final : public EndContact {
 public:
     // The radius is at most the largest side of the object's box: larger balls do not fit beside it.
     SphereContact(std::shared_ptr<const Surface> surface, double radius_m);
 
-    // One tick: where it touches, at most three places, the one that presses most first. The proxy_m of each is the
-    // point touched, its depth and normal what it holds of the way from the hand to the proxy: depths times normals
-    // add up to that way, friction's lag apart. The first tick puts the ball down where the hand is; what it overlaps
-    // there it does not push away, but as it leaves it grows to its radius.
-    std::span<const Contact> update(const glm::dvec3& centre_m, const Friction& friction = {}) noexcept;
-    // A ball that was put down smaller, for what it overlapped there, goes out of that as far as the way is free, and
-    // grows by as much; one that lacks more than `most_m` of its radius stays. True: it went, and the next tick tells.
-    bool move_out(double most_m) noexcept;
-    // One tick of a probe that is free and known to have met nothing on its way.
-    void follow(const glm::dvec3& centre_m) noexcept;
-    void reset() noexcept;
+    // The proxy_m of each contact is the point touched, its depth and normal what it holds of the way from the hand to
+    // the proxy: depths times normals add up to that way, friction's lag apart. The first tick puts the ball down where
+    // the hand is; what it overlaps there it does not push away, but as it leaves it grows to its radius.
+    std::span<const Contact> update(const glm::dvec3& centre_m, const Friction& friction = {}) noexcept
+    {
+        SphereContact::tick(centre_m, friction);
+        return contacts();
+    }
 
-    // At least so far is it from the ball to the nearest triangle; 0: not known.
-    double gap_m(const glm::dvec3& centre_m) const noexcept;
+    void tick(const glm::dvec3& hand_m, const Friction& friction, const glm::dvec3* tail = nullptr) noexcept override;
+    void follow(const glm::dvec3& hand_m) noexcept override;
+    void reset() noexcept override;
+    bool move_out(double most_m) noexcept override;
+    double gap_m(const glm::dvec3& hand_m) const noexcept override;
+    std::span<const Contact> contacts() const noexcept override { return {contacts_, contact_count_}; }
+    const Contact& contact() const noexcept override { return contacts_[0]; }
+    const ContactCounters& counters() const noexcept override { return counters_; }
+    const Surface& surface() const noexcept override { return *surface_; }
+    glm::dvec3 proxy_m() const noexcept { return surface_->lattice.metres(proxy_.at); }
 
-    std::span<const Contact> contacts() const noexcept { return {contacts_, contact_count_}; } // of the last tick
-    glm::dvec3 proxy_m() const noexcept { return surface_->lattice.metres(centre_); }
-    const ContactCounters& counters() const noexcept { return counters_; }
-    const Surface& surface() const noexcept { return *surface_; }
+    bool is_placed() const noexcept override { return placed_; }
+    const Proxy& proxy() const noexcept override { return proxy_; }
+    glm::dvec3 beside() const noexcept override { return glm::round(proxy_.at); }
+    glm::dvec3 normal() const noexcept override;
+    glm::dvec3 unfelt() const noexcept override { return proxy_.touches() ? unfelt_ : glm::dvec3(0); }
+    void set_sliding(bool sliding) noexcept override { proxy_.sliding = sliding; }
+    void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept override;
+    void aim(const glm::dvec3& hand) noexcept override;
+    void go(const Friction& friction, WalkPath* path) noexcept override;
+    void restart(const glm::dvec3& at) noexcept override;
+    State state() const noexcept override { return {proxy_, grown_}; }
+    void go_back(const State& to) noexcept override;
+    void describe(bool lags) noexcept override;
+    void count_tick() noexcept override { ++counters_.ticks; }
 
 private:
-    static constexpr uint32_t rounds_max = 48;
+    // Of the way from the hand to the ball: walls of a groove narrower than some 30 degrees push more than this in sum,
+    // each by a stiffness and a texture of its own, and share the way itself beyond it.
+    static constexpr double opposed_most = 4;
+    // Lattice units: a point that can fly no farther has landed.
+    static constexpr double touching_gap = 64;
+    static constexpr uint32_t rounds_max = 48; // in a tick
+    static constexpr int landing_turns = 8;    // where friction holds it off the surface
 
     // Where it is known what may be met.
     struct Neighbourhood {
@@ -57,35 +78,74 @@ private:
         double room(const glm::dvec3& from) const { return margin - glm::distance(from, centre); }
     };
 
+    // What holds the ball, who presses most first, and where: at - hand = sum of push * normal, but of a point.
+    struct Row {
+        uint32_t face = 0;
+        glm::dvec3 normal{0}; // unit
+        double push = 0;
+    };
+    struct Held {
+        glm::dvec3 at{0};
+        std::size_t count = 0;
+        std::array<Row, 3> row{};
+
+        double pushes() const { return row[0].push + row[1].push + row[2].push; }
+    };
+
+    // Of its path: where a straight piece ends, and what the ball was held by on it.
+    struct Step {
+        glm::dvec3 at{0};
+        Held held; // count 0: it flew
+    };
+
     // What became of a tick's way.
     struct Way {
-        NearestInHalfSpaces found; // that holds the ball where it is
+        Held held;
         uint32_t round = 0;
         bool cut = false;        // there is more of it than a tick may take
         bool on_the_way = false; // the last step was as long as it might be
         bool blind = false;      // there is too much around to be looked at
     };
 
-    void place() noexcept;
-    bool look_around(double margin) noexcept;
-    NearestInHalfSpaces approach(double step_max) noexcept;
-    Way go(bool until_it_touches) noexcept;
+    void place(const glm::dvec3& at) noexcept;
+    bool find_around(double margin) noexcept;
+    bool is_in_air() const noexcept { return path_begin_ == path_length_; }
+    void fly(double step_max) noexcept;
+    Held slide(double step_max) noexcept;
+    Held held_by_picked() noexcept;
+    void pick(double reach) noexcept;
+    bool is_point() const noexcept { return radius_ <= Lattice::point_radius; }
+    Way travel(bool until_it_touches) noexcept;
     void move(const Friction& friction) noexcept;
+    void hold_by_friction(Held& held, const Friction& friction) noexcept;
+    static uint32_t borne_by(const Held& held, const Step& from) noexcept;
+    void pass(const Held& held) noexcept;
+    void take_off_radius(Held& held) const noexcept;
+    Held only(const Held& held, uint32_t bits) const noexcept;
+    bool touches_at(const glm::dvec3& place) noexcept;
+    void land(double step_max) noexcept;
     void push_no_harder_than(double way_m) noexcept;
-    uint32_t outermost(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) const noexcept;
-    void hold_by_friction(const NearestInHalfSpaces& found, const Friction& friction) noexcept;
-    void describe(const NearestInHalfSpaces& found, const glm::dvec3& nearest) noexcept;
+    NearestPoint nearest_on(uint32_t face, const glm::dvec3& centre) const noexcept;
+    uint32_t touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) const noexcept;
+    void tell(const Held& held, const glm::dvec3& nearest, bool lags) noexcept;
+    void tell_free() noexcept;
+    void tell_nothing() noexcept;
 
     std::shared_ptr<const Surface> surface_;
     double radius_, grown_; // lattice units; `grown_` of the ball that was put down into something
-    glm::dvec3 hand_{0}, hand_before_{0}, centre_{0};
-    bool placed_ = false, sliding_ = false;
+    glm::dvec3 hand_{0}, hand_before_{0};
+    Proxy proxy_; // the centre; on a face while it touches
+    bool placed_ = false, clamped_ = false;
     NearFaces faces_;
-    Neighbourhood around_, close_;    // of all found, of those picked
-    double margin_ = 0;               // that suits the density of the mesh here
-    double lag_ = 0;                  // by which friction held the ball back
-    glm::dvec3 path_[rounds_max + 1]; // of this tick, from where it began to touch
-    uint32_t path_length_ = 0;
+    Neighbourhood around_, close_; // of all found, of those picked
+    double margin_at_first_;       // of a point, which meets few: as far as it goes
+    double margin_;                // that suits the density of the mesh here
+    double lag_ = 0;               // by which friction held the ball back
+    // Of this tick, where it touched; from `path_begin_` on without a break, until now. Nobody asks for it later: the
+    // balls of a thread share the room for it.
+    static constinit thread_local std::array<Step, rounds_max + 2 + landing_turns> path_;
+    uint32_t path_begin_ = 0, path_length_ = 0;
+    glm::dvec3 unfelt_{0};
     Contact contacts_[3];
     std::size_t contact_count_ = 0;
     ContactCounters counters_;

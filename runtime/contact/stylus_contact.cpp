@@ -34,8 +34,8 @@ constexpr double ticks_per_region = 4;
 } // namespace
 
 StylusContact::StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space, double rate_hz)
-    : tip_(surface, skips_free_space)
-    , tail_(surface, skips_free_space)
+    : tip_(make_point(surface, skips_free_space))
+    , tail_(make_point(surface, skips_free_space))
     , skips_free_space_(skips_free_space)
     , tree_(&surface->swept_tree())
     , patience_ticks_(static_cast<uint32_t>(std::max(1.0, std::round(patience_s * rate_hz))))
@@ -44,8 +44,8 @@ StylusContact::StylusContact(std::shared_ptr<const Surface> surface, bool skips_
 
 void StylusContact::reset() noexcept
 {
-    tip_.reset();
-    tail_.reset();
+    tip_->reset();
+    tail_->reset();
     has_tail_ = tracked_ = astray_ = false;
     side_count_ = contact_count_ = 0;
     clear_ = {};
@@ -63,47 +63,47 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
                                      const EndsFriction& friction) noexcept
 {
     if (!finite(tip_m)) { // what touches goes on touching
-        tip_.update(tip_m, friction.tip);
+        tip_->tick(tip_m, friction.tip);
         for (Contact& contact : contacts_) contact.hand_held = true;
         count();
-        return tip_.contact();
+        return tip_->contact();
     }
     unspared_ = -1;
     const bool had_tip = begin_ == 0, had_tail = end_ == 1;
     const uint64_t sweeps = counters_.sweeps;
     has_shaft_ = take(tip_m, tail_m);
-    const uint64_t cut = tip_.counters().walks_cut;
+    const uint64_t cut = tip_->counters().walks_cut;
     if (!has_shaft_) {
         tracked_ = false;
-        tip_.update(tip_m, friction.tip);
-        counters_.walks_cut += tip_.counters().walks_cut - cut;
+        tip_->tick(tip_m, friction.tip);
+        counters_.walks_cut += tip_->counters().walks_cut - cut;
     } else if (!tracked_) {
         start(tip_m, friction.tip);
-        counters_.walks_cut += tip_.counters().walks_cut - cut;
+        counters_.walks_cut += tip_->counters().walks_cut - cut;
     } else if (!pass_freely(tip_m, tail_m)) {
-        if (!had_tip || begin_ > 0) restart(tip_, begin_ > 0 ? Lattice::snap_units(hand_.tip) : shaft_.tip);
-        if (!had_tail || end_ < 1) restart(tail_, end_ < 1 ? Lattice::snap_units(hand_.tail) : shaft_.tail);
-        ++tip_.counters_.ticks;
+        if (!had_tip || begin_ > 0) tip_->restart(begin_ > 0 ? Lattice::snap_units(hand_.tip) : shaft_.tip);
+        if (!had_tail || end_ < 1) tail_->restart(end_ < 1 ? Lattice::snap_units(hand_.tail) : shaft_.tail);
+        tip_->count_tick();
         resolve(friction);
     }
     report();
     count();
     counters_.skipped += contact_count_ == 0 && counters_.sweeps == sweeps;
     counters_.touching_ticks += contact_count_ > 0;
-    return tip_.contact();
+    return tip_->contact();
 }
 
 void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
 {
     ++counters_.skipped;
-    tip_.follow(tip_m);
+    tip_->follow(tip_m);
     tracked_ = has_shaft_ = finite(tip_m) && take(tip_m, tail_m);
     astray_ = false;
     side_count_ = 0;
     if (tracked_) {
         aim_ = reached_ = hand_;
         shaft_ = within(hand_.tip, hand_.tail);
-        restart(tail_, shaft_.tail);
+        tail_->restart(shaft_.tail);
     }
     contact_count_ = 0;
     count();
@@ -118,7 +118,7 @@ bool StylusContact::take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noex
     const Shaft hand{lattice.units(tip_m), lattice.units(tail_m)};
     if (!std::isfinite(glm::length(hand.tail - hand.tip))) return false; // too far out to have a direction
     hand_ = hand;
-    if (tip_.proxy_.touches()) hand_.tip = Lattice::snap_units(hand_.tip); // it does not let go of a hand that is far
+    if (tip_->proxy().touches()) hand_.tip = Lattice::snap_units(hand_.tip); // it does not let go of a hand that is far
     const glm::dvec3 along = hand_.tail - hand_.tip;
     begin_ = 0, end_ = 1;
     for (int k = 0; k < 3; ++k) {
@@ -157,11 +157,11 @@ void StylusContact::start(const glm::dvec3& tip_m, const Friction& friction) noe
 {
     const Shaft whole = within(hand_.tip, hand_.tail);
     Crossing crossing;
-    const bool first = !tip_.placed_;
+    const bool first = !tip_->is_placed();
     const bool crosses =
         first && first_crossing(surface(), whole.tail, whole.tip, StartsOn::nothing(), crossing, collision_);
-    tip_.update(tip_m, crosses ? &whole.tail : nullptr, friction);
-    restart(tail_, whole.tail);
+    tip_->tick(tip_m, friction, crosses ? &whole.tail : nullptr);
+    tail_->restart(whole.tail);
     aim_ = reached_ = hand_;
     side_count_ = 0;
     astray_ = false;
@@ -175,7 +175,7 @@ void StylusContact::start(const glm::dvec3& tip_m, const Friction& friction) noe
 // Where nothing is near nothing is touched: to the hand, if so.
 bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
 {
-    if (side_count_ > 0 || astray_ || tip_.proxy_.touches() || tail_.proxy_.touches()) return false;
+    if (side_count_ > 0 || astray_ || tip_->proxy().touches() || tail_->proxy().touches()) return false;
     const Shaft to = within(hand_.tip, hand_.tail);
     if (!(farther(clear_.at, to) < clear_.radius)) {
         ++collision_.sweeps;
@@ -187,16 +187,16 @@ bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_
     }
     shaft_ = to;
     aim_ = reached_ = hand_;
-    tip_.follow(tip_m);
-    tail_.follow(tail_m);
+    tip_->follow(tip_m);
+    tail_->follow(tail_m);
     return true;
 }
 
 // Tries larger regions after success and smaller ones after failure, and none while even a success would not pay.
 void StylusContact::look_around() noexcept
 {
-    tip_.look_around();
-    tail_.look_around();
+    tip_->look_around();
+    tail_->look_around();
     const double step = std::exchange(unspared_, -1);
     if (step < 0) return;
     if (clear_.next_radius == 0) clear_.next_radius = 0.25 * Lattice::extent;
@@ -214,7 +214,7 @@ void StylusContact::look_around() noexcept
 void StylusContact::report() noexcept
 {
     contact_count_ = 0;
-    if (tip_.contact().touching) contacts_[contact_count_++] = tip_.contact();
+    for (const Contact& contact : tip_->contacts()) contacts_[contact_count_++] = contact;
     if (!tracked_) return;
 
     const uint32_t first = contact_count_;
@@ -231,10 +231,11 @@ void StylusContact::report() noexcept
     }
     std::sort(contacts_.begin() + first, contacts_.begin() + contact_count_,
               [](const Contact& a, const Contact& b) { return a.depth_m > b.depth_m; });
-    if (end_ == 1 && tail_.contact().touching) {
-        contacts_[contact_count_] = tail_.contact();
-        contacts_[contact_count_++].along = 1;
-    }
+    if (end_ == 1)
+        for (const Contact& contact : tail_->contacts()) {
+            contacts_[contact_count_] = contact;
+            contacts_[contact_count_++].along = 1;
+        }
     tell_what_is_left();
 }
 
@@ -270,15 +271,17 @@ void StylusContact::tell_what_is_left() noexcept
         tip -= (1 - contact.along) * push;
         tail -= contact.along * push;
     }
+    if (begin_ == 0) tip -= tip_->unfelt();
+    if (end_ == 1) tail -= tail_->unfelt();
     const double tip_push = glm::length(tip), tail_push = glm::length(tail);
     const uint32_t told = contact_count_;
-    if (tip_push > least) tell(0, nearest_face(tip_, 0), ideal.tip, tip / tip_push, tip_push);
-    if (tail_push > least) tell(1, nearest_face(tail_, 1), ideal.tail, tail / tail_push, tail_push);
+    if (tip_push > least) tell(0, nearest_face(*tip_, 0), ideal.tip, tip / tip_push, tip_push);
+    if (tail_push > least) tell(1, nearest_face(*tail_, 1), ideal.tail, tail / tail_push, tail_push);
     for (uint32_t i = told; i < contact_count_; ++i) contacts_[i].unsettled = true;
 }
 
 // Of those that are known: it has the material of its object.
-uint32_t StylusContact::nearest_face(const PointContact& end, double along) const noexcept
+uint32_t StylusContact::nearest_face(const EndContact& end, double along) const noexcept
 {
     if (end.contact().touching) return end.contact().face;
     const Side* nearest = nullptr;
@@ -289,7 +292,7 @@ uint32_t StylusContact::nearest_face(const PointContact& end, double along) cons
 
 void StylusContact::count() noexcept
 {
-    const ContactCounters &tip = tip_.counters(), &tail = tail_.counters();
+    const ContactCounters &tip = tip_->counters(), &tail = tail_->counters();
     counters_.ticks = tip.ticks;
     counters_.hands_held = tip.hands_held;
     counters_.sweeps = tip.sweeps + tail.sweeps + collision_.sweeps;
@@ -307,7 +310,7 @@ double StylusContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) c
 
 bool StylusContact::shaft_crosses() const noexcept
 {
-    if (!has_tail_ || tracked_ || !tip_.placed_ || tip_.contact_.touching) return false;
+    if (!has_tail_ || tracked_ || !tip_->is_placed() || tip_->contact().touching) return false;
     const Shaft whole = within(hand_.tip, hand_.tail);
     Crossing crossing;
     CollisionCount count;

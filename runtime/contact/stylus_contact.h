@@ -11,7 +11,7 @@
 // nearest to the hand that was reached, no farther away than before the tick while all of it is in the workspace, and
 // the part of the springs' force that no known contact explains is reported at the ends (Contact::unsettled).
 //
-// Ends are tracked by PointContact, each toward where the pushes of the shaft's contacts would have the hand's end. The
+// Ends are tracked by EndContact, each toward where the pushes of the shaft's contacts would have the hand's end. The
 // shaft that follows them has lattice points for ends. It moves straight, meets edges in the order of time, and takes
 // no place in which exact arithmetic finds it crossing a triangle, so that nothing is passed through at any speed;
 // what it met becomes a contact. Contacts that pull are none; what slides off the end of an edge meets the next.
@@ -26,8 +26,8 @@
 // place does not make way for an edge, so the other has to, and friction bears what the edge pushes the kept end with.
 #pragma once
 
-#include "runtime/contact/contact.h"
 #include "runtime/contact/contact_qp.h"
+#include "runtime/contact/end_contact.h"
 #include "runtime/contact/shaft.h"
 #include "runtime/contact/stylus_friction.h"
 #include "runtime/contact/swept_tree.h"
@@ -52,7 +52,7 @@ public:
     const Contact& update(const glm::dvec3& tip_m, const glm::dvec3& tail_m,
                           const EndsFriction& friction = {}) noexcept;
     void follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
-    // Between two ticks, as PointContact's.
+    // Between two ticks, as EndContact's.
     void look_around() noexcept;
     void reset() noexcept;
 
@@ -60,7 +60,7 @@ public:
     // (Contact::unsettled). Each depth_m is the contact's force over the stiffness. The sum of depth_m * normal, plus
     // lag_m of the ends, is (P - p) + (Q - q).
     std::span<const Contact> contacts() const noexcept { return {contacts_.data(), contact_count_}; }
-    const Contact& contact() const noexcept { return tip_.contact(); } // the tip's
+    const Contact& contact() const noexcept { return tip_->contact(); } // the tip's
 
     // The proxy of the whole stylus, in lattice units; both ends are lattice points, and it crosses no triangle.
     // Nothing while the tip alone is held. Of a stylus that reaches beyond the workspace only the part within.
@@ -74,7 +74,7 @@ public:
     bool shaft_crosses() const noexcept;
 
     const ContactCounters& counters() const noexcept { return counters_; }
-    const Surface& surface() const noexcept { return tip_.surface(); }
+    const Surface& surface() const noexcept { return tip_->surface(); }
 
     // For so long a shaft may fall behind its ends, whatever the rate.
     static constexpr double patience_s = 0.064;
@@ -112,7 +112,7 @@ private:
     // All that a tick changes of where it is held.
     struct Place {
         Shaft shaft, reached;
-        Proxy tip, tail;
+        EndContact::State tip, tail;
         std::array<Side, sides_max> sides;
         uint32_t side_count;
         bool astray;
@@ -127,7 +127,6 @@ private:
     Shaft goal() const noexcept;
     void start(const glm::dvec3& tip_m, const Friction& friction) noexcept;
     bool pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
-    void restart(PointContact& end, const glm::dvec3& at) noexcept;
     void restart_ends() noexcept;
 
     void resolve(const EndsFriction& friction) noexcept;
@@ -135,7 +134,7 @@ private:
     double solve(const Shaft& hand, Shaft& aim, FrictionOfEnds& ends,
                  Turning normals = Turning::with_the_shaft) noexcept;
     Shaft clear_of_sides(const Shaft& to, EndsGive gives) const noexcept;
-    void take_hold(EndFriction& end_friction, const PointContact& end, const glm::dvec3& on_shaft) const noexcept;
+    void take_hold(EndFriction& end_friction, const EndContact& end, const glm::dvec3& on_shaft) const noexcept;
     bool drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept;
     bool move(Shaft to) noexcept;
     bool blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept;
@@ -152,10 +151,10 @@ private:
     void report() noexcept;
     void tell(double along, uint32_t face, const glm::dvec3& point, const glm::dvec3& normal, double push) noexcept;
     void tell_what_is_left() noexcept;
-    uint32_t nearest_face(const PointContact& end, double along) const noexcept;
+    uint32_t nearest_face(const EndContact& end, double along) const noexcept;
     void count() noexcept;
 
-    PointContact tip_, tail_;
+    std::unique_ptr<EndContact> tip_, tail_;
     bool skips_free_space_;
     const SweptTree* tree_;                         // of the surface, which the ends hold
     Shaft hand_;                                    // lattice units, neither rounded nor clamped
@@ -171,8 +170,8 @@ private:
     std::array<Side, sides_max> sides_;
     uint32_t side_count_ = 0;
     Clear clear_;
-    double unspared_ = -1; // as a point's
-    std::array<Contact, sides_max + 4> contacts_;
+    double unspared_ = -1;                        // as a point's
+    std::array<Contact, sides_max + 8> contacts_; // of each end three, and what is left
     uint32_t contact_count_ = 0;
     uint32_t sweeps_left_ = 0; // in this tick
     uint32_t stuck_ticks_ = 0; // in a row

@@ -44,26 +44,16 @@ constexpr double shorter = 0.25;
 // Where the ends that are tracked want the shaft to be.
 Shaft StylusContact::goal() const noexcept
 {
-    Shaft goal = within(begin_ == 0 ? tip_.proxy_.at : aim_.tip, end_ == 1 ? tail_.proxy_.at : aim_.tail);
-    if (begin_ == 0) goal.tip = beside(surface(), tip_.proxy_);
-    if (end_ == 1) goal.tail = beside(surface(), tail_.proxy_);
+    Shaft goal = within(begin_ == 0 ? tip_->proxy().at : aim_.tip, end_ == 1 ? tail_->proxy().at : aim_.tail);
+    if (begin_ == 0) goal.tip = tip_->beside();
+    if (end_ == 1) goal.tail = tail_->beside();
     return goal;
-}
-
-// An end that begins anew at a free place.
-void StylusContact::restart(PointContact& end, const glm::dvec3& at) noexcept
-{
-    end.proxy_.on = Proxy::On::nothing;
-    end.proxy_.at = end.hand_ = end.true_hand_ = at;
-    end.placed_ = true;
-    end.clear_.radius = 0;
-    end.describe();
 }
 
 void StylusContact::restart_ends() noexcept
 {
-    if (begin_ == 0) restart(tip_, shaft_.tip);
-    if (end_ == 1) restart(tail_, shaft_.tail);
+    if (begin_ == 0) tip_->restart(shaft_.tip);
+    if (end_ == 1) tail_->restart(shaft_.tail);
     astray_ = false;
 }
 
@@ -84,10 +74,10 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     ends.tip.friction = checked(friction.tip);
     ends.tail.friction = checked(friction.tail);
     const double unit_m = surface().lattice.unit_m;
-    tip_.slide_on(unit_m * (hand_.tip - reached_.tip), friction.tip);
-    tail_.slide_on(unit_m * (hand_.tail - reached_.tail), friction.tail);
-    bool tip_slides = ends.tip.slides = tip_.proxy_.sliding;
-    bool tail_slides = ends.tail.slides = tail_.proxy_.sliding;
+    tip_->slide_on(unit_m * (hand_.tip - reached_.tip), friction.tip);
+    tail_->slide_on(unit_m * (hand_.tail - reached_.tail), friction.tail);
+    bool tip_slides = ends.tip.slides = tip_->proxy().sliding;
+    bool tail_slides = ends.tail.slides = tail_->proxy().sliding;
     for (; round < rounds_max && sweeps_left_ > 0; ++round) {
         Shaft aim, to = hand_;
         const double share = std::min(stride, solve(to, aim, ends));
@@ -105,26 +95,26 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         Shaft clear = aim_;
         const auto go_tip = [&] {
             if (begin_ > 0) return;
-            tip_.aim(clear.tip);
-            tip_.go(ends.tip.of_walk(), &tip_path);
-            tip_slides |= tip_.proxy_.sliding;
+            tip_->aim(clear.tip);
+            tip_->go(ends.tip.of_walk(), &tip_path);
+            tip_slides |= tip_->proxy().sliding;
         };
         const auto go_tail = [&] {
             if (end_ < 1) return;
-            tail_.aim(clear.tail);
-            tail_.go(ends.tail.of_walk(), &tail_path);
-            tail_slides |= tail_.proxy_.sliding;
+            tail_->aim(clear.tail);
+            tail_->go(ends.tail.of_walk(), &tail_path);
+            tail_slides |= tail_->proxy().sliding;
         };
         // What friction drags goes first: a little off its aim, on a short lever that is far for the other end.
         if (ends.tail.drags() && !ends.tip.touches) {
             go_tail();
-            clear.tail = tail_.proxy_.at;
+            clear.tail = tail_->proxy().at;
             clear = clear_of_sides(clear, {true, false});
             go_tip();
         } else {
             go_tip();
             if (ends.tip.drags() && !ends.tail.touches) {
-                clear.tip = tip_.proxy_.at;
+                clear.tip = tip_->proxy().at;
                 clear = clear_of_sides(clear, {false, true});
             }
             go_tail();
@@ -151,28 +141,26 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     stuck_ticks_ = behind && away_first - away(shaft_) < far_behind ? stuck_ticks_ + 1 : 0;
     if (stuck_ticks_ == patience_ticks_) tracked_ = false;
     if (let_go_of_unreached() || stopped) hold_hand_from_here(ends);
-    tip_.proxy_.sliding = tip_slides;
-    tail_.proxy_.sliding = tail_slides;
-    tip_.describe();
-    tail_.describe();
-    if (!ends.tip.drags()) tip_.contact_.lag_m = glm::dvec3(0); // nothing holds it
-    if (!ends.tail.drags()) tail_.contact_.lag_m = glm::dvec3(0);
+    tip_->set_sliding(tip_slides);
+    tail_->set_sliding(tail_slides);
+    tip_->describe(ends.tip.drags());
+    tail_->describe(ends.tail.drags());
     for (uint32_t i = side_count_; i-- > 0;)
         if (sides_[i].push == 0 && sides_[i].sign * passing_of(sides_[i], shaft_).height > 4 * rest_gap) drop(i);
 }
 
 StylusContact::Place StylusContact::place() const noexcept
 {
-    return {shaft_, reached_, tip_.proxy_, tail_.proxy_, sides_, side_count_, astray_};
+    return {shaft_, reached_, tip_->state(), tail_->state(), sides_, side_count_, astray_};
 }
 
 void StylusContact::go_back(const Place& to) noexcept
 {
     shaft_ = to.shaft, reached_ = to.reached;
-    tip_.proxy_ = to.tip, tail_.proxy_ = to.tail;
+    tip_->go_back(to.tip), tail_->go_back(to.tail);
     sides_ = to.sides, side_count_ = to.side_count;
     astray_ = to.astray;
-    tip_.clear_.radius = tail_.clear_.radius = clear_.radius = 0; // it may be out of these
+    clear_.radius = 0; // it may be out of it
 }
 
 // How far the springs of both ends are drawn where the part in the workspace is there: their energy is half the
@@ -189,8 +177,8 @@ double StylusContact::away(const Shaft& part) const noexcept
 void StylusContact::hold_hand_from_here(FrictionOfEnds& ends) noexcept
 {
     solve(hand_, aim_, ends, Turning::not_at_all);
-    if (begin_ == 0 && tip_.proxy_.touches()) tip_.aim(aim_.tip);
-    if (end_ == 1 && tail_.proxy_.touches()) tail_.aim(aim_.tail);
+    if (begin_ == 0 && tip_->proxy().touches()) tip_->aim(aim_.tip);
+    if (end_ == 1 && tail_->proxy().touches()) tail_->aim(aim_.tail);
 }
 
 // With the end that gives where it clears the sides that push, the other being where it is.
@@ -222,12 +210,14 @@ Shaft StylusContact::clear_of_sides(const Shaft& to, EndsGive gives) const noexc
 }
 
 // An end as it begins. One that went where the shaft could not follow comes back first.
-void StylusContact::take_hold(EndFriction& end_friction, const PointContact& end,
+void StylusContact::take_hold(EndFriction& end_friction, const EndContact& end,
                               const glm::dvec3& on_shaft) const noexcept
 {
-    end_friction.touches = end.proxy_.touches();
-    end_friction.normal = end.contact_.normal;
-    end_friction.at = end.proxy_.at;
+    end_friction.touches = end.proxy().touches();
+    end_friction.normal = end.normal();
+    end_friction.unfelt = glm::dot(end.unfelt(), end.normal());
+    end_friction.bears = end.bears();
+    end_friction.at = end.proxy().at;
     if (astray_)
         end_friction.at = on_shaft + glm::dot(end_friction.normal, end_friction.at - on_shaft) * end_friction.normal;
     end_friction.take_hold(side_count_ > 0);
@@ -239,8 +229,8 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim, FrictionOfEnds& ends,
 {
     std::array<ShaftContact, shaft_contacts_max> contacts;
     EndFriction &tip = ends.tip, &tail = ends.tail;
-    take_hold(tip, tip_, shaft_.tip);
-    take_hold(tail, tail_, shaft_.tail);
+    take_hold(tip, *tip_, shaft_.tip);
+    take_hold(tail, *tail_, shaft_.tail);
     aim = hand;
     if (side_count_ == 0) return 1;
     if (tip.sticks) tail.sticks = false; // else no side could push; it may stay where it is for all that

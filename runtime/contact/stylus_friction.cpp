@@ -32,14 +32,14 @@ void EndFriction::take_hold(bool of_sides) noexcept
 double EndFriction::follow(const glm::dvec3& aim, const glm::dvec3& held, const glm::dmat3& give) noexcept
 {
     const double height = glm::dot(normal, at - aim);
-    const double found = coefficient() * glm::clamp(height, 0.0, deepest);
+    const double found = coefficient() * bears * glm::clamp(height - unfelt, 0.0, deepest);
     if (sticks) {
         lag = at - aim - height * normal;
         if (glm::length(lag) <= found && height <= deepest) return 0;
         lag = glm::dvec3(0);
         sticks = false;
         slips = slides = true;
-        limit_ = limit_before_ = coefficient() * glm::clamp(height, 0.0, deepest);
+        limit_ = limit_before_ = coefficient() * bears * glm::clamp(height - unfelt, 0.0, deepest);
         return HUGE_VAL;
     }
     const glm::dvec3 before = lag;

@@ -23,6 +23,8 @@ struct EndFriction {
     bool sticks = false; // this iteration takes it as fixed, whatever pushes it
     bool moves = false;  // it moves under the friction of the last iteration
     glm::dvec3 at{0}, normal{0};
+    double unfelt = 0; // of its height over where it is pulled nothing presses
+    double bears = 1;  // times the rest: in a groove both its walls press
     glm::dvec3 lag{0}; // friction, in the plane: from where the end is pulled to where it comes to rest
 
     bool drags() const { return touches && friction.static_coefficient > 0; }

@@ -42,8 +42,8 @@ Passing StylusContact::passing_of(const Side& side, const Shaft& shaft) const no
 bool StylusContact::drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept
 {
     const Shaft from = shaft_, to = goal();
-    tip_walked_ = tip_.contact_.touching || tip_path.count > 0; // one that has left its border by now, too
-    tail_walked_ = tail_.contact_.touching || tail_path.count > 0;
+    tip_walked_ = tip_->contact().touching || tip_path.count > 0; // one that has left its border by now, too
+    tail_walked_ = tail_->contact().touching || tail_path.count > 0;
     if (move(to)) return true;
     Shaft leg = to;
     const uint32_t legs = std::max(tip_path.count, tail_path.count);

@@ -1,13 +1,20 @@
-#include "runtime/contact/walk.h"
+#include "runtime/contact/proxy.h"
+#include "runtime/surface/corner.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace haptel::runtime {
 
-using namespace tolerance;
-
 namespace {
+
+// The only tolerances, in lattice units (below 2e-12 of the object): they cover the rounding of the proxy, which is
+// a double and no lattice point, and nothing else.
+constexpr double lift_off = 8;    // height of the hand at which the surface lets go
+constexpr double feature = 32;    // nearer to an edge or a vertex than this is on it
+constexpr double departure = 64;  // least way that is worth a turn: more than `feature`, else cycles
+constexpr double on_plane = 4;    // nearer to a neighbour's plane than this is on it
+constexpr double clear_above = 2; // height that rounding to the lattice cannot undo
 
 // Length of the sum of two unit normals below which the faces nearly fold onto each other.
 constexpr double sharp = 1.0 / 16;
@@ -15,13 +22,58 @@ constexpr double sharp = 1.0 / 16;
 // Lattice units: how far above its feature a proxy is `beside` it, so that rounding does not matter.
 constexpr double clear_beside = 8;
 
-} // namespace
+class Walk {
+public:
+    Walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count)
+        : surface_(surface), proxy_(proxy), hand_(hand), friction_(friction), count_(count)
+    {
+    }
+
+    void run(uint32_t step_limit, WalkPath* path);
+
+private:
+    enum class Step : uint8_t { again, stop };
+
+    const glm::dvec3& vertex(uint32_t face, uint32_t corner) const
+    {
+        return surface_.vertices[surface_.faces[face].vertex[corner]];
+    }
+    glm::dvec3 edge_vector(uint32_t face, uint32_t edge) const { return vertex(face, next(edge)) - vertex(face, edge); }
+    // Within the face, at a right angle to its edge, as long as the edge.
+    glm::dvec3 inward(uint32_t face, uint32_t edge) const
+    {
+        return glm::cross(surface_.faces[face].normal, edge_vector(face, edge));
+    }
+
+    void settle();
+    void step_onto_edge(uint32_t face, uint32_t side, uint32_t edge);
+
+    Step from_face();
+    bool touches_across(const SideEdge& link, uint32_t face, uint32_t edge) const;
+    Step from_edge();
+    Step leave_edge(uint32_t face, uint32_t edge, const SideEdge& link);
+    bool free_of_edge(uint32_t face, uint32_t edge, uint32_t side) const;
+    Step from_vertex();
+
+    Step leave(const StartsOn& start, const glm::dvec3& offset);
+    double share_past_friction(double way, double depth);
+    double pressed_at_edge(uint32_t face, uint32_t edge, uint32_t side) const;
+    Step slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge);
+    Step go_within(uint32_t face, uint32_t side, const glm::dvec3& target, uint32_t from_edge, uint32_t or_edge);
+    Step slide_along(uint32_t face, uint32_t edge, uint32_t side);
+
+    const Surface& surface_;
+    Proxy& proxy_;
+    const glm::dvec3& hand_;
+    const WalkFriction& friction_;
+    WalkCount& count_;
+    bool moved_ = false;
+};
 
 void Walk::run(uint32_t step_limit, WalkPath* path)
 {
     Step step = Step::again;
     for (count_.steps = 0; step == Step::again && count_.steps < step_limit; ++count_.steps) {
-        proxy_.at_wall = false;
         settle();
         switch (proxy_.on) {
         case Proxy::On::face: step = from_face(); break;
@@ -31,7 +83,7 @@ void Walk::run(uint32_t step_limit, WalkPath* path)
         }
         if (path && proxy_.touches()) path->add(beside(surface_, proxy_));
     }
-    count_.cut = step == Step::again || count_.wall_turns > WalkCount::most_wall_turns;
+    count_.cut = step == Step::again;
     proxy_.sliding = proxy_.sliding || moved_;
 }
 
@@ -57,37 +109,24 @@ void Walk::settle()
     }
 }
 
-// Onto the near edge of the face that the proxy is on, or rather onto an end of it that is near. Where a wall is in the
-// way the proxy stays: false.
-bool Walk::step_onto_edge(uint32_t face, uint32_t side, uint32_t edge)
+// Onto the near edge of the face that the proxy is on, or rather onto an end of it that is near.
+void Walk::step_onto_edge(uint32_t face, uint32_t side, uint32_t edge)
 {
     const glm::dvec3 along = edge_vector(face, edge);
     const double length = glm::length(along);
     const double way = glm::dot(proxy_.at - vertex(face, edge), along) / length;
     const bool near_begin = way < feature, near_end = length - way < feature;
-    if (near_begin || near_end) {
-        const uint32_t corner = near_begin && (!near_end || 2 * way < length) ? edge : next(edge);
-        if (step(face, side, edge, vertex(face, corner))) {
-            proxy_.on = Proxy::On::vertex;
-            proxy_.index = corner;
-            return true;
-        }
-    }
-    if (!step(face, side, edge, vertex(face, edge) + way / length * along)) return false;
-    proxy_.on = Proxy::On::edge;
-    proxy_.index = edge;
-    return true;
-}
-
-// To a place on the edge, unless a wall of one of its faces is in the way.
-bool Walk::step(uint32_t face, uint32_t side, uint32_t edge, const glm::dvec3& place)
-{
-    const uint32_t other = surface_.faces[face].link[edge][side].face();
-    if (!may_step(surface_, face, proxy_.at, place) || !may_step(surface_, other, proxy_.at, place)) return false;
     proxy_.face = face;
     proxy_.side = side;
-    proxy_.at = place;
-    return true;
+    if (near_begin || near_end) {
+        proxy_.on = Proxy::On::vertex;
+        proxy_.index = near_begin && (!near_end || 2 * way < length) ? edge : next(edge);
+        proxy_.at = vertex(face, proxy_.index);
+    } else {
+        proxy_.on = Proxy::On::edge;
+        proxy_.index = edge;
+        proxy_.at = vertex(face, edge) + way / length * along;
+    }
 }
 
 // --- what to do on a face, an edge, a vertex
@@ -96,7 +135,7 @@ Walk::Step Walk::from_face()
 {
     const uint32_t face = proxy_.face;
     const double height = glm::dot(hand_ - vertex(face, 0), surface_.facet_normal(face, proxy_.side));
-    if (height < lift_off) return has_walls(surface_, face) ? from_face_among_walls() : slide(face, proxy_.side, 3, 3);
+    if (height < lift_off) return slide(face, proxy_.side, 3, 3);
 
     // Deep in a sharp fold the opposite face may be nearer than rounding: then links say on which side of it
     // the proxy is, not the sweep.
@@ -143,11 +182,9 @@ Walk::Step Walk::from_edge()
         const SideEdge to = pull_here >= pull_there ? SideEdge(face, edge, proxy_.side) : link;
         const glm::dvec3 normal = surface_.facet_normal(to.face(), to.side());
         if (glm::dot(hand_ - vertex(face, edge), normal) >= lift_off) return leave_edge(face, edge, link);
-        if (PlaneSet planes; walls_at_edge(face, edge, proxy_.side, planes)) return from_edge_among_walls(planes, edge);
         return slide(to.face(), to.side(), to.edge(), 3);
     }
     if (free_of_edge(face, edge, proxy_.side)) return leave_edge(face, edge, link);
-    if (PlaneSet planes; walls_at_edge(face, edge, proxy_.side, planes)) return from_edge_among_walls(planes, edge);
     return slide_along(face, edge, proxy_.side);
 }
 
@@ -257,7 +294,7 @@ Walk::Step Walk::slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_
     return go_within(face, side, proxy_.at + share * way, from_edge, or_edge);
 }
 
-// Over the face to the target in its plane, at most to its edges or to the first wall.
+// Over the face to the target in its plane, at most to its edges.
 Walk::Step Walk::go_within(uint32_t face, uint32_t side, const glm::dvec3& target, uint32_t from_edge, uint32_t or_edge)
 {
     double exit_at = 1;
@@ -273,15 +310,10 @@ Walk::Step Walk::go_within(uint32_t face, uint32_t side, const glm::dvec3& targe
         exit_at = at;
         exit = i;
     }
-    const glm::dvec3 end = exit == 3 ? target : proxy_.at + exit_at * (target - proxy_.at);
-    const glm::dvec3 from = proxy_.at;
-    if (const double share = open_share(surface_, face, from, end); share < 1) {
-        proxy_.at += share * (end - from);
-        return went(from);
-    }
-    proxy_.at = end;
+    proxy_.at = exit == 3 ? target : proxy_.at + exit_at * (target - proxy_.at);
     if (exit == 3) return Step::stop;
-    return step_onto_edge(face, side, exit) ? Step::again : went(from);
+    step_onto_edge(face, side, exit);
+    return Step::again;
 }
 
 // How deep the hand is below an edge, as friction feels it: in a groove below both its walls together.
@@ -313,18 +345,13 @@ Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
     proxy_.index = edge;
     if (share == 0) return Step::stop;
     const double there = here + share * way;
-    const glm::dvec3 end = begin + glm::clamp(there, 0.0, length) / length * along;
     const glm::dvec3 from = proxy_.at;
-    const uint32_t other = surface_.faces[face].link[edge][side].face();
-    if (const double open = std::min(open_share(surface_, face, from, end), open_share(surface_, other, from, end));
-        open < 1) {
-        proxy_.at += open * (end - from);
-        return went(from);
-    }
-    proxy_.at = end;
-    if (!step_onto_edge(face, side, edge)) return went(from);
+    proxy_.at = begin + glm::clamp(there, 0.0, length) / length * along;
+    step_onto_edge(face, side, edge);
     return proxy_.on == Proxy::On::vertex && proxy_.at != from ? Step::again : Step::stop;
 }
+
+} // namespace
 
 void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count,
           uint32_t step_limit, WalkPath* path) noexcept
@@ -361,7 +388,7 @@ void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const 
     proxy.on = Proxy::On::face;
     proxy.face = crossing.face;
     proxy.side = crossing.side;
-    proxy.at = landing_off_walls(surface, crossing, from, to, crossing_point(surface, crossing, from, to));
+    proxy.at = crossing_point(surface, crossing, from, to);
 }
 
 } // namespace haptel::runtime

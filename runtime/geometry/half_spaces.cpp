@@ -97,6 +97,7 @@ bool take_in(std::span<const HalfSpace> spaces, uint32_t space, NearestInHalfSpa
             now.push[now.count++] = push;
             return true;
         }
+        if (first_to_go == 3) return false; // what is no number
         drop(now, first_to_go);
     }
 }

@@ -59,7 +59,6 @@ struct Face {
     std::array<std::array<SideEdge, 2>, 3> link; // [edge][side]
     std::array<std::array<uint32_t, 2>, 3> fan;  // [corner][side]: index into Surface::fans
     glm::dvec3 normal;                           // unit, front
-    uint32_t pierced_begin = 0, pierced_end = 0; // range in Surface::pierced_by
 };
 
 // The faces around a vertex that are linked with each other on one side.
@@ -95,7 +94,7 @@ struct Surface {
     std::vector<std::array<glm::dvec2, 3>> uv; // per face and corner; empty without texture coordinates
     std::vector<uint32_t> smoothing_groups;    // per face, as in Mesh; or empty
     std::vector<Origin> origins;               // per face; empty if it is of one piece
-    std::vector<uint32_t> pierced_by;
+    bool cuts_itself = false; // faces cut or touch each other beside the edges and vertices that they share
     // Force shading: the normals at corners, and which of them a face has [corner][side].
     std::vector<ShadingNormal> shading_normals;
     std::vector<std::array<std::array<uint32_t, 2>, 3>> shading_normal_of;
@@ -120,6 +119,8 @@ struct Surface {
     {
         return side ? -faces[face].normal : faces[face].normal;
     }
+    // One piece that does not cut itself: links lead everywhere that a point comes to.
+    bool is_clean() const { return origins.empty() && !cuts_itself; }
     bool is_border(uint32_t face, uint32_t edge) const { return faces[face].link[edge][0].face() == face; }
 
     // From the object's box to that of the segment; 0 where they meet.

@@ -4,21 +4,6 @@
 
 namespace haptel::runtime {
 
-// Links, fans, tree and walls of the faces as they are.
-static void connect(Surface& surface, SurfaceResult& result, BuildWork& work)
-{
-    surface.fans.clear();
-    surface.pierced_by.clear();
-    for (Face& face : surface.faces) face.pierced_begin = face.pierced_end = 0;
-    result.report.border_edges = result.report.nonmanifold_edges = result.report.pierced = 0;
-    if (!work.begin("which of its triangles are neighbours")) return;
-    link_faces(surface, result.report);
-    make_fans(surface, work);
-    if (!work.begin("where its triangles lie")) return;
-    surface.tree = BoxTree::build(surface.vertices, surface.faces, result.error);
-    if (surface.tree) find_piercing(surface, result.report, work);
-}
-
 SurfaceResult build_surface(const Mesh& mesh, double crease_deg, const Loading* loading)
 {
     SurfaceResult result;
@@ -30,19 +15,17 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg, const Loading* 
         result.error = "the mesh has no triangle to touch" + (warning.empty() ? "" : ": " + warning);
         return result;
     }
-    close_cracks(*surface, result.report, work);
-    if (!surface->origins.empty() && !work.over()) {
-        BuildWork joining = BuildWork::of_joining(loading); // imprinting has limits of its own, too
-        imprint(*surface, result.error, joining);
-        if (joining.over()) result.error = joining.error();
-        if (!result.error.empty()) return result;
+    const bool is_joined = !surface->origins.empty(); // each part has been built by itself before
+    if (!is_joined) close_cracks(*surface, result.report, work);
+    if (work.begin("which of its triangles are neighbours")) {
+        link_faces(*surface, result.report);
+        make_fans(*surface, work);
     }
-    int rounds = 0;
-    do {
-        connect(*surface, result, work);
-        if (work.over()) result.error = work.error();
-        if (!result.error.empty()) return result;
-    } while (++rounds < 3 && part_crossing_sheets(*surface, work));
+    if (work.begin("where its triangles lie")) {
+        surface->tree = BoxTree::build(surface->vertices, surface->faces, result.error);
+        if (!surface->tree) return result;
+        if (!is_joined) find_piercing(*surface, result.report, work);
+    }
     if (work.begin("how round it is")) make_shading_normals(*surface, crease_deg);
     result.error = work.error();
     if (result.error.empty()) result.surface = std::move(surface);

@@ -1,6 +1,7 @@
 #include "runtime/surface/build/joined_surfaces.h"
 
 #include "runtime/surface/build/build.h"
+#include "runtime/surface/build/meeting.h"
 
 #include <algorithm>
 #include <limits>
@@ -38,12 +39,11 @@ struct Box {
     explicit Box(const PlacedSurface& placed)
     {
         const Surface& surface = *placed.surface;
-        for (const Face& face : surface.faces)
-            for (uint32_t i : face.vertex) {
-                const glm::dvec3 p = placed.placement.to_world(surface.lattice.metres(surface.vertices[i]));
-                minimum = glm::min(minimum, p);
-                maximum = glm::max(maximum, p);
-            }
+        for (const glm::dvec3& vertex : surface.vertices) {
+            const glm::dvec3 p = placed.placement.to_world(surface.lattice.metres(vertex));
+            minimum = glm::min(minimum, p);
+            maximum = glm::max(maximum, p);
+        }
         const glm::dvec3 more(margin * glm::distance(minimum, maximum));
         minimum -= more;
         maximum += more;
@@ -74,6 +74,8 @@ public:
         return all;
     }
 
+    bool are_together(uint32_t one, uint32_t other) { return first(one) == first(other); }
+
 private:
     uint32_t first(uint32_t i)
     {
@@ -84,51 +86,71 @@ private:
     std::vector<uint32_t> first_;
 };
 
-std::vector<std::vector<uint32_t>> groups_of_overlapping_boxes(std::span<const PlacedSurface> surfaces)
+// Of each surface those of higher place in the order of their boxes that its own box meets.
+std::vector<std::vector<uint32_t>> overlapping_boxes(std::span<const PlacedSurface> surfaces,
+                                                     std::span<const Box> boxes)
 {
-    std::vector<Box> boxes(surfaces.begin(), surfaces.end());
     std::vector<uint32_t> order(boxes.size());
     std::iota(order.begin(), order.end(), 0u);
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
         const double x = boxes[a].minimum.x, y = boxes[b].minimum.x;
         return x != y ? x < y : a < b;
     });
-    Groups together(boxes.size());
+    std::vector<std::vector<uint32_t>> overlapping(surfaces.size());
     for (size_t i = 0; i < order.size(); ++i)
         for (size_t k = i + 1; k < order.size() && boxes[order[k]].minimum.x <= boxes[order[i]].maximum.x; ++k)
-            if (boxes[order[i]].meets(boxes[order[k]])) together.unite(order[i], order[k]);
-    return together.groups();
+            if (boxes[order[i]].meets(boxes[order[k]])) overlapping[order[i]].push_back(order[k]);
+    return overlapping;
+}
+
+// As wide as the ball that a point is on a surface of both.
+double slit_m(const Box& one, const Box& other)
+{
+    const Lattice lattice = Lattice::around(glm::min(one.minimum, other.minimum), glm::max(one.maximum, other.maximum));
+    return 2 * Lattice::point_radius * lattice.unit_m;
+}
+
+// Of what is there twice both are felt.
+bool is_same(const PlacedSurface& one, const PlacedSurface& other)
+{
+    return one.surface == other.surface && one.placement.rotation == other.placement.rotation &&
+           one.placement.position_m == other.placement.position_m;
 }
 
 } // namespace
 
 std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surfaces, const Loading* loading)
 {
+    const std::vector<Box> boxes(surfaces.begin(), surfaces.end());
+    const std::vector<std::vector<uint32_t>> overlapping = overlapping_boxes(surfaces, boxes);
+    Groups near(surfaces.size()), meeting(surfaces.size());
+    for (uint32_t one = 0; one < surfaces.size(); ++one)
+        for (const uint32_t other : overlapping[one]) near.unite(one, other);
+
     std::vector<MeetingSurfaces> found;
-    for (const std::vector<uint32_t>& near : groups_of_overlapping_boxes(surfaces)) {
-        size_t triangles = 0;
-        for (uint32_t number : near) triangles += surfaces[number].surface->faces.size();
-        if (triangles > joined_triangles_max) {
-            found.push_back({near, "together they have more than " + std::to_string(joined_triangles_max / 1'000'000) +
-                                       " million triangles"});
-            continue;
-        }
-        Surface together;
-        MeshReport report;
-        std::string error;
-        if (!repair(placed_together(surfaces, near), together, report)) continue;
+    for (const std::vector<uint32_t>& group : near.groups()) {
         BuildWork work = BuildWork::of_joining(loading);
-        Groups meeting(near.size());
-        for (const auto& [one, other] : meeting_parts(together, error, work)) meeting.unite(one, other);
-        if (work.over()) error = work.error();
-        if (!error.empty()) {
-            found.push_back({near, error});
-            continue;
-        }
-        for (std::vector<uint32_t>& group : meeting.groups()) {
-            for (uint32_t& number : group) number = near[number];
-            found.push_back({std::move(group), {}});
-        }
+        work.begin("which of its parts meet");
+        for (const uint32_t one : group)
+            for (const uint32_t other : overlapping[one])
+                if (!meeting.are_together(one, other) && !is_same(surfaces[one], surfaces[other]) &&
+                    meet(*surfaces[one].surface, surfaces[one].placement, *surfaces[other].surface,
+                         surfaces[other].placement, slit_m(boxes[one], boxes[other]), work))
+                    meeting.unite(one, other);
+        if (work.over()) found.push_back({group, work.error()});
+    }
+    for (std::vector<uint32_t>& group : meeting.groups()) {
+        const auto is_told = [&](const MeetingSurfaces& those) {
+            return std::find(those.numbers.begin(), those.numbers.end(), group[0]) != those.numbers.end();
+        };
+        if (std::any_of(found.begin(), found.end(), is_told)) continue;
+        size_t triangles = 0;
+        for (const uint32_t number : group) triangles += surfaces[number].surface->faces.size();
+        std::string error;
+        if (triangles > joined_triangles_max)
+            error = "together they have more than " + std::to_string(joined_triangles_max / 1'000'000) +
+                    " million triangles";
+        found.push_back({std::move(group), std::move(error)});
     }
     return found;
 }

@@ -4,21 +4,19 @@
 #include "runtime/surface/corner.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace haptel::runtime {
 
 namespace {
 
-// Beyond it what a surface takes is mostly its list of what cuts what.
-constexpr std::size_t looks_per_test = 8, pairs_min = 2'000'000, pairs_per_face = 32;
+constexpr std::size_t looks_per_test = 8;
 
 // Two faces that are not neighbours cut or touch each other exactly if an edge of one meets the other. Ties count
 // as touching: a face listed in vain only costs time. A face in the plane of the edge cannot stop a path along it.
 class EdgeAgainstFaces final : public SegmentVisitor {
 public:
-    EdgeAgainstFaces(const Surface& surface, std::vector<std::pair<uint32_t, uint32_t>>& pairs, BuildWork& work)
-        : surface_(surface), pairs_(pairs), work_(work), is_done_(3 * surface.faces.size())
+    EdgeAgainstFaces(const Surface& surface, BuildWork& work)
+        : is_pierced(surface.faces.size()), surface_(surface), work_(work), is_done_(3 * surface.faces.size())
     {
     }
 
@@ -46,12 +44,12 @@ public:
             if (corner == from_ || corner == to_) return 1.0;
         work_.spend(looks_per_test);
         if (!meets(corners)) return 1.0;
-        for (const uint32_t face : faces_) {
-            pairs_.emplace_back(face, other);
-            pairs_.emplace_back(other, face);
-        }
-        return work_.spend(2 * faces_.size()) ? 1.0 : 0.0;
+        for (const uint32_t face : faces_) is_pierced[face] = true;
+        is_pierced[other] = true;
+        return work_.spend(faces_.size()) ? 1.0 : 0.0;
     }
+
+    std::vector<bool> is_pierced; // by face
 
 private:
     bool meets(const std::array<uint32_t, 3>& corners) const
@@ -66,7 +64,6 @@ private:
     }
 
     const Surface& surface_;
-    std::vector<std::pair<uint32_t, uint32_t>>& pairs_;
     BuildWork& work_;
     std::vector<bool> is_done_; // [3 * face + edge]
     std::vector<uint32_t> faces_;
@@ -78,28 +75,11 @@ private:
 void find_piercing(Surface& surface, MeshReport& report, BuildWork& work)
 {
     if (!work.begin("which of its triangles cut each other")) return;
-    std::vector<std::pair<uint32_t, uint32_t>> pairs;
-    const std::size_t pairs_max = pairs_min + pairs_per_face * surface.faces.size();
-    EdgeAgainstFaces edges(surface, pairs, work);
-    for (uint32_t f = 0; f < surface.faces.size(); ++f) {
+    EdgeAgainstFaces edges(surface, work);
+    for (uint32_t f = 0; f < surface.faces.size() && !work.over(); ++f)
         for (uint32_t i = 0; i < 3; ++i) edges.run(f, i);
-        if (pairs.size() > 2 * pairs_max)
-            work.refuse("its triangles cut each other more than " + std::to_string(pairs_max) +
-                        " times: take out parts that lie on or through each other");
-        if (work.over()) return;
-    }
-
-    std::sort(pairs.begin(), pairs.end());
-    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    for (const auto& [face, other] : pairs) {
-        Face& data = surface.faces[face];
-        if (data.pierced_begin == data.pierced_end) {
-            data.pierced_begin = uint32_t(surface.pierced_by.size());
-            ++report.pierced;
-        }
-        surface.pierced_by.push_back(other);
-        data.pierced_end = uint32_t(surface.pierced_by.size());
-    }
+    report.pierced = static_cast<std::size_t>(std::count(edges.is_pierced.begin(), edges.is_pierced.end(), true));
+    surface.cuts_itself = report.pierced > 0;
 }
 
 } // namespace haptel::runtime

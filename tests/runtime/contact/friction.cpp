@@ -1,5 +1,6 @@
 // Coulomb's law as the hand meets it: through an encoder, at any rate, along planes, balls and grooves, for any probe.
 #include "runtime/contact/probe_contact.h"
+#include "runtime/contact/sphere_contact.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
 

@@ -112,6 +112,8 @@ TEST_CASE("what a stylus pushes has a potential that the hand alone can raise")
     for (const NamedMesh& hard : hard_meshes()) {
         CAPTURE(hard.name, manner.deepest_m);
         const auto surface = surface_of(hard.mesh);
+        // Of ends that are balls the radius is not felt, nor what that makes between two walls.
+        const double unfelt_m = surface->is_clean() ? 0 : 8 * Lattice::point_radius * surface->lattice.unit_m;
         int touching = 0, unsettled = 0, ticks = 0, steps = 0;
         for (uint64_t seed = 1; seed <= 4; ++seed) {
             StylusContact stylus(surface);
@@ -130,7 +132,8 @@ TEST_CASE("what a stylus pushes has a potential that the hand alone can raise")
                 CAPTURE(seed, tick);
                 if (held) {
                     const double pulled_m = (*held - at).length();
-                    REQUIRE((pushed_by(stylus.contacts()) - (*held - at)).length() < rounding_m + 2e-6 * pulled_m);
+                    REQUIRE((pushed_by(stylus.contacts()) - (*held - at)).length() <
+                            rounding_m + unfelt_m + 2e-6 * pulled_m);
                     // Nor do they push each other: of joined objects each pushes by a stiffness of its own.
                     for (const Contact& contact : stylus.contacts())
                         REQUIRE(contact.depth_m < rounding_m + 8 * pulled_m);

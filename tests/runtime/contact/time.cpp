@@ -1,7 +1,7 @@
 // How long a tick of contact takes, by size of the mesh. Reported, never asserted: run it with contact_test "[.time]".
-#include "runtime/contact/contact.h"
 #include "runtime/contact/sphere_contact.h"
 #include "runtime/contact/stylus_contact.h"
+#include "runtime/contact/walk_contact.h"
 
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
@@ -58,9 +58,9 @@ TEST_CASE("time of a tick", "[.time]")
     for (uint32_t subdivisions : {3u, 5u, 7u, 8u}) {
         const auto surface = surface_of(make_bumpy_sphere(subdivisions));
         const size_t triangles = surface->faces.size();
-        PointContact point(surface), rubbing(surface), free(surface), taps(surface);
+        WalkContact point(surface), rubbing(surface), free(surface), taps(surface);
         StylusContact stylus(surface);
-        for (PointContact* contact : {&point, &rubbing, &free, &taps}) contact->update({0, 0, 1.5});
+        for (WalkContact* contact : {&point, &rubbing, &free, &taps}) contact->update({0, 0, 1.5});
         stylus.update({0, 0, 1.5}, {0, 0, 1.65});
         report("pressed", triangles, pressed, [&](const dvec3& p) { point.update(p); });
         report("pressed, friction", triangles, pressed, [&](const dvec3& p) { rubbing.update(p, {0.3, 0.2}); });

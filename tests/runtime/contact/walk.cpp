@@ -1,6 +1,6 @@
 // Where the proxy is, against closed forms: planes, edges, spheres, friction.
-#include "runtime/contact/contact.h"
 #include "runtime/contact/stylus_contact.h"
+#include "runtime/contact/walk_contact.h"
 
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
@@ -37,7 +37,7 @@ struct Forces {
 Forces stroke_bumpy_sphere(const std::shared_ptr<const Surface>& surface, double step, const Friction& friction,
                            int ticks)
 {
-    PointContact contact(surface);
+    WalkContact contact(surface);
     Stroll stroll;
     contact.update(1.2 * stroll.at);
     Forces forces;
@@ -88,7 +88,7 @@ TEST_CASE("the proxy never wedges in the creases of a bumpy sphere: long run", "
 TEST_CASE("without friction a plane pushes straight up at any speed")
 {
     for (uint32_t cells : {1u, 7u, 64u}) {
-        PointContact contact(surface_of(make_plane(cells)));
+        WalkContact contact(surface_of(make_plane(cells)));
         std::mt19937_64 random(cells);
         std::uniform_real_distribution<double> uniform(-0.45, 0.45);
         contact.update({0, 0, 0.1});
@@ -107,7 +107,7 @@ TEST_CASE("without friction a plane pushes straight up at any speed")
 
 TEST_CASE("the first force is stiffness times approach, with no dead zone and no step")
 {
-    PointContact contact(surface_of(make_plane(3)));
+    WalkContact contact(surface_of(make_plane(3)));
     double before_n = 0;
     bool touched = false;
     for (int i = -20; i <= 20; ++i) { // 1 um per tick
@@ -129,7 +129,7 @@ TEST_CASE("the first force is stiffness times approach, with no dead zone and no
 
 TEST_CASE("depth and normal at a box: face, edge and corner")
 {
-    PointContact contact(surface_of(make_box()));
+    WalkContact contact(surface_of(make_box()));
     const auto touch_from = [&](const dvec3& start, const dvec3& hand) {
         contact.reset();
         contact.update(start);
@@ -149,7 +149,7 @@ TEST_CASE("depth and normal at a box: face, edge and corner")
     CHECK_FALSE(contact.contact().touching); // past the edge it is free
 
     // In the groove of the stairs, hand below both walls: the proxy is in the crease and pushes between the walls.
-    PointContact groove(surface_of(make_stairs()));
+    WalkContact groove(surface_of(make_stairs()));
     groove.update({4, 2.5, 2.2});
     const Contact& crease = groove.update({4, 0.5, 2.2});
     CHECK(glm::length(crease.proxy_m - dvec3(4, 1, 2.2)) < 1e-9);
@@ -157,7 +157,7 @@ TEST_CASE("depth and normal at a box: face, edge and corner")
     CHECK(std::abs(crease.depth_m - 0.5) < 1e-9);
 
     // On the border edge of a plate, hand beside and below: free. On the rim, straight below the edge: held.
-    PointContact plate(surface_of(make_plane()));
+    WalkContact plate(surface_of(make_plane()));
     plate.update({0.49, 0, 0.01});
     CHECK(plate.update({0.49, 0, -0.01}).touching);
     CHECK_FALSE(plate.update({0.51, 0, -0.01}).touching);
@@ -169,7 +169,7 @@ TEST_CASE("depth and normal at a box: face, edge and corner")
 
 TEST_CASE("a hand that starts inside feels the wall from within")
 {
-    PointContact contact(surface_of(make_icosphere(4)));
+    WalkContact contact(surface_of(make_icosphere(4)));
     CHECK_FALSE(contact.update({0, 0, 0}).touching);
     const Contact& touch = contact.update({0, 0.1, 0.8});
     CHECK(touch.touching);
@@ -182,7 +182,7 @@ TEST_CASE("Coulomb friction on a plane: sticks to the static cone, slides at the
 {
     const Friction friction{0.5, 0.3};
     const double depth = 0.01, step = 1e-4;
-    PointContact contact(surface_of(make_plane(5)));
+    WalkContact contact(surface_of(make_plane(5)));
     contact.update({0.0173, 0.011, 0.1}, friction);
     contact.update({0.0173, 0.011, -depth}, friction);
     const dvec3 start = contact.contact().proxy_m;
@@ -226,7 +226,7 @@ TEST_CASE("a hand pressed straight down on a slope slides if the slope is steepe
         const double slope = glm::radians(degrees);
         for (dvec3& p : mesh.positions_m) p = {p.x * std::cos(slope), p.y, p.x * std::sin(slope)};
         const Friction friction{0.6, 0.4};
-        PointContact contact(surface_of(mesh));
+        WalkContact contact(surface_of(mesh));
         contact.update({0, 0.03, 0.1}, friction);
         const Contact& touch = contact.update({0, 0.03, -0.02}, friction);
         // The proxy lands at the height 0 of the slope; the pull along the slope is 0.02 sin, the depth 0.02 cos.
@@ -243,7 +243,7 @@ TEST_CASE("friction that is not a number, negative or reversed does no harm")
 {
     const auto surface = surface_of(make_plane());
     const auto slid = [&](const Friction& friction) {
-        PointContact contact(surface);
+        WalkContact contact(surface);
         contact.update({0, 0.01, 0.1}, friction);
         contact.update({0, 0.01, -0.01}, friction);
         return contact.update({0.1, 0.01, -0.01}, friction).proxy_m.x;
@@ -256,7 +256,7 @@ TEST_CASE("friction that is not a number, negative or reversed does no harm")
 
 TEST_CASE("a pose that is not a number holds the last good one, and contact goes on")
 {
-    PointContact contact(surface_of(make_plane()));
+    WalkContact contact(surface_of(make_plane()));
     CHECK_FALSE(contact.update({NAN, 0, 0}).touching);
     CHECK(contact.contact().hand_held);
     contact.update({0, 0, 0.1});
@@ -280,7 +280,7 @@ TEST_CASE("a pose that is not a number holds the last good one, and contact goes
 TEST_CASE("equal poses give equal bits")
 {
     const auto surface = surface_of(make_star(3));
-    PointContact one(surface), two(surface);
+    WalkContact one(surface), two(surface);
     std::mt19937_64 random(4);
     std::normal_distribution<double> normal;
     dvec3 hand(0, 0, 1.2);
@@ -303,7 +303,7 @@ TEST_CASE("equal poses give equal bits")
 TEST_CASE("a known clearance spares queries and never hides the surface")
 {
     const auto surface = surface_of(make_icosphere(5));
-    PointContact contact(surface);
+    WalkContact contact(surface);
     double last_free = 1;
     for (int i = 0; i <= 2000; ++i) { // 0.2 mm per tick toward the sphere of radius 0.5
         const double height = 0.9 - 2e-4 * i;
@@ -368,7 +368,7 @@ TEST_CASE("a stylus far from the surface is spared the query, its shaft included
 
 TEST_CASE("what comes down anew is held by static friction, however it slid before it left")
 {
-    PointContact contact(surface_of(make_plane()));
+    WalkContact contact(surface_of(make_plane()));
     const Friction friction{0.5, 0.1};
     const auto go = [&](double x_m, double z_m) -> const Contact& {
         return contact.update({x_m, 0.01, z_m}, friction);

@@ -1,5 +1,5 @@
 // The line in which two joined objects meet.
-#include "runtime/contact/contact.h"
+#include "runtime/contact/end_contact.h"
 #include "runtime/render/body.h"
 #include "runtime/render/renderer.h"
 #include "runtime/surface/collision.h"
@@ -37,11 +37,12 @@ TEST_CASE("where a floor and a wall meet the hand is pushed out of both, though 
         surface->origins.push_back({part, inside ? 0u : 1u});
     }
     scene.joined.push_back({surface, {0, 1}});
-    PointContact contact(surface);
+    const auto point = make_point(surface);
+    EndContact& contact = *point;
     contact.update({-0.02, 0.03, 0.02});
     contact.update({0.001, 0.03, -0.002});
     CreaseRows crease_rows;
-    const auto rows = crease_rows.of(*surface, {&contact.contact(), 1});
+    const auto rows = crease_rows.of(*surface, contact.contacts());
     REQUIRE(rows.size() == 2);
     for (const Contact& row : rows) {
         const SceneObject& object = scene.objects[surface->origins[row.face].part];

@@ -1,6 +1,6 @@
 #include "runtime/surface/surface.h"
 
-#include "runtime/contact/contact.h"
+#include "runtime/contact/end_contact.h"
 #include "runtime/surface/corner.h"
 #include "runtime/surface/shapes.h"
 #include "tests/runtime/surface/meshes.h"
@@ -262,7 +262,8 @@ TEST_CASE("cracks between borders are closed, and only cracks")
             CHECK(glm::length(rowed.surface->uv[f][i] - glm::dvec2(rowed.surface->vertex_m(f, i))) < 1e-9);
 
     // A hand that is drawn along the lines, pressing down and exactly on them, stays on top.
-    PointContact contact(rowed.surface);
+    const auto point = make_point(rowed.surface);
+    EndContact& contact = *point;
     int lost = 0, ticks = 0;
     for (int row = 1; row < 4; ++row) {
         contact.update({0.01, row, 1});
@@ -284,29 +285,18 @@ TEST_CASE("cracks between borders are closed, and only cracks")
         CHECK(build_surface(mesh).report.cracks_closed == 0);
 }
 
-TEST_CASE("sheets that cross in a vertex get one each, those that only touch there keep it")
+TEST_CASE("sheets that cross in a vertex cut each other, those that only touch there do not")
 {
     for (const NamedMesh& hard : make_hard_meshes()) {
         if (hard.name != "balls that cross in a vertex") continue;
         const SurfaceResult built = build_surface(hard.mesh);
         CHECK(built.report.pierced > 0);
-        // What was welded was parted again, a little away.
+        CHECK_FALSE(built.surface->is_clean());
         CHECK(built.report.vertices_welded >= 1);
-        CHECK(built.surface->vertices.size() == hard.mesh.positions_m.size());
-        for (const auto& triangle : hard.mesh.triangles)
-            for (uint32_t i : triangle) {
-                double nearest = 1;
-                for (const dvec3& v : built.surface->vertices)
-                    nearest =
-                        std::min(nearest, glm::length(built.surface->lattice.metres(v) - hard.mesh.positions_m[i]));
-                CHECK(nearest < 1e-8);
-            }
-        std::set<uint32_t> used;
-        for (const Face& face : built.surface->faces) used.insert(face.vertex.begin(), face.vertex.end());
-        CHECK(used.size() == hard.mesh.positions_m.size());
         CHECK(built.report.border_edges == 0);
     }
     const SurfaceResult cubes = build_surface(make_touching_cubes(Touching::corners));
+    CHECK(cubes.surface->is_clean());
     CHECK(cubes.surface->vertices.size() + cubes.report.vertices_welded ==
           make_touching_cubes(Touching::corners).positions_m.size());
 }
@@ -331,7 +321,8 @@ TEST_CASE("a border's corner that stands on a closed sheet: both its sides and t
     CHECK_FALSE(ring.contains(s->faces[0].fan[corner(0)][1]));
 
     // What slides down on the flap to its corner is held by the roof there.
-    PointContact contact(s);
+    const auto point = make_point(s);
+    EndContact& contact = *point;
     contact.update({0.3, 0.3, 0.5});
     for (int i = 0; i <= 300; ++i) contact.update({0.3 - 0.001 * i, 0.3 - 0.001 * i, 0.01 - 0.0001 * i});
     REQUIRE(contact.contact().touching);

@@ -1,6 +1,6 @@
 #include "runtime/texture/shading.h"
 
-#include "runtime/contact/contact.h"
+#include "runtime/contact/walk_contact.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
 
@@ -63,7 +63,7 @@ TEST_CASE("the shading normal is continuous over edges and changes little along 
 
     Mesh sphere = make_icosphere(4);
     for (dvec3& p : sphere.positions_m) p *= 2.0; // radius 1 m
-    PointContact contact(surface_of(sphere));
+    WalkContact contact(surface_of(sphere));
     dvec3 before(0);
     double worst_change = 0, worst = 0;
     for (int i = 0; i < 20000; ++i) { // 0.1 m/s at 1 kHz, 3 mm deep

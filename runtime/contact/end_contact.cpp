@@ -1,0 +1,14 @@
+#include "runtime/contact/end_contact.h"
+
+#include "runtime/contact/sphere_contact.h"
+#include "runtime/contact/walk_contact.h"
+
+namespace haptel::runtime {
+
+std::unique_ptr<EndContact> make_point(const std::shared_ptr<const Surface>& surface, bool skips_free_space)
+{
+    if (surface->is_clean()) return std::make_unique<WalkContact>(surface, skips_free_space);
+    return std::make_unique<SphereContact>(surface, Lattice::point_radius * surface->lattice.unit_m);
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,135 @@
+// What a ball says of where it touches: row by row what holds it.
+#include "runtime/contact/sphere_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::runtime {
+
+namespace {
+
+// Cosine between the normals of what bends within the ball's way; difference of cosines that rounding makes.
+constexpr double same_piece = 0.5, same_plane = 1e-9;
+
+} // namespace
+
+glm::dvec3 SphereContact::normal() const noexcept
+{
+    glm::dvec3 push_m(0);
+    for (const Contact& contact : contacts()) push_m += contact.depth_m * contact.normal;
+    const double length = glm::length(push_m);
+    return length > 0 ? push_m / length : contacts_[0].normal;
+}
+
+// What was felt where the hand has been is no more than its spring pulls now.
+void SphereContact::push_no_harder_than(double way_m) noexcept
+{
+    glm::dvec3 told_m(0);
+    for (std::size_t i = 0; i < contact_count_; ++i)
+        told_m += contacts_[i].depth_m * contacts_[i].normal + contacts_[i].lag_m;
+    const double told = glm::length(told_m);
+    for (std::size_t i = 0; i < contact_count_ && told > way_m; ++i) {
+        contacts_[i].depth_m *= way_m / told;
+        contacts_[i].lag_m *= way_m / told;
+    }
+}
+
+NearestPoint SphereContact::nearest_on(uint32_t face, const glm::dvec3& centre) const noexcept
+{
+    const auto& vertex = surface_->faces[face].vertex;
+    return nearest_point(surface_->vertices[vertex[0]], surface_->vertices[vertex[1]], surface_->vertices[vertex[2]],
+                         centre);
+}
+
+// The face that a ball touches which `normal` pushes there. Friction may hold it off the place where `face` does.
+uint32_t SphereContact::touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) const noexcept
+{
+    // Lattice units: as near as the nearest, and at the same place by that: where a point touches, an angle of 3e-4.
+    constexpr double as_near = 64;
+    const double same_place = std::sqrt(as_near * grown_);
+    glm::dvec3 at = nearest_on(face, centre).at;
+    double distance = glm::distance(at, centre);
+    if (distance > grown_ + as_near)
+        faces_.for_each_near(centre, distance, [&](uint32_t other) {
+            const glm::dvec3 there = nearest_on(other, centre).at;
+            const double away = glm::distance(there, centre);
+            if (away >= distance || glm::dot(centre - there, normal) < same_piece * away) return;
+            distance = away;
+            at = there;
+            face = other;
+        });
+    if (surface_->is_clean()) return face;
+    // Of the faces that meet there the one that turns to it most: another may be the bottom of an object that lies on
+    // the other's top, and ends in the same edge where nobody can come to it. Of those in one plane the first.
+    const auto turned = [&](uint32_t number) { return std::fabs(glm::dot(surface_->faces[number].normal, normal)); };
+    faces_.for_each_near(centre, distance + as_near, [&](uint32_t other) {
+        const double more = turned(other) - turned(face);
+        if (more < -same_plane || (more <= same_plane && other > face)) return;
+        const glm::dvec3 there = nearest_on(other, centre).at;
+        if (more <= same_plane && glm::distance(there, centre) > distance + distance_rounding) return;
+        if (glm::distance(there, at) < same_place) face = other;
+    });
+    return face;
+}
+
+void SphereContact::tell_free() noexcept
+{
+    proxy_.on = Proxy::On::nothing;
+    proxy_.sliding = false;
+    tell_nothing();
+}
+
+void SphereContact::tell_nothing() noexcept
+{
+    if (contacts_[0].touching) contacts_[0] = {};
+    contact_count_ = 0;
+    contacts_[0].proxy_m = surface_->lattice.metres(proxy_.at);
+    contacts_[0].hand_m = surface_->lattice.metres(hand_);
+    contacts_[0].hand_clamped = clamped_;
+    contacts_[0].hand_held = false;
+}
+
+// What holds the ball there; `lags`: it is held off that place by friction.
+void SphereContact::tell(const Held& held, const glm::dvec3& nearest, bool lags) noexcept
+{
+    contact_count_ = 0;
+    const double sum = held.pushes();
+    const glm::dvec3 centre = lags && is_point() ? proxy_.at : nearest;
+    glm::dvec3 way(0);
+    for (std::size_t i = 0; i < held.count; ++i) way += held.row[i].push * held.row[i].normal;
+    unfelt_ = is_point() ? nearest - hand_ - way : glm::dvec3(0);
+    const double kept = sum > 0 ? std::min(1.0, opposed_most * glm::length(way) / sum) : 1.0;
+    const glm::dvec3 lag_m = lags ? (proxy_.at - nearest) * surface_->lattice.unit_m : glm::dvec3(0);
+    for (std::size_t i = 0; i < held.count; ++i) {
+        const auto& [face, normal, push] = held.row[i];
+        if (unfelt_ != glm::dvec3(0) && push == 0) continue; // by the radius alone
+        Contact& contact = contacts_[contact_count_++];
+        contact = {};
+        contact.touching = true;
+        contact.sliding = proxy_.sliding;
+        contact.hand_clamped = clamped_;
+        contact.normal = normal;
+        contact.face = touching_face(face, normal, centre);
+        const NearestPoint point = nearest_on(contact.face, centre);
+        contact.side = glm::dot(contact.normal, surface_->faces[contact.face].normal) >= 0 ? 0 : 1;
+        contact.facet_normal = surface_->facet_normal(contact.face, contact.side);
+        contact.barycentric = point.barycentric;
+        contact.proxy_m = surface_->lattice.metres(point.at);
+        contact.hand_m = surface_->lattice.metres(hand_);
+        contact.depth_m = contact.pressed_m = push * surface_->lattice.unit_m;
+        contact.lag_m = sum > 0 ? push / sum * lag_m : glm::dvec3(0);
+        if (kept < 1) { // walls that push against each other: the sum stays
+            const glm::dvec3 shared = kept * contact.normal + (1 - kept) / sum * way;
+            const double length = glm::length(shared);
+            if (length > 0) contact.normal = shared / length;
+            contact.depth_m *= length;
+            contact.on_crease = true;
+        }
+    }
+    if (contact_count_ == 0) tell_nothing();
+    proxy_.on = Proxy::On::face;
+    proxy_.face = held.row[0].face;
+    proxy_.side = glm::dot(held.row[0].normal, surface_->faces[proxy_.face].normal) >= 0 ? 0 : 1;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,215 @@
+#include "runtime/contact/walk_contact.h"
+
+#include "runtime/geometry/finite.h"
+#include "runtime/surface/box_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace haptel::runtime {
+
+namespace {
+
+// Below this many lattice units the direction from hand to proxy is rounding.
+constexpr double direction_needs = 64;
+
+// A ball is worth looking for if the hand needs several ticks to cross it.
+constexpr double ticks_per_ball = 4;
+
+} // namespace
+
+WalkContact::WalkContact(std::shared_ptr<const Surface> surface, bool skips_free_space)
+    : surface_(std::move(surface)), skips_free_space_(skips_free_space)
+{
+}
+
+void WalkContact::reset() noexcept
+{
+    contact_ = {};
+    counters_ = {};
+    proxy_ = {};
+    clear_ = {};
+    unspared_ = -1;
+    placed_ = false;
+}
+
+void WalkContact::tick(const glm::dvec3& hand_m, const Friction& friction, const glm::dvec3* tail) noexcept
+{
+    if (!take(hand_m)) return;
+    slide_on(surface_->lattice.metres(hand_) - contact_.hand_m, friction);
+    if (placed_ && !proxy_.touches()) {
+        move_freely(hand_);
+    } else if (!placed_) {
+        placed_ = true;
+        proxy_.at = hand_;
+        Crossing crossing;
+        if (tail && sweep(*tail, hand_, crossing) && crossing.side == 0)
+            land(*surface_, proxy_, crossing, *tail, hand_);
+    }
+    finish(friction, nullptr);
+    counters_.touching_ticks += contact_.touching;
+}
+
+void WalkContact::slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept
+{
+    proxy_.sliding = proxy_.sliding && contact_.touching && slides_on({&contact_, 1}, way_m, checked(friction));
+}
+
+void WalkContact::go(const Friction& friction, WalkPath* path) noexcept
+{
+    const bool free = !proxy_.touches();
+    if (free) move_freely(hand_);
+    if (path && free && proxy_.touches()) path->add(beside());
+    finish(friction, path);
+}
+
+void WalkContact::follow(const glm::dvec3& hand_m) noexcept
+{
+    if (!take(hand_m)) return;
+    ++counters_.skipped;
+    placed_ = true;
+    proxy_.at = hand_;
+    describe(true);
+}
+
+void WalkContact::restart(const glm::dvec3& at) noexcept
+{
+    proxy_.on = Proxy::On::nothing;
+    proxy_.at = hand_ = true_hand_ = at;
+    placed_ = true;
+    clear_.radius = 0;
+    describe(true);
+}
+
+void WalkContact::go_back(const State& to) noexcept
+{
+    proxy_ = to.proxy;
+    clear_.radius = 0; // it may be out of that
+}
+
+double WalkContact::gap_m(const glm::dvec3& hand_m) const noexcept
+{
+    const double in_ball = clear_.radius - glm::distance(hand_, clear_.centre);
+    return std::max(surface_->gap_to_box_m(hand_m, hand_m), in_ball * surface_->lattice.unit_m);
+}
+
+// Takes the pose; false if there has never been a good one.
+bool WalkContact::take(const glm::dvec3& hand_m) noexcept
+{
+    ++counters_.ticks;
+    contact_.hand_held = !finite(hand_m);
+    if (contact_.hand_held) {
+        ++counters_.hands_held;
+        return placed_;
+    }
+    aim(surface_->lattice.units(hand_m));
+    return true;
+}
+
+// Lattice units.
+void WalkContact::aim(const glm::dvec3& hand) noexcept
+{
+    before_ = std::exchange(true_hand_, hand);
+    hand_ = Lattice::snap_units(true_hand_);
+    contact_.hand_clamped = Lattice::beyond(hand_ - true_hand_, Lattice::vertex_spacing);
+}
+
+void WalkContact::move_freely(const glm::dvec3& hand) noexcept
+{
+    const double step = glm::distance(hand, proxy_.at);
+    if ((step == 0 && skips_free_space_) || glm::distance(hand, clear_.centre) < clear_.radius) {
+        ++counters_.skipped;
+        proxy_.at = hand;
+        return;
+    }
+    // Beyond the workspace the hand is clamped, and its way between two such places is another than the straight one.
+    glm::dvec3 from = proxy_.at, to = hand;
+    const bool outside = Lattice::beyond_workspace(true_hand_) || Lattice::beyond_workspace(before_);
+    if (outside) from = before_, to = true_hand_;
+    Crossing crossing;
+    if ((!outside || Lattice::clip_to_workspace(from, to)) && sweep(from, to, crossing)) {
+        land(*surface_, proxy_, crossing, from, to);
+        proxy_.sliding = false; // static friction holds what comes down
+        clear_.radius = 0;
+        return;
+    }
+    proxy_.at = hand;
+    if (skips_free_space_) unspared_ = step;
+}
+
+bool WalkContact::sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept
+{
+    CollisionCount count;
+    const bool hit = first_crossing(*surface_, from, to, StartsOn::nothing(), crossing, count);
+    counters_.sweeps += count.sweeps;
+    counters_.object_boxes_missed += count.object_boxes_missed;
+    counters_.triangles_tested += count.triangles_tested;
+    return hit;
+}
+
+// Looks somewhat farther than the last ball was large, and not at all where the hand would leave a ball at once.
+void WalkContact::look_around() noexcept
+{
+    const double step = std::exchange(unspared_, -1);
+    if (step < 0 || proxy_.touches()) return;
+    clear_.radius = 0;
+    if (clear_.next_radius < ticks_per_ball * step) {
+        clear_.next_radius = clear_.next_radius == 0 ? 0.25 * Lattice::extent : 1.1 * clear_.next_radius;
+        return;
+    }
+    clear_.centre = proxy_.at;
+    clear_.radius = clearance(*surface_, proxy_.at, clear_.next_radius);
+    clear_.next_radius = glm::clamp(1.4 * clear_.radius, 1.0, Lattice::extent);
+}
+
+void WalkContact::finish(const Friction& friction, WalkPath* path) noexcept
+{
+    if (proxy_.touches()) {
+        WalkCount count;
+        walk(*surface_, proxy_, hand_, checked(friction), count, walk_steps_max, path);
+        counters_.walk_steps += count.steps;
+        counters_.walk_steps_max = std::max<uint64_t>(counters_.walk_steps_max, count.steps);
+        counters_.walks_cut += count.cut;
+        counters_.sweeps += count.collision.sweeps;
+        counters_.object_boxes_missed += count.collision.object_boxes_missed;
+        counters_.triangles_tested += count.collision.triangles_tested;
+    }
+    describe(true);
+}
+
+void WalkContact::describe(bool lags) noexcept
+{
+    const Lattice& lattice = surface_->lattice;
+    contact_.touching = proxy_.touches();
+    contact_.sliding = contact_.touching && proxy_.sliding;
+    contact_.proxy_m = lattice.metres(proxy_.at);
+    contact_.hand_m = lattice.metres(hand_);
+    contact_.depth_m = 0;
+    contact_.lag_m = glm::dvec3(0);
+    if (!contact_.touching) return;
+
+    contact_.face = proxy_.face;
+    contact_.side = proxy_.side;
+    contact_.barycentric = barycentric_of(*surface_, proxy_.face, proxy_.at);
+    contact_.facet_normal = contact_.normal = surface_->facet_normal(proxy_.face, proxy_.side);
+
+    const glm::dvec3 from_hand = proxy_.at - hand_;
+    glm::dvec3 across = from_hand; // the part that no sliding along the feature changes
+    if (proxy_.on == Proxy::On::edge) {
+        const auto& corners = surface_->faces[proxy_.face].vertex;
+        const glm::dvec3 along = glm::normalize(surface_->vertices[corners[(proxy_.index + 1) % 3]] -
+                                                surface_->vertices[corners[proxy_.index]]);
+        across -= glm::dot(across, along) * along;
+    }
+    double depth = glm::length(across);
+    if (proxy_.on != Proxy::On::face && depth > direction_needs)
+        contact_.normal = across / depth;
+    else
+        depth = std::max(0.0, glm::dot(from_hand, contact_.normal));
+    contact_.depth_m = depth * lattice.unit_m;
+    contact_.pressed_m = proxy_.pressed * lattice.unit_m;
+    if (lags) contact_.lag_m = (from_hand - depth * contact_.normal) * lattice.unit_m;
+}
+
+} // namespace haptel::runtime

@@ -1,0 +1,74 @@
+// Contact of a probe with one surface: the proxy, a point that stays on the free side of the surface, as near to the
+// hand as it can slide.
+//
+// The proxy is (position, feature, side). In free space it is the hand, and each move is swept against the object: its
+// box, then the boxes of its triangles, then triangles, all decided exactly. On the surface it walks by steepest
+// descent of its distance to the hand, from feature to feature by the links of surface.h: a cost that does not depend
+// on the size of the mesh, no wedging in creases, and no query. It lifts off only when the hand lies on the free side
+// of the nearest feature around it. Which side it is on is a stored bit, not a distance, so that no tolerance can lose
+// it.
+#pragma once
+
+#include "runtime/contact/end_contact.h"
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace haptel::runtime {
+
+// A ball that holds no triangle: while the hand is inside, there is nothing to collide with. Lattice units.
+struct Clearance {
+    glm::dvec3 centre{0};
+    double radius = 0;
+    double next_radius = 0; // to try when the hand has left the ball; 0: not tried yet
+};
+
+class WalkContact final : public EndContact {
+public:
+    // `skips_free_space`: a known clearance spares queries.
+    explicit WalkContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true);
+
+    void tick(const glm::dvec3& hand_m, const Friction& friction, const glm::dvec3* tail = nullptr) noexcept override;
+    void follow(const glm::dvec3& hand_m) noexcept override;
+    void look_around() noexcept override;
+    void reset() noexcept override;
+    double gap_m(const glm::dvec3& hand_m) const noexcept override;
+    std::span<const Contact> contacts() const noexcept override { return {&contact_, contact_.touching ? 1u : 0u}; }
+    const Contact& contact() const noexcept override { return contact_; }
+    const ContactCounters& counters() const noexcept override { return counters_; }
+    const Surface& surface() const noexcept override { return *surface_; }
+
+    bool is_placed() const noexcept override { return placed_; }
+    const Proxy& proxy() const noexcept override { return proxy_; }
+    glm::dvec3 beside() const noexcept override { return runtime::beside(*surface_, proxy_); }
+    glm::dvec3 normal() const noexcept override { return contact_.normal; }
+    void set_sliding(bool sliding) noexcept override { proxy_.sliding = sliding; }
+    void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept override;
+    void aim(const glm::dvec3& hand) noexcept override;
+    void go(const Friction& friction, WalkPath* path) noexcept override;
+    void restart(const glm::dvec3& at) noexcept override;
+    State state() const noexcept override { return {proxy_}; }
+    void go_back(const State& to) noexcept override;
+    void describe(bool lags) noexcept override;
+    void count_tick() noexcept override { ++counters_.ticks; }
+
+private:
+    bool take(const glm::dvec3& hand_m) noexcept;
+    void move_freely(const glm::dvec3& hand) noexcept;
+    bool sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept;
+    void finish(const Friction& friction, WalkPath* path) noexcept;
+
+    std::shared_ptr<const Surface> surface_;
+    bool skips_free_space_;
+    Contact contact_;
+    ContactCounters counters_;
+    Proxy proxy_;
+    glm::dvec3 hand_{0};                  // lattice units, and below: a lattice point of the workspace
+    glm::dvec3 true_hand_{0}, before_{0}; // neither rounded nor clamped: the hand in this tick and in the last
+    bool placed_ = false;
+    Clearance clear_;
+    double unspared_ = -1; // the hand's way in a free tick that no clearance spared a query; < 0: there was none
+};
+
+} // namespace haptel::runtime
