@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
+#include <utility>
 #include <vector>
 
 using namespace haptel;
@@ -73,4 +75,43 @@ TEST_CASE("the triangles that a tick looks at hardly grow with the mesh, and not
 TEST_CASE("what is done between ticks changes no force")
 {
     CHECK(stroke(4, 3, true).force == stroke(4, 3, false).force);
+}
+
+TEST_CASE("among blades that stand through a plane a tick looks at those around, however many there are")
+{
+    // Upright triangles at random places, but for a strip that the hand strokes, and deep below the plane.
+    const auto seen_of = [](int blades) {
+        Mesh mesh;
+        mesh.positions_m = {{-0.05, -0.05, 0}, {0.05, -0.05, 0}, {0.05, 0.05, 0}, {-0.05, 0.05, 0}};
+        mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+        std::mt19937_64 random(1);
+        std::uniform_real_distribution<double> any(-0.049, 0.049);
+        for (int i = 0; i < blades; ++i) {
+            const double x = any(random), y = any(random);
+            if (std::abs(x) < 3e-3 && std::abs(y) < 20e-3) continue;
+            const auto first = uint32_t(mesh.positions_m.size());
+            for (const glm::dvec3& corner :
+                 {glm::dvec3(x, y, -1e-3), glm::dvec3(x + 1e-4, y, -1e-3), glm::dvec3(x, y + 1e-4, 2e-3)})
+                mesh.positions_m.push_back(corner);
+            mesh.triangles.push_back({first, first + 1, first + 2});
+        }
+        Renderer renderer(shared(bare_scene(mesh)));
+        renderer.tick(at(0, 0, 0.01));
+        renderer.tick(at(0, 0, 0.001));
+        uint64_t most = 0, sum = 0;
+        for (int i = 0; i < 1000; ++i) {
+            const uint64_t before = renderer.work().triangles;
+            const TickResult felt = renderer.tick(at(1e-3 * std::sin(0.02 * i), 15e-3 * std::sin(0.013 * i), -0.5e-3));
+            CHECK(std::abs(felt.depth_m - 0.5e-3) < 1e-9);
+            CHECK((felt.faults & fault_contact_unfinished) == 0);
+            const uint64_t looked_at = renderer.work().triangles - before;
+            most = std::max(most, looked_at);
+            sum += looked_at;
+        }
+        return std::pair(most, sum);
+    };
+    const auto few = seen_of(1000), many = seen_of(16'000);
+    CAPTURE(few.first, few.second, many.first, many.second);
+    CHECK(many.first <= 2048);
+    CHECK(many.second < 64 * 1000);
 }
