@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace haptel::runtime {
@@ -147,6 +148,19 @@ void NearFaces::screen() noexcept
     }
     picked_.resize(kept);
     place_of_.resize(kept);
+}
+
+NearFaces::Touching NearFaces::touching(const glm::dvec3& centre, double within) noexcept
+{
+    const auto before_it = [&](const HalfSpace& space) { return glm::dot(space.normal, centre) - space.offset; };
+    Touching touching{0, std::numeric_limits<double>::infinity()};
+    for (const HalfSpace& space : picked_) touching.gap = std::min(touching.gap, before_it(space));
+    for (std::size_t i = 0; i < picked_.size(); ++i) {
+        if (before_it(picked_[i]) > std::max(0.0, touching.gap) + within) continue;
+        std::swap(picked_[i], picked_[touching.count]);
+        std::swap(place_of_[i], place_of_[touching.count++]);
+    }
+    return touching;
 }
 
 double NearFaces::distance(const glm::dvec3& centre, double most) noexcept

@@ -50,6 +50,13 @@ public:
     std::span<const HalfSpace> picked() const noexcept { return picked_; }
     uint32_t face(uint32_t picked) const noexcept { return faces_[place_of_[picked]]; }
 
+    // Brings those picked to the front that a ball there comes as near to as to any, but for `within`, and counts them;
+    // how far before the nearest it is.
+    struct Touching {
+        std::size_t count;
+        double gap;
+    };
+    Touching touching(const glm::dvec3& centre, double within) noexcept;
     // Computes the plane of a picked triangle again, as seen from this centre; false if it is already that one.
     bool renew(uint32_t picked, const glm::dvec3& centre) noexcept;
 

@@ -45,7 +45,7 @@ constexpr uint64_t faces_out_most = 1 << 15;
 
 } // namespace
 
-constinit thread_local std::array<SphereContact::Step, SphereContact::rounds_max + 2 + SphereContact::landing_turns>
+constinit thread_local std::array<SphereContact::Step, SphereContact::turns_max*(SphereContact::rounds_max + 1)>
     SphereContact::path_{};
 
 SphereContact::SphereContact(std::shared_ptr<const Surface> surface, double radius_m)
@@ -259,9 +259,16 @@ SphereContact::Held SphereContact::held_by_picked() noexcept
         for (std::size_t i = 0; i < found.count && !is_point(); ++i)
             renewed |= faces_.renew(found.active[i], proxy_.at);
     }
+    return as_rows(found);
+}
+
+SphereContact::Held SphereContact::as_rows(const NearestInHalfSpaces& found) const noexcept
+{
     Held held{found.at, found.count, {}};
-    for (std::size_t i = 0; i < found.count; ++i)
-        held.row[i] = {faces_.face(found.active[i]), planes[found.active[i]].normal, found.push[i]};
+    for (std::size_t i = 0; i < found.count; ++i) {
+        const uint32_t picked = found.active[i];
+        held.row[i] = {faces_.face(picked), faces_.picked()[picked].normal, found.push[i]};
+    }
     take_off_radius(held);
     return held;
 }
@@ -286,6 +293,7 @@ void SphereContact::take_off_radius(Held& held) const noexcept
 SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
 {
     path_begin_ = path_length_ = 0;
+    rests_ = false;
     if (proxy_.touches()) {
         Held held{proxy_.at, contact_count_, {}};
         for (std::size_t i = 0; i < contact_count_; ++i) held.row[i].normal = contacts_[i].normal;
@@ -324,15 +332,16 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         if (in_air)
             fly(step_max);
         else
-            held = slide(step_max);
+            held = rubs() ? rub(step_max) : slide(step_max);
         const double step = glm::distance(before, proxy_.at);
         on_the_way = step > 0.5 * open;
+        if (rests_) break;
         if (in_air || is_in_air()) {
             if (until_it_touches && !is_in_air()) break;
             continue;
         }
         if (step <= std::max(4 * distance_rounding, centre_settled * radius_)) break;
-        if (!in_air && glm::distance(hand_, proxy_.at) >= want) break; // to and fro, by rounding
+        if (glm::distance(hand_, proxy_.at) >= want) break; // to and fro, by rounding
         stride = (step > 0.9 * step_max ? stride_of_end : stride_of_step) * step;
     }
     return done;
@@ -340,6 +349,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
 
 void SphereContact::move(const Friction& friction) noexcept
 {
+    friction_ = checked(friction);
     if (!placed_) return tell_free();
     const bool in_air = !proxy_.touches();
     const glm::dvec3 start = proxy_.at;
@@ -370,11 +380,12 @@ void SphereContact::move(const Friction& friction) noexcept
         push_no_harder_than(glm::distance(proxy_.at, hand_) * surface_->lattice.unit_m);
         return;
     }
-    held.at = proxy_.at;
-    hold_by_friction(held, friction);
+    if (!rubs()) {
+        held.at = proxy_.at;
+        hold_by_friction(held);
+    }
     lag_ = held.count > 0 ? glm::distance(proxy_.at, held.at) : 0;
     if (held.count == 0) return tell_free();
-    if (lag_ > distance_rounding && is_point()) land(lag_);
     tell(held, held.at, true);
 }
 

@@ -67,8 +67,8 @@ private:
     static constexpr double opposed_most = 4;
     // Lattice units: a point that can fly no farther has landed.
     static constexpr double touching_gap = 64;
-    static constexpr uint32_t rounds_max = 48; // in a tick
-    static constexpr int landing_turns = 8;    // where friction holds it off the surface
+    // In a tick; of the planes that a point comes to touch in a round against friction.
+    static constexpr uint32_t rounds_max = 48, turns_max = 4;
 
     // Where it is known what may be met.
     struct Neighbourhood {
@@ -113,17 +113,19 @@ private:
     void fly(double step_max) noexcept;
     Held slide(double step_max) noexcept;
     Held held_by_picked() noexcept;
+    Held as_rows(const NearestInHalfSpaces& found) const noexcept;
+    Held rub(double step_max) noexcept;
+    double share_past(double way, double pressed) noexcept;
     void pick(double reach) noexcept;
     bool is_point() const noexcept { return radius_ <= Lattice::point_radius; }
+    bool rubs() const noexcept { return is_point() && friction_.static_coefficient > 0; }
     Way travel(bool until_it_touches) noexcept;
     void move(const Friction& friction) noexcept;
-    void hold_by_friction(Held& held, const Friction& friction) noexcept;
+    void hold_by_friction(Held& held) noexcept;
     static uint32_t borne_by(const Held& held, const Step& from) noexcept;
     void pass(const Held& held) noexcept;
     void take_off_radius(Held& held) const noexcept;
     Held only(const Held& held, uint32_t bits) const noexcept;
-    bool touches_at(const glm::dvec3& place) noexcept;
-    void land(double step_max) noexcept;
     void push_no_harder_than(double way_m) noexcept;
     NearestPoint nearest_on(uint32_t face, const glm::dvec3& centre) const noexcept;
     uint32_t touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) const noexcept;
@@ -140,10 +142,12 @@ private:
     Neighbourhood around_, close_; // of all found, of those picked
     double margin_at_first_;       // of a point, which meets few: as far as it goes
     double margin_;                // that suits the density of the mesh here
+    WalkFriction friction_;        // of this tick
+    bool rests_ = false;           // friction holds the point where it is
     double lag_ = 0;               // by which friction held the ball back
     // Of this tick, where it touched; from `path_begin_` on without a break, until now. Nobody asks for it later: the
     // balls of a thread share the room for it.
-    static constinit thread_local std::array<Step, rounds_max + 2 + landing_turns> path_;
+    static constinit thread_local std::array<Step, turns_max*(rounds_max + 1)> path_;
     uint32_t path_begin_ = 0, path_length_ = 0;
     glm::dvec3 unfelt_{0};
     Contact contacts_[3];

@@ -14,18 +14,43 @@ constexpr double same_wall = 0.9;
 
 } // namespace
 
-// Down from where its way has led straight over an edge, by flights of at most so far.
-void SphereContact::land(double step_max) noexcept
+// A point goes along what it touches as the walk does, from one plane to the next: the way ends early, by the
+// coefficient times what presses, or does not begin.
+SphereContact::Held SphereContact::rub(double step_max) noexcept
 {
-    for (int turn = 0; turn < landing_turns; ++turn) {
-        const double most = std::min(step_max, around_.room(proxy_.at));
-        if (!(most > 0)) return;
-        const glm::dvec3 from = proxy_.at;
-        pick(most);
-        fly(most);
-        if (glm::distance(from, proxy_.at) <= touching_gap) return;
-        pass({});
+    double gone = 0;
+    for (uint32_t turn = 0;; ++turn) {
+        const auto [touching, gap] = faces_.touching(proxy_.at, touching_gap);
+        const NearestInHalfSpaces found =
+            nearest_in(faces_.picked().first(touching), hand_, proxy_.at, distance_rounding);
+        if (found.count == 0 || gap > touching_gap) { // off again, or its way has led straight over an edge
+            path_begin_ = path_length_;
+            return {};
+        }
+        const Held held = as_rows(found);
+        const glm::dvec3 way = held.at - proxy_.at;
+        const double length = glm::length(way), share = share_past(length, held.pushes());
+        rests_ = share == 0;
+        if (rests_) return held;
+        const double within = std::min(share * length, step_max - gone);
+        const glm::dvec3 step = within / length * way;
+        const double open = open_share(faces_.picked(), proxy_.at, step, distance_rounding).share;
+        proxy_.at += open * step;
+        gone += open * within;
+        pass(held);
+        if (open == 1 || turn + 1 == turns_max) return held;
     }
+}
+
+// Of a way along what bears it by so much, the share that friction leaves. 0: it holds.
+double SphereContact::share_past(double way, double pressed) noexcept
+{
+    const auto [rest, slide] = friction_;
+    const double remaining = way - slide * pressed;
+    const bool rounding = remaining <= distance_rounding;
+    if (way <= (proxy_.sliding ? slide : rest) * pressed || (rounding && slide > 0)) return 0;
+    proxy_.sliding = proxy_.sliding || !rounding;
+    return remaining / way;
 }
 
 // Which of the rows held the ball already where a piece of its path begins, by bits. It may not have come to all that
@@ -65,9 +90,9 @@ SphereContact::Held SphereContact::only(const Held& held, uint32_t bits) const n
 // Friction is a way that ends early, where what is left of it is the coefficient times what presses, or does not begin.
 // It is borne by what holds the ball at the end of its way, as far as it has come to that; before it has, by what it
 // slides along.
-void SphereContact::hold_by_friction(Held& held, const Friction& friction) noexcept
+void SphereContact::hold_by_friction(Held& held) noexcept
 {
-    const auto [rest, slide] = checked(friction);
+    const auto [rest, slide] = friction_;
     if (rest == 0) {
         proxy_.sliding |= path_length_ > 0 && glm::distance(path_[0].at, proxy_.at) > distance_rounding;
         return;
@@ -110,7 +135,7 @@ void SphereContact::hold_by_friction(Held& held, const Friction& friction) noexc
             }
             proxy_.sliding |= glm::length(at_begin.across) - slide * at_begin.limit > distance_rounding;
         }
-        if (!holds(at_end, slide) || (by_own && slide == 0)) continue;
+        if (by_own || !holds(at_end, slide)) continue;
         // Where along this piece, beginning at its end, the two are equal: a quadratic equation.
         const glm::dvec3 across = at_begin.across - at_end.across;
         const double limit = slide * at_end.limit, more = slide * at_begin.limit - limit;
@@ -121,21 +146,11 @@ void SphereContact::hold_by_friction(Held& held, const Friction& friction) noexc
         if (at_begin.up > slide * pushes && at_begin.up > at_end.up)
             share = std::min(share, std::max(0.0, slide * pushes - at_end.up) / (at_begin.up - at_end.up));
         const glm::dvec3 place = path_[end].at + share * (begin.at - path_[end].at);
-        if (by_own && !touches_at(place)) continue; // it has come off that by then
         proxy_.at = path_[end].at = place;
         path_length_ = end + 1;
         held = by;
         return;
     }
-}
-
-bool SphereContact::touches_at(const glm::dvec3& place) noexcept
-{
-    if (!(around_.room(place) > touching_gap)) return false;
-    faces_.pick(place, grown_, touching_gap, NearFaces::Screened::no);
-    return std::ranges::any_of(faces_.picked(), [&](const HalfSpace& space) {
-        return glm::dot(space.normal, place) - space.offset <= touching_gap;
-    });
 }
 
 } // namespace haptel::runtime

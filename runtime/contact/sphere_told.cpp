@@ -62,6 +62,7 @@ uint32_t SphereContact::touching_face(uint32_t face, const glm::dvec3& normal, c
     // Of the faces that meet there the one that turns to it most: another may be the bottom of an object that lies on
     // the other's top, and ends in the same edge where nobody can come to it. Of those in one plane the first.
     const auto turned = [&](uint32_t number) { return std::fabs(glm::dot(surface_->faces[number].normal, normal)); };
+    if (surface_->origins.empty() && turned(face) > 1 - same_plane) return face;
     faces_.for_each_near(centre, distance + as_near, [&](uint32_t other) {
         const double more = turned(other) - turned(face);
         if (more < -same_plane || (more <= same_plane && other > face)) return;

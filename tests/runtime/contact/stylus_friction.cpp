@@ -117,8 +117,8 @@ TEST_CASE("a stylus that friction wedges into a seam costs hardly more than else
         const Work work = stroke(surface, tail_first);
         CAPTURE(tail_first, work.sweeps, work.cut, work.by_shaft, work.given_m2, work.taken_m2);
         CHECK(work.by_shaft > 1000);
-        CHECK(work.sweeps <= 16);
-        CHECK(work.cut <= 30); // of 6000 ticks, where the tip goes over an edge on a lever of a millimetre
+        CHECK(work.sweeps <= 8);
+        CHECK(work.cut <= 6); // a thousandth of the ticks
         CHECK(work.taken_m2 > 1e-6);
         CHECK(work.given_m2 < 0.01 * work.taken_m2);
     }
@@ -143,7 +143,7 @@ TEST_CASE("a stylus wedged into a seam is in balance: what pushes it holds it wh
     }
     CAPTURE(wedged, worst, off);
     CHECK(wedged > 2000);
-    CHECK(stylus.counters().walks_cut <= 100); // as above, of 4000
+    CHECK(stylus.counters().walks_cut == 0);
     CHECK(worst < 1e-6);                       // of depths of some 5 mm, on levers down to nothing
     CHECK(off == 0);
 }
