@@ -56,7 +56,7 @@ public:
     // For a stylus, which moves its ends several times in a tick and takes back what led astray. Lattice units.
     struct State {
         Proxy proxy;
-        double grown = 0; // of a ball
+        double grown = 0, lag = 0; // of a ball
     };
     virtual bool is_placed() const noexcept = 0;
     virtual const Proxy& proxy() const noexcept = 0;

@@ -116,11 +116,11 @@ HalfSpace NearFaces::before(std::size_t place) const noexcept
     if (ahead(plane) < radius_ + rises) {
         const glm::dvec3& facet = surface_->faces[faces_[place]].normal;
         const double cosine = glm::dot(plane.normal, facet);
-        if (std::fabs(cosine) > 1 - rises / radius_) {
-            const glm::dvec3 normal = cosine < 0 ? -facet : facet;
-            const auto& [a, b, c] = corners_[place];
-            return {normal, std::max({glm::dot(normal, a), glm::dot(normal, b), glm::dot(normal, c)}) + radius_};
-        }
+        const glm::dvec3 normal = cosine < 0 ? -facet : facet;
+        const auto& [a, b, c] = corners_[place];
+        const HalfSpace own{normal,
+                            std::max({glm::dot(normal, a), glm::dot(normal, b), glm::dot(normal, c)}) + radius_};
+        if (std::fabs(cosine) > 1 - rises / radius_ && ahead(own) > -rises) return own;
     }
     return {plane.normal, plane.offset + radius_};
 }

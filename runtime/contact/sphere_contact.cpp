@@ -48,12 +48,13 @@ constexpr uint64_t faces_out_most = 1 << 15;
 constinit thread_local std::array<SphereContact::Step, SphereContact::turns_max*(SphereContact::rounds_max + 1)>
     SphereContact::path_{};
 
-SphereContact::SphereContact(std::shared_ptr<const Surface> surface, double radius_m)
+SphereContact::SphereContact(std::shared_ptr<const Surface> surface, double radius_m, Felt felt)
     : surface_(std::move(surface))
     , radius_(radius_m / surface_->lattice.unit_m)
     , grown_(radius_)
+    , is_point_(felt == Felt::as_point)
     , faces_(*surface_)
-    , margin_at_first_(radius_ > Lattice::point_radius ? 0 : Lattice::extent)
+    , margin_at_first_(is_point_ ? Lattice::extent : 0)
     , margin_(margin_at_first_)
 {
 }
@@ -64,6 +65,7 @@ void SphereContact::reset() noexcept
     proxy_ = {};
     around_ = close_ = {};
     lag_ = 0;
+    path_begin_ = path_length_ = 0;
     contact_count_ = 0;
     contacts_[0] = {};
     counters_ = {};
@@ -135,7 +137,7 @@ void SphereContact::go_back(const State& to) noexcept
 {
     proxy_ = to.proxy;
     grown_ = to.grown;
-    describe(true);
+    lag_ = to.lag;
 }
 
 double SphereContact::gap_m(const glm::dvec3& centre_m) const noexcept
@@ -149,6 +151,7 @@ void SphereContact::place(const glm::dvec3& at) noexcept
     proxy_.at = at;
     if (!find_around(0)) {
         ++counters_.walks_cut;
+        grown_ = 0;
         return;
     }
     grown_ = faces_.distance(at, radius_);
@@ -221,7 +224,7 @@ void SphereContact::fly(double step_max) noexcept
     if (!(length > 0)) return;
     const double share = open_share(faces_.picked(), proxy_.at, within / length * to_hand, 0).share;
     proxy_.at += share * within / length * to_hand;
-    if (share < 1 && (!is_point() || share * within <= touching_gap)) pass({});
+    if (share < 1 && (!is_point_ || share * within <= touching_gap)) pass({});
 }
 
 // One straight step to where the planes around let it come nearest to the hand. Those that hold it are seen from here.
@@ -246,7 +249,7 @@ void SphereContact::pass(const Held& held) noexcept
 void SphereContact::pick(double reach) noexcept
 {
     close_ = {proxy_.at, reach};
-    faces_.pick(proxy_.at, grown_, reach, is_point() ? NearFaces::Screened::yes : NearFaces::Screened::no);
+    faces_.pick(proxy_.at, grown_, reach, is_point_ ? NearFaces::Screened::yes : NearFaces::Screened::no);
 }
 
 SphereContact::Held SphereContact::held_by_picked() noexcept
@@ -256,8 +259,7 @@ SphereContact::Held SphereContact::held_by_picked() noexcept
     for (bool renewed = true; renewed;) {
         found = nearest_in(planes, hand_, proxy_.at, distance_rounding);
         renewed = false;
-        for (std::size_t i = 0; i < found.count && !is_point(); ++i)
-            renewed |= faces_.renew(found.active[i], proxy_.at);
+        for (std::size_t i = 0; i < found.count && !is_point_; ++i) renewed |= faces_.renew(found.active[i], proxy_.at);
     }
     return as_rows(found);
 }
@@ -277,7 +279,7 @@ SphereContact::Held SphereContact::as_rows(const NearestInHalfSpaces& found) con
 // themselves. Who presses most comes first.
 void SphereContact::take_off_radius(Held& held) const noexcept
 {
-    if (is_point()) {
+    if (is_point_) {
         std::array<HalfSpace, 3> planes;
         for (std::size_t i = 0; i < held.count; ++i)
             planes[i] = {held.row[i].normal, glm::dot(held.row[i].normal, held.at) - grown_};
@@ -303,14 +305,14 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
     auto& [held, round, cut, on_the_way, blind] = done;
     double stride = stride_of_hand * glm::distance(hand_, hand_before_) + lag_;
     // A point meets few faces: what it slides by is looked at once.
-    const double stride_min = is_point() ? stride : stride_least * radius_;
+    const double stride_first = stride;
     const uint64_t seen = counters_.triangles_tested;
     for (;; ++round) {
         const double want = glm::distance(hand_, proxy_.at);
         if (want == 0) break;
         cut = round == rounds_max;
         if (cut) break;
-        if (around_.room(proxy_.at) < std::min(want, is_point() ? look_again * margin_ : margin_least * radius_)) {
+        if (around_.room(proxy_.at) < std::min(want, is_point_ ? look_again * margin_ : margin_least * radius_)) {
             if (round > 0 && counters_.triangles_tested - seen > faces_per_tick) {
                 cut = on_the_way = true;
                 break;
@@ -323,8 +325,8 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         }
         const bool in_air = is_in_air();
         const double open = std::min(want, around_.room(proxy_.at));
-        stride = std::max(stride, stride_min);
-        if (round == 0 || in_air || is_point() || close_.room(proxy_.at) < std::min(open, stride) ||
+        stride = std::max(stride, is_point_ ? std::max(stride_first, stride_least * want) : stride_least * radius_);
+        if (round == 0 || in_air || is_point_ || close_.room(proxy_.at) < std::min(open, stride) ||
             close_.margin > stride_most * stride)
             pick(in_air ? open : std::min(open, stride));
         const double step_max = std::min(open, close_.room(proxy_.at));
@@ -350,6 +352,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
 void SphereContact::move(const Friction& friction) noexcept
 {
     friction_ = checked(friction);
+    path_begin_ = path_length_ = 0;
     if (!placed_) return tell_free();
     const bool in_air = !proxy_.touches();
     const glm::dvec3 start = proxy_.at;
@@ -362,9 +365,9 @@ void SphereContact::move(const Friction& friction) noexcept
         margin_ = margin_at_first_;
         way = travel(false);
     }
-    if (way.blind) {
-        ++counters_.walks_cut; // too much at once: what is touched stays touched
-        return;
+    if (way.blind) { // too much at once: what is touched stays touched
+        ++counters_.walks_cut;
+        return keep_told();
     }
     auto& [held, round, cut, on_the_way, blind] = way;
     if (in_air && held.count == 0 && glm::distance(proxy_.at, hand_) <= distance_rounding) proxy_.at = hand_;
@@ -373,13 +376,7 @@ void SphereContact::move(const Friction& friction) noexcept
     counters_.walks_cut += cut;
     counters_.skipped += round == 0;
     if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(proxy_.at, radius_) - distance_rounding);
-    // The planes here do not know how deep the hand is where it is: until the ball is there what was felt is felt, but
-    // of what the hand has left.
-    if (cut && on_the_way) {
-        if (contact_count_ == 0 || glm::dot(hand_ - proxy_.at, contacts_[0].normal) >= 0) return tell_free();
-        push_no_harder_than(glm::distance(proxy_.at, hand_) * surface_->lattice.unit_m);
-        return;
-    }
+    if (cut && on_the_way) return keep_told();
     if (!rubs()) {
         held.at = proxy_.at;
         hold_by_friction(held);

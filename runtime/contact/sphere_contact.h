@@ -23,8 +23,10 @@ namespace haptel::runtime {
 
 class SphereContact final : public EndContact {
 public:
+    // As a point: the radius holds it off the surface, and is not felt.
+    enum class Felt : uint8_t { as_ball, as_point };
     // The radius is at most the largest side of the object's box: larger balls do not fit beside it.
-    SphereContact(std::shared_ptr<const Surface> surface, double radius_m);
+    SphereContact(std::shared_ptr<const Surface> surface, double radius_m, Felt felt = Felt::as_ball);
 
     // The proxy_m of each contact is the point touched, its depth and normal what it holds of the way from the hand to
     // the proxy: depths times normals add up to that way, friction's lag apart. The first tick puts the ball down where
@@ -56,7 +58,7 @@ public:
     void aim(const glm::dvec3& hand) noexcept override;
     void go(const Friction& friction, WalkPath* path) noexcept override;
     void restart(const glm::dvec3& at) noexcept override;
-    State state() const noexcept override { return {proxy_, grown_}; }
+    State state() const noexcept override { return {proxy_, grown_, lag_}; }
     void go_back(const State& to) noexcept override;
     void describe(bool lags) noexcept override;
     void count_tick() noexcept override { ++counters_.ticks; }
@@ -117,8 +119,7 @@ private:
     Held rub(double step_max) noexcept;
     double share_past(double way, double pressed) noexcept;
     void pick(double reach) noexcept;
-    bool is_point() const noexcept { return radius_ <= Lattice::point_radius; }
-    bool rubs() const noexcept { return is_point() && friction_.static_coefficient > 0; }
+    bool rubs() const noexcept { return is_point_ && friction_.static_coefficient > 0; }
     Way travel(bool until_it_touches) noexcept;
     void move(const Friction& friction) noexcept;
     void hold_by_friction(Held& held) noexcept;
@@ -126,7 +127,7 @@ private:
     void pass(const Held& held) noexcept;
     void take_off_radius(Held& held) const noexcept;
     Held only(const Held& held, uint32_t bits) const noexcept;
-    void push_no_harder_than(double way_m) noexcept;
+    void keep_told() noexcept;
     NearestPoint nearest_on(uint32_t face, const glm::dvec3& centre) const noexcept;
     uint32_t touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) const noexcept;
     void tell(const Held& held, const glm::dvec3& nearest, bool lags) noexcept;
@@ -137,7 +138,7 @@ private:
     double radius_, grown_; // lattice units; `grown_` of the ball that was put down into something
     glm::dvec3 hand_{0}, hand_before_{0};
     Proxy proxy_; // the centre; on a face while it touches
-    bool placed_ = false, clamped_ = false;
+    bool is_point_, placed_ = false, clamped_ = false;
     NearFaces faces_;
     Neighbourhood around_, close_; // of all found, of those picked
     double margin_at_first_;       // of a point, which meets few: as far as it goes
@@ -149,7 +150,7 @@ private:
     // balls of a thread share the room for it.
     static constinit thread_local std::array<Step, turns_max*(rounds_max + 1)> path_;
     uint32_t path_begin_ = 0, path_length_ = 0;
-    glm::dvec3 unfelt_{0};
+    glm::dvec3 unfelt_{0}, out_{0, 0, 1}; // unit, away from what presses it most
     Contact contacts_[3];
     std::size_t contact_count_ = 0;
     ContactCounters counters_;

@@ -30,8 +30,8 @@ SphereContact::Held SphereContact::rub(double step_max) noexcept
         const Held held = as_rows(found);
         const glm::dvec3 way = held.at - proxy_.at;
         const double length = glm::length(way), share = share_past(length, held.pushes());
-        rests_ = share == 0;
-        if (rests_) return held;
+        rests_ = share == 0 && turn == 0; // else planes are seen from elsewhere, where it may have come off them
+        if (share == 0) return held;
         const double within = std::min(share * length, step_max - gone);
         const glm::dvec3 step = within / length * way;
         const double open = open_share(faces_.picked(), proxy_.at, step, distance_rounding).share;

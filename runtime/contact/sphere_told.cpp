@@ -18,19 +18,24 @@ glm::dvec3 SphereContact::normal() const noexcept
     glm::dvec3 push_m(0);
     for (const Contact& contact : contacts()) push_m += contact.depth_m * contact.normal;
     const double length = glm::length(push_m);
-    return length > 0 ? push_m / length : contacts_[0].normal;
+    return length > 0 ? push_m / length : out_;
 }
 
-// What was felt where the hand has been is no more than its spring pulls now.
-void SphereContact::push_no_harder_than(double way_m) noexcept
+// The planes here do not know how deep the hand is where it is: until the ball is there what was felt is felt, as far
+// as the spring pulls now, but of what the hand has left.
+void SphereContact::keep_told() noexcept
 {
+    if (contact_count_ == 0 || glm::dot(hand_ - proxy_.at, contacts_[0].normal) >= 0) return tell_free();
+    const double way_m = glm::distance(proxy_.at, hand_) * surface_->lattice.unit_m;
     glm::dvec3 told_m(0);
-    for (std::size_t i = 0; i < contact_count_; ++i)
-        told_m += contacts_[i].depth_m * contacts_[i].normal + contacts_[i].lag_m;
-    const double told = glm::length(told_m);
-    for (std::size_t i = 0; i < contact_count_ && told > way_m; ++i) {
-        contacts_[i].depth_m *= way_m / told;
-        contacts_[i].lag_m *= way_m / told;
+    for (const Contact& contact : contacts()) told_m += contact.depth_m * contact.normal + contact.lag_m;
+    const double told = glm::length(told_m), kept = told > way_m ? way_m / told : 1;
+    for (std::size_t i = 0; i < contact_count_; ++i) {
+        contacts_[i].depth_m *= kept;
+        contacts_[i].lag_m *= kept;
+        contacts_[i].hand_m = surface_->lattice.metres(hand_);
+        contacts_[i].hand_held = false;
+        contacts_[i].hand_clamped = clamped_;
     }
 }
 
@@ -95,10 +100,10 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest, bool lags)
 {
     contact_count_ = 0;
     const double sum = held.pushes();
-    const glm::dvec3 centre = lags && is_point() ? proxy_.at : nearest;
+    const glm::dvec3 centre = lags && is_point_ ? proxy_.at : nearest;
     glm::dvec3 way(0);
     for (std::size_t i = 0; i < held.count; ++i) way += held.row[i].push * held.row[i].normal;
-    unfelt_ = is_point() ? nearest - hand_ - way : glm::dvec3(0);
+    unfelt_ = is_point_ ? nearest - hand_ - way : glm::dvec3(0);
     const double kept = sum > 0 ? std::min(1.0, opposed_most * glm::length(way) / sum) : 1.0;
     const glm::dvec3 lag_m = lags ? (proxy_.at - nearest) * surface_->lattice.unit_m : glm::dvec3(0);
     for (std::size_t i = 0; i < held.count; ++i) {
@@ -128,6 +133,7 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest, bool lags)
         }
     }
     if (contact_count_ == 0) tell_nothing();
+    out_ = held.row[0].normal;
     proxy_.on = Proxy::On::face;
     proxy_.face = held.row[0].face;
     proxy_.side = glm::dot(held.row[0].normal, surface_->faces[proxy_.face].normal) >= 0 ? 0 : 1;

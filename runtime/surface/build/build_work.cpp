@@ -1,7 +1,6 @@
 #include "runtime/surface/build/build_work.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace haptel::runtime {
 
@@ -14,18 +13,10 @@ void BuildWork::look_up() noexcept
     over_ = over_ || stopped_ || looks_ >= looks_max_;
 }
 
-void BuildWork::refuse(std::string why)
-{
-    if (over_) return;
-    refused_ = std::move(why);
-    over_ = true;
-}
-
 std::string BuildWork::error() const
 {
     if (!over_) return {};
     if (stopped_) return std::string(loading_was_stopped);
-    if (!refused_.empty()) return refused_;
     return "too much of it lies in one place: to find " + std::string(to_find_) + " takes more than " +
            std::to_string(looks_max_ / 1'000'000) +
            " million steps. Take out parts that lie on or through each other, and vertices that thousands of "

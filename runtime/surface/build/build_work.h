@@ -20,7 +20,7 @@ public:
     // fans that close a cylinder of 8000 sides take 130 million, as each of their edges comes near all of them.
     static constexpr std::size_t looks_min = 150'000'000, looks_per_triangle = 120;
 
-    // A look of joining takes about 140 nanoseconds, for what it looks at is cut, too: that is two seconds.
+    // A look of joining holds an edge against a triangle, some 140 nanoseconds: that is two seconds.
     static constexpr std::size_t looks_of_joining = 14'000'000;
 
     // `loading` may be null, else it is to outlive this.
@@ -54,8 +54,6 @@ public:
     bool over() const { return over_; }
     std::size_t looks() const { return looks_; }
 
-    // Over for a reason of the caller's own. The first reason stays.
-    void refuse(std::string why);
     std::string error() const; // why it is over; empty: it is not
 
 private:
@@ -65,7 +63,6 @@ private:
     const Loading* loading_;
     std::string_view to_find_;
     bool over_ = false, stopped_ = false;
-    std::string refused_;
 };
 
 } // namespace haptel::runtime

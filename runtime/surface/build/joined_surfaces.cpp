@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <utility>
 
@@ -75,20 +76,19 @@ public:
     }
 
     bool are_together(uint32_t one, uint32_t other) { return first(one) == first(other); }
-
-private:
     uint32_t first(uint32_t i)
     {
         while (first_[i] != i) i = first_[i] = first_[first_[i]];
         return i;
     }
 
+private:
     std::vector<uint32_t> first_;
 };
 
-// Of each surface those of higher place in the order of their boxes that its own box meets.
-std::vector<std::vector<uint32_t>> overlapping_boxes(std::span<const PlacedSurface> surfaces,
-                                                     std::span<const Box> boxes)
+// Calls visit(one, other) for each two whose boxes meet, and ends where it returns false.
+template <class Visit>
+void for_each_overlap(std::span<const Box> boxes, Visit&& visit)
 {
     std::vector<uint32_t> order(boxes.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -96,14 +96,12 @@ std::vector<std::vector<uint32_t>> overlapping_boxes(std::span<const PlacedSurfa
         const double x = boxes[a].minimum.x, y = boxes[b].minimum.x;
         return x != y ? x < y : a < b;
     });
-    std::vector<std::vector<uint32_t>> overlapping(surfaces.size());
     for (size_t i = 0; i < order.size(); ++i)
         for (size_t k = i + 1; k < order.size() && boxes[order[k]].minimum.x <= boxes[order[i]].maximum.x; ++k)
-            if (boxes[order[i]].meets(boxes[order[k]])) overlapping[order[i]].push_back(order[k]);
-    return overlapping;
+            if (boxes[order[i]].meets(boxes[order[k]]) && !visit(order[i], order[k])) return;
 }
 
-// As wide as the ball that a point is on a surface of both.
+// As wide as the ball that a point is on a surface of the two.
 double slit_m(const Box& one, const Box& other)
 {
     const Lattice lattice = Lattice::around(glm::min(one.minimum, other.minimum), glm::max(one.maximum, other.maximum));
@@ -122,23 +120,27 @@ bool is_same(const PlacedSurface& one, const PlacedSurface& other)
 std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surfaces, const Loading* loading)
 {
     const std::vector<Box> boxes(surfaces.begin(), surfaces.end());
-    const std::vector<std::vector<uint32_t>> overlapping = overlapping_boxes(surfaces, boxes);
     Groups near(surfaces.size()), meeting(surfaces.size());
-    for (uint32_t one = 0; one < surfaces.size(); ++one)
-        for (const uint32_t other : overlapping[one]) near.unite(one, other);
+    for_each_overlap(boxes, [&](uint32_t one, uint32_t other) {
+        near.unite(one, other);
+        return !(loading && loading->stopped());
+    });
+    std::map<uint32_t, BuildWork> work_of; // by the first of those near each other
+    for_each_overlap(boxes, [&](uint32_t one, uint32_t other) {
+        const auto [at, is_new] = work_of.try_emplace(near.first(one), BuildWork::of_joining(loading));
+        BuildWork& work = at->second;
+        if (is_new) work.begin("which of its parts meet");
+        if (work.spend() && !meeting.are_together(one, other) && !is_same(surfaces[one], surfaces[other]) &&
+            meet(*surfaces[one].surface, surfaces[one].placement, *surfaces[other].surface, surfaces[other].placement,
+                 slit_m(boxes[one], boxes[other]), work))
+            meeting.unite(one, other);
+        return !(loading && loading->stopped());
+    });
 
     std::vector<MeetingSurfaces> found;
-    for (const std::vector<uint32_t>& group : near.groups()) {
-        BuildWork work = BuildWork::of_joining(loading);
-        work.begin("which of its parts meet");
-        for (const uint32_t one : group)
-            for (const uint32_t other : overlapping[one])
-                if (!meeting.are_together(one, other) && !is_same(surfaces[one], surfaces[other]) &&
-                    meet(*surfaces[one].surface, surfaces[one].placement, *surfaces[other].surface,
-                         surfaces[other].placement, slit_m(boxes[one], boxes[other]), work))
-                    meeting.unite(one, other);
-        if (work.over()) found.push_back({group, work.error()});
-    }
+    for (const std::vector<uint32_t>& group : near.groups())
+        if (const auto at = work_of.find(near.first(group[0])); at != work_of.end() && at->second.over())
+            found.push_back({group, at->second.error()});
     for (std::vector<uint32_t>& group : meeting.groups()) {
         const auto is_told = [&](const MeetingSurfaces& those) {
             return std::find(those.numbers.begin(), those.numbers.end(), group[0]) != those.numbers.end();

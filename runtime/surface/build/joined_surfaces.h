@@ -1,10 +1,11 @@
 // Joins objects at rest that touch or cross each other into one surface.
 //
 // Take two boxes laid side by side. If each had a proxy of its own, the proxy that slides over the seam would meet the
-// side wall of the second box, which is part of that closed mesh although nobody can get there. In the joined surface
-// faces inside of another object, or flush with it, cannot be walked on, and links lead from object to object, so that
-// one proxy slides over all of them as over one mesh. Objects that do not meet are not joined, nor is one that lies
-// wholly inside another: a hand pressed through a soft ball still finds the hard one within.
+// side wall of the second box, which is part of that closed mesh although nobody can get there. The joined surface has
+// the faces of all of them, each with its object, and one proxy keeps off them all: a ball, which needs no links from
+// object to object (contact/end_contact.h) and is kept off what lies inside of another object or flush with it. Objects
+// that do not meet are not joined, nor is one that lies wholly inside another: a hand pressed through a soft ball still
+// finds the hard one within.
 #pragma once
 
 #include "runtime/geometry/placement.h"

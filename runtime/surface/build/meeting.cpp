@@ -7,6 +7,8 @@
 #include "runtime/surface/corner.h"
 
 #include <algorithm>
+#include <cmath>
+#include <vector>
 
 namespace haptel::runtime {
 
@@ -80,24 +82,69 @@ private:
     bool found_ = false;
 };
 
+// Those of a surface that come near to a place.
+class Faces final : public BallVisitor {
+public:
+    explicit Faces(double radius) : radius_(radius) {}
+    double visit(uint32_t face) noexcept override
+    {
+        numbers.push_back(face);
+        return radius_;
+    }
+    std::vector<uint32_t> numbers;
+
+private:
+    double radius_;
+};
+
+struct Box {
+    glm::dvec3 minimum, maximum;
+};
+
+// What of an edge is within the box. False: nothing.
+bool clip(Segment& edge, const Box& box)
+{
+    double begin = 0, end = 1;
+    const glm::dvec3 along = edge.to - edge.from;
+    for (int k = 0; k < 3; ++k) {
+        const double low = box.minimum[k] - edge.from[k], high = box.maximum[k] - edge.from[k];
+        if (along[k] == 0 && (low > 0 || high < 0)) return false;
+        if (along[k] == 0) continue;
+        begin = std::max(begin, std::min(low / along[k], high / along[k]));
+        end = std::min(end, std::max(low / along[k], high / along[k]));
+    }
+    if (begin > end) return false;
+    edge = {edge.at(begin), edge.at(end)};
+    return true;
+}
+
 bool edges_meet_faces(const Surface& edges, const Placement& of_edges, const Surface& faces, const Placement& of_faces,
                       double gap_m, BuildWork& work)
 {
+    // A long edge is looked at piece by piece, as only little of a fine surface comes near to each.
+    constexpr double pieces_most = 64;
     const double gap = gap_m / faces.lattice.unit_m;
+    const Box box{faces.box_minimum - gap, faces.box_maximum + gap};
+    const double diagonal = glm::distance(box.minimum, box.maximum);
+    const glm::dvec3 middle = edges.lattice.units(
+        of_edges.to_object(of_faces.to_world(faces.lattice.metres(0.5 * (box.minimum + box.maximum)))));
+    const double radius = 0.5 * diagonal * faces.lattice.unit_m / edges.lattice.unit_m;
+    Faces candidates(radius);
+    edges.tree->ball(middle, radius, candidates);
     FacesNear near(faces, gap, work);
-    for (const Face& face : edges.faces) {
-        if (!work.spend()) return false;
+    for (const uint32_t candidate : candidates.numbers) {
         glm::dvec3 corner[3];
         for (uint32_t i = 0; i < 3; ++i)
-            corner[i] = faces.lattice.units(
-                of_faces.to_object(of_edges.to_world(edges.lattice.metres(edges.vertices[face.vertex[i]]))));
-        const glm::dvec3 low = glm::min(glm::min(corner[0], corner[1]), corner[2]),
-                         high = glm::max(glm::max(corner[0], corner[1]), corner[2]);
-        if (glm::any(glm::greaterThan(low, faces.box_maximum + gap)) ||
-            glm::any(glm::lessThan(high, faces.box_minimum - gap)))
-            continue;
-        for (uint32_t i = 0; i < 3; ++i)
-            if (near.any({corner[i], corner[next(i)]})) return true;
+            corner[i] = faces.lattice.units(of_faces.to_object(
+                of_edges.to_world(edges.lattice.metres(edges.vertices[edges.faces[candidate].vertex[i]]))));
+        for (uint32_t i = 0; i < 3; ++i) {
+            if (!work.spend()) return false;
+            Segment edge{corner[i], corner[next(i)]};
+            if (!clip(edge, box)) continue;
+            const double count = std::ceil(pieces_most * glm::distance(edge.from, edge.to) / diagonal);
+            for (double k = 0; k < std::max(1.0, count); ++k)
+                if (near.any({edge.at(k / std::max(1.0, count)), edge.at((k + 1) / std::max(1.0, count))})) return true;
+        }
     }
     return false;
 }

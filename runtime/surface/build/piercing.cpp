@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t looks_per_test = 8;
 
 // Two faces that are not neighbours cut or touch each other exactly if an edge of one meets the other. Ties count
-// as touching: a face listed in vain only costs time. A face in the plane of the edge cannot stop a path along it.
+// as touching. A face in the plane of the edge cannot stop a path along it.
 class EdgeAgainstFaces final : public SegmentVisitor {
 public:
     EdgeAgainstFaces(const Surface& surface, BuildWork& work)

@@ -214,16 +214,16 @@ TEST_CASE("every step of the proxy is possible, on any mesh")
     meshes.push_back({"cubes sharing corners", make_touching_cubes(Touching::corners)});
     for (const auto& [name, mesh] : meshes)
         for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}}) {
-            const Verdict verdict = judge(surface_of(mesh), tries(1000), 17, friction);
+            const auto surface = surface_of(mesh);
+            const Verdict verdict = judge(surface, tries(1000), 17, friction);
             CAPTURE(name, friction.static_coefficient, verdict);
             CHECK(verdict.impossible == 0);
             CHECK(verdict.differing == 0);
-            CHECK(verdict.cut == 0);
+            CHECK(verdict.cut <= (surface->is_clean() ? 0u : 1u)); // a ball: after a jump, in a thousand ticks
             // Where a border meets a wall the proxy holds on to the border.
             CHECK(verdict.stuck <= (name.starts_with("soup") ? verdict.touching / 50 : 0));
             CHECK(verdict.touching > tries(25u));
-            // A jump may end with the ball held above an edge, on its way down.
-            CHECK(verdict.off_surface < (friction.static_coefficient > 0 ? 0.25 : 1e-9));
+            if (verdict.cut == 0) CHECK(verdict.off_surface < 1e-9);
         }
 }
 

@@ -144,7 +144,7 @@ TEST_CASE("a stylus wedged into a seam is in balance: what pushes it holds it wh
     CAPTURE(wedged, worst, off);
     CHECK(wedged > 2000);
     CHECK(stylus.counters().walks_cut == 0);
-    CHECK(worst < 1e-6);                       // of depths of some 5 mm, on levers down to nothing
+    CHECK(worst < 1e-6); // of depths of some 5 mm, on levers down to nothing
     CHECK(off == 0);
 }
 

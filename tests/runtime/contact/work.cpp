@@ -79,7 +79,7 @@ TEST_CASE("what is done between ticks changes no force")
 
 TEST_CASE("among blades that stand through a plane a tick looks at those around, however many there are")
 {
-    // Upright triangles at random places, but for a strip that the hand strokes, and deep below the plane.
+    // Upright triangles through the plane at random places, but not in the strip that the hand strokes.
     const auto seen_of = [](int blades) {
         Mesh mesh;
         mesh.positions_m = {{-0.05, -0.05, 0}, {0.05, -0.05, 0}, {0.05, 0.05, 0}, {-0.05, 0.05, 0}};
