@@ -141,13 +141,12 @@ void NearFaces::screen() noexcept
             const auto& [a, b, c] = corners_[place_of_[i]];
             if (glm::dot(normal, a) <= behind && glm::dot(normal, b) <= behind && glm::dot(normal, c) <= behind)
                 continue;
-            picked_[left] = picked_[i];
-            place_of_[left++] = place_of_[i];
+            std::swap(picked_[left], picked_[i]);
+            std::swap(place_of_[left++], place_of_[i]);
         }
         kept = left;
     }
     picked_.resize(kept);
-    place_of_.resize(kept);
 }
 
 NearFaces::Touching NearFaces::touching(const glm::dvec3& centre, double within) noexcept

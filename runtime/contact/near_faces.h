@@ -32,13 +32,6 @@ public:
     bool find(const glm::dvec3& centre, double radius, std::size_t most = faces_most) noexcept;
     std::size_t count() const noexcept { return faces_.size(); }
     std::size_t boxes() const noexcept { return boxes_; } // that the tree delivered
-    // Of them all that may come within `radius` of a place, and some others.
-    template <class Visit>
-    void for_each_near(const glm::dvec3& at, double radius, Visit&& visit) const
-    {
-        for (std::size_t i = 0; i < faces_.size(); ++i)
-            if (glm::dot(planes_[i].normal, at) - planes_[i].offset <= radius) visit(faces_[i]);
-    }
 
     // Picks the triangles that a ball of this radius may touch while its centre stays within `reach` of this one, and
     // computes their planes as seen from it. Screened: what lies behind the plane of a nearer one is left out. A ball
@@ -46,6 +39,13 @@ public:
     // beyond; a plane that screens others cannot be renewed.
     enum class Screened : uint8_t { no, yes };
     void pick(const glm::dvec3& centre, double radius, double reach, Screened screened) noexcept;
+    // Of those within reach, screened or not, all that may come within `radius` of a place.
+    template <class Visit>
+    void for_each_near(const glm::dvec3& at, double radius, Visit&& visit) const
+    {
+        for (const uint32_t place : place_of_)
+            if (glm::dot(planes_[place].normal, at) - planes_[place].offset <= radius) visit(faces_[place]);
+    }
     // Where its centre may be: in front of each of them by the radius.
     std::span<const HalfSpace> picked() const noexcept { return picked_; }
     uint32_t face(uint32_t picked) const noexcept { return faces_[place_of_[picked]]; }
@@ -77,7 +77,7 @@ private:
     std::vector<std::array<glm::dvec3, 3>> corners_; // of each, side by side in memory
     std::vector<uint64_t> laid_;                     // seen from which centre
     std::vector<HalfSpace> picked_;
-    std::vector<uint32_t> place_of_; // of those picked, above
+    std::vector<uint32_t> place_of_; // of those picked, above; then of those that they screen
     double radius_ = 0;              // they were picked for
     glm::dvec3 centre_{0};           // seen from here
     uint64_t centres_ = 1;           // so far

@@ -279,7 +279,9 @@ SphereContact::Held SphereContact::as_rows(const NearestInHalfSpaces& found) con
 // themselves. Who presses most comes first.
 void SphereContact::take_off_radius(Held& held) const noexcept
 {
-    if (is_point_) {
+    if (is_point_ && held.count == 1) {
+        held.row[0].push = std::max(0.0, held.row[0].push - grown_);
+    } else if (is_point_ && held.count > 1) {
         std::array<HalfSpace, 3> planes;
         for (std::size_t i = 0; i < held.count; ++i)
             planes[i] = {held.row[i].normal, glm::dot(held.row[i].normal, held.at) - grown_};
