@@ -39,8 +39,7 @@ struct Contact {
     glm::dvec3 hand_m{0};             // the tip as used: held, clamped, rounded to the lattice
     glm::dvec3 barycentric{1, 0, 0};  // of the proxy in its face, each >= 0, sum 1
     glm::dvec3 facet_normal{0, 0, 1}; // of the face, unit, toward the free side
-    // Unit, toward the free side: the facet's on a face, between those of the faces that meet on an edge or a vertex or
-    // where they pierce each other.
+    // Unit, toward the free side: the facet's on a face, between those of the faces that meet on an edge or a vertex.
     glm::dvec3 normal{0, 0, 1};
     double depth_m = 0;    // >= 0: how deep the hand is below the proxy along `normal`
     double pressed_m = 0;  // what friction bears by: the depth, but in a groove that below both its walls together
@@ -50,8 +49,8 @@ struct Contact {
     // solution for the two ends and that for the shaft did not converge. It acts at an end of the stylus, and `normal`
     // is its direction. `face` is that of the nearest known contact, whose material counts; the end need not be there.
     bool unsettled = false;
-    // No shading normal is right here, but `normal`: where it meets an object that it is joined to (body.h), where
-    // sheets pierce each other, and on a crease that is not told by its rows (crease_rows.h).
+    // No shading normal is right here, but `normal`: between the walls of a narrow groove, and on a crease that is not
+    // told by its rows (crease_rows.h).
     bool on_crease = false;
     glm::dvec3 lag_m{0}; // tangential part of proxy - hand, which friction holds: proxy - hand = depth * normal + lag
 };

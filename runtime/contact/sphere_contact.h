@@ -69,6 +69,7 @@ private:
     static constexpr double opposed_most = 4;
     // Lattice units: a point that can fly no farther has landed.
     static constexpr double touching_gap = 64;
+    static constexpr double centre_settled = 1e-8; // of the radius: what is left of a way counts as none
     // In a tick; of the planes that a point comes to touch in a round against friction.
     static constexpr uint32_t rounds_max = 48, turns_max = 4;
 

@@ -34,7 +34,7 @@ SphereContact::Held SphereContact::rub(double step_max) noexcept
         if (share == 0) return held;
         const double within = std::min(share * length, step_max - gone);
         const glm::dvec3 step = within / length * way;
-        const double open = open_share(faces_.picked(), proxy_.at, step, distance_rounding).share;
+        const double open = open_share(faces_.picked(), proxy_.at, step, distance_rounding);
         proxy_.at += open * step;
         gone += open * within;
         pass(held);

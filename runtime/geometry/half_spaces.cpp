@@ -104,16 +104,13 @@ bool take_in(std::span<const HalfSpace> spaces, uint32_t space, NearestInHalfSpa
 
 } // namespace
 
-OpenShare open_share(std::span<const HalfSpace> spaces, const glm::dvec3& from, const glm::dvec3& way,
-                     double tolerance) noexcept
+double open_share(std::span<const HalfSpace> spaces, const glm::dvec3& from, const glm::dvec3& way,
+                  double tolerance) noexcept
 {
-    OpenShare open;
-    for (uint32_t i = 0; i < spaces.size(); ++i) {
-        const double before = glm::dot(spaces[i].normal, from) - spaces[i].offset;
-        const double change = glm::dot(spaces[i].normal, way);
-        if (!(before + change < -tolerance && change < 0)) continue;
-        const double share = std::max(0.0, before) / -change;
-        if (share < open.share) open = {share, i};
+    double open = 1;
+    for (const HalfSpace& space : spaces) {
+        const double before = glm::dot(space.normal, from) - space.offset, change = glm::dot(space.normal, way);
+        if (before + change < -tolerance && change < 0) open = std::min(open, std::max(0.0, before) / -change);
     }
     return open;
 }
@@ -128,7 +125,7 @@ NearestInHalfSpaces nearest_in(std::span<const HalfSpace> spaces, const glm::dve
         if (space == none) return now;
         if (!take_in(spaces, space, now)) break;
     }
-    const double share = open_share(spaces, inside, now.at - inside, tolerance).share;
+    const double share = open_share(spaces, inside, now.at - inside, tolerance);
     if (share < 1) now.at = inside + share * (now.at - inside);
     return now;
 }

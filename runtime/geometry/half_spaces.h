@@ -19,13 +19,9 @@ struct HalfSpace {
 };
 
 // The share, 0 .. 1, of the straight way from `from`, which is in all half-spaces, that stays in all of them within
-// `tolerance`, and the index of the one that ends it; ~0u if none does.
-struct OpenShare {
-    double share = 1;
-    uint32_t ended_by = ~0u;
-};
-OpenShare open_share(std::span<const HalfSpace> spaces, const glm::dvec3& from, const glm::dvec3& way,
-                     double tolerance) noexcept;
+// `tolerance`.
+double open_share(std::span<const HalfSpace> spaces, const glm::dvec3& from, const glm::dvec3& way,
+                  double tolerance) noexcept;
 
 struct NearestInHalfSpaces {
     glm::dvec3 at{0};
