@@ -1,6 +1,6 @@
 #include "runtime/contact/crease_rows.h"
 
-#include "runtime/geometry/half_spaces.h"
+#include "runtime/contact/project.h"
 #include "runtime/surface/corner.h"
 
 #include <algorithm>
@@ -62,9 +62,9 @@ void CreaseRows::add(const Surface& surface, const Contact& contact, std::size_t
         facets[0].piece = 0, facets[1].piece = 1; // at one end they may be the same
     }
     const glm::dvec3 pushed_m = contact.depth_m * contact.normal;
-    NearestInHalfSpaces held;
+    Projection<glm::dvec3> held;
     if (closed && count <= facets_most)
-        held = nearest_in({free.data(), count}, -pushed_m, glm::dvec3(0), surface.lattice.unit_m);
+        held = project({free.data(), count}, -pushed_m, glm::dvec3(0), surface.lattice.unit_m);
     const double pushes_m = std::accumulate(held.push.begin(), held.push.begin() + std::ptrdiff_t(held.count), 0.0);
     if (held.count == 0 || held.count > room || pushes_m > opposed_most * contact.depth_m) {
         rows_[count_] = contact;

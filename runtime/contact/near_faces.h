@@ -7,7 +7,7 @@
 // Lattice units. One servo thread owns one; only the constructor allocates.
 #pragma once
 
-#include "runtime/geometry/half_spaces.h"
+#include "runtime/contact/project.h"
 #include "runtime/surface/surface.h"
 
 #include <array>

@@ -2,19 +2,14 @@
 // units.
 #pragma once
 
+#include "runtime/contact/project.h"
+
 #include <glm/glm.hpp>
 
 #include <algorithm>
 #include <cstdint>
 
 namespace haptel::runtime {
-
-struct Shaft {
-    glm::dvec3 tip{0}, tail{0};
-
-    glm::dvec3 at(double share) const { return tip + share * (tail - tip); }
-    bool operator==(const Shaft&) const = default;
-};
 
 // How far the ends are from each other's, of the pair that is farther.
 inline double farther(const Shaft& a, const Shaft& b)

@@ -200,16 +200,16 @@ void SphereContact::pick(double reach) noexcept
 SphereContact::Held SphereContact::held_by_picked() noexcept
 {
     const std::span<const HalfSpace> planes = faces_.picked();
-    NearestInHalfSpaces found;
+    Projection<glm::dvec3> found;
     for (bool renewed = true; renewed;) {
-        found = nearest_in(planes, hand_, proxy_.at, distance_rounding);
+        found = project(planes, hand_, proxy_.at, distance_rounding);
         renewed = false;
         for (std::size_t i = 0; i < found.count && !is_point_; ++i) renewed |= faces_.renew(found.active[i], proxy_.at);
     }
     return as_rows(found);
 }
 
-SphereContact::Held SphereContact::as_rows(const NearestInHalfSpaces& found) const noexcept
+SphereContact::Held SphereContact::as_rows(const Projection<glm::dvec3>& found) const noexcept
 {
     Held held{found.at, found.count, {}};
     for (std::size_t i = 0; i < found.count; ++i) {
@@ -230,7 +230,7 @@ void SphereContact::take_off_radius(Held& held) const noexcept
         std::array<HalfSpace, 3> planes;
         for (std::size_t i = 0; i < held.count; ++i)
             planes[i] = {held.row[i].normal, glm::dot(held.row[i].normal, held.at) - grown_};
-        const NearestInHalfSpaces found = nearest_in({planes.data(), held.count}, hand_, held.at, distance_rounding);
+        const Projection<glm::dvec3> found = project({planes.data(), held.count}, hand_, held.at, distance_rounding);
         for (Row& row : held.row) row.push = 0;
         for (std::size_t i = 0; i < found.count; ++i) held.row[found.active[i]].push = found.push[i];
     }

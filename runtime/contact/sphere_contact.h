@@ -4,7 +4,7 @@
 // Seen from the centre, a triangle lies behind the plane that touches the ball there if ball and triangle touch, or
 // would touch. As long as the centre stays in front of all these planes no triangle comes nearer than the radius: each
 // move is a straight way within the intersection of half-spaces, so that nothing is crossed at any speed and by any
-// mesh, self-piercing ones included. The nearest point of the intersection to the hand is exact (half_spaces.h); the
+// mesh, self-piercing ones included. The nearest point of the intersection to the hand is exact (project.h); the
 // planes that hold the ball are laid anew there, until that moves nothing. What one tick may look at is bounded: where
 // there are many triangles the ball may have a part of its way left for the next, and until then it touches as it did.
 #pragma once
@@ -116,7 +116,7 @@ private:
     void fly(double step_max) noexcept;
     Held slide(double step_max) noexcept;
     Held held_by_picked() noexcept;
-    Held as_rows(const NearestInHalfSpaces& found) const noexcept;
+    Held as_rows(const Projection<glm::dvec3>& found) const noexcept;
     Held rub(double step_max) noexcept;
     double share_past(double way, double pressed) noexcept;
     void pick(double reach) noexcept;

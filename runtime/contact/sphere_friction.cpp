@@ -21,8 +21,8 @@ SphereContact::Held SphereContact::rub(double step_max) noexcept
     double gone = 0;
     for (uint32_t turn = 0;; ++turn) {
         const auto [touching, gap] = faces_.touching(proxy_.at, touching_gap);
-        const NearestInHalfSpaces found =
-            nearest_in(faces_.picked().first(touching), hand_, proxy_.at, distance_rounding);
+        const Projection<glm::dvec3> found =
+            project(faces_.picked().first(touching), hand_, proxy_.at, distance_rounding);
         if (found.count == 0 || gap > touching_gap) { // off again, or its way has led straight over an edge
             path_begin_ = path_length_;
             return {};
@@ -77,7 +77,7 @@ SphereContact::Held SphereContact::only(const Held& held, uint32_t bits) const n
             planes[count] = {held.row[i].normal, glm::dot(held.row[i].normal, held.at)};
             row[count++] = i;
         }
-    const NearestInHalfSpaces found = nearest_in({planes.data(), count}, hand_, held.at, distance_rounding);
+    const Projection<glm::dvec3> found = project({planes.data(), count}, hand_, held.at, distance_rounding);
     Held alone{found.at, found.count, {}};
     for (std::size_t i = 0; i < found.count; ++i) {
         alone.row[i] = held.row[row[found.active[i]]];

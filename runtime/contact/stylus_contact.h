@@ -26,8 +26,8 @@
 // place does not make way for an edge, so the other has to, and friction bears what the edge pushes the kept end with.
 #pragma once
 
-#include "runtime/contact/contact_qp.h"
 #include "runtime/contact/end_contact.h"
+#include "runtime/contact/project.h"
 #include "runtime/contact/shaft.h"
 #include "runtime/contact/stylus_friction.h"
 #include "runtime/contact/swept_tree.h"

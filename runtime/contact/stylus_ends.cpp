@@ -23,6 +23,9 @@ constexpr double friction_settled = 1e-6, both_settled = 1e-9;
 // there again, wherever the way bends.
 constexpr double beyond = 16, past_the_end = 0.05;
 
+// Lattice units: what a push may leave violated.
+constexpr double push_settled = 1e-3;
+
 // Share of the shaft: on a shorter lever an end does not make way. The edge is passing by the other end.
 constexpr double least_lever = 1e-4;
 
@@ -184,7 +187,7 @@ void StylusContact::hold_hand_from_here(FrictionOfEnds& ends) noexcept
 // With the end that gives where it clears the sides that push, the other being where it is.
 Shaft StylusContact::clear_of_sides(const Shaft& to, EndsGive gives) const noexcept
 {
-    std::array<ShaftContact, shaft_contacts_max> contacts;
+    std::array<ShaftRow, sides_max> rows;
     Shaft at = to;
     for (int turn = 0; turn < turns_max; ++turn) {
         uint32_t count = 0;
@@ -194,14 +197,9 @@ Shaft StylusContact::clear_of_sides(const Shaft& to, EndsGive gives) const noexc
             const glm::dvec3 normal = sides_[i].sign * here.normal;
             const double share = begin_ + here.on_shaft * (end_ - begin_);
             if ((gives.tip ? 1 - share : share) < least_lever) continue;
-            contacts[count++] = {normal, share, glm::dot(normal, here.edge_point) + rest_gap};
+            rows[count++] = {normal, glm::dot(normal, here.edge_point) + rest_gap, share};
         }
-        const auto push = solve_multipliers({contacts.data(), count}, to.tip, to.tail, gives);
-        Shaft next = to;
-        for (uint32_t i = 0; i < count; ++i) {
-            if (gives.tip) next.tip += (1 - contacts[i].share) * push[i] * contacts[i].normal;
-            if (gives.tail) next.tail += contacts[i].share * push[i] * contacts[i].normal;
-        }
+        const Shaft next = project({rows.data(), count}, to, push_settled, gives).at;
         const double change = farther(next, at);
         at = next;
         if (change < 0.25) break;
@@ -227,7 +225,7 @@ void StylusContact::take_hold(EndFriction& end_friction, const EndContact& end,
 // pushes stays within its edge and the shaft. `normals`: of the sides; not turned they are those where the shaft is.
 double StylusContact::solve(const Shaft& hand, Shaft& aim, FrictionOfEnds& ends, Turning normals) noexcept
 {
-    std::array<ShaftContact, shaft_contacts_max> contacts;
+    std::array<ShaftRow, sides_max + 2> rows;
     EndFriction &tip = ends.tip, &tail = ends.tail;
     take_hold(tip, *tip_, shaft_.tip);
     take_hold(tail, *tail_, shaft_.tail);
@@ -245,41 +243,40 @@ double StylusContact::solve(const Shaft& hand, Shaft& aim, FrictionOfEnds& ends,
                 side.point = here.edge_point;
                 side.share = begin_ + here.on_shaft * (end_ - begin_);
             }
-            contacts[i] = {side.normal, side.share, glm::dot(side.normal, side.point) + rest_gap};
+            rows[i] = {side.normal, glm::dot(side.normal, side.point) + rest_gap, side.share};
         }
         uint32_t count = side_count_;
-        const auto add_end = [&](const EndFriction& end_friction, double share) {
+        const auto add_end = [&](const EndFriction& end_friction, double arm) {
             if (end_friction.touches && !end_friction.sticks)
-                contacts[count++] = {end_friction.normal, share, glm::dot(end_friction.normal, end_friction.at)};
+                rows[count++] = {end_friction.normal, glm::dot(end_friction.normal, end_friction.at), arm};
         };
         add_end(tip, 0);
         add_end(tail, 1);
         if (normals == Turning::not_at_all) // the shaft is where it may be: no more is held than the springs are drawn
-            for (ShaftContact& contact : std::span(contacts.data(), count))
-                contact.offset = std::min(contact.offset, glm::dot(contact.normal, extended(shaft_).at(contact.share)));
-        const std::span<const ShaftContact> all(contacts.data(), count);
+            for (ShaftRow& row : std::span(rows.data(), count))
+                row.offset = std::min(row.offset, glm::dot(row.normal, extended(shaft_).at(row.arm)));
+        const std::span<const ShaftRow> all(rows.data(), count);
         const EndsGive gives{!tip.sticks, !tail.sticks};
         aim = hand;
-        Shaft held{gives.tip ? hand.tip + tip.lag : tip.at, gives.tail ? hand.tail + tail.lag : tail.at};
-        const auto push = solve_multipliers(all, held.tip, held.tail, gives);
-        for (uint32_t i = 0; i < count; ++i) {
-            const ShaftContact& contact = contacts[i];
-            const glm::dvec3 by = push[i] * contact.normal;
-            if (i < side_count_) {
-                sides_[i].push = push[i];
-                aim.tip += (1 - contact.share) * by;
-                aim.tail += contact.share * by;
-            }
-            if (gives.tip) held.tip += (1 - contact.share) * by;
-            if (gives.tail) held.tail += contact.share * by;
+        const Shaft free{gives.tip ? hand.tip + tip.lag : tip.at, gives.tail ? hand.tail + tail.lag : tail.at};
+        const Projection<Shaft> pushed = project(all, free, push_settled, gives);
+        const Shaft& held = pushed.at;
+        for (uint32_t i = 0; i < side_count_; ++i) sides_[i].push = 0;
+        for (std::size_t k = 0; k < pushed.count; ++k) {
+            const uint32_t i = pushed.active[k];
+            if (i >= side_count_) continue;
+            const glm::dvec3 by = pushed.push[k] * rows[i].normal;
+            sides_[i].push = pushed.push[k];
+            aim.tip += (1 - rows[i].arm) * by;
+            aim.tail += rows[i].arm * by;
         }
         const Shaft next{held.at(begin_), held.at(end_)};
         bool agreed = farther(next, at) < 0.25;
         at = next;
         double news = 0;
-        if (tip.drags()) news = tip.follow(aim.tip, held.tip, compliance(ShaftEnd::tip, all, push, gives));
+        if (tip.drags()) news = tip.follow(aim.tip, held.tip, compliance(ShaftEnd::tip, all, pushed, gives));
         if (tail.drags())
-            news = std::max(news, tail.follow(aim.tail, held.tail, compliance(ShaftEnd::tail, all, push, gives)));
+            news = std::max(news, tail.follow(aim.tail, held.tail, compliance(ShaftEnd::tail, all, pushed, gives)));
         agreed &= news < (tip.drags() && tail.drags() ? both_settled : friction_settled);
         for (EndFriction* end_friction : {&tip, &tail}) {
             if (!agreed || !end_friction->drags() || !end_friction->moves || end_friction->slides) continue;

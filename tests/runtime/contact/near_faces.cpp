@@ -1,6 +1,5 @@
-// What holds a ball: nearest points of half-spaces and triangles, and the faces near it.
+// What a ball sees: nearest points of triangles, and the faces near it.
 #include "runtime/contact/near_faces.h"
-#include "runtime/geometry/half_spaces.h"
 #include "runtime/geometry/nearest_point.h"
 #include "tests/runtime/surface/distance.h"
 #include "tests/runtime/surface/meshes.h"
@@ -14,37 +13,6 @@
 using namespace haptel::runtime;
 using namespace haptel::test;
 using glm::dvec3;
-
-TEST_CASE("the nearest point of an intersection of half-spaces meets the conditions that define it")
-{
-    std::mt19937_64 random(3);
-    std::uniform_real_distribution<double> uniform(0, 1);
-    int by_count[4] = {};
-    for (int trial = 0; trial < 20000; ++trial) {
-        // Around the origin, some nearly parallel, some twice.
-        std::vector<HalfSpace> spaces;
-        const dvec3 common = random_direction(random);
-        const double spread = std::pow(10.0, -8 * uniform(random));
-        const int count = 1 + static_cast<int>(uniform(random) * 20);
-        for (int i = 0; i < count; ++i)
-            spaces.push_back({glm::normalize(common + spread * random_direction(random)), -uniform(random) * spread});
-        if (uniform(random) < 0.3) spaces.push_back(spaces.front());
-        const dvec3 target = 3.0 * uniform(random) * random_direction(random);
-        const NearestInHalfSpaces found = nearest_in(spaces, target, dvec3(0), 1e-14);
-        dvec3 pushed(0);
-        for (std::size_t i = 0; i < found.count; ++i) {
-            CHECK(found.push[i] >= 0);
-            pushed += found.push[i] * spaces[found.active[i]].normal;
-        }
-        for (const HalfSpace& space : spaces) CHECK(glm::dot(space.normal, found.at) - space.offset > -1e-12);
-        // Karush, Kuhn, Tucker: the way back to the target is a push by the spaces touched alone.
-        CHECK(glm::length(found.at - target - pushed) < 1e-6);
-        for (std::size_t i = 0; i < found.count; ++i)
-            CHECK(glm::dot(spaces[found.active[i]].normal, found.at) - spaces[found.active[i]].offset < 1e-6);
-        ++by_count[found.count];
-    }
-    for (const int times : by_count) CHECK(times > 20);
-}
 
 TEST_CASE("the nearest point of a triangle is in it, and no nearer one is")
 {
