@@ -32,19 +32,6 @@ struct WalkFriction {
     double static_coefficient = 0, dynamic_coefficient = 0;
 };
 
-// Where a walk led: a point just above the surface after each step, for what the proxy drags along.
-struct WalkPath {
-    static constexpr uint32_t most = 64;
-
-    uint32_t count = 0;
-    glm::dvec3 at[most];
-
-    void add(const glm::dvec3& point)
-    {
-        if (count < most) at[count++] = point;
-    }
-};
-
 // A lattice point just above what the proxy is on, on its side; where that is too sharp for one, on it.
 glm::dvec3 beside(const Surface& surface, const Proxy& proxy) noexcept;
 
@@ -59,7 +46,7 @@ inline constexpr uint32_t walk_steps_max = 4096;
 // the fan of a vertex). There the sign of the hand's height says whether the hand is on the free side: if so the proxy
 // leaves, if not it slides there.
 void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count,
-          uint32_t step_limit = walk_steps_max, WalkPath* path = nullptr) noexcept;
+          uint32_t step_limit = walk_steps_max) noexcept;
 
 // Puts a free proxy on the face that its way crosses.
 void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const glm::dvec3& from,

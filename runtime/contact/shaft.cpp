@@ -49,8 +49,8 @@ int roots(double c0, double c1, double c2, double (&t)[2])
 
 } // namespace
 
-bool meets(const Shaft& from, const Shaft& to, const glm::dvec3& edge0, const glm::dvec3& edge1, double tip_off,
-           double tail_off, double before, EdgeMeeting& meeting) noexcept
+bool meets(const Shaft& from, const Shaft& to, const glm::dvec3& edge0, const glm::dvec3& edge1, double before,
+           EdgeMeeting& meeting) noexcept
 {
     const glm::dvec3 edge = edge1 - edge0;
     const glm::dvec3 along = from.tail - from.tip, turn = (to.tail - to.tip) - along;
@@ -61,12 +61,15 @@ bool meets(const Shaft& from, const Shaft& to, const glm::dvec3& edge0, const gl
     const double doubt = crossing_rounding * glm::length(along) * glm::length(edge) * glm::length(offset);
     if (std::fabs(c0) <= doubt) c0 = -side_of_line(from.tip, from.tail, edge0, edge1) * doubt;
     const double c1 = glm::dot(across_turn, offset) + glm::dot(across, way), c2 = glm::dot(across_turn, way);
+    const double c = c0 + c1 + c2;
+    const glm::dvec3 across_then = across + across_turn;
+    meeting.close = c * c < shaft_tolerance::rest_gap * shaft_tolerance::rest_gap * glm::dot(across_then, across_then);
     double t[2];
     const int count = roots(c0, c1, c2, t);
     for (int i = 0; i < count && t[i] < before; ++i) {
         const Shaft there{from.tip + t[i] * way, from.tail + t[i] * (to.tail - from.tail)};
         const Passing at = passing(there, edge0, edge1);
-        if (at.parallel || !at.within(-tip_off, -tail_off, shaft_tolerance::reach)) continue;
+        if (at.parallel || !at.within(0, 0, shaft_tolerance::reach)) continue;
         const double slope = c1 + 2 * c2 * t[i];
         meeting.time = t[i];
         meeting.side = slope > 0 ? -1 : 1;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/contact/project.h"
+#include "runtime/geometry/lattice.h"
 
 #include <glm/glm.hpp>
 
@@ -17,15 +18,16 @@ inline double farther(const Shaft& a, const Shaft& b)
     return std::max(glm::distance(a.tip, b.tip), glm::distance(a.tail, b.tail));
 }
 
-// In lattice units, below 1e-9 of the object's size all of them together. What rests does so at `rest_gap`, far
-// above what rounding does; each edge reaches beyond its ends by `reach`, so that nothing slips through at a vertex:
-// less than the gap, for what rests on one edge of a vertex must not meet the ends of others there.
+// In lattice units. What rests does so at `rest_gap`, the radius of its ends, so that nothing changes where an edge
+// goes by an end. An edge that is crossed reaches beyond its ends by `reach`, so that nothing slips through at a
+// vertex. One that is rested on holds on beyond its end by `let_go`: in a corner it takes turns with the next
+// otherwise.
 namespace shaft_tolerance {
-constexpr double rest_gap = 128;
+constexpr double rest_gap = Lattice::point_radius;
 constexpr double reach = 16;
-constexpr double let_go = 64;          // beyond its end an edge holds no more, nor
-constexpr double let_go_by_end = 1024; // what is this far beyond the shaft's
-constexpr double parallel = 1e-7;      // sine of the angle below which a shaft and an edge have no normal
+constexpr double let_go = 2 * rest_gap; // beyond this an edge holds no more, nor
+constexpr double let_go_by_end = 1024;  // what is this far beyond the shaft's
+constexpr double parallel = 1e-7;       // sine of the angle below which a shaft and an edge have no normal
 } // namespace shaft_tolerance
 
 // The lines of a shaft and an edge, where they are nearest.
@@ -49,14 +51,15 @@ Passing passing(const Shaft& shaft, const glm::dvec3& edge0, const glm::dvec3& e
 
 // A straight move of both ends meets an edge.
 struct EdgeMeeting {
-    double time = 1; // share of the move
-    int side = 0;    // of the edge that the shaft came from: the sign of its height
+    double time = 1;    // share of the move
+    int side = 0;       // of the edge that the shaft came from: the sign of its height
+    bool close = false; // at the end of the move the line of the shaft is within the gap of the edge's
 };
 
-// The first meeting before `before`, but for `tip_off` and `tail_off` (lattice units) at the ends of the shaft. With
-// the ends on straight ways and the edge at rest the height changes its sign where a quadratic polynomial does. `from`
-// has lattice points for ends, so that the side on which it begins is known exactly.
-bool meets(const Shaft& from, const Shaft& to, const glm::dvec3& edge0, const glm::dvec3& edge1, double tip_off,
-           double tail_off, double before, EdgeMeeting& meeting) noexcept;
+// The first meeting before `before`. With the ends on straight ways and the edge at rest the height changes its sign
+// where a quadratic polynomial does. `from` has lattice points for ends, so that the side on which it begins is known
+// exactly.
+bool meets(const Shaft& from, const Shaft& to, const glm::dvec3& edge0, const glm::dvec3& edge1, double before,
+           EdgeMeeting& meeting) noexcept;
 
 } // namespace haptel::runtime

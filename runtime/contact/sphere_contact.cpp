@@ -89,7 +89,8 @@ void SphereContact::follow(const glm::dvec3& hand_m) noexcept
     if (!finite(hand_m)) return;
     aim(surface_->lattice.units(hand_m));
     proxy_.at = hand_;
-    placed_ = true; // as large as it is, where there is nothing
+    placed_ = true;
+    grown_ = radius_; // there is nothing
     tell_free();
 }
 
@@ -105,13 +106,6 @@ void SphereContact::slide_on(const glm::dvec3& way_m, const Friction& friction) 
     proxy_.sliding = proxy_.sliding && proxy_.touches() && slides_on(contacts(), way_m, checked(friction));
 }
 
-void SphereContact::go(const Friction& friction, WalkPath* path) noexcept
-{
-    if (!placed_) place(hand_);
-    move(friction);
-    for (uint32_t i = 0; path && i < path_length_; ++i) path->add(glm::round(path_[i].at));
-}
-
 // Where there is too little room for a ball it stays, and rounding may take it through a face.
 void SphereContact::restart(const glm::dvec3& at) noexcept
 {
@@ -121,13 +115,6 @@ void SphereContact::restart(const glm::dvec3& at) noexcept
     place(at);
     placed_ = true;
     tell_free();
-}
-
-void SphereContact::go_back(const State& to) noexcept
-{
-    proxy_ = to.proxy;
-    grown_ = to.grown;
-    lag_ = to.lag;
 }
 
 double SphereContact::gap_m(const glm::dvec3& centre_m) const noexcept
@@ -308,8 +295,7 @@ void SphereContact::move(const Friction& friction) noexcept
     // comes to touch it goes there once more, knowing nothing. Whoever comes the same way then feels the same.
     if (in_air && !way.blind && (way.cut || !is_in_air())) {
         proxy_.at = start;
-        around_ = close_ = {};
-        margin_ = margin_at_first_;
+        forget();
         way = travel(false);
     }
     if (way.blind) { // too much at once: what is touched stays touched
@@ -333,16 +319,38 @@ void SphereContact::move(const Friction& friction) noexcept
     tell(held, held.at, true);
 }
 
-// It stays where it is: what touches there holds the hand, whatever else it would meet on its way.
-void SphereContact::describe(bool lags) noexcept
+double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t most) noexcept
 {
-    if (!proxy_.touches()) return tell_free();
-    const double reach = margin_least * radius_;
-    if (around_.room(proxy_.at) < reach && !find_around(reach)) return;
-    pick(reach);
-    const Held held = held_by_picked();
+    proxy_.at = at;
+    if (around_.room(at) < std::min(reach, look_again * margin_) &&
+        !find_around(std::clamp(2 * reach, margin_least * radius_, std::max(margin_, margin_most * radius_))))
+        return 0;
+    if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(at, radius_) - distance_rounding);
+    double within = std::min(reach, around_.room(at));
+    if (close_.centre == at && close_.margin >= within && close_.margin < stride_most * within) return within;
+    for (pick(within); faces_.picked().size() > most; pick(within))
+        if ((within *= less_far) < 1) return 0;
+    return within;
+}
+
+std::size_t SphereContact::touching() noexcept
+{
+    const auto [count, gap] = faces_.touching(proxy_.at, radius_);
+    return gap > radius_ ? 0 : count;
+}
+
+void SphereContact::tell_held(const glm::dvec3& aim, std::span<const uint32_t> planes, std::span<const double> pushes,
+                              const glm::dvec3& lag) noexcept
+{
+    hand_ = aim;
+    clamped_ = false;
+    Held held{proxy_.at, std::min<std::size_t>(planes.size(), 3), {}};
+    for (std::size_t i = 0; i < held.count; ++i)
+        held.row[i] = {faces_.face(planes[i]), faces_.picked()[planes[i]].normal, pushes[i]};
+    std::sort(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
+              [](const Row& a, const Row& b) { return a.push > b.push; });
     if (held.count == 0) return tell_free();
-    tell(held, held.at, lags);
+    tell(held, proxy_.at - lag, true);
 }
 
 } // namespace haptel::runtime

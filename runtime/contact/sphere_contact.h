@@ -33,11 +33,14 @@ public:
     // the hand is; what it overlaps there it does not push away, but as it leaves it grows to its radius.
     std::span<const Contact> update(const glm::dvec3& centre_m, const Friction& friction = {}) noexcept
     {
-        SphereContact::tick(centre_m, friction);
+        tick(centre_m, friction);
         return contacts();
     }
 
-    void tick(const glm::dvec3& hand_m, const Friction& friction, const glm::dvec3* tail = nullptr) noexcept override;
+    void tick(const glm::dvec3& hand_m, const Friction& friction) noexcept override { tick(hand_m, friction, nullptr); }
+    // `tail`, lattice units: the other end of a stylus, which is put down from there. A shaft that enters the object by
+    // a front side touches there; one that comes out of it does not: its tail is inside.
+    void tick(const glm::dvec3& hand_m, const Friction& friction, const glm::dvec3* tail) noexcept;
     void follow(const glm::dvec3& hand_m) noexcept override;
     void reset() noexcept override;
     bool move_out(double most_m) noexcept override;
@@ -48,20 +51,33 @@ public:
     const Surface& surface() const noexcept override { return *surface_; }
     glm::dvec3 proxy_m() const noexcept { return surface_->lattice.metres(proxy_.at); }
 
-    bool is_placed() const noexcept override { return placed_; }
     const Proxy& proxy() const noexcept override { return proxy_; }
-    glm::dvec3 beside() const noexcept override { return glm::round(proxy_.at); }
-    glm::dvec3 normal() const noexcept override;
-    glm::dvec3 unfelt() const noexcept override { return proxy_.touches() ? unfelt_ : glm::dvec3(0); }
-    void set_sliding(bool sliding) noexcept override { proxy_.sliding = sliding; }
-    void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept override;
-    void aim(const glm::dvec3& hand) noexcept override;
-    void go(const Friction& friction, WalkPath* path) noexcept override;
-    void restart(const glm::dvec3& at) noexcept override;
-    State state() const noexcept override { return {proxy_, grown_, lag_}; }
-    void go_back(const State& to) noexcept override;
-    void describe(bool lags) noexcept override;
-    void count_tick() noexcept override { ++counters_.ticks; }
+
+    // Of the last tick of this thread's balls: where each straight piece of its way ended, as far as it touched.
+    template <class Visit>
+    void for_each_place(Visit&& visit) const
+    {
+        for (uint32_t i = 0; i < path_length_; ++i) visit(path_[i].at);
+    }
+
+    // For a stylus, which holds both its ends and its shaft by one projection. Lattice units.
+    bool is_placed() const noexcept { return placed_; }
+    void restart(const glm::dvec3& at) noexcept; // anew, at a free place
+    void count_tick() noexcept { ++counters_.ticks; }
+    void set_sliding(bool sliding) noexcept { proxy_.sliding = sliding; }
+    void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept; // a tick begins
+    // What is known of what is around.
+    void forget() noexcept { around_ = close_ = {}, margin_ = margin_at_first_; }
+    // Goes to a place and lays the planes that hold the end while it stays within the length that is returned, at most
+    // `reach`, of there. 0: there is too much around to be looked at, or more than `most` planes.
+    double look_from(const glm::dvec3& at, double reach, std::size_t most) noexcept;
+    std::span<const HalfSpace> planes() const noexcept { return faces_.picked(); }
+    double radius() const noexcept { return grown_; }
+    // How many of the planes the end touches, or is as near to as its radius; these come first.
+    std::size_t touching() noexcept;
+    // Tells what holds it, by planes and pushes of those alone; it aims at a place, and friction holds it by `lag`.
+    void tell_held(const glm::dvec3& aim, std::span<const uint32_t> planes, std::span<const double> pushes,
+                   const glm::dvec3& lag) noexcept;
 
 private:
     // Of the way from the hand to the ball: walls of a groove narrower than some 30 degrees push more than this in sum,
@@ -110,6 +126,7 @@ private:
         bool blind = false;      // there is too much around to be looked at
     };
 
+    void aim(const glm::dvec3& hand) noexcept;
     void place(const glm::dvec3& at) noexcept;
     bool find_around(double margin) noexcept;
     bool is_in_air() const noexcept { return path_begin_ == path_length_; }
@@ -151,7 +168,6 @@ private:
     // balls of a thread share the room for it.
     static constinit thread_local std::array<Step, turns_max*(rounds_max + 1)> path_;
     uint32_t path_begin_ = 0, path_length_ = 0;
-    glm::dvec3 unfelt_{0}, out_{0, 0, 1}; // unit, away from what presses it most
     Contact contacts_[3];
     std::size_t contact_count_ = 0;
     ContactCounters counters_;

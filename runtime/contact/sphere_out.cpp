@@ -60,8 +60,7 @@ bool SphereContact::move_out(double most_m) noexcept
         looked = false;
         grown_ = std::max(grown_, faces_.distance(proxy_.at, radius_ + distance_rounding) - distance_rounding);
     }
-    around_ = close_ = {};
-    margin_ = margin_at_first_;
+    forget();
     return grown_ > before;
 }
 

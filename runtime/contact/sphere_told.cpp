@@ -13,14 +13,6 @@ constexpr double same_piece = 0.5, same_plane = 1e-9;
 
 } // namespace
 
-glm::dvec3 SphereContact::normal() const noexcept
-{
-    glm::dvec3 push_m(0);
-    for (const Contact& contact : contacts()) push_m += contact.depth_m * contact.normal;
-    const double length = glm::length(push_m);
-    return length > 0 ? push_m / length : out_;
-}
-
 // The planes here do not know how deep the hand is where it is: until the ball is there what was felt is felt, as far
 // as the spring pulls now, but of what the hand has left.
 void SphereContact::keep_told() noexcept
@@ -103,12 +95,11 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest, bool lags)
     const glm::dvec3 centre = lags && is_point_ ? proxy_.at : nearest;
     glm::dvec3 way(0);
     for (std::size_t i = 0; i < held.count; ++i) way += held.row[i].push * held.row[i].normal;
-    unfelt_ = is_point_ ? nearest - hand_ - way : glm::dvec3(0);
     const double kept = sum > 0 ? std::min(1.0, opposed_most * glm::length(way) / sum) : 1.0;
     const glm::dvec3 lag_m = lags ? (proxy_.at - nearest) * surface_->lattice.unit_m : glm::dvec3(0);
     for (std::size_t i = 0; i < held.count; ++i) {
         const auto& [face, normal, push] = held.row[i];
-        if (unfelt_ != glm::dvec3(0) && push == 0) continue; // by the radius alone
+        if (is_point_ && push == 0) continue; // by the radius alone
         Contact& contact = contacts_[contact_count_++];
         contact = {};
         contact.touching = true;
@@ -133,7 +124,6 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest, bool lags)
         }
     }
     if (contact_count_ == 0) tell_nothing();
-    out_ = held.row[0].normal;
     proxy_.on = Proxy::On::face;
     proxy_.face = held.row[0].face;
     proxy_.side = glm::dot(held.row[0].normal, surface_->faces[proxy_.face].normal) >= 0 ? 0 : 1;

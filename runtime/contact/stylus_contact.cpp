@@ -1,5 +1,5 @@
-// A tick of the stylus: from the pose to contacts. How its ends and its shaft come to agree is in stylus_ends.cpp, how
-// the shaft moves in stylus_shaft.cpp.
+// A tick of the stylus: from the pose to contacts. What holds it is in stylus_hold.cpp, how the shaft moves in
+// stylus_shaft.cpp.
 #include "runtime/contact/stylus_contact.h"
 
 #include "runtime/geometry/finite.h"
@@ -24,18 +24,20 @@ constexpr double least_length = 4096;
 // Lattice units, and share of what the springs are drawn by: what is not known and pushes less is not told.
 constexpr double least_push = 4096, least_push_share = 1e-6;
 
-// Of what the springs are drawn by: sides that push more than that push against each other, as in a fold, by what
-// rounding makes of the angle between them. What they push together is told as what is left.
-constexpr double opposed_push = 4;
-
 // A clear region is worth looking for if the hand needs several ticks to cross it.
 constexpr double ticks_per_region = 4;
+
+std::unique_ptr<SphereContact> as_end(const std::shared_ptr<const Surface>& surface)
+{
+    return std::make_unique<SphereContact>(surface, Lattice::point_radius * surface->lattice.unit_m,
+                                           SphereContact::Felt::as_point);
+}
 
 } // namespace
 
 StylusContact::StylusContact(std::shared_ptr<const Surface> surface, bool skips_free_space, double rate_hz)
-    : tip_(make_point(surface, skips_free_space))
-    , tail_(make_point(surface, skips_free_space))
+    : tip_(as_end(surface))
+    , tail_(as_end(surface))
     , skips_free_space_(skips_free_space)
     , tree_(&surface->swept_tree())
     , patience_ticks_(static_cast<uint32_t>(std::max(1.0, std::round(patience_s * rate_hz))))
@@ -46,7 +48,7 @@ void StylusContact::reset() noexcept
 {
     tip_->reset();
     tail_->reset();
-    has_tail_ = tracked_ = astray_ = false;
+    has_tail_ = tracked_ = false;
     side_count_ = contact_count_ = 0;
     clear_ = {};
     unspared_ = -1;
@@ -69,6 +71,7 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
         return tip_->contact();
     }
     unspared_ = -1;
+    left_ = {};
     const bool had_tip = begin_ == 0, had_tail = end_ == 1;
     const uint64_t sweeps = counters_.sweeps;
     has_shaft_ = take(tip_m, tail_m);
@@ -98,12 +101,11 @@ void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) no
     ++counters_.skipped;
     tip_->follow(tip_m);
     tracked_ = has_shaft_ = finite(tip_m) && take(tip_m, tail_m);
-    astray_ = false;
     side_count_ = 0;
     if (tracked_) {
-        aim_ = reached_ = hand_;
+        reached_ = hand_;
         shaft_ = within(hand_.tip, hand_.tail);
-        tail_->restart(shaft_.tail);
+        tail_->follow(tail_m);
     }
     contact_count_ = 0;
     count();
@@ -162,11 +164,11 @@ void StylusContact::start(const glm::dvec3& tip_m, const Friction& friction) noe
         first && first_crossing(surface(), whole.tail, whole.tip, StartsOn::nothing(), crossing, collision_);
     tip_->tick(tip_m, friction, crosses ? &whole.tail : nullptr);
     tail_->restart(whole.tail);
-    aim_ = reached_ = hand_;
+    reached_ = hand_;
     side_count_ = 0;
-    astray_ = false;
     stuck_ticks_ = 0;
-    shaft_ = goal();
+    shaft_ = within(tip_->proxy().touches() ? tip_->proxy().at : hand_.tip, hand_.tail);
+    if (begin_ == 0) shaft_.tip = glm::round(tip_->proxy().at);
     tracked_ = first && !crosses;
     if (!tracked_)
         tracked_ = !first_crossing(surface(), shaft_.tip, shaft_.tail, StartsOn::nothing(), crossing, collision_);
@@ -175,7 +177,7 @@ void StylusContact::start(const glm::dvec3& tip_m, const Friction& friction) noe
 // Where nothing is near nothing is touched: to the hand, if so.
 bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
 {
-    if (side_count_ > 0 || astray_ || tip_->proxy().touches() || tail_->proxy().touches()) return false;
+    if (side_count_ > 0 || tip_->proxy().touches() || tail_->proxy().touches()) return false;
     const Shaft to = within(hand_.tip, hand_.tail);
     if (!(farther(clear_.at, to) < clear_.radius)) {
         ++collision_.sweeps;
@@ -186,7 +188,7 @@ bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_
         if (skips_free_space_) unspared_ = step;
     }
     shaft_ = to;
-    aim_ = reached_ = hand_;
+    reached_ = hand_;
     tip_->follow(tip_m);
     tail_->follow(tail_m);
     return true;
@@ -218,10 +220,9 @@ void StylusContact::report() noexcept
     if (!tracked_) return;
 
     const uint32_t first = contact_count_;
-    const double drawn = away(shaft_);
     for (uint32_t i = 0; i < side_count_; ++i) {
         const Side& side = sides_[i];
-        if (!(side.push > 0 && side.push < opposed_push * drawn)) continue;
+        if (!(side.push > 0)) continue;
         const SideEdge other = surface().faces[side.face].link[side.edge][0];
         const auto facing = [&](uint32_t face) {
             return std::fabs(glm::dot(side.normal, surface().facet_normal(face)));
@@ -263,16 +264,8 @@ void StylusContact::tell(double along, uint32_t face, const glm::dvec3& point, c
 void StylusContact::tell_what_is_left() noexcept
 {
     const Shaft ideal = extended(shaft_);
-    glm::dvec3 tip = ideal.tip - hand_.tip, tail = ideal.tail - hand_.tail;
+    const glm::dvec3 &tip = left_.tip, &tail = left_.tail;
     const double least = std::max(least_push / (end_ - begin_), least_push_share * away(shaft_));
-    for (uint32_t i = 0; i < contact_count_; ++i) {
-        const Contact& contact = contacts_[i];
-        const glm::dvec3 push = (contact.depth_m * contact.normal + contact.lag_m) / surface().lattice.unit_m;
-        tip -= (1 - contact.along) * push;
-        tail -= contact.along * push;
-    }
-    if (begin_ == 0) tip -= tip_->unfelt();
-    if (end_ == 1) tail -= tail_->unfelt();
     const double tip_push = glm::length(tip), tail_push = glm::length(tail);
     const uint32_t told = contact_count_;
     if (tip_push > least) tell(0, nearest_face(*tip_, 0), ideal.tip, tip / tip_push, tip_push);
@@ -281,7 +274,7 @@ void StylusContact::tell_what_is_left() noexcept
 }
 
 // Of those that are known: it has the material of its object.
-uint32_t StylusContact::nearest_face(const EndContact& end, double along) const noexcept
+uint32_t StylusContact::nearest_face(const SphereContact& end, double along) const noexcept
 {
     if (end.contact().touching) return end.contact().face;
     const Side* nearest = nullptr;

@@ -1,5 +1,5 @@
-// Contact of a stylus with one surface: both ends, each held as a point is, and the shaft between them, which rests on
-// edges and, by two of them, on vertices.
+// Contact of a stylus with one surface: both ends and the shaft between them, which rests on edges and, by two of them,
+// on vertices.
 //
 // The hand holds a stylus from its tip p to its tail q. The proxy is a second stylus, from P to Q: of all that the
 // first can reach without passing through the surface, the one that minimises |P - p|^2 + |Q - q|^2. So a spring of the
@@ -7,18 +7,19 @@
 // energy: without friction no closed path gains energy. A contact at the share s of the shaft (0: tip, 1: tail) pushes
 // with stiffness * depth / ((1 - s)^2 + s^2): like a point at the tip, twice as hard in the middle.
 //
-// The solver may stop before the proxies of the ends and that of the shaft agree. Then the pair stays at the place
-// nearest to the hand that was reached, no farther away than before the tick while all of it is in the workspace, and
-// the part of the springs' force that no known contact explains is reported at the ends (Contact::unsettled).
+// The proxy is a capsule of the radius of a point that is a ball (Lattice::point_radius). What holds it are rows of one
+// projection (project.h): planes between its ends and the triangles near them, and for each edge that its shaft has met
+// a plane at right angles to both, which turns with the shaft. It goes straight to where the rows let it come nearest
+// to the hand, as far as it knows what is around its ends, and looks again. The shaft meets edges in the order of time,
+// and takes no place in which exact arithmetic finds it crossing a triangle, so that nothing is passed through at any
+// speed. It is felt as a line: rows are projected once more without the radius.
 //
-// Ends are tracked by EndContact, each toward where the pushes of the shaft's contacts would have the hand's end. The
-// shaft that follows them has lattice points for ends. It moves straight, meets edges in the order of time, and takes
-// no place in which exact arithmetic finds it crossing a triangle, so that nothing is passed through at any speed;
-// what it met becomes a contact. Contacts that pull are none; what slides off the end of an edge meets the next.
+// What one tick may look at is bounded. Where that is reached the stylus stays at the place that it has come to, no
+// farther from the hand than before the tick, and the part of the springs' force that no known contact explains is told
+// at the ends (Contact::unsettled).
 //
 // A stylus that is put down across the surface, or comes from beyond the workspace of the lattice with its whole
-// length, is held by its tip alone until it crosses nothing; so is one of which the shaft could not follow for 64 ticks
-// on end.
+// length, is held by its tip alone until it crosses nothing; so is one that could not follow for 64 ms on end.
 //
 // One servo thread owns a contact. update() allocates nothing, never throws, and gives the same bits for the same
 // sequence of poses. Everything is in the object's space, metres. Friction holds the ends; the shaft slides freely. Its
@@ -26,9 +27,9 @@
 // place does not make way for an edge, so the other has to, and friction bears what the edge pushes the kept end with.
 #pragma once
 
-#include "runtime/contact/end_contact.h"
 #include "runtime/contact/project.h"
 #include "runtime/contact/shaft.h"
+#include "runtime/contact/sphere_contact.h"
 #include "runtime/contact/stylus_friction.h"
 #include "runtime/contact/swept_tree.h"
 
@@ -81,7 +82,9 @@ public:
 
 private:
     static constexpr uint32_t sides_max = 4;
-    static constexpr uint32_t rounds_max = 24, sweeps_max = 80;
+    static constexpr std::size_t planes_max = 96; // of an end
+    static constexpr double push_settled = 1e-3;  // lattice units: what a push may leave violated
+    static constexpr uint32_t rounds_max = 24, sweeps_max = 32;
 
     // A contact of the shaft with an edge.
     struct Side {
@@ -99,6 +102,7 @@ private:
         int side = 0;
         bool exact = false; // not met on the way, but crossed at the end of it
         double on_shaft = 0;
+        double height = 0; // over the edge that it comes near
     };
     struct FrictionOfEnds {
         EndFriction tip, tail;
@@ -109,13 +113,10 @@ private:
         double radius = 0, next_radius = 0;
     };
 
-    // All that a tick changes of where it is held.
-    struct Place {
-        Shaft shaft, reached;
-        EndContact::State tip, tail;
-        std::array<Side, sides_max> sides;
-        uint32_t side_count;
-        bool astray;
+    // Of an end in rows_, and how far they hold for it.
+    struct EndRows {
+        uint32_t first = 0, count = 0;
+        double reach = 0;
     };
 
     const glm::dvec3& edge_end(uint32_t face, uint32_t edge, uint32_t which) const noexcept;
@@ -124,51 +125,52 @@ private:
     bool take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
     Shaft within(const glm::dvec3& tip, const glm::dvec3& tail) const noexcept;
     Shaft extended(const Shaft& part) const noexcept;
-    Shaft goal() const noexcept;
     void start(const glm::dvec3& tip_m, const Friction& friction) noexcept;
     bool pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
-    void restart_ends() noexcept;
 
     void resolve(const EndsFriction& friction) noexcept;
-    enum class Turning : uint8_t { with_the_shaft, not_at_all };
-    double solve(const Shaft& hand, Shaft& aim, FrictionOfEnds& ends,
-                 Turning normals = Turning::with_the_shaft) noexcept;
-    Shaft clear_of_sides(const Shaft& to, EndsGive gives) const noexcept;
-    void take_hold(EndFriction& end_friction, const EndContact& end, const glm::dvec3& on_shaft) const noexcept;
-    bool drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept;
-    bool move(Shaft to) noexcept;
+    bool look(double reach, const FrictionOfEnds& ends) noexcept;
+    std::span<const ShaftRow> turn_sides(const Shaft& at, double gap) noexcept;
+    void take_hold(EndFriction& friction, const EndRows& rows, const Projection<Shaft>& held, const glm::dvec3& at,
+                   double radius) const noexcept;
+    Projection<Shaft> solve(FrictionOfEnds& ends) noexcept;
+    double known_share(const Shaft& to, const Projection<Shaft>& held, const FrictionOfEnds& ends) noexcept;
+    Shaft on_the_way(const Shaft& to, double share, const FrictionOfEnds& ends) noexcept;
+    void hold(const FrictionOfEnds& ends, bool settled) noexcept;
+    bool move(const Shaft& to) noexcept;
     bool blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept;
     bool is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Shaft& to) const noexcept;
     void approach(const Shaft& to, const Obstacle& obstacle) noexcept;
     void touch(const Obstacle& obstacle) noexcept;
+    void see(uint32_t face, uint32_t edge, const Shaft& to) noexcept;
     void let_go_of_ended() noexcept;
-    bool let_go_of_unreached() noexcept;
-    Place place() const noexcept;
-    void go_back(const Place& to) noexcept;
+    bool meets_fresh(const Side& side) const noexcept;
+    void let_go_of_unreached() noexcept;
     double away(const Shaft& part) const noexcept;
-    void hold_hand_from_here(FrictionOfEnds& ends) noexcept;
     void drop(uint32_t side) noexcept;
     void report() noexcept;
     void tell(double along, uint32_t face, const glm::dvec3& point, const glm::dvec3& normal, double push) noexcept;
     void tell_what_is_left() noexcept;
-    uint32_t nearest_face(const EndContact& end, double along) const noexcept;
+    uint32_t nearest_face(const SphereContact& end, double along) const noexcept;
     void count() noexcept;
 
-    std::unique_ptr<EndContact> tip_, tail_;
+    std::unique_ptr<SphereContact> tip_, tail_;
     bool skips_free_space_;
-    const SweptTree* tree_;                         // of the surface, which the ends hold
-    Shaft hand_;                                    // lattice units, neither rounded nor clamped
-    double begin_ = 0, end_ = 1;                    // shares of the stylus that lie in the workspace
-    Shaft aim_;                                     // where the pushes of the sides would have the hand's ends
-    Shaft reached_;                                 // the hand for which the shaft was held last
-    Shaft shaft_;                                   // lattice points
-    bool has_tail_ = false, has_shaft_ = false;     // of the last tick
-    bool tracked_ = false;                          // the shaft crosses nothing
-    bool astray_ = false;                           // the shaft could not follow its ends
-    bool tip_walked_ = false, tail_walked_ = false; // in this move, on the surface
-    Obstacle met_;                                  // by the last move
+    const SweptTree* tree_;                     // of the surface, which the ends hold
+    Shaft hand_;                                // lattice units, neither rounded nor clamped
+    double begin_ = 0, end_ = 1;                // shares of the stylus that lie in the workspace
+    Shaft reached_;                             // the hand for which the shaft was held last
+    Shaft shaft_;                               // lattice points
+    bool has_tail_ = false, has_shaft_ = false; // of the last tick
+    bool tracked_ = false;                      // the shaft crosses nothing
+    Obstacle close_;
+    Obstacle met_; // by the last move
     std::array<Side, sides_max> sides_;
     uint32_t side_count_ = 0;
+    std::array<ShaftRow, 2 * planes_max + sides_max> rows_; // of the tip, the tail, the sides
+    uint32_t row_count_ = 0;
+    EndRows tip_rows_, tail_rows_;
+    Shaft left_; // of what the springs are drawn by, what no row accounts for
     Clear clear_;
     double unspared_ = -1;                        // as a point's
     std::array<Contact, sides_max + 8> contacts_; // of each end three, and what is left

@@ -46,7 +46,7 @@ double EndFriction::follow(const glm::dvec3& aim, const glm::dvec3& held, const 
     const double most = limited(found);
     const bool moved = std::exchange(moves, oppose(held - at - give * lag, give, most));
     if (moves != moved) return HUGE_VAL;
-    const double change = std::max(moves ? glm::distance(lag, before) : 0.0, std::fabs(most - found));
+    const double change = std::max(glm::distance(lag, before), std::fabs(most - found));
     return change == 0 ? 0 : change / most;
 }
 

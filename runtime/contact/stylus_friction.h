@@ -3,9 +3,6 @@
 // lever up to a hundred times as hard as the hand; and that pressure limits the friction, which limits the
 // displacement. So the caller iterates: each iteration solves the contacts with the present friction and calls
 // follow(). Forces are in lattice units: the length by which they stretch the spring of an end.
-//
-// Known limit: where both ends touch and slide, and the shaft leans on an edge between them, each end is solved with
-// the friction of the other held fixed. If that does not converge, the shaft may be stopped in that tick.
 #pragma once
 
 #include "runtime/contact/contact.h"

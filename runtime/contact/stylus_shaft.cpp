@@ -1,4 +1,4 @@
-// How the shaft of a stylus follows its ends: straight moves past edges, and what it meets on the way.
+// How the shaft of a stylus moves: straight past edges, and what it meets on the way.
 #include "runtime/contact/stylus_contact.h"
 #include "runtime/geometry/predicates.h"
 #include "runtime/surface/collision.h"
@@ -14,16 +14,11 @@ using namespace shaft_tolerance;
 
 namespace {
 
-// Lattice units. What is so near to an end that walks on the surface is left to the walk: a plane of which the vertices
-// are rounded is not plane.
-constexpr double at_the_end = 4096;
-
-// An end in a fold too sharp for `beside` is drawn back along the shaft by one of these, if what it crosses there is at
-// the end.
-constexpr double drawn_back[] = {64, 1024};
-
 // A sweep past so many triangles counts as another one.
 constexpr uint64_t per_sweep = 256;
+
+// So many are looked at on one straight way: 20 times what strokes meet on fine meshes. A longer one is tried in part.
+constexpr uint64_t triangles_per_move = 1024;
 
 } // namespace
 
@@ -37,54 +32,40 @@ Passing StylusContact::passing_of(const Side& side, const Shaft& shaft) const no
     return passing(shaft, edge_end(side.face, side.edge, 0), edge_end(side.face, side.edge, 1));
 }
 
-// Takes the shaft to where its ends want it: straight if nothing is in the way, else along their paths. False: it met
-// something, which now is a contact.
-bool StylusContact::drag(const WalkPath& tip_path, const WalkPath& tail_path) noexcept
+// Straight to there. False: it met something on its way, which now is a contact.
+bool StylusContact::move(const Shaft& to) noexcept
 {
-    const Shaft from = shaft_, to = goal();
-    tip_walked_ = tip_->contact().touching || tip_path.count > 0; // one that has left its border by now, too
-    tail_walked_ = tail_->contact().touching || tail_path.count > 0;
-    if (move(to)) return true;
-    Shaft leg = to;
-    const uint32_t legs = std::max(tip_path.count, tail_path.count);
-    for (uint32_t k = 1; k <= legs && sweeps_left_ > 0; ++k) {
-        const auto at = [&](const WalkPath& path, const glm::dvec3& begin, const glm::dvec3& end) {
-            if (path.count > 0) return path.at[(k * path.count + legs - 1) / legs - 1];
-            return glm::round(begin + double(k) / legs * (end - begin));
-        };
-        leg = {at(tip_path, from.tip, to.tip), at(tail_path, from.tail, to.tail)};
-        if (!move(leg)) break;
-        leg = to;
+    close_ = {};
+    close_.height = rest_gap * (1 - 1e-3);
+    if (!blocked(shaft_, to, met_)) {
+        shaft_ = to;
+        touch(close_);
+        return true;
     }
-    if (legs > 0 && leg == to && move(to)) return true;
-    approach(leg, met_);
+    approach(to, met_);
     touch(met_);
     return false;
 }
 
-bool StylusContact::move(Shaft to) noexcept
+// What the shaft comes near to at the end of its move becomes a contact.
+void StylusContact::see(uint32_t face, uint32_t edge, const Shaft& to) noexcept
 {
-    if (to == shaft_) return true;
-    if (!blocked(shaft_, to, met_)) {
-        shaft_ = to;
-        return true;
+    const glm::dvec3 &a = edge_end(face, edge, 0), &b = edge_end(face, edge, 1);
+    const Passing lines = passing(to, a, b);
+    if (lines.parallel) return;
+    const int sign = -side_of_line(glm::round(to.tip), glm::round(to.tail), a, b);
+    if (!lines.within(0, 0, rest_gap)) return;
+    const double beyond = std::max({0.0, -lines.on_edge, lines.on_edge - lines.edge_length});
+    const double height = std::hypot(lines.height, beyond);
+    if (!(height < close_.height)) return;
+    for (uint32_t i = 0; i < side_count_; ++i) {
+        const auto& corners = surface().faces[sides_[i].face].vertex;
+        const auto& own = surface().faces[face].vertex;
+        const uint32_t p = corners[sides_[i].edge], q = corners[next(sides_[i].edge)], u = own[edge],
+                       v = own[next(edge)];
+        if ((p == u && q == v) || (p == v && q == u)) return;
     }
-    for (const double back : drawn_back) {
-        if (!met_.exact) return false;
-        const glm::dvec3 along = to.tail - to.tip;
-        const double length = glm::length(along);
-        Shaft drawn = to;
-        if (met_.on_shaft * length < at_the_end)
-            drawn.tip = glm::round(to.tip + back / length * along);
-        else if ((1 - met_.on_shaft) * length < at_the_end)
-            drawn.tail = glm::round(to.tail - back / length * along);
-        else
-            return false;
-        if (blocked(shaft_, drawn, met_)) continue;
-        shaft_ = drawn;
-        return true;
-    }
-    return false;
+    close_ = {face, edge, 1, sign, false, lines.on_shaft, height};
 }
 
 // Whether an edge cannot be met by a shaft that goes to a place above one of its sides: the side's own edge, and what
@@ -111,35 +92,40 @@ bool StylusContact::is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Sh
 bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept
 {
     const Surface& s = surface();
-    const double tip_off = tip_walked_ ? at_the_end : 0, tail_off = tail_walked_ ? at_the_end : 0;
     bool met = false;
     obstacle.time = 1;
     obstacle.exact = false;
     ++collision_.sweeps;
     const uint64_t tested = collision_.triangles_tested;
-    tree_->for_each(SweptRegion(from.tip, from.tail, to.tip, to.tail, reach), [&](uint32_t f) {
-        ++collision_.triangles_tested;
+    const SweptRegion swept(from.tip, from.tail, to.tip, to.tail, rest_gap + reach);
+    const bool all = tree_->for_each(swept, [&](uint32_t f) {
+        if (collision_.triangles_tested++ - tested == triangles_per_move) return false;
         const Face& face = s.faces[f];
         for (uint32_t edge = 0; edge < 3; ++edge) {
             if (std::min(face.link[edge][0].face(), face.link[edge][1].face()) < f) continue; // tested from there
             const glm::dvec3 &a = edge_end(f, edge, 0), &b = edge_end(f, edge, 1);
             EdgeMeeting meeting;
-            if (!meets(from, to, a, b, tip_off, tail_off, obstacle.time, meeting) ||
-                is_below_a_side(face.vertex[edge], face.vertex[next(edge)], to))
-                continue;
-            obstacle = {f, edge, meeting.time, meeting.side, false, 0};
+            const bool is_met = meets(from, to, a, b, obstacle.time, meeting);
+            if (!met && meeting.close) see(f, edge, to);
+            if (!is_met || is_below_a_side(face.vertex[edge], face.vertex[next(edge)], to)) continue;
+            obstacle = {f, edge, meeting.time, meeting.side, false, 0, 0};
             met = true;
         }
         return true;
     });
     const uint64_t cost = 1 + (collision_.triangles_tested - tested) / per_sweep;
     sweeps_left_ -= static_cast<uint32_t>(std::min<uint64_t>(cost, sweeps_left_));
+    if (!all) { // the way is too long to be looked at
+        obstacle = {};
+        obstacle.exact = true;
+        return true;
+    }
     if (met) return true;
 
     Crossing crossing;
     if (!first_crossing(s, to.tip, to.tail, StartsOn::nothing(), crossing, collision_)) return false;
     // Where the straight ways led below a vertex it is the next edge that stops the shaft, not one below that.
-    obstacle = {crossing.face, 0, 1, 0, true, crossing.fraction()};
+    obstacle = {crossing.face, 0, 1, 0, true, crossing.fraction(), 0};
     const auto& corners = s.faces[crossing.face].vertex;
     for (const bool below : {false, true}) {
         double nearest = HUGE_VAL;
@@ -211,25 +197,34 @@ void StylusContact::let_go_of_ended() noexcept
                                               edge_end(side.face, side.edge, 1));
         if (exact != 0) side.sign = exact;
         const bool over =
-            !now.parallel && now.within(let_go_by_end, let_go_by_end, let_go) && side.sign * now.height > -rest_gap;
+            !now.parallel && now.within(let_go_by_end, let_go_by_end, let_go) && std::fabs(now.height) < 4 * rest_gap;
         const bool ahead = !side.reached && (side.fresh || side.push > 0);
         side.reached |= over;
-        side.fresh = false;
-        if (!over && !ahead) drop(i);
+        if (!over && !ahead && !meets_fresh(side)) drop(i);
     }
+    for (Side& side : std::span(sides_.data(), side_count_)) side.fresh = false;
+}
+
+// Whether the side ends where one that was met in this round begins: in the corner of both it may rest on both.
+bool StylusContact::meets_fresh(const Side& side) const noexcept
+{
+    const auto has = [&](const Side& other, uint32_t vertex) {
+        const auto& corners = surface().faces[other.face].vertex;
+        return corners[other.edge] == vertex || corners[next(other.edge)] == vertex;
+    };
+    const auto& corners = surface().faces[side.face].vertex;
+    return std::any_of(sides_.begin(), sides_.begin() + side_count_, [&](const Side& other) {
+        return &other != &side && other.fresh &&
+               (has(other, corners[side.edge]) || has(other, corners[next(side.edge)]));
+    });
 }
 
 // Of edges that the shaft was stopped by on its way, and has not come to pass over: it found another way. Nothing is
-// there to push. Returns whether one did.
-bool StylusContact::let_go_of_unreached() noexcept
+// there to push.
+void StylusContact::let_go_of_unreached() noexcept
 {
-    bool pushed = false;
-    for (uint32_t i = side_count_; i-- > 0;) {
-        if (sides_[i].reached) continue;
-        pushed |= sides_[i].push > 0;
-        drop(i);
-    }
-    return pushed;
+    for (uint32_t i = side_count_; i-- > 0;)
+        if (!sides_[i].reached) drop(i);
 }
 
 void StylusContact::drop(uint32_t side) noexcept

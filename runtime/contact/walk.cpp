@@ -29,7 +29,7 @@ public:
     {
     }
 
-    void run(uint32_t step_limit, WalkPath* path);
+    void run(uint32_t step_limit);
 
 private:
     enum class Step : uint8_t { again, stop };
@@ -70,7 +70,7 @@ private:
     bool moved_ = false;
 };
 
-void Walk::run(uint32_t step_limit, WalkPath* path)
+void Walk::run(uint32_t step_limit)
 {
     Step step = Step::again;
     for (count_.steps = 0; step == Step::again && count_.steps < step_limit; ++count_.steps) {
@@ -81,7 +81,6 @@ void Walk::run(uint32_t step_limit, WalkPath* path)
         case Proxy::On::vertex: step = from_vertex(); break;
         case Proxy::On::nothing: step = Step::stop; break;
         }
-        if (path && proxy_.touches()) path->add(beside(surface_, proxy_));
     }
     count_.cut = step == Step::again;
     proxy_.sliding = proxy_.sliding || moved_;
@@ -354,9 +353,9 @@ Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
 } // namespace
 
 void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count,
-          uint32_t step_limit, WalkPath* path) noexcept
+          uint32_t step_limit) noexcept
 {
-    Walk(surface, proxy, hand, friction, count).run(step_limit, path);
+    Walk(surface, proxy, hand, friction, count).run(step_limit);
 }
 
 glm::dvec3 beside(const Surface& surface, const Proxy& proxy) noexcept

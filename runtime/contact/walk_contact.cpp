@@ -34,7 +34,7 @@ void WalkContact::reset() noexcept
     placed_ = false;
 }
 
-void WalkContact::tick(const glm::dvec3& hand_m, const Friction& friction, const glm::dvec3* tail) noexcept
+void WalkContact::tick(const glm::dvec3& hand_m, const Friction& friction) noexcept
 {
     if (!take(hand_m)) return;
     slide_on(surface_->lattice.metres(hand_) - contact_.hand_m, friction);
@@ -43,11 +43,18 @@ void WalkContact::tick(const glm::dvec3& hand_m, const Friction& friction, const
     } else if (!placed_) {
         placed_ = true;
         proxy_.at = hand_;
-        Crossing crossing;
-        if (tail && sweep(*tail, hand_, crossing) && crossing.side == 0)
-            land(*surface_, proxy_, crossing, *tail, hand_);
     }
-    finish(friction, nullptr);
+    if (proxy_.touches()) {
+        WalkCount count;
+        walk(*surface_, proxy_, hand_, checked(friction), count);
+        counters_.walk_steps += count.steps;
+        counters_.walk_steps_max = std::max<uint64_t>(counters_.walk_steps_max, count.steps);
+        counters_.walks_cut += count.cut;
+        counters_.sweeps += count.collision.sweeps;
+        counters_.object_boxes_missed += count.collision.object_boxes_missed;
+        counters_.triangles_tested += count.collision.triangles_tested;
+    }
+    describe();
     counters_.touching_ticks += contact_.touching;
 }
 
@@ -56,36 +63,13 @@ void WalkContact::slide_on(const glm::dvec3& way_m, const Friction& friction) no
     proxy_.sliding = proxy_.sliding && contact_.touching && slides_on({&contact_, 1}, way_m, checked(friction));
 }
 
-void WalkContact::go(const Friction& friction, WalkPath* path) noexcept
-{
-    const bool free = !proxy_.touches();
-    if (free) move_freely(hand_);
-    if (path && free && proxy_.touches()) path->add(beside());
-    finish(friction, path);
-}
-
 void WalkContact::follow(const glm::dvec3& hand_m) noexcept
 {
     if (!take(hand_m)) return;
     ++counters_.skipped;
     placed_ = true;
     proxy_.at = hand_;
-    describe(true);
-}
-
-void WalkContact::restart(const glm::dvec3& at) noexcept
-{
-    proxy_.on = Proxy::On::nothing;
-    proxy_.at = hand_ = true_hand_ = at;
-    placed_ = true;
-    clear_.radius = 0;
-    describe(true);
-}
-
-void WalkContact::go_back(const State& to) noexcept
-{
-    proxy_ = to.proxy;
-    clear_.radius = 0; // it may be out of that
+    describe();
 }
 
 double WalkContact::gap_m(const glm::dvec3& hand_m) const noexcept
@@ -103,16 +87,10 @@ bool WalkContact::take(const glm::dvec3& hand_m) noexcept
         ++counters_.hands_held;
         return placed_;
     }
-    aim(surface_->lattice.units(hand_m));
-    return true;
-}
-
-// Lattice units.
-void WalkContact::aim(const glm::dvec3& hand) noexcept
-{
-    before_ = std::exchange(true_hand_, hand);
+    before_ = std::exchange(true_hand_, surface_->lattice.units(hand_m));
     hand_ = Lattice::snap_units(true_hand_);
     contact_.hand_clamped = Lattice::beyond(hand_ - true_hand_, Lattice::vertex_spacing);
+    return true;
 }
 
 void WalkContact::move_freely(const glm::dvec3& hand) noexcept
@@ -163,22 +141,7 @@ void WalkContact::look_around() noexcept
     clear_.next_radius = glm::clamp(1.4 * clear_.radius, 1.0, Lattice::extent);
 }
 
-void WalkContact::finish(const Friction& friction, WalkPath* path) noexcept
-{
-    if (proxy_.touches()) {
-        WalkCount count;
-        walk(*surface_, proxy_, hand_, checked(friction), count, walk_steps_max, path);
-        counters_.walk_steps += count.steps;
-        counters_.walk_steps_max = std::max<uint64_t>(counters_.walk_steps_max, count.steps);
-        counters_.walks_cut += count.cut;
-        counters_.sweeps += count.collision.sweeps;
-        counters_.object_boxes_missed += count.collision.object_boxes_missed;
-        counters_.triangles_tested += count.collision.triangles_tested;
-    }
-    describe(true);
-}
-
-void WalkContact::describe(bool lags) noexcept
+void WalkContact::describe() noexcept
 {
     const Lattice& lattice = surface_->lattice;
     contact_.touching = proxy_.touches();
@@ -209,7 +172,7 @@ void WalkContact::describe(bool lags) noexcept
         depth = std::max(0.0, glm::dot(from_hand, contact_.normal));
     contact_.depth_m = depth * lattice.unit_m;
     contact_.pressed_m = proxy_.pressed * lattice.unit_m;
-    if (lags) contact_.lag_m = (from_hand - depth * contact_.normal) * lattice.unit_m;
+    contact_.lag_m = (from_hand - depth * contact_.normal) * lattice.unit_m;
 }
 
 } // namespace haptel::runtime

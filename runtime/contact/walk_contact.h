@@ -29,7 +29,7 @@ public:
     // `skips_free_space`: a known clearance spares queries.
     explicit WalkContact(std::shared_ptr<const Surface> surface, bool skips_free_space = true);
 
-    void tick(const glm::dvec3& hand_m, const Friction& friction, const glm::dvec3* tail = nullptr) noexcept override;
+    void tick(const glm::dvec3& hand_m, const Friction& friction) noexcept override;
     void follow(const glm::dvec3& hand_m) noexcept override;
     void look_around() noexcept override;
     void reset() noexcept override;
@@ -39,25 +39,14 @@ public:
     const ContactCounters& counters() const noexcept override { return counters_; }
     const Surface& surface() const noexcept override { return *surface_; }
 
-    bool is_placed() const noexcept override { return placed_; }
     const Proxy& proxy() const noexcept override { return proxy_; }
-    glm::dvec3 beside() const noexcept override { return runtime::beside(*surface_, proxy_); }
-    glm::dvec3 normal() const noexcept override { return contact_.normal; }
-    void set_sliding(bool sliding) noexcept override { proxy_.sliding = sliding; }
-    void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept override;
-    void aim(const glm::dvec3& hand) noexcept override;
-    void go(const Friction& friction, WalkPath* path) noexcept override;
-    void restart(const glm::dvec3& at) noexcept override;
-    State state() const noexcept override { return {proxy_}; }
-    void go_back(const State& to) noexcept override;
-    void describe(bool lags) noexcept override;
-    void count_tick() noexcept override { ++counters_.ticks; }
 
 private:
     bool take(const glm::dvec3& hand_m) noexcept;
     void move_freely(const glm::dvec3& hand) noexcept;
     bool sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept;
-    void finish(const Friction& friction, WalkPath* path) noexcept;
+    void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept;
+    void describe() noexcept;
 
     std::shared_ptr<const Surface> surface_;
     bool skips_free_space_;

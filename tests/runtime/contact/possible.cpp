@@ -12,6 +12,7 @@
 #include <cmath>
 #include <iostream>
 #include <random>
+#include <vector>
 
 using namespace haptel::runtime;
 using namespace haptel::test;
@@ -110,27 +111,28 @@ Verdict judge_ball(const std::shared_ptr<const Surface>& shared, uint64_t ticks,
     const Surface& surface = *shared;
     const ExactMesh exact(surface);
     WildHand hand(surface, seed);
-    const auto contact = make_point(shared);
+    SphereContact point(shared, Lattice::point_radius * surface.lattice.unit_m, SphereContact::Felt::as_point);
+    SphereContact* const contact = &point;
     contact->update(hand.outside());
     std::mt19937_64 random(seed);
     Verdict verdict;
+    std::vector<dvec3> path;
     for (uint64_t i = 0; i < ticks; ++i) {
         const dvec3 at_m = hand.next(), target = surface.lattice.snap(at_m);
-        dvec3 at = contact->beside();
+        dvec3 at = glm::round(contact->proxy().at);
         bool possible = contact->is_placed();
-        contact->slide_on(surface.lattice.metres(target) - contact->contact().hand_m, friction);
-        contact->aim(surface.lattice.units(at_m));
-        WalkPath path;
-        contact->go(friction, &path);
-        path.add(contact->beside());
-        for (uint32_t k = 0; k < path.count && possible; at = path.at[k++]) {
+        contact->update(at_m, friction);
+        path.clear();
+        contact->for_each_place([&](const dvec3& place) { path.push_back(glm::round(place)); });
+        path.push_back(glm::round(contact->proxy().at));
+        for (std::size_t k = 0; k < path.size() && possible; at = path[k++]) {
             ++verdict.steps;
             const auto odd = [&] { return 2.0 * double(random() % 1024) - 1023; };
             const dvec3 beside(odd(), odd(), odd());
-            possible = exact.open(at + beside, path.at[k] + beside);
+            possible = exact.open(at + beside, path[k] + beside);
         }
         const Contact& touch = contact->contact();
-        const double grown = contact->state().grown;
+        const double grown = contact->radius();
         double off = touch.touching ? std::abs(glm::distance(exact.nearest(touch.face, at), at) - grown) : 0.0;
         // Friction may hold it where it does not touch yet what would hold it without.
         if (friction.static_coefficient > 0 && touch.touching)

@@ -55,6 +55,18 @@ TEST_CASE("a ball moves out of a floor and of a groove by what it lacks of its r
     CHECK(glm::distance(in_groove.proxy_m(), r * left + 0.2 * right) < 1e-9);
 }
 
+TEST_CASE("a ball that was put down smaller is whole when it comes back from where it was left alone")
+{
+    constexpr double r = 0.05, depth_m = 0.001;
+    SphereContact ball(surface_of(make_plane(5)), r);
+    ball.update({0.1, 0, 0.03});
+    ball.follow({0.1, 0, 10});
+    ball.follow({0.1, 0, r + 0.01});
+    const auto touched = ball.update({0.1, 0, r - depth_m});
+    REQUIRE(touched.size() == 1);
+    CHECK(std::abs(touched[0].depth_m - depth_m) < 1e-9);
+}
+
 TEST_CASE("a ball that does not fit into a slot goes to its middle, and stays in it")
 {
     constexpr double r = 0.05, half = 0.04, thin = 1e-4;

@@ -270,7 +270,7 @@ TEST_CASE("without friction closed paths of the stylus gain nothing: the work fa
             return std::fabs(work);
         };
         const double coarse = loop(50), finer = loop(200), finest = loop(800);
-        CAPTURE(setting.name, coarse, finer, finest);
+        CAPTURE(setting.name, coarse * 1e12, finer * 1e12, finest * 1e12);
         CHECK(coarse < 1e-6);              // of some 1e-4 that go in and out
         CHECK(finer < coarse / 8 + 1e-13); // 16
         CHECK(finest < finer / 8 + 1e-13);

@@ -55,13 +55,15 @@ Ends force_on_ends(const StylusContact& stylus)
     return sum;
 }
 
-// By how much the hand with the force on it is not where the ideal stylus is.
+// By how much the hand with the force on it is not where the ideal stylus is; but for its radius, which is not felt.
 double unbalanced_m(const StylusContact& stylus, const dvec3& tip, const dvec3& tail)
 {
     const Ends force = force_on_ends(stylus);
     const Lattice& lattice = stylus.surface().lattice;
+    const double unfelt_m = 1.5 * Lattice::point_radius * lattice.unit_m; // of three contacts that it rests on
     return std::max(glm::distance(lattice.metres(stylus.ideal()->tip), tip + force.tip),
-                    glm::distance(lattice.metres(stylus.ideal()->tail), tail + force.tail));
+                    glm::distance(lattice.metres(stylus.ideal()->tail), tail + force.tail)) -
+           unfelt_m;
 }
 
 bool within_friction(const StylusContact& stylus, const Friction& friction)
@@ -72,7 +74,7 @@ bool within_friction(const StylusContact& stylus, const Friction& friction)
 }
 
 struct Work {
-    uint64_t sweeps = 0;               // 99th percentile over the ticks
+    uint64_t sweeps = 0;               // 99th percentile over the ticks, those around the ends included
     uint64_t cut = 0;                  // ticks in which ends and shaft did not come to agree
     int by_shaft = 0;                  // ticks
     double given_m2 = 0, taken_m2 = 0; // in ticks that gave the hand energy, and in those that took some
@@ -117,7 +119,7 @@ TEST_CASE("a stylus that friction wedges into a seam costs hardly more than else
         const Work work = stroke(surface, tail_first);
         CAPTURE(tail_first, work.sweeps, work.cut, work.by_shaft, work.given_m2, work.taken_m2);
         CHECK(work.by_shaft > 1000);
-        CHECK(work.sweeps <= 8);
+        CHECK(work.sweeps <= 12);
         CHECK(work.cut <= 6); // a thousandth of the ticks
         CHECK(work.taken_m2 > 1e-6);
         CHECK(work.given_m2 < 0.01 * work.taken_m2);
@@ -164,8 +166,6 @@ TEST_CASE("a stylus with both ends held by walls and its shaft on an edge betwee
     rectangle({0.1, -0.3, -0.3}, z, y);
     rectangle({0, -0.3, 0}, y, {0, 0, -0.05});
     const auto surface = surface_of(mesh);
-    // Where they slide along the edge, too, ends and shaft may not come to agree (stylus_friction.h): in not more than
-    // a tenth of the ticks, and all others are in balance.
     for (const double tilt : {0.0, 0.004, -0.01})
         for (const double along : {0.0, 0.02}) {
             StylusContact stylus(surface);
@@ -188,7 +188,7 @@ TEST_CASE("a stylus with both ends held by walls and its shaft on an edge betwee
             }
             CAPTURE(tilt, along, both, cut, worst, off);
             CHECK(both > 1000);
-            CHECK(cut <= (along > 0 ? 300u : 0u));
+            CHECK(cut == 0);
             CHECK(worst < 1e-6); // of depths of some 5 mm
             CHECK(off == 0);
         }

@@ -85,7 +85,10 @@ TEST_CASE("a shaft that slides round the hole of a ring is caught at none of its
             }
             if (tick % 100 > 0) continue;
             ++searched;
-            REQUIRE(nearest_by_search(*surface, ideal, hand, random).square_to(hand) >= 0.98 * square - 1e-12);
+            // The search knows no radius.
+            const double radius_m = Lattice::point_radius * surface->lattice.unit_m;
+            REQUIRE(std::sqrt(nearest_by_search(*surface, ideal, hand, random).square_to(hand)) >=
+                    0.99 * off_m - 2 * radius_m);
         }
         CHECK(stylus.counters().walks_cut == 0);
     }
@@ -147,7 +150,8 @@ TEST_CASE("a tip that is drawn over the open border of a cap leaves its shaft th
                 over += contact.by_shaft;
             }
             // What pushes is what the ideal stylus is off the hand, unless it was stopped on its way.
-            stopped += glm::distance(sum, ideal.tip - hand.tip + ideal.tail - hand.tail) > 1e-6;
+            const double unfelt_m = 4 * Lattice::point_radius * surface->lattice.unit_m;
+            stopped += glm::distance(sum, ideal.tip - hand.tip + ideal.tail - hand.tail) > 1e-6 + unfelt_m;
         }
     }
     CHECK(over > 1000);

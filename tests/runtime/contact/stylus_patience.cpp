@@ -49,9 +49,14 @@ TEST_CASE("a shaft that cannot follow is let go after the same time at any rate"
     for (std::size_t i = 0; i < at_1_khz.size(); ++i) {
         if (!at_1_khz[i] || !at_4_khz[i] || *at_1_khz[i] < 32) continue; // at once: nothing was waited for
         ++waited;
-        CHECK(std::abs(*at_1_khz[i] - 1000 * StylusContact::patience_s) <= 4);
-        CHECK(std::abs(*at_4_khz[i] - 4000 * StylusContact::patience_s) <= 4);
-        if (at_250_hz[i]) CHECK(std::abs(*at_250_hz[i] - 250 * StylusContact::patience_s) <= 4);
+        const auto waited_for = [](int ticks, double rate_hz) { // it may be on its way for some ticks before
+            const double more = ticks - rate_hz * StylusContact::patience_s;
+            CHECK(more >= -4);
+            CHECK(more <= 16);
+        };
+        waited_for(*at_1_khz[i], 1000);
+        waited_for(*at_4_khz[i], 4000);
+        if (at_250_hz[i]) waited_for(*at_250_hz[i], 250);
     }
     CHECK(waited > 0);
 }

@@ -112,8 +112,8 @@ TEST_CASE("what a stylus pushes has a potential that the hand alone can raise")
     for (const NamedMesh& hard : hard_meshes()) {
         CAPTURE(hard.name, manner.deepest_m);
         const auto surface = surface_of(hard.mesh);
-        // Of ends that are balls the radius is not felt, nor what that makes between two walls.
-        const double unfelt_m = surface->is_clean() ? 0 : 8 * Lattice::point_radius * surface->lattice.unit_m;
+        // Its radius is not felt, nor how far that holds it out of a narrow fold, by a lever.
+        const double unfelt_m = 32 * Lattice::point_radius * surface->lattice.unit_m;
         int touching = 0, unsettled = 0, ticks = 0, steps = 0;
         for (uint64_t seed = 1; seed <= 4; ++seed) {
             StylusContact stylus(surface);
@@ -164,6 +164,7 @@ TEST_CASE("what pushes a stylus of which a part is out of the workspace is told 
     for (const NamedMesh& hard : hard_meshes()) {
         CAPTURE(hard.name);
         const auto surface = surface_of(hard.mesh);
+        const double unfelt_m = 32 * Lattice::point_radius * surface->lattice.unit_m;
         int touching = 0, parts = 0;
         for (uint64_t seed = 1; seed <= 4; ++seed) {
             StylusContact stylus(surface);
@@ -179,7 +180,7 @@ TEST_CASE("what pushes a stylus of which a part is out of the workspace is told 
                 const Ends pushed = pushed_by(stylus.contacts());
                 const dvec3 tip = at.tip + pushed.tip, along = glm::normalize(at.tail + pushed.tail - tip);
                 for (const dvec3& end : {surface->lattice.metres(ideal->tip), surface->lattice.metres(ideal->tail)})
-                    REQUIRE(glm::length(glm::cross(end - tip, along)) < rounding_m + 2e-6 * pushed.length());
+                    REQUIRE(glm::length(glm::cross(end - tip, along)) < rounding_m + unfelt_m + 2e-6 * pushed.length());
                 parts += glm::distance(ideal->tip, ideal->tail) * surface->lattice.unit_m < 0.499;
                 touching += !stylus.contacts().empty();
             }

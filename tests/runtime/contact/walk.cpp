@@ -363,7 +363,8 @@ TEST_CASE("a stylus far from the surface is spared the query, its shaft included
     }
     const ContactCounters& counters = stylus.counters();
     CHECK(counters.skipped > 950);
-    CHECK(counters.sweeps + counters.skipped <= counters.ticks); // a tick queries or is spared it, not both
+    // A tick queries or is spared it, not both; the first looks at where its ends are put down.
+    CHECK(counters.sweeps + counters.skipped <= counters.ticks + 2);
 }
 
 TEST_CASE("what comes down anew is held by static friction, however it slid before it left")
