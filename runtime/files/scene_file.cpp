@@ -146,7 +146,8 @@ SceneText read_scene(const toml::table& root, const std::filesystem::path& folde
 Loading about(const std::string& what, const Loading& loading)
 {
     if (!loading.tell) return loading;
-    return {[&loading, what](std::string_view doing) { loading.tell(what + ": " + std::string(doing)); }, loading.stop};
+    return {[&loading, what](std::string_view doing) { loading.tell(what + ": " + std::string(doing)); }, loading.stop,
+            loading.threads};
 }
 
 void load_geometry(ObjectText& text, const std::filesystem::path& folder, SurfaceCache* surfaces,

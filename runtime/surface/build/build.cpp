@@ -22,8 +22,8 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg, const Loading* 
         make_fans(*surface, work);
     }
     if (work.begin("where its triangles lie")) {
-        surface->tree = BoxTree::build(surface->vertices, surface->faces, result.error);
-        if (!surface->tree) return result;
+        surface->tree = std::make_unique<const BoxTree>(surface->vertices, surface->faces,
+                                                        box_tree_of(surface->vertices, surface->faces, work.threads()));
         if (!is_joined) find_piercing(*surface, result.report, work);
     }
     if (work.begin("how round it is")) make_shading_normals(*surface, crease_deg);

@@ -2,10 +2,12 @@
 // the runtime; build_surface() calls them.
 #pragma once
 
+#include "runtime/surface/box_tree.h"
 #include "runtime/surface/build/build_work.h"
 #include "runtime/surface/surface.h"
 
 #include <cstddef>
+#include <vector>
 
 namespace haptel::runtime {
 
@@ -25,6 +27,10 @@ void link_faces(Surface& surface, MeshReport& report);
 
 // Fans with their angle-weighted normals, and which of them meet in a vertex.
 void make_fans(Surface& surface, BuildWork& work);
+
+// The nodes of a BoxTree of the faces, the same ones on any number of threads.
+std::vector<BoxTree::Node> box_tree_of(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces,
+                                       unsigned threads);
 
 // Normals of force shading, parted where faces meet at more than crease_deg or are of different smoothing groups.
 void make_shading_normals(Surface& surface, double crease_deg);

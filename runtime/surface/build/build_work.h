@@ -52,6 +52,7 @@ public:
         return !over_;
     }
     bool over() const { return over_; }
+    unsigned threads() const { return loading_ ? loading_->threads : 0; }
     std::size_t looks() const { return looks_; }
 
     std::string error() const; // why it is over; empty: it is not

@@ -180,12 +180,12 @@ TEST_CASE("a step of building counts what it looks at for each triangle, alike f
         Surface surface;
         MeshReport report;
         BuildWork work(mesh.triangles.size());
-        std::string error;
         REQUIRE(repair(mesh, surface, report));
         close_cracks(surface, report, work);
         link_faces(surface, report);
         make_fans(surface, work);
-        surface.tree = BoxTree::build(surface.vertices, surface.faces, error);
+        surface.tree = std::make_unique<const BoxTree>(surface.vertices, surface.faces,
+                                                       box_tree_of(surface.vertices, surface.faces, work.threads()));
         find_piercing(surface, report, work);
         CHECK(double(work.looks()) < 60 * double(mesh.triangles.size()));
     }
