@@ -13,8 +13,8 @@ struct CornerNormals {
     glm::dvec3 n[3];
     CornerNormals(const Surface& surface, uint32_t face, uint32_t side)
     {
-        const auto& of_corner = surface.shading_normal_of[face];
-        for (size_t i = 0; i < 3; ++i) n[i] = surface.shading_normals[of_corner[i][side]].normal;
+        const auto& of_corner = surface.faces[face].fan_or_part;
+        for (size_t i = 0; i < 3; ++i) n[i] = surface.shading_normal(of_corner[i][side]);
     }
     glm::dvec3 at(const glm::dvec3& w) const { return w.x * n[0] + w.y * n[1] + w.z * n[2]; }
 };

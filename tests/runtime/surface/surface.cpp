@@ -1,6 +1,8 @@
 #include "runtime/surface/surface.h"
 
 #include "runtime/contact/end_contact.h"
+#include "runtime/surface/build/build.h"
+#include "runtime/surface/build/edges.h"
 #include "runtime/surface/corner.h"
 #include "runtime/surface/shapes.h"
 #include "tests/runtime/surface/meshes.h"
@@ -200,8 +202,8 @@ TEST_CASE("vertex normals are weighted by angle, whatever the triangulation and 
         const uint32_t outside = glm::dot(s->faces[f].normal, middle) > 0 ? 0 : 1;
         for (uint32_t i = 0; i < 3; ++i) {
             const dvec3 outward = glm::sign(s->vertex_m(f, i)) * third;
-            const dvec3& out = s->fans[s->faces[f].fan[i][outside]].normal;
-            const dvec3& in = s->fans[s->faces[f].fan[i][1 - outside]].normal;
+            const dvec3& out = s->fans[s->fan_of(f, i, outside)].normal;
+            const dvec3& in = s->fans[s->fan_of(f, i, 1 - outside)].normal;
             CHECK(glm::length(out - outward) < 1e-12);
             CHECK(glm::length(in + outward) < 1e-12);
         }
@@ -315,10 +317,10 @@ TEST_CASE("a border's corner that stands on a closed sheet: both its sides and t
     };
     const uint32_t flap = 4;
     std::set<uint32_t> ring;
-    for (uint32_t fan = s->faces[flap].fan[corner(flap)][0]; ring.insert(fan).second;) fan = s->fans[fan].next;
-    CHECK(ring.contains(s->faces[flap].fan[corner(flap)][1]));
-    CHECK(ring.contains(s->faces[0].fan[corner(0)][0])); // the roof from above
-    CHECK_FALSE(ring.contains(s->faces[0].fan[corner(0)][1]));
+    for (uint32_t fan = s->fan_of(flap, corner(flap), 0); ring.insert(fan).second;) fan = s->fans[fan].next;
+    CHECK(ring.contains(s->fan_of(flap, corner(flap), 1)));
+    CHECK(ring.contains(s->fan_of(0, corner(0), 0))); // the roof from above
+    CHECK_FALSE(ring.contains(s->fan_of(0, corner(0), 1)));
 
     // What slides down on the flap to its corner is held by the roof there.
     const auto point = make_point(s);
@@ -341,9 +343,12 @@ TEST_CASE("faces that are cut where cracks close keep their smoothing group")
         const auto& p = mesh.positions_m;
         mesh.smoothing_groups.push_back(row((p[a].y + p[b].y + p[c].y) / 3));
     }
-    const SurfaceResult result = build_surface(mesh);
-    REQUIRE(result.surface);
-    const Surface& surface = *result.surface;
+    Surface surface;
+    MeshReport report;
+    BuildWork work(mesh.triangles.size());
+    REQUIRE(repair(mesh, surface, report));
+    link_faces(surface, Edges(surface, 0), report, 0);
+    close_cracks(surface, report, work);
     CHECK(surface.faces.size() > mesh.triangles.size());
     REQUIRE(surface.smoothing_groups.size() == surface.faces.size());
     for (uint32_t f = 0; f < surface.faces.size(); ++f) {
