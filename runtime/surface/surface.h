@@ -92,9 +92,12 @@ struct Surface {
     std::vector<glm::dvec3> vertices;
     std::vector<Face> faces;
     std::vector<Fan> fans;
-    std::vector<std::array<glm::dvec2, 3>> uv; // per face and corner; empty without texture coordinates
-    std::vector<uint32_t> smoothing_groups;    // per face, as in Mesh; or empty, as they are once it is built
-    std::vector<Origin> origins;               // per face; empty if it is of one piece
+    std::vector<glm::dvec2> uv;                 // texture coordinates; empty without
+    std::vector<std::array<uint32_t, 3>> uv_of; // per face and corner: which
+    std::vector<Origin> origins;                // per face; empty if it is of one piece
+    // While it is built, as in Mesh: per face and corner, and per face; or empty.
+    std::vector<std::array<glm::dvec2, 3>> corner_uv;
+    std::vector<uint32_t> smoothing_groups;
     bool cuts_itself = false; // faces cut or touch each other beside the edges and vertices that they share
     std::vector<FanPart> fan_parts;
     double normal_turn_max_per_m = 0; // no shading normal turns faster along its face (spectral norm); 0: flat facets

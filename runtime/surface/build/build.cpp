@@ -29,7 +29,9 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg, const Loading* 
             edges.emplace(*surface, threads);
             link_faces(*surface, *edges, result.report, threads);
         }
-        make_fans(*surface, crease_deg, work);
+        const ByNumber corners = corners_by_vertex(*surface);
+        make_fans(*surface, corners, crease_deg, work);
+        gather_uv(*surface, corners);
     }
     if (work.begin("where its triangles lie")) {
         surface->tree = std::make_unique<const BoxTree>(surface->vertices, surface->faces,

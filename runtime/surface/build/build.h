@@ -11,6 +11,7 @@
 
 namespace haptel::runtime {
 
+class ByNumber;
 class Edges;
 
 // Lattice, vertices and faces without normal or links: what is left after repair. False: no triangle left.
@@ -27,9 +28,15 @@ void link_faces(Surface& surface, const Edges& edges, MeshReport& report, unsign
 // Joins borders, if there are any, that lie on each other without sharing vertices: then they are to be linked anew.
 void close_cracks(Surface& surface, MeshReport& report, BuildWork& work);
 
+// Texture coordinates of corners, each once for a vertex.
+void gather_uv(Surface& surface, const ByNumber& corners);
+
 // Fans with their angle-weighted normals, and which of them meet in a vertex. They are parted for force shading where
 // faces meet at more than crease_deg or are of different smoothing groups.
-void make_fans(Surface& surface, double crease_deg, BuildWork& work);
+void make_fans(Surface& surface, const ByNumber& corners, double crease_deg, BuildWork& work);
+
+// The corners of faces, 3 * face + corner, by their vertex.
+ByNumber corners_by_vertex(const Surface& surface);
 
 // The nodes of a BoxTree of the faces, the same ones on any number of threads.
 std::vector<BoxTree::Node> box_tree_of(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces,

@@ -233,12 +233,12 @@ private:
         surface_.faces.push_back(rest);
         if (auto& groups = surface_.smoothing_groups; !groups.empty()) groups.push_back(uint32_t{groups[border.face]});
         if (auto& origins = surface_.origins; !origins.empty()) origins.push_back(Origin{origins[border.face]});
-        if (surface_.uv.empty()) return;
-        std::array<glm::dvec2, 3> rest_uv = surface_.uv[border.face];
+        if (surface_.corner_uv.empty()) return;
+        std::array<glm::dvec2, 3> rest_uv = surface_.corner_uv[border.face];
         const glm::dvec2 uv = glm::mix(rest_uv[first], rest_uv[second], share);
         rest_uv[first] = uv;
-        surface_.uv[border.face][second] = uv;
-        surface_.uv.push_back(rest_uv);
+        surface_.corner_uv[border.face][second] = uv;
+        surface_.corner_uv.push_back(rest_uv);
     }
 
     Surface& surface_;

@@ -127,13 +127,11 @@ private:
 
 } // namespace
 
-void make_fans(Surface& surface, double crease_deg, BuildWork& work)
+void make_fans(Surface& surface, const ByNumber& corners, double crease_deg, BuildWork& work)
 {
     if (!work.begin("which of its sheets meet in a vertex")) return;
     std::vector<Face>& faces = surface.faces;
     for (Face& face : faces) face.fan_or_part = {{{no_fan, no_fan}, {no_fan, no_fan}, {no_fan, no_fan}}};
-    const ByNumber corners(surface.vertices.size(), 3 * faces.size(),
-                           [&](uint32_t code) { return faces[code / 3].vertex[code % 3]; });
     std::vector<SomeFans> pieces(pieces_of(surface.vertices.size()));
     in_pieces(surface.vertices.size(), work.threads(), [&](std::size_t begin, std::size_t end, std::size_t piece) {
         SomeFans& some = pieces[piece];

@@ -115,7 +115,7 @@ size_t keep_faces(Surface& surface, const std::vector<uint8_t>& keep)
             if (keep[f]) records[kept++] = records[f];
         records.resize(kept);
     };
-    keep_of(surface.uv);
+    keep_of(surface.corner_uv);
     keep_of(surface.smoothing_groups);
     keep_of(surface.origins);
     keep_of(surface.faces);
@@ -180,7 +180,7 @@ bool repair(const Mesh& mesh, Surface& surface, MeshReport& report, unsigned thr
     const bool has_groups = mesh.smoothing_groups.size() == mesh.triangles.size();
     const bool has_origins = mesh.origins.size() == mesh.triangles.size();
     surface.faces.reserve(sound.size());
-    if (has_uv) surface.uv.reserve(sound.size());
+    if (has_uv) surface.corner_uv.reserve(sound.size());
     if (has_groups) surface.smoothing_groups.reserve(sound.size());
     if (has_origins) surface.origins.reserve(sound.size());
     for (size_t t : sound) {
@@ -194,7 +194,7 @@ bool repair(const Mesh& mesh, Surface& surface, MeshReport& report, unsigned thr
             uv[i] = mesh.uv[given[i]];
             if (!std::isfinite(uv[i].x) || !std::isfinite(uv[i].y)) uv[i] = {0, 0};
         }
-        surface.uv.push_back(uv);
+        surface.corner_uv.push_back(uv);
     }
     report.degenerate = drop_flat_faces(surface, threads);
     report.duplicate = drop_repeated_faces(surface, threads);

@@ -2,6 +2,7 @@
 // here; beyond a limit such a mesh is refused with the reason, and building ends when it is asked to.
 #include "runtime/surface/box_tree.h"
 #include "runtime/surface/build/build.h"
+#include "runtime/surface/build/by_number.h"
 #include "runtime/surface/build/edges.h"
 #include "runtime/surface/loading.h"
 #include "tests/runtime/surface/meshes.h"
@@ -108,7 +109,7 @@ size_t looks_of_fans(const Mesh& mesh)
     BuildWork work(100'000'000); // as of so large a mesh: it does not end
     REQUIRE(repair(mesh, surface, report));
     link_faces(surface, Edges(surface, 0), report, 0);
-    make_fans(surface, default_crease_deg, work);
+    make_fans(surface, corners_by_vertex(surface), default_crease_deg, work);
     CHECK(!work.over());
     return work.looks();
 }
@@ -185,7 +186,7 @@ TEST_CASE("a step of building counts what it looks at for each triangle, alike f
         const Edges edges(surface, 0);
         link_faces(surface, edges, report, 0);
         close_cracks(surface, report, work);
-        make_fans(surface, default_crease_deg, work);
+        make_fans(surface, corners_by_vertex(surface), default_crease_deg, work);
         surface.tree = std::make_unique<const BoxTree>(surface.vertices, surface.faces,
                                                        box_tree_of(surface.vertices, surface.faces, work.threads()));
         find_piercing(surface, edges, report, work);

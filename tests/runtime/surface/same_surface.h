@@ -40,8 +40,9 @@ inline std::string first_difference(const runtime::Surface& a, const runtime::Su
             return same_bits(x.normal, y.normal) && x.fan == y.fan;
         }))
         return "fan parts";
-    if (differ(a.uv, b.uv, bits)) return "uv";
-    if (differ(a.smoothing_groups, b.smoothing_groups, bits)) return "smoothing groups";
+    if (differ(a.uv, b.uv, bits) || differ(a.uv_of, b.uv_of, bits)) return "uv";
+    for (const runtime::Surface* one : {&a, &b})
+        if (!one->corner_uv.empty() || !one->smoothing_groups.empty()) return "what is for building alone";
     if (differ(a.origins, b.origins, bits)) return "origins";
     if (differ(a.tree->nodes(), b.tree->nodes(), bits)) return "tree";
     if (a.cuts_itself != b.cuts_itself) return "cuts itself";

@@ -261,7 +261,8 @@ TEST_CASE("cracks between borders are closed, and only cracks")
     CHECK(rowed.surface->faces.size() == 2 * (2 + 4 + 8 + 16) + 2 + 4 + 8);
     for (uint32_t f = 0; f < rowed.surface->faces.size(); ++f)
         for (uint32_t i = 0; i < 3; ++i)
-            CHECK(glm::length(rowed.surface->uv[f][i] - glm::dvec2(rowed.surface->vertex_m(f, i))) < 1e-9);
+            CHECK(glm::length(rowed.surface->uv[rowed.surface->uv_of[f][i]] -
+                              glm::dvec2(rowed.surface->vertex_m(f, i))) < 1e-9);
 
     // A hand that is drawn along the lines, pressing down and exactly on them, stays on top.
     const auto point = make_point(rowed.surface);
@@ -331,6 +332,26 @@ TEST_CASE("a border's corner that stands on a closed sheet: both its sides and t
     for (int i = 1; i <= 20; ++i) contact.update({-0.001 * i, -0.001 * i, -0.02 - 0.01 * i});
     CHECK(contact.contact().touching);
     CHECK(std::abs(contact.contact().proxy_m.z) < 0.1);
+}
+
+TEST_CASE("texture coordinates that corners of a vertex share are held once")
+{
+    const Mesh mesh = make_sphere(40, 20); // its seam has two of them at each vertex, its poles forty
+    const auto s = surface_of(mesh);
+    std::set<std::array<double, 5>> given, held;
+    for (const auto& corners : mesh.triangles)
+        for (const uint32_t i : corners) {
+            const dvec3 p = s->lattice.snap_vertex(mesh.positions_m[i]);
+            given.insert({p.x + 0.0, p.y + 0.0, p.z + 0.0, mesh.uv[i].x, mesh.uv[i].y});
+        }
+    for (uint32_t f = 0; f < s->faces.size(); ++f)
+        for (uint32_t i = 0; i < 3; ++i) {
+            const dvec3& p = s->vertices[s->faces[f].vertex[i]];
+            const glm::dvec2& uv = s->uv[s->uv_of[f][i]];
+            held.insert({p.x, p.y, p.z, uv.x, uv.y});
+        }
+    CHECK((held == given));
+    CHECK(s->uv.size() == given.size());
 }
 
 TEST_CASE("faces that are cut where cracks close keep their smoothing group")
