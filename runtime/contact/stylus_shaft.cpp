@@ -117,7 +117,7 @@ bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstac
     obstacle.exact = false;
     ++collision_.sweeps;
     const uint64_t tested = collision_.triangles_tested;
-    tree_->for_each(SweptRegion(from.tip, from.tail, to.tip, to.tail, reach), [&](uint32_t f) {
+    tree_.for_each(SweptRegion(from.tip, from.tail, to.tip, to.tail, reach), [&](uint32_t f) {
         ++collision_.triangles_tested;
         const Face& face = s.faces[f];
         for (uint32_t edge = 0; edge < 3; ++edge) {

@@ -63,6 +63,30 @@ public:
     // The same faces, and some a little farther away, as a list that has room for so many; false if there are more.
     bool ball(const glm::dvec3& centre, double radius, std::size_t most, std::vector<uint32_t>& faces) const noexcept;
 
+    // Calls visit(face) for each face to whose box may_meet(centre, half) says yes, and so of all boxes around it,
+    // until visit says false. Returns whether all were visited.
+    template <class MayMeet, class Visit>
+    bool for_each(MayMeet&& may_meet, Visit&& visit) const
+    {
+        uint32_t waiting[depth_max * (width - 1) + width];
+        std::size_t count = 0;
+        waiting[count++] = 0;
+        while (count > 0) {
+            const Node& node = nodes_[waiting[--count]];
+            for (uint32_t k = width; k-- > 0;) {
+                const glm::dvec3 low(node.low[0][k], node.low[1][k], node.low[2][k]),
+                    high(node.high[0][k], node.high[1][k], node.high[2][k]);
+                if (!(low.x <= high.x)) continue; // empty
+                if (!may_meet((0.5 / scale) * (low + high), (0.5 / scale) * (high - low))) continue;
+                if (!(node.child[k] & is_face))
+                    waiting[count++] = node.child[k];
+                else if (!visit(node.child[k] & ~is_face))
+                    return false;
+            }
+        }
+        return true;
+    }
+
     // The object lies within [-1, 1] there, and the workspace within [-4, 4].
     static constexpr double scale = 1.0 / Lattice::extent;
 

@@ -13,7 +13,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +20,6 @@
 namespace haptel::runtime {
 
 class BoxTree;
-class SweptTree;
 struct Loading;
 
 // What was found in a mesh and mended. All counts, no unit.
@@ -142,13 +140,6 @@ struct Surface {
     // First crossing of the segment, by exact predicates: never lost, whatever edge or vertex it passes through.
     // Allocates nothing. Not finite ends: nothing.
     std::optional<SegmentHit> first_hit(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept;
-
-    // Of the faces, for shafts. Whoever asks for it first makes it, which allocates and takes a while: never in a tick.
-    const SweptTree& swept_tree() const;
-
-private:
-    mutable std::once_flag swept_tree_made_;
-    mutable std::shared_ptr<const SweptTree> swept_tree_; // null before
 };
 
 struct SurfaceResult {
