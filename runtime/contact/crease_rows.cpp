@@ -46,7 +46,7 @@ void CreaseRows::add(const Surface& surface, const Contact& contact, std::size_t
     bool closed = is_on_crease;
     const auto meets = [&](uint32_t face, uint32_t side, uint32_t corner) {
         if (count < facets_most) {
-            facets[count] = {face, side, surface.shading_normal_of[face][corner][side]};
+            facets[count] = {face, side, surface.faces[face].fan_or_part[corner][side]};
             free[count] = {surface.facet_normal(face, side), 0};
         }
         ++count;

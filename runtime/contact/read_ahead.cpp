@@ -17,17 +17,13 @@ void prefetch(const Record& record)
 uint32_t read_from(const Surface& surface, const SideEdge& to, int rings)
 {
     const Face& face = surface.faces[to.face()];
-    const auto& normal_of = surface.shading_normal_of[to.face()];
     for (size_t corner = 0; corner < 3; ++corner) {
         prefetch(surface.vertices[face.vertex[corner]]);
-        prefetch(surface.shading_normals[normal_of[corner][to.side()]]);
+        prefetch(surface.shading_normal(face.fan_or_part[corner][to.side()]));
     }
     uint32_t seen = 1;
     if (rings == 0) return seen;
-    for (const auto& link : face.link) {
-        prefetch(surface.faces[link[to.side()].face()]);
-        prefetch(surface.shading_normal_of[link[to.side()].face()]);
-    }
+    for (const auto& link : face.link) prefetch(surface.faces[link[to.side()].face()]);
     for (uint32_t edge = 0; edge < 3; ++edge)
         if (edge != to.edge()) seen += read_from(surface, face.link[edge][to.side()], rings - 1);
     return seen;

@@ -156,7 +156,7 @@ private:
 
     std::unique_ptr<SphereContact> tip_, tail_;
     bool skips_free_space_;
-    const SweptTree* tree_;                     // of the surface, which the ends hold
+    SweptTree tree_;                            // of the surface, which the ends hold
     Shaft hand_;                                // lattice units, neither rounded nor clamped
     double begin_ = 0, end_ = 1;                // shares of the stylus that lie in the workspace
     Shaft reached_;                             // the hand for which the shaft was held last

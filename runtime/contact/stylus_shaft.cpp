@@ -98,7 +98,7 @@ bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstac
     ++collision_.sweeps;
     const uint64_t tested = collision_.triangles_tested;
     const SweptRegion swept(from.tip, from.tail, to.tip, to.tail, rest_gap + reach);
-    const bool all = tree_->for_each(swept, [&](uint32_t f) {
+    const bool all = tree_.for_each(swept, [&](uint32_t f) {
         if (collision_.triangles_tested++ - tested == triangles_per_move) return false;
         const Face& face = s.faces[f];
         for (uint32_t edge = 0; edge < 3; ++edge) {

@@ -1,14 +1,13 @@
-// Which triangles may a shaft meet on its way? A tree of boxes for regions that are neither a segment nor a ball: all
-// that lies between a few points, such as the four ends of a shaft before and after a move.
+// Which triangles may a shaft meet on its way? Regions that are neither a segment nor a ball: all that lies between a
+// few points, such as the four ends of a shaft before and after a move.
 //
-// It says yes in doubt and never no by mistake. Coordinates are lattice units. Built once; a query allocates nothing.
+// It says yes in doubt and never no by mistake. Coordinates are lattice units. A query allocates nothing.
 #pragma once
 
-#include "runtime/surface/surface.h"
+#include "runtime/surface/box_tree.h"
 
 #include <array>
 #include <cstdint>
-#include <vector>
 
 namespace haptel::runtime {
 
@@ -42,53 +41,27 @@ private:
     uint32_t axis_count_ = 0;
 };
 
+// The surface's tree, asked for regions.
 class SweptTree {
 public:
-    explicit SweptTree(const Surface& surface);
+    // Of a surface that lives longer.
+    explicit SweptTree(const Surface& surface) : tree_(surface.tree.get()) {}
 
     // Calls visit(face) for each triangle whose box the region may meet, until that says false. Returns whether all
     // were visited.
     template <class Visit>
     bool for_each(const SweptRegion& region, Visit&& visit) const
     {
-        uint32_t stack[64];
-        uint32_t top = 0;
-        stack[top++] = 0;
-        while (top > 0) {
-            const uint32_t index = stack[--top];
-            const Node& node = nodes_[index];
-            if (!region.may_meet(node.centre, node.half)) continue;
-            if (node.second != 0) {
-                stack[top++] = node.second;
-                stack[top++] = index + 1;
-                continue;
-            }
-            for (uint32_t i = node.begin; i < node.end; ++i)
-                if (region.may_meet(boxes_[i].centre, boxes_[i].half) && !visit(boxes_[i].face)) return false;
-        }
-        return true;
+        return tree_->for_each(
+            [&](const glm::dvec3& centre, const glm::dvec3& half) { return region.may_meet(centre, half); }, visit);
     }
-
     bool is_empty(const SweptRegion& region) const
     {
         return for_each(region, [](uint32_t) { return false; });
     }
 
 private:
-    struct Node {
-        glm::vec3 centre, half;
-        uint32_t begin, end; // of boxes_, in a leaf
-        uint32_t second = 0; // the other child; the first is the next node; 0: a leaf
-    };
-    struct Box {
-        glm::vec3 centre, half;
-        uint32_t face;
-    };
-
-    void build(uint32_t begin, uint32_t end);
-
-    std::vector<Box> boxes_;
-    std::vector<Node> nodes_;
+    const BoxTree* tree_;
 };
 
 } // namespace haptel::runtime

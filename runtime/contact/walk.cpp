@@ -225,12 +225,12 @@ Walk::Step Walk::from_vertex()
     const glm::dvec3 to_hand = hand_ - proxy_.at;
     NearestInFan nearest;
     bool free_of_vertex = true;
-    const uint32_t own = surface_.faces[proxy_.face].fan[proxy_.index][proxy_.side];
+    const uint32_t own = surface_.fan_of(proxy_.face, proxy_.index, proxy_.side);
     uint32_t fan = own;
     do { // the fan walked on, and others that it meets in this vertex
         const Fan& data = surface_.fans[fan];
-        const Sector start =
-            fan == own ? Sector{proxy_.face, proxy_.index, proxy_.side} : Sector{data.face, data.corner, data.side};
+        const Sector start = fan == own ? Sector{proxy_.face, proxy_.index, proxy_.side}
+                                        : Sector{data.start.face(), data.start.edge(), data.start.side()};
         const bool closed = nearest.consider(surface_, start, to_hand);
         free_of_vertex = free_of_vertex && (!closed || glm::dot(data.normal, to_hand) > 0);
         fan = data.next;
@@ -366,7 +366,8 @@ glm::dvec3 beside(const Surface& surface, const Proxy& proxy) noexcept
     case Proxy::On::nothing: return proxy.at;
     case Proxy::On::face: return glm::round(proxy.at + clear_beside * normal);
     case Proxy::On::vertex:
-        return glm::round(proxy.at + clear_beside * surface.fans[face.fan[proxy.index][proxy.side]].normal);
+        return glm::round(proxy.at +
+                          clear_beside * surface.fans[surface.fan_of(proxy.face, proxy.index, proxy.side)].normal);
     case Proxy::On::edge: break;
     }
     const SideEdge link = face.link[proxy.index][proxy.side];

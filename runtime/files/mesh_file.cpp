@@ -19,6 +19,7 @@
 #include <limits>
 #include <new>
 #include <optional>
+#include <set>
 #include <sstream>
 #include <system_error>
 
@@ -29,9 +30,6 @@ namespace {
 // Assimp reads some forty formats, many of them rarely tested; these are the ones people have.
 constexpr std::array<std::string_view, 8> extensions = {".obj", ".ply", ".stl",  ".off",
                                                         ".3ds", ".dae", ".gltf", ".glb"};
-
-// Some ten million triangles as text.
-constexpr std::uintmax_t mesh_bytes_max = 1 << 30;
 
 std::string lower_case(std::string text)
 {
@@ -97,14 +95,18 @@ private:
 // What a file names is read like the file itself: a pipe, a device or what is too large is refused, and told.
 class RegularFiles final : public Assimp::IOSystem {
 public:
+    explicit RegularFiles(std::filesystem::path mesh) : mesh_(std::move(mesh)) {}
+
     bool Exists(const char* file) const override
     {
+        note(file);
         std::error_code ignored;
         return std::filesystem::exists(file, ignored);
     }
     char getOsSeparator() const override { return '/'; }
     Assimp::IOStream* Open(const char* file, const char* /*mode*/) override
     {
+        note(file);
         input::FileBytes read = input::read_regular_file(file, mesh_bytes_max);
         const auto& [refusal, why] = read.refused;
         if (refusal == input::Refusal::none) return new Stream(std::move(read.bytes));
@@ -114,7 +116,8 @@ public:
     }
     void Close(Assimp::IOStream* stream) override { delete stream; }
 
-    const std::string& refused() const { return refused_; } // the first one that is there; empty: none
+    const std::string& refused() const { return refused_; }         // the first one that is there; empty: none
+    const std::set<std::string>& others() const { return others_; } // asked for, seen from the mesh's folder
 
 private:
     struct Bytes {
@@ -128,7 +131,14 @@ private:
         }
     };
 
+    void note(const char* file) const
+    {
+        if (file != mesh_) others_.insert(std::filesystem::path(file).lexically_relative(mesh_.parent_path()).string());
+    }
+
+    std::filesystem::path mesh_;
     std::string refused_;
+    mutable std::set<std::string> others_;
 };
 
 std::string material_of(const aiScene& scene, const aiMesh& part)
@@ -237,7 +247,7 @@ MeshFileResult read_mesh(const std::filesystem::path& file)
     const std::string extension = extension_of(file);
     const IndexListener listener;
     Assimp::Importer importer;
-    auto* const files = new RegularFiles; // the importer's
+    auto* const files = new RegularFiles(file); // the importer's
     importer.SetIOHandler(files);
     std::optional<ObjGroups> groups;
     if (extension == ".obj") groups.emplace(input::read_regular_file(file, mesh_bytes_max).bytes);
@@ -278,6 +288,7 @@ MeshFileResult read_mesh(const std::filesystem::path& file)
     }
     if (result.mesh.triangles.empty()) return failed(no_triangle);
     result.warning = warning_of_rounding(result.mesh);
+    for (const std::string& other : files->others()) (result.other_files += other) += '\0';
     if (groups && groups->dropped())
         result.warning += (result.warning.empty() ? "" : "; ") +
                           ("it has more than " + std::to_string(ObjGroups::parts_max) +

@@ -14,15 +14,19 @@
 namespace haptel::runtime {
 
 struct MeshFileResult {
-    Mesh mesh;                // triangles of all parts of the file, in the file's units, as if metres
-    std::string error;        // why there is none, in words; empty: read
-    std::string warning = {}; // what was lost by reading it, in words; empty: nothing
+    Mesh mesh;                    // triangles of all parts of the file, in the file's units, as if metres
+    std::string error;            // why there is none, in words; empty: read
+    std::string warning = {};     // what was lost by reading it, in words; empty: nothing
+    std::string other_files = {}; // that were asked for, there or not: seen from its folder, each ends with a zero
 };
 
 struct MeshReadLimits {
     double processor_s, wall_s;
     std::uintmax_t memory_bytes = std::numeric_limits<std::uintmax_t>::max(); // and half of what the machine has
 };
+
+// Some ten million triangles as text.
+inline constexpr std::uintmax_t mesh_bytes_max = 1 << 30;
 
 // Of one file. Beyond it a surface takes more than some GiB.
 inline constexpr std::size_t mesh_triangles_max = 4'000'000;

@@ -57,7 +57,7 @@ bool send_result(int pipe, const MeshFileResult& result)
     const Mesh& mesh = result.mesh;
     return send_values(pipe, result.error) && send_values(pipe, result.warning) &&
            send_values(pipe, mesh.positions_m) && send_values(pipe, mesh.triangles) && send_values(pipe, mesh.uv) &&
-           send_values(pipe, mesh.smoothing_groups);
+           send_values(pipe, mesh.smoothing_groups) && send_values(pipe, result.other_files);
 }
 
 bool receive_result(int pipe, MeshFileResult& result)
@@ -67,7 +67,8 @@ bool receive_result(int pipe, MeshFileResult& result)
     return receive_values(pipe, result.error) && receive_values(pipe, result.warning) &&
            receive_values(pipe, mesh.positions_m) && receive_values(pipe, mesh.triangles) &&
            receive_values(pipe, mesh.uv) && receive_values(pipe, mesh.smoothing_groups) &&
-           fits(mesh.uv.size(), mesh.positions_m.size()) && fits(mesh.smoothing_groups.size(), mesh.triangles.size());
+           receive_values(pipe, result.other_files) && fits(mesh.uv.size(), mesh.positions_m.size()) &&
+           fits(mesh.smoothing_groups.size(), mesh.triangles.size());
 }
 
 void lower(__rlimit_resource_t what, rlim_t most)

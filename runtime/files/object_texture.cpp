@@ -15,10 +15,10 @@ namespace {
 std::size_t faces_without_uv(const Surface& surface)
 {
     if (surface.uv.empty()) return surface.faces.size();
-    const auto none = [](const std::array<glm::dvec2, 3>& uv) {
-        return std::all_of(uv.begin(), uv.end(), [](const glm::dvec2& corner) { return corner == glm::dvec2(0); });
+    const auto none = [&](const std::array<uint32_t, 3>& of) {
+        return std::all_of(of.begin(), of.end(), [&](uint32_t corner) { return surface.uv[corner] == glm::dvec2(0); });
     };
-    return static_cast<std::size_t>(std::count_if(surface.uv.begin(), surface.uv.end(), none));
+    return static_cast<std::size_t>(std::count_if(surface.uv_of.begin(), surface.uv_of.end(), none));
 }
 
 TextureRequest request_of(const SceneObject& object, const HandLimits& hands)

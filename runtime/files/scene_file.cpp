@@ -5,7 +5,7 @@
 #include "runtime/files/effects_reader.h"
 #include "runtime/files/fork_server.h"
 #include "runtime/files/joining.h"
-#include "runtime/files/mesh_file.h"
+#include "runtime/files/mesh_surface.h"
 #include "runtime/files/motion_reader.h"
 #include "runtime/files/object_texture.h"
 #include "runtime/files/open_hands.h"
@@ -146,7 +146,8 @@ SceneText read_scene(const toml::table& root, const std::filesystem::path& folde
 Loading about(const std::string& what, const Loading& loading)
 {
     if (!loading.tell) return loading;
-    return {[&loading, what](std::string_view doing) { loading.tell(what + ": " + std::string(doing)); }, loading.stop};
+    return {[&loading, what](std::string_view doing) { loading.tell(what + ": " + std::string(doing)); }, loading.stop,
+            loading.threads};
 }
 
 void load_geometry(ObjectText& text, const std::filesystem::path& folder, SurfaceCache* surfaces,
@@ -158,35 +159,33 @@ void load_geometry(ObjectText& text, const std::filesystem::path& folder, Surfac
         file, text.shape, text.size_m, text.own_crease ? std::optional(text.crease_deg) : std::nullopt);
     if (surfaces) text.object.surface = surfaces->find(key);
     if (text.object.surface) return;
-    const Loading of_mesh = about("mesh `" + text.object.name + "`", loading);
-    Mesh mesh;
+    const std::string named = "mesh `" + text.object.name + "`";
+    const Loading of_mesh = about(named, loading);
+    MeshSurface built;
     if (text.mesh.empty()) {
-        mesh = make_shape(text.shape).value_or(Mesh{});
+        Mesh mesh = make_shape(text.shape).value_or(Mesh{});
+        if (text.size_m > 0) scale_to_size(mesh, text.size_m);
+        SurfaceResult shape = build_surface(mesh, text.crease_deg, &of_mesh);
+        built = {std::move(shape.surface), shape.report, std::move(shape.error), {}};
     } else {
-        MeshFileResult read = load_mesh(file, std::nullopt, &of_mesh);
-        if (!read.error.empty()) {
-            messages.error(text.mesh_at, "mesh `" + text.mesh + "`: " + read.error);
-            return;
-        }
-        if (!read.warning.empty()) messages.warning(text.mesh_at, "mesh `" + text.mesh + "`: " + read.warning);
-        mesh = std::move(read.mesh);
+        built = surface_of_mesh_file(file, text.size_m, text.own_crease ? std::optional(text.crease_deg) : std::nullopt,
+                                     of_mesh);
     }
-    if (text.own_crease) mesh.smoothing_groups.clear();
-    const std::vector<uint32_t>& groups = mesh.smoothing_groups;
-    if (!groups.empty() && std::all_of(groups.begin(), groups.end(), [](uint32_t group) { return group == 0; }))
-        messages.note(text.mesh_at, "mesh `" + text.mesh +
-                                        "`: all its faces are without a smoothing group (`s off`) and felt flat; write "
-                                        "`crease_deg = 40` to feel it round where it is not sharper than that");
-    if (text.size_m > 0) scale_to_size(mesh, text.size_m);
-    SurfaceResult built = build_surface(mesh, text.crease_deg, &of_mesh);
-    if (!built.surface)
-        messages.error(text.mesh_at, "mesh `" + text.object.name + "`: " + built.error);
-    else if (const std::string warning = built.report.warning(); !warning.empty())
-        messages.warning(text.mesh_at, "mesh `" + text.object.name + "`: " + warning);
-    if (const std::string note = built.report.note(); built.surface && !text.mesh.empty() && !note.empty())
-        messages.note(text.mesh_at, "mesh `" + text.object.name + "`: " + note);
+    if (!built.error.empty()) {
+        messages.error(text.mesh_at, named + ": " + built.error);
+        return;
+    }
+    if (!built.warning.empty()) messages.warning(text.mesh_at, named + ": " + built.warning);
+    if (built.all_groups_off)
+        messages.note(text.mesh_at, named + ": all its faces are without a smoothing group (`s off`) and felt flat; "
+                                            "write `crease_deg = 40` to feel it round where it is not sharper than "
+                                            "that");
+    if (const std::string warning = built.report.warning(); !warning.empty())
+        messages.warning(text.mesh_at, named + ": " + warning);
+    if (const std::string note = built.report.note(); !text.mesh.empty() && !note.empty())
+        messages.note(text.mesh_at, named + ": " + note);
     text.object.surface = std::move(built.surface);
-    if (surfaces && text.object.surface) surfaces->keep(key, text.object.surface);
+    if (surfaces) surfaces->keep(key, text.object.surface);
 }
 
 double largest_scale(const std::vector<DeviceText>& devices)

@@ -1,11 +1,7 @@
 #include "runtime/surface/box_tree.h"
 
-#if HAPTEL_EMBREE_MAJOR >= 4
-#include <embree4/rtcore.h>
-#else
-#include <embree3/rtcore.h>
-#endif
-
+#include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -13,226 +9,211 @@ namespace haptel::runtime {
 
 namespace {
 
-// Embree sees the object within [-1, 1] and the workspace within [-4, 4].
-constexpr double scale = 1.0 / Lattice::extent;
+constexpr uint32_t width = BoxTree::width;
 
-// Rounding to float moves a query's start by half an ulp of 4 and its end by half an ulp of 8 more. Four ulps of 4
-// cover that twice, and the rounding of the boxes.
-constexpr float widening = 4.0f * 0x1p-21f;
-
-glm::vec3 embree_point(const glm::dvec3& p)
+glm::vec3 rounded(const glm::dvec3& p)
 {
-    return glm::vec3(p * scale);
+    return glm::vec3(p * BoxTree::scale);
 }
 
-#if RTC_VERSION_MAJOR >= 4
-using QueryContext = RTCRayQueryContext;
-void init(QueryContext& context)
-{
-    rtcInitRayQueryContext(&context);
-}
-void intersect(RTCScene scene, QueryContext& context, RTCRayHit& ray)
-{
-    RTCIntersectArguments arguments;
-    rtcInitIntersectArguments(&arguments);
-    arguments.context = &context;
-    rtcIntersect1(scene, &ray, &arguments);
-}
-#else
-using QueryContext = RTCIntersectContext;
-void init(QueryContext& context)
-{
-    rtcInitIntersectContext(&context);
-}
-void intersect(RTCScene scene, QueryContext& context, RTCRayHit& ray)
-{
-    rtcIntersect1(scene, &context, &ray);
-}
-#endif
+// Half of a node's boxes at once: the processor's own vectors, which g++ and clang have for every processor.
+using Four = float __attribute__((vector_size(16), may_alias));
+using FourBits = int32_t __attribute__((vector_size(16)));
+constexpr uint32_t half = 4;
+static_assert(width == 2 * half);
 
-// Embree hands the context back to the callback: first the part it knows, then ours.
-struct SegmentQuery {
-    QueryContext embree;
-    SegmentVisitor* visitor;
-};
-
-// The fraction as Embree may compare it: rounded up, past any rounding of its own.
-float rounded_up(double fraction)
+Four four(const float* first)
 {
-    return float(fraction * (1.0 + 1e-6) + 1e-30);
+    return *reinterpret_cast<const Four*>(first);
+}
+Four all_of(float value)
+{
+    return Four{value, value, value, value};
+}
+Four least(Four a, Four b)
+{
+    return a < b ? a : b;
+}
+Four most_of(Four a, Four b)
+{
+    return a > b ? a : b;
 }
 
-void visit_face(const RTCIntersectFunctionNArguments* arguments)
-{
-    if (!arguments->valid[0]) return;
-    SegmentQuery& query = *reinterpret_cast<SegmentQuery*>(arguments->context);
-    const float upto = rounded_up(query.visitor->visit(arguments->primID));
-    RTCRayHit& ray = *reinterpret_cast<RTCRayHit*>(arguments->rayhit);
-    if (upto < ray.ray.tfar) {
-        ray.ray.tfar = upto;
-        ray.hit.geomID = arguments->geomID;
-        ray.hit.primID = arguments->primID;
-    }
-}
-
-struct Boxes {
-    const std::vector<glm::dvec3>& vertices;
-    const std::vector<Face>& faces;
-
-    void of(uint32_t face, glm::dvec3& minimum, glm::dvec3& maximum) const
+// A query says which of a node's boxes it enters and where on its way (`at`), how far that still counts (`upto`), and
+// visits faces.
+class SegmentQuery {
+public:
+    SegmentQuery(const glm::dvec3& from, const glm::dvec3& to, SegmentVisitor& visitor)
+        : from_(rounded(from)), visitor_(visitor)
     {
-        const auto& corners = faces[face].vertex;
-        const glm::dvec3 &a = vertices[corners[0]], &b = vertices[corners[1]], &c = vertices[corners[2]];
-        minimum = glm::min(a, glm::min(b, c));
-        maximum = glm::max(a, glm::max(b, c));
+        const glm::vec3 along = rounded(to - from);
+        for (int k = 0; k < 3; ++k) {
+            per_along_[k] = 1 / along[k]; // infinite where it stays: then it is within for ever or never
+            backward_[k] = std::signbit(along[k]);
+        }
     }
+
+    float upto = rounded_up(1);
+
+    FourBits enters(const BoxTree::Node& node, uint32_t first, float (&at)[width]) const
+    {
+        Four in = all_of(0), out = all_of(upto);
+        for (int axis = 0; axis < 3; ++axis) {
+            const float* const near = (backward_[axis] ? node.high : node.low)[axis] + first;
+            const float* const far = (backward_[axis] ? node.low : node.high)[axis] + first;
+            const Four from = all_of(from_[axis]), per_along = all_of(per_along_[axis]);
+            in = most_of((four(near) - from) * per_along, in); // what is not a number counts as neither
+            out = least((four(far) - from) * per_along, out);
+        }
+        *reinterpret_cast<Four*>(at + first) = in;
+        return in <= out;
+    }
+    void visit(uint32_t face) { upto = std::min(upto, rounded_up(visitor_.visit(face))); }
+
+private:
+    // Past any rounding.
+    static float rounded_up(double fraction) { return float(fraction * (1.0 + 1e-6) + 1e-30); }
+
+    glm::vec3 from_, per_along_;
+    bool backward_[3];
+    SegmentVisitor& visitor_;
 };
 
-void box_of_face(const RTCBoundsFunctionArguments* arguments)
-{
-    glm::dvec3 minimum, maximum;
-    static_cast<const Boxes*>(arguments->geometryUserPtr)->of(arguments->primID, minimum, maximum);
-    const glm::vec3 low = embree_point(minimum) - widening, high = embree_point(maximum) + widening;
-    *arguments->bounds_o = {low.x, low.y, low.z, 0, high.x, high.y, high.z, 0};
-}
+// `at` is the square of the distance.
+class BallQuery {
+public:
+    BallQuery(const glm::dvec3& centre, double radius) : centre_(rounded(centre)) { shrink_to(radius); }
 
-struct BallQuery {
-    const Boxes& boxes;
-    glm::dvec3 centre;
-    double radius;
-    BallVisitor& visitor;
+    float upto = 0;
+
+    FourBits enters(const BoxTree::Node& node, uint32_t first, float (&at)[width]) const
+    {
+        Four square = all_of(0);
+        for (int axis = 0; axis < 3; ++axis) {
+            const Four centre = all_of(centre_[axis]);
+            const Four off = most_of(
+                most_of(four(node.low[axis] + first) - centre, centre - four(node.high[axis] + first)), all_of(0));
+            square += off * off;
+        }
+        *reinterpret_cast<Four*>(at + first) = square;
+        return square <= all_of(upto);
+    }
+
+    void shrink_to(double radius)
+    {
+        const float wide = float(radius * BoxTree::scale) * (1.0f + 1e-6f) + BoxTree::widening; // past any rounding
+        upto = std::min(wide * wide, std::numeric_limits<float>::max()); // an empty place is infinitely far away
+    }
+    void end() { upto = -1; }
+
+private:
+    glm::vec3 centre_;
 };
 
-// As Embree may compare it: past any rounding of its own.
-float query_radius(double radius)
-{
-    return float(radius * scale) * (1.0f + 1e-6f) + widening;
-}
+class VisitedBall : public BallQuery {
+public:
+    VisitedBall(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces, const glm::dvec3& centre,
+                double radius, BallVisitor& visitor)
+        : BallQuery(centre, radius)
+        , vertices_(vertices)
+        , faces_(faces)
+        , centre_(centre)
+        , radius_(radius)
+        , visitor_(visitor)
+    {
+    }
 
-bool visit_box(RTCPointQueryFunctionArguments* arguments)
-{
-    BallQuery& query = *static_cast<BallQuery*>(arguments->userPtr);
-    glm::dvec3 minimum, maximum;
-    query.boxes.of(arguments->primID, minimum, maximum);
-    const glm::dvec3 away = query.centre - glm::clamp(query.centre, minimum, maximum);
-    if (glm::dot(away, away) > query.radius * query.radius) return false;
-    const double upto = query.visitor.visit(arguments->primID);
-    if (!(upto < query.radius)) return false;
-    query.radius = upto;
-    arguments->query->radius = upto > 0 ? query_radius(upto) : 0;
-    return true;
-}
+    void visit(uint32_t face)
+    {
+        const auto& corners = faces_[face].vertex;
+        const glm::dvec3 &a = vertices_[corners[0]], &b = vertices_[corners[1]], &c = vertices_[corners[2]];
+        const glm::dvec3 away = centre_ - glm::clamp(centre_, glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c)));
+        if (glm::dot(away, away) > radius_ * radius_) return;
+        const double now = visitor_.visit(face);
+        if (!(now < radius_)) return;
+        radius_ = now;
+        now > 0 ? shrink_to(now) : end();
+    }
 
-struct BallList {
-    std::size_t most;
-    std::vector<uint32_t>& faces;
+private:
+    const std::vector<glm::dvec3>& vertices_;
+    const std::vector<Face>& faces_;
+    const glm::dvec3& centre_;
+    double radius_;
+    BallVisitor& visitor_;
+};
+
+class ListedBall : public BallQuery {
+public:
+    ListedBall(const glm::dvec3& centre, double radius, std::size_t most, std::vector<uint32_t>& faces)
+        : BallQuery(centre, radius), most_(most), faces_(faces)
+    {
+    }
+
     bool more = false;
-};
 
-bool list_face(RTCPointQueryFunctionArguments* arguments)
-{
-    BallList& list = *static_cast<BallList*>(arguments->userPtr);
-    list.more = list.faces.size() == list.most;
-    if (!list.more) {
-        list.faces.push_back(arguments->primID);
-        return false;
+    void visit(uint32_t face)
+    {
+        more = faces_.size() == most_;
+        more ? end() : faces_.push_back(face);
     }
-    arguments->query->radius = 0; // that is enough
-    return true;
-}
 
-void ask(RTCScene scene, const glm::dvec3& centre, double radius, RTCPointQueryFunction told, void* asker)
-{
-    RTCPointQueryContext context;
-    rtcInitPointQueryContext(&context);
-    const glm::vec3 at = embree_point(centre);
-    RTCPointQuery query = {};
-    query.x = at.x, query.y = at.y, query.z = at.z;
-    query.radius = query_radius(radius);
-    rtcPointQuery(scene, &query, &context, told, asker);
-}
-
-// One device for the process; a single thread, so that building does not start others behind the servo's back.
-RTCDevice embree()
-{
-    static const RTCDevice device = rtcNewDevice("threads=1");
-    return device;
-}
+private:
+    std::size_t most_;
+    std::vector<uint32_t>& faces_;
+};
 
 } // namespace
 
-struct BoxTree::Handles {
-    Boxes boxes;
-    RTCScene scene = nullptr;
-
-    ~Handles()
-    {
-        if (scene) rtcReleaseScene(scene);
-    }
-};
-
-BoxTree::~BoxTree() = default;
-
-std::unique_ptr<const BoxTree> BoxTree::build(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces,
-                                              std::string& error)
+template <class Query>
+void BoxTree::ask(Query& query) const noexcept
 {
-    const RTCDevice device = embree();
-    if (!device) {
-        error = "cannot start Embree, the collision tree";
-        return nullptr;
+    struct Waiting {
+        float at;
+        uint32_t child;
+    } waiting[depth_max * (width - 1) + width]; // the nearest is the last
+    std::size_t count = 0;
+    waiting[count++] = {0, 0};
+    while (count > 0) {
+        const auto [at, child] = waiting[--count];
+        if (!(at <= query.upto)) continue;
+        if (child & is_face) {
+            query.visit(child & ~is_face);
+            continue;
+        }
+        const Node& node = nodes_[child];
+        alignas(16) float enters_at[width];
+        const FourBits entered = (query.enters(node, 0, enters_at) & FourBits{1, 2, 4, 8}) |
+                                 (query.enters(node, half, enters_at) & FourBits{16, 32, 64, 128});
+        const std::size_t first = count;
+        for (auto hits = uint32_t(entered[0] | entered[1] | entered[2] | entered[3]); hits != 0; hits &= hits - 1) {
+            const auto k = static_cast<uint32_t>(std::countr_zero(hits));
+            std::size_t place = count++;
+            for (; place > first && waiting[place - 1].at < enters_at[k]; --place) waiting[place] = waiting[place - 1];
+            waiting[place] = {enters_at[k], node.child[k]};
+        }
     }
-    std::unique_ptr<BoxTree> tree(new BoxTree);
-    tree->handles_.reset(new Handles{{vertices, faces}});
-    tree->handles_->scene = rtcNewScene(device);
-    rtcSetSceneFlags(tree->handles_->scene, RTC_SCENE_FLAG_ROBUST);
-
-    const RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, uint32_t(faces.size()));
-    rtcSetGeometryUserData(geometry, &tree->handles_->boxes);
-    rtcSetGeometryBoundsFunction(geometry, box_of_face, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, visit_face);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometry(tree->handles_->scene, geometry);
-    rtcReleaseGeometry(geometry);
-    rtcCommitScene(tree->handles_->scene);
-
-    if (const RTCError code = rtcGetDeviceError(device); code != RTC_ERROR_NONE) {
-        error = "cannot build the collision tree: Embree reports error " + std::to_string(int(code));
-        return nullptr;
-    }
-    return tree;
 }
 
 void BoxTree::segment(const glm::dvec3& from, const glm::dvec3& to, SegmentVisitor& visitor) const noexcept
 {
-    SegmentQuery query;
-    init(query.embree);
-    query.visitor = &visitor;
-
-    const glm::vec3 start = embree_point(from), along = embree_point(to - from);
-    RTCRayHit ray = {};
-    ray.ray.org_x = start.x, ray.ray.org_y = start.y, ray.ray.org_z = start.z;
-    ray.ray.dir_x = along.x, ray.ray.dir_y = along.y, ray.ray.dir_z = along.z;
-    ray.ray.tfar = rounded_up(1.0);
-    ray.ray.mask = ~0u;
-    ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    ray.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-    intersect(handles_->scene, query.embree, ray);
+    SegmentQuery query(from, to, visitor);
+    ask(query);
 }
 
 void BoxTree::ball(const glm::dvec3& centre, double radius, BallVisitor& visitor) const noexcept
 {
-    BallQuery ball{handles_->boxes, centre, radius, visitor};
-    ask(handles_->scene, centre, radius, visit_box, &ball);
+    VisitedBall query(vertices_, faces_, centre, radius, visitor);
+    ask(query);
 }
 
 bool BoxTree::ball(const glm::dvec3& centre, double radius, std::size_t most,
                    std::vector<uint32_t>& faces) const noexcept
 {
     faces.clear();
-    BallList list{most, faces};
-    ask(handles_->scene, centre, radius, list_face, &list);
-    return !list.more;
+    ListedBall query(centre, radius, most, faces);
+    ask(query);
+    return !query.more;
 }
 
 } // namespace haptel::runtime

@@ -1,8 +1,8 @@
-// Which triangles' boxes does a segment or a ball meet? Embree answers, as a tree of boxes and nothing else.
+// Which triangles' boxes does a segment or a ball meet? A tree of boxes, eight to a node, and nothing else.
 //
-// Embree works in single precision and its own triangle test loses hits; here it never sees a triangle. It is given
-// boxes, widened by more than its rounding of the query can be off, and hands back candidates; whoever asks decides in
-// exact arithmetic (collision.h). Rounding can therefore only add candidates, never lose one.
+// Boxes are in single precision, widened by more than rounding a query to it can be off; what is handed back are
+// candidates, and whoever asks decides in exact arithmetic (collision.h). Rounding can therefore only add candidates,
+// never lose one. The tree depends on the triangles alone, not on the processor or how many threads made it.
 //
 // All coordinates are lattice units. Queries allocate nothing, and any number of threads may ask at once.
 #pragma once
@@ -11,8 +11,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <memory>
-#include <string>
+#include <vector>
 
 namespace haptel::runtime {
 
@@ -38,12 +37,24 @@ protected:
 
 class BoxTree {
 public:
-    // Null if Embree cannot be started or runs out of memory: `error` says why.
-    static std::unique_ptr<const BoxTree> build(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces,
-                                                std::string& error);
-    ~BoxTree();
+    static constexpr uint32_t width = 8, is_face = 1u << 31;
+    // A node is this many nodes below the root at most: room for what waits while a query goes down.
+    static constexpr uint32_t depth_max = 40;
+
+    struct alignas(32) Node {
+        float low[3][width], high[3][width]; // by axis; of an empty place the low is above the high
+        uint32_t child[width];               // a node behind this one, or a face with `is_face`
+    };
+
+    // Of faces that live as long as this and do not change.
+    BoxTree(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces, std::vector<Node> nodes)
+        : vertices_(vertices), faces_(faces), nodes_(std::move(nodes))
+    {
+    }
     BoxTree(const BoxTree&) = delete;
     BoxTree& operator=(const BoxTree&) = delete;
+
+    const std::vector<Node>& nodes() const { return nodes_; }
 
     void segment(const glm::dvec3& from, const glm::dvec3& to, SegmentVisitor& visitor) const noexcept;
 
@@ -52,10 +63,44 @@ public:
     // The same faces, and some a little farther away, as a list that has room for so many; false if there are more.
     bool ball(const glm::dvec3& centre, double radius, std::size_t most, std::vector<uint32_t>& faces) const noexcept;
 
+    // Calls visit(face) for each face to whose box may_meet(centre, half) says yes, and so of all boxes around it,
+    // until visit says false. Returns whether all were visited.
+    template <class MayMeet, class Visit>
+    bool for_each(MayMeet&& may_meet, Visit&& visit) const
+    {
+        uint32_t waiting[depth_max * (width - 1) + width];
+        std::size_t count = 0;
+        waiting[count++] = 0;
+        while (count > 0) {
+            const Node& node = nodes_[waiting[--count]];
+            for (uint32_t k = width; k-- > 0;) {
+                const glm::dvec3 low(node.low[0][k], node.low[1][k], node.low[2][k]),
+                    high(node.high[0][k], node.high[1][k], node.high[2][k]);
+                if (!(low.x <= high.x)) continue; // empty
+                if (!may_meet((0.5 / scale) * (low + high), (0.5 / scale) * (high - low))) continue;
+                if (!(node.child[k] & is_face))
+                    waiting[count++] = node.child[k];
+                else if (!visit(node.child[k] & ~is_face))
+                    return false;
+            }
+        }
+        return true;
+    }
+
+    // The object lies within [-1, 1] there, and the workspace within [-4, 4].
+    static constexpr double scale = 1.0 / Lattice::extent;
+
+    // Of boxes. With a workspace of 4 a query's start moves by up to 2^-23 as it is rounded, its end by 2^-22 more. A
+    // plane is up to 5 away from the start, and where a segment meets it is off by three roundings: another 2^-20.
+    static constexpr float widening = 0x1p-19f;
+
 private:
-    BoxTree() = default;
-    struct Handles;
-    std::unique_ptr<Handles> handles_;
+    template <class Query>
+    void ask(Query& query) const noexcept;
+
+    const std::vector<glm::dvec3>& vertices_;
+    const std::vector<Face>& faces_;
+    std::vector<Node> nodes_; // the root is the first
 };
 
 } // namespace haptel::runtime

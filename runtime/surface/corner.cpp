@@ -45,13 +45,13 @@ Feature feature_at(const glm::dvec3& barycentric) noexcept
 
 bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept
 {
-    const auto& of_corner = surface.shading_normal_of[face];
+    const auto& of_corner = surface.faces[face].fan_or_part;
     const auto [on, i] = feature_at(barycentric);
     if (on == Feature::On::face) return false;
-    if (on == Feature::On::vertex) return !surface.shading_normals[of_corner[i][side]].whole;
+    if (on == Feature::On::vertex) return (of_corner[i][side] & Surface::is_part) != 0;
     const SideEdge link = surface.faces[face].link[i][side];
     if (link.face() == face) return true; // a border
-    const auto& there = surface.shading_normal_of[link.face()];
+    const auto& there = surface.faces[link.face()].fan_or_part;
     const bool same_way = surface.faces[link.face()].vertex[link.edge()] == surface.faces[face].vertex[i];
     const uint32_t first = same_way ? link.edge() : next(link.edge());
     const uint32_t second = same_way ? next(link.edge()) : link.edge();

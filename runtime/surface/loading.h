@@ -14,6 +14,9 @@ struct Loading {
     // Becomes true, in whatever thread: loading ends as soon as it sees that, with an error. Null: it never does.
     const std::atomic<bool>* stop = nullptr;
 
+    // Processors to build surfaces on: 0, all of them; 1 where a servo runs, which is not to be kept from one.
+    unsigned threads = 0;
+
     bool stopped() const { return stop && stop->load(std::memory_order_relaxed); }
 };
 

@@ -13,7 +13,6 @@
 #include <array>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +20,6 @@
 namespace haptel::runtime {
 
 class BoxTree;
-class SweptTree;
 struct Loading;
 
 // What was found in a mesh and mended. All counts, no unit.
@@ -57,23 +55,24 @@ struct SideEdge {
 struct Face {
     std::array<uint32_t, 3> vertex;
     std::array<std::array<SideEdge, 2>, 3> link; // [edge][side]
-    std::array<std::array<uint32_t, 2>, 3> fan;  // [corner][side]: index into Surface::fans
-    glm::dvec3 normal;                           // unit, front
+    // [corner][side]: the fan there or, with Surface::is_part, the part of one that no crease parts.
+    std::array<std::array<uint32_t, 2>, 3> fan_or_part;
+    glm::dvec3 normal; // unit, front
 };
 
 // The faces around a vertex that are linked with each other on one side.
 struct Fan {
-    glm::dvec3 normal;           // weighted by angle, unit, toward that side; zero where they cancel
-    uint32_t face, corner, side; // one of its corners
+    glm::dvec3 normal; // mean of the facet normals weighted by angle, unit, toward that side; zero where they cancel
+    SideEdge start;    // one of its corners, by the edge that starts there
     // Fans of separate sheets that meet in this vertex only and bound the same free space, in a circle; itself if
     // alone.
     uint32_t next;
 };
 
-// Mean of the facet normals around a vertex, weighted by their angles, as far as no crease parts them.
-struct ShadingNormal {
-    glm::dvec3 normal; // unit; zero where they cancel
-    bool whole;        // of a whole fan: no border and no crease ends in the vertex, or one that does not part it
+// What borders and creases leave of a fan, which is felt with a normal of its own.
+struct FanPart {
+    glm::dvec3 normal; // as of a fan
+    uint32_t fan;
 };
 
 struct SegmentHit {
@@ -91,13 +90,14 @@ struct Surface {
     std::vector<glm::dvec3> vertices;
     std::vector<Face> faces;
     std::vector<Fan> fans;
-    std::vector<std::array<glm::dvec2, 3>> uv; // per face and corner; empty without texture coordinates
-    std::vector<uint32_t> smoothing_groups;    // per face, as in Mesh; or empty
-    std::vector<Origin> origins;               // per face; empty if it is of one piece
+    std::vector<glm::dvec2> uv;                 // texture coordinates; empty without
+    std::vector<std::array<uint32_t, 3>> uv_of; // per face and corner: which
+    std::vector<Origin> origins;                // per face; empty if it is of one piece
+    // While it is built, as in Mesh: per face and corner, and per face; or empty.
+    std::vector<std::array<glm::dvec2, 3>> corner_uv;
+    std::vector<uint32_t> smoothing_groups;
     bool cuts_itself = false; // faces cut or touch each other beside the edges and vertices that they share
-    // Force shading: the normals at corners, and which of them a face has [corner][side].
-    std::vector<ShadingNormal> shading_normals;
-    std::vector<std::array<std::array<uint32_t, 2>, 3>> shading_normal_of;
+    std::vector<FanPart> fan_parts;
     double normal_turn_max_per_m = 0; // no shading normal turns faster along its face (spectral norm); 0: flat facets
     std::unique_ptr<const BoxTree> tree;
     glm::dvec3 box_minimum{0}, box_maximum{0};     // of the vertices, lattice units
@@ -119,6 +119,17 @@ struct Surface {
     {
         return side ? -faces[face].normal : faces[face].normal;
     }
+    static constexpr uint32_t is_part = 1u << 31;
+    uint32_t fan_of(uint32_t face, uint32_t corner, uint32_t side) const
+    {
+        const uint32_t number = faces[face].fan_or_part[corner][side];
+        return number & is_part ? fan_parts[number & ~is_part].fan : number;
+    }
+    // Of force shading, by a face's fan_or_part.
+    const glm::dvec3& shading_normal(uint32_t fan_or_part) const
+    {
+        return fan_or_part & is_part ? fan_parts[fan_or_part & ~is_part].normal : fans[fan_or_part].normal;
+    }
     // One piece that does not cut itself: links lead everywhere that a point comes to.
     bool is_clean() const { return origins.empty() && !cuts_itself; }
     bool is_border(uint32_t face, uint32_t edge) const { return faces[face].link[edge][0].face() == face; }
@@ -129,13 +140,6 @@ struct Surface {
     // First crossing of the segment, by exact predicates: never lost, whatever edge or vertex it passes through.
     // Allocates nothing. Not finite ends: nothing.
     std::optional<SegmentHit> first_hit(const glm::dvec3& from_m, const glm::dvec3& to_m) const noexcept;
-
-    // Of the faces, for shafts. Whoever asks for it first makes it, which allocates and takes a while: never in a tick.
-    const SweptTree& swept_tree() const;
-
-private:
-    mutable std::once_flag swept_tree_made_;
-    mutable std::shared_ptr<const SweptTree> swept_tree_; // null before
 };
 
 struct SurfaceResult {

@@ -13,8 +13,8 @@ struct CornerNormals {
     glm::dvec3 n[3];
     CornerNormals(const Surface& surface, uint32_t face, uint32_t side)
     {
-        const auto& of_corner = surface.shading_normal_of[face];
-        for (size_t i = 0; i < 3; ++i) n[i] = surface.shading_normals[of_corner[i][side]].normal;
+        const auto& of_corner = surface.faces[face].fan_or_part;
+        for (size_t i = 0; i < 3; ++i) n[i] = surface.shading_normal(of_corner[i][side]);
     }
     glm::dvec3 at(const glm::dvec3& w) const { return w.x * n[0] + w.y * n[1] + w.z * n[2]; }
 };
@@ -56,9 +56,10 @@ Shading shade(const Surface& surface, uint32_t face, uint32_t side, const glm::d
                             glm::outerProduct(turn(corners.n[2] - corners.n[0]), third_dp);
     }
     if (!drawn) return shading;
-    const auto& uv = surface.uv[face];
+    const auto& of = surface.uv_of[face];
+    const glm::dvec2 uv[] = {surface.uv[of[0]], surface.uv[of[1]], surface.uv[of[2]]};
     shading.uv_dp = glm::outerProduct(uv[1] - uv[0], second_dp) + glm::outerProduct(uv[2] - uv[0], third_dp);
-    for (int i = 0; i < 3; ++i) shading.uv += uv[size_t(i)] * barycentric[i];
+    for (int i = 0; i < 3; ++i) shading.uv += uv[i] * barycentric[i];
     return shading;
 }
 
@@ -74,12 +75,13 @@ UvFigures uv_figures(const Surface& surface)
         minimum = first ? value : std::min(minimum, value);
         maximum = first ? value : std::max(maximum, value);
     };
-    for (uint32_t face = 0; face < surface.uv.size(); ++face) {
+    for (uint32_t face = 0; face < surface.uv_of.size(); ++face) {
         const bool first = face == 0;
         const glm::dmat3x2 uv_dp = shade(surface, face, 0, {1, 0, 0}).uv_dp; // the same all over the face
         for (int i = 0; i < 2; ++i) {
             for (size_t corner = 0; corner < 3; ++corner)
-                take_in(surface.uv[face][corner][i], first && corner == 0, figures.minimum[i], figures.maximum[i]);
+                take_in(surface.uv[surface.uv_of[face][corner]][i], first && corner == 0, figures.minimum[i],
+                        figures.maximum[i]);
             for (int j = 0; j < 3; ++j) take_in(uv_dp[j][i], first, figures.dp_minimum[i][j], figures.dp_maximum[i][j]);
             const double slope = glm::length(glm::dvec3(uv_dp[0][i], uv_dp[1][i], uv_dp[2][i]));
             figures.slope_max_per_m[i] = std::max(figures.slope_max_per_m[i], slope * (1 + slack));

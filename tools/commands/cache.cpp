@@ -1,7 +1,8 @@
-// haptel cache: the machine code that is kept on disk, so that the next start need not make it.
+// haptel cache: the machine code and the surfaces that are kept on disk, so that the next start need not make them.
 #include "jit/engine/object_cache.h"
 #include "jit/texture/texture.h"
 #include "lang/text/diagnostic.h"
+#include "runtime/files/mesh_surface.h"
 #include "stdlib/stdlib.h"
 #include "tools/arguments/quantity.h"
 #include "tools/commands/command.h"
@@ -40,28 +41,37 @@ void prime()
 ExitCode run(const CacheOptions& options)
 {
     jit::ObjectCache& cache = jit::ObjectCache::shared();
+    input::KeptFiles& surfaces = runtime::kept_surfaces();
     const uint64_t removed = options.clear ? cache.clear() : 0;
+    const uint64_t surfaces_removed = options.clear ? surfaces.clear() : 0;
     const size_t kernels_before = options.prime ? jit::kernels_alive() : 0;
     if (options.prime) prime();
     const size_t kernels = options.prime ? jit::kernels_alive() - kernels_before : 0;
-    const jit::ObjectCache::Status status = cache.status();
+    const input::KeptFiles::Status status = cache.status(), of_surfaces = surfaces.status();
     if (options.json) {
         print_json({{"folder", status.folder},
                     {"fault", status.fault.empty() ? Json(nullptr) : Json(status.fault)},
-                    {"objects", status.objects},
+                    {"objects", status.files},
                     {"bytes", status.bytes},
                     {"limit_bytes", status.limit_bytes},
                     {"removed", removed},
+                    {"surfaces", of_surfaces.files},
+                    {"surfaces_bytes", of_surfaces.bytes},
+                    {"surfaces_limit_bytes", of_surfaces.limit_bytes},
+                    {"surfaces_removed", surfaces_removed},
                     {"kernels_primed", kernels}});
         return ExitCode::fine;
     }
-    if (options.clear) fmt::print("{} objects removed\n", removed);
+    if (options.clear) fmt::print("{} objects removed, {} surfaces\n", removed, surfaces_removed);
     if (options.prime) fmt::print("{} kernels of the library are ready\n", kernels);
     if (status.folder.empty())
         fmt::print("switched off: HAPTEL_CACHE names a folder, or nothing for the usual one\n");
     else
-        fmt::print("{}: {} objects, {:.1f} MB of at most {:.0f} MB\n", lang::printable(status.folder), status.objects,
-                   static_cast<double>(status.bytes) * 1e-6, static_cast<double>(status.limit_bytes) * 1e-6);
+        fmt::print("{}: {} objects, {:.1f} MB of at most {:.0f} MB; {} surfaces of meshes, {:.1f} MB of at most "
+                   "{:.0f} MB\n",
+                   lang::printable(status.folder), status.files, static_cast<double>(status.bytes) * 1e-6,
+                   static_cast<double>(status.limit_bytes) * 1e-6, of_surfaces.files,
+                   static_cast<double>(of_surfaces.bytes) * 1e-6, static_cast<double>(of_surfaces.limit_bytes) * 1e-6);
     std::error_code ignored; // a folder that is not there yet will be made
     if (!status.folder.empty() && !status.fault.empty() &&
         (options.prime || std::filesystem::exists(status.folder, ignored)))
@@ -74,7 +84,7 @@ ExitCode run(const CacheOptions& options)
 Command cache_command(CLI::App& app)
 {
     const auto options = std::make_shared<CacheOptions>();
-    CLI::App* command = app.add_subcommand("cache", "Machine code kept on disk: show, fill or empty it");
+    CLI::App* command = app.add_subcommand("cache", "Machine code and surfaces kept on disk: show, fill or empty it");
     command->add_flag("--prime", options->prime,
                       "Compile the standard library into it, as a build or installation does");
     command->add_flag("--clear", options->clear, "Empty it (before --prime)");

@@ -132,7 +132,7 @@ void ExploreScene::load()
     std::string now = state();
     if (now == loaded_state_) return;
     loaded_state_ = std::move(now);
-    runtime::LoadedScene loaded = runtime::load_scene(file_, textures_.resolver(), {}, &surfaces_, {{}, &stop_});
+    runtime::LoadedScene loaded = runtime::load_scene(file_, textures_.resolver(), {}, &surfaces_, {{}, &stop_, 1});
     if (!loaded.meshes.empty()) {
         meshes_ = std::move(loaded.meshes);
         loaded_state_ = state();

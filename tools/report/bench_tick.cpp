@@ -71,8 +71,8 @@ std::string to_csv(const std::vector<bench::TickRow>& rows)
     return text;
 }
 
-// Of the tree of boxes its walks are counted. How many nodes these visit Embree does not tell: a promised field that
-// nobody knows is null.
+// Of the tree of boxes its walks are counted, the nodes that these visit are not: a promised field that nobody knows is
+// null.
 Json to_json(const bench::TickRow& row)
 {
     return {{"scene", row.scene},

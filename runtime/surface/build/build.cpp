@@ -1,6 +1,9 @@
 #include "runtime/surface/build/build.h"
 
 #include "runtime/surface/box_tree.h"
+#include "runtime/surface/build/edges.h"
+
+#include <optional>
 
 namespace haptel::runtime {
 
@@ -9,24 +12,34 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg, const Loading* 
     SurfaceResult result;
     auto surface = std::make_shared<Surface>();
     BuildWork work(mesh.triangles.size(), loading);
+    const unsigned threads = work.threads();
     work.begin("which of its vertices are one");
-    if (!repair(mesh, *surface, result.report)) {
+    if (!repair(mesh, *surface, result.report, threads)) {
         const std::string warning = result.report.warning();
         result.error = "the mesh has no triangle to touch" + (warning.empty() ? "" : ": " + warning);
         return result;
     }
     const bool is_joined = !surface->origins.empty(); // each part has been built by itself before
-    if (!is_joined) close_cracks(*surface, result.report, work);
+    std::optional<Edges> edges;
     if (work.begin("which of its triangles are neighbours")) {
-        link_faces(*surface, result.report);
-        make_fans(*surface, work);
+        edges.emplace(*surface, threads);
+        link_faces(*surface, *edges, result.report, threads);
+        if (!is_joined) close_cracks(*surface, result.report, work);
+        if (result.report.cracks_closed > 0) {
+            edges.emplace(*surface, threads);
+            link_faces(*surface, *edges, result.report, threads);
+        }
+        const ByNumber corners = corners_by_vertex(*surface);
+        make_fans(*surface, corners, crease_deg, work);
+        gather_uv(*surface, corners);
     }
     if (work.begin("where its triangles lie")) {
-        surface->tree = BoxTree::build(surface->vertices, surface->faces, result.error);
-        if (!surface->tree) return result;
-        if (!is_joined) find_piercing(*surface, result.report, work);
+        surface->tree = std::make_unique<const BoxTree>(surface->vertices, surface->faces,
+                                                        box_tree_of(surface->vertices, surface->faces, threads));
+        if (!is_joined) find_piercing(*surface, *edges, result.report, work);
     }
-    if (work.begin("how round it is")) make_shading_normals(*surface, crease_deg);
+    if (work.begin("how round it is")) find_normal_turn(*surface, threads);
+    surface->smoothing_groups = {};
     result.error = work.error();
     if (result.error.empty()) result.surface = std::move(surface);
     return result;

@@ -8,9 +8,9 @@ void BuildWork::look_up() noexcept
 {
     constexpr std::size_t looks_between = 1 << 16; // about a millisecond
     next_look_up_ = std::min(looks_ + looks_between, looks_max_);
-    if (loading_ && loading_->tell) loading_->tell(to_find_);
-    stopped_ = stopped_ || (loading_ && loading_->stopped());
-    over_ = over_ || stopped_ || looks_ >= looks_max_;
+    if (loading_ && loading_->tell && std::this_thread::get_id() == loads_) loading_->tell(to_find_);
+    if (loading_ && loading_->stopped()) stopped_ = true;
+    if (stopped_ || looks_ >= looks_max_) over_ = true;
 }
 
 std::string BuildWork::error() const

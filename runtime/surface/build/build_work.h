@@ -8,9 +8,12 @@
 #include "runtime/surface/loading.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <thread>
+#include <utility>
 
 namespace haptel::runtime {
 
@@ -28,13 +31,9 @@ public:
         : looks_max_(std::max(looks_min, looks_per_triangle * triangles)), loading_(loading)
     {
     }
-
-    static BuildWork of_joining(const Loading* loading)
-    {
-        BuildWork work(0, loading);
-        work.looks_max_ = looks_of_joining;
-        return work;
-    }
+    static constexpr struct OfJoining {
+    } of_joining{};
+    BuildWork(OfJoining, const Loading* loading) : looks_max_(looks_of_joining), loading_(loading) {}
 
     // What follows, in words that complete "to find ...". False: it is over.
     bool begin(std::string_view to_find)
@@ -44,14 +43,32 @@ public:
         look_up();
         return !over_;
     }
-    // So many things were looked at. False: it is over.
+    // So many things were looked at. False: it is over. Any thread may ask.
     bool spend(std::size_t looks = 1) noexcept
     {
-        looks_ += looks;
-        if (looks_ >= next_look_up_) look_up();
+        if (looks_.fetch_add(looks, std::memory_order_relaxed) + looks >= next_look_up_) look_up();
         return !over_;
     }
+    // The looks of one of several threads, told in lots, as they would wait for each other.
+    class Share {
+    public:
+        explicit Share(BuildWork& work) : work_(work) {}
+        ~Share() { work_.spend(looks_); }
+        Share(const Share&) = delete;
+        Share& operator=(const Share&) = delete;
+        bool spend(std::size_t looks = 1) noexcept
+        {
+            constexpr std::size_t lot = 1 << 10;
+            looks_ += looks;
+            return looks_ < lot || work_.spend(std::exchange(looks_, 0));
+        }
+
+    private:
+        BuildWork& work_;
+        std::size_t looks_ = 0;
+    };
     bool over() const { return over_; }
+    unsigned threads() const { return loading_ ? loading_->threads : 0; }
     std::size_t looks() const { return looks_; }
 
     std::string error() const; // why it is over; empty: it is not
@@ -59,10 +76,12 @@ public:
 private:
     void look_up() noexcept;
 
-    std::size_t looks_ = 0, next_look_up_ = 0, looks_max_;
+    std::atomic<std::size_t> looks_ = 0, next_look_up_ = 0;
+    std::size_t looks_max_;
     const Loading* loading_;
+    std::thread::id loads_ = std::this_thread::get_id();
     std::string_view to_find_;
-    bool over_ = false, stopped_ = false;
+    std::atomic<bool> over_ = false, stopped_ = false;
 };
 
 } // namespace haptel::runtime

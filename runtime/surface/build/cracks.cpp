@@ -3,10 +3,12 @@
 // of another (a T-junction). The first are welded, the second become corners of both faces.
 #include "runtime/geometry/predicates.h"
 #include "runtime/surface/build/build.h"
+#include "runtime/surface/build/edges.h"
 #include "runtime/surface/corner.h"
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace haptel::runtime {
@@ -23,27 +25,15 @@ struct BorderEdge {
     uint32_t face, edge;
 };
 
-std::vector<BorderEdge> border_edges(const std::vector<Face>& faces)
+std::vector<BorderEdge> border_edges(const Surface& surface, unsigned threads)
 {
-    struct Named {
-        uint32_t low, high, face, edge;
-        bool is_same_edge(const Named& other) const { return low == other.low && high == other.high; }
-    };
-    std::vector<Named> edges;
-    edges.reserve(3 * faces.size());
-    for (uint32_t f = 0; f < faces.size(); ++f)
-        for (uint32_t i = 0; i < 3; ++i) {
-            const auto [low, high] = std::minmax(faces[f].vertex[i], faces[f].vertex[next(i)]);
-            edges.push_back({low, high, f, i});
-        }
-    std::sort(edges.begin(), edges.end(), [](const Named& a, const Named& b) {
-        return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.face < b.face;
-    });
+    const Edges edges(surface, threads);
     std::vector<BorderEdge> borders;
-    for (size_t k = 0; k < edges.size(); ++k)
-        if ((k == 0 || !edges[k].is_same_edge(edges[k - 1])) &&
-            (k + 1 == edges.size() || !edges[k].is_same_edge(edges[k + 1])))
-            borders.push_back({edges[k].face, edges[k].edge});
+    for (std::size_t low = 0; low < edges.vertices(); ++low)
+        edges.visit(low, [&](std::span<const uint32_t> codes) {
+            const HalfEdge at{codes[0]};
+            if (codes.size() == 1) borders.push_back({at.face(), at.edge()});
+        });
     return borders;
 }
 
@@ -169,7 +159,7 @@ public:
         if (welded == 0) return 0;
         for (Face& face : surface_.faces)
             for (uint32_t& corner : face.vertex) corner = becomes[corner];
-        drop_flat_faces(surface_); // that lost their area when a corner moved
+        drop_flat_faces(surface_, work_.threads()); // that lost their area when a corner moved
         find();
         return welded;
     }
@@ -191,7 +181,7 @@ public:
             ++cuts;
         }
         if (cuts > 0) {
-            drop_flat_faces(surface_);
+            drop_flat_faces(surface_, work_.threads());
             find();
         }
         return cuts;
@@ -205,7 +195,7 @@ private:
     void find()
     {
         work_.spend(3 * surface_.faces.size());
-        borders_ = border_edges(surface_.faces);
+        borders_ = border_edges(surface_, work_.threads());
         corners_.clear();
         for (const BorderEdge& border : borders_) {
             corners_.push_back(begin(border));
@@ -243,12 +233,12 @@ private:
         surface_.faces.push_back(rest);
         if (auto& groups = surface_.smoothing_groups; !groups.empty()) groups.push_back(uint32_t{groups[border.face]});
         if (auto& origins = surface_.origins; !origins.empty()) origins.push_back(Origin{origins[border.face]});
-        if (surface_.uv.empty()) return;
-        std::array<glm::dvec2, 3> rest_uv = surface_.uv[border.face];
+        if (surface_.corner_uv.empty()) return;
+        std::array<glm::dvec2, 3> rest_uv = surface_.corner_uv[border.face];
         const glm::dvec2 uv = glm::mix(rest_uv[first], rest_uv[second], share);
         rest_uv[first] = uv;
-        surface_.uv[border.face][second] = uv;
-        surface_.uv.push_back(rest_uv);
+        surface_.corner_uv[border.face][second] = uv;
+        surface_.corner_uv.push_back(rest_uv);
     }
 
     Surface& surface_;
@@ -261,7 +251,7 @@ private:
 
 void close_cracks(Surface& surface, MeshReport& report, BuildWork& work)
 {
-    if (!work.begin("which of its borders lie on each other")) return;
+    if (!work.begin("which of its borders lie on each other") || report.border_edges == 0) return;
     CrackFiller filler(surface, work);
     if (!filler.open()) return;
     report.cracks_closed = filler.weld();

@@ -1,8 +1,13 @@
+// Fans are made vertex by vertex, in pieces of vertices beside each other: no fan is of two. Faces get their numbers
+// within the piece first.
 #include "runtime/surface/build/build.h"
-#include "runtime/surface/corner.h"
+#include "runtime/surface/build/by_number.h"
+#include "runtime/surface/build/fan_parts.h"
+#include "runtime/surface/in_parallel.h"
 
 #include <algorithm>
 #include <numeric>
+#include <span>
 #include <utility>
 
 namespace haptel::runtime {
@@ -11,40 +16,30 @@ namespace {
 
 constexpr uint32_t no_fan = ~0u;
 
-// A new fan from one of its corners, which are told its number.
-void add_fan(Surface& surface, const Sector& start)
-{
-    const uint32_t index = uint32_t(surface.fans.size());
-    glm::dvec3 sum{0};
-    for_each_sector(surface, start, [&](const Sector& sector) {
-        Face& face = surface.faces[sector.face];
-        sum += weighted_normal(surface, sector);
-        face.fan[sector.corner][sector.side] = index;
-    });
-    const double length = glm::length(sum);
-    surface.fans.push_back({length > 1e-9 ? sum / length : glm::dvec3(0), start.face, start.corner, start.side, index});
-}
-
 // The fans at one vertex. Two that share a face are the two sides of one sheet; sheets meet in the vertex only.
-class FansAtVertex {
+class SheetsAtVertex {
 public:
-    FansAtVertex(Surface& surface, std::vector<uint32_t> fans)
-        : surface_(surface), fans_(std::move(fans)), sheet_(fans_.size()), circle_(fans_.size())
+    SheetsAtVertex(const Surface& surface, SomeFans& some, uint32_t first_fan)
+        : surface_(surface)
+        , some_(some)
+        , first_fan_(first_fan)
+        , fans_(std::span(some.fans).subspan(first_fan))
+        , sheet_(fans_.size())
+        , circle_(fans_.size())
     {
         std::iota(sheet_.begin(), sheet_.end(), size_t{0});
         std::iota(circle_.begin(), circle_.end(), size_t{0});
         for (size_t i = 0; i < fans_.size(); ++i)
             for_each_sector(surface_, start(i), [&](const Sector& sector) {
                 ++sectors_;
-                const uint32_t back = surface_.faces[sector.face].fan[sector.corner][1 - sector.side];
-                const auto j = static_cast<size_t>(std::lower_bound(fans_.begin(), fans_.end(), back) - fans_.begin());
-                unite(sheet_, i, j);
+                const Face& face = surface_.faces[sector.face];
+                unite(sheet_, i, some_.fan_of(face.fan_or_part[sector.corner][1 - sector.side]) - first_fan_);
             });
         for (size_t i = 0; i < fans_.size(); ++i) sheet_[i] = first(sheet_, i);
     }
 
     // Joins the fans of different sheets that see each other, unless a third sheet stands between. False: it is over.
-    bool join(BuildWork& work)
+    bool join(BuildWork::Share& work)
     {
         const size_t count = fans_.size();
         if (std::all_of(sheet_.begin(), sheet_.end(), [](size_t sheet) { return sheet == 0; })) return true;
@@ -63,7 +58,7 @@ public:
                 if (!work.spend(1 + count / 8)) return false;
                 if (!same_space(seen_from[i], seen_from[j], i, j)) continue;
                 unite(circle_, i, j);
-                std::swap(surface_.fans[fans_[i]].next, surface_.fans[fans_[j]].next);
+                std::swap(fans_[i].next, fans_[j].next);
             }
         return true;
     }
@@ -71,8 +66,8 @@ public:
 private:
     Sector start(size_t i) const
     {
-        const Fan& fan = surface_.fans[fans_[i]];
-        return {fan.face, fan.corner, fan.side};
+        const SideEdge& at = fans_[i].start;
+        return {at.face(), at.edge(), at.side()};
     }
 
     // Some direction from the vertex along the sheet of the fan.
@@ -92,7 +87,7 @@ private:
         NearestInFan nearest;
         const bool closed = nearest.consider(surface_, start(i), direction);
         if (!closed) return true;
-        if (nearest.way == 0) return glm::dot(surface_.fans[fans_[i]].normal, direction) > 0;
+        if (nearest.way == 0) return glm::dot(fans_[i].normal, direction) > 0;
         const Sector& sector = nearest.sector;
         glm::dvec3 outward = surface_.facet_normal(sector.face, sector.side);
         if (nearest.edge != NearestInFan::into_sector) {
@@ -121,8 +116,10 @@ private:
         of[high] = low;
     }
 
-    Surface& surface_;
-    std::vector<uint32_t> fans_;
+    const Surface& surface_;
+    SomeFans& some_;
+    uint32_t first_fan_;
+    std::span<Fan> fans_;
     // For each fan the first of its sheet, and on the way to the first of its circle of `next`.
     std::vector<size_t> sheet_, circle_;
     size_t sectors_ = 0; // of all fans
@@ -130,26 +127,53 @@ private:
 
 } // namespace
 
-void make_fans(Surface& surface, BuildWork& work)
+void make_fans(Surface& surface, const ByNumber& corners, double crease_deg, BuildWork& work)
 {
     if (!work.begin("which of its sheets meet in a vertex")) return;
-    for (Face& face : surface.faces) face.fan = {{{no_fan, no_fan}, {no_fan, no_fan}, {no_fan, no_fan}}};
-    std::vector<std::pair<uint32_t, uint32_t>> at_vertex; // vertex, fan
-    for (uint32_t f = 0; f < surface.faces.size(); ++f)
-        for (uint32_t corner = 0; corner < 3; ++corner)
-            for (uint32_t side = 0; side < 2; ++side) {
-                if (surface.faces[f].fan[corner][side] != no_fan) continue;
-                at_vertex.emplace_back(surface.faces[f].vertex[corner], uint32_t(surface.fans.size()));
-                add_fan(surface, {f, corner, side});
-            }
+    std::vector<Face>& faces = surface.faces;
+    for (Face& face : faces) face.fan_or_part = {{{no_fan, no_fan}, {no_fan, no_fan}, {no_fan, no_fan}}};
+    std::vector<SomeFans> pieces(pieces_of(surface.vertices.size()));
+    in_pieces(surface.vertices.size(), work.threads(), [&](std::size_t begin, std::size_t end, std::size_t piece) {
+        SomeFans& some = pieces[piece];
+        BuildWork::Share share(work);
+        FanMaker maker(surface, crease_deg, some);
+        for (std::size_t vertex = begin; vertex < end && !work.over(); ++vertex) {
+            const auto first_fan = static_cast<uint32_t>(some.fans.size());
+            for (const uint32_t code : corners.of(vertex))
+                for (uint32_t side = 0; side < 2; ++side)
+                    if (faces[code / 3].fan_or_part[code % 3][side] == no_fan) maker.make({code / 3, code % 3, side});
+            if (some.fans.size() - first_fan > 2) SheetsAtVertex(surface, some, first_fan).join(share);
+        }
+    });
+    if (work.over()) return;
 
-    std::sort(at_vertex.begin(), at_vertex.end());
-    for (size_t begin = 0, end; begin < at_vertex.size(); begin = end) {
-        std::vector<uint32_t> fans;
-        for (end = begin; end < at_vertex.size() && at_vertex[end].first == at_vertex[begin].first; ++end)
-            fans.push_back(at_vertex[end].second);
-        if (fans.size() > 2 && !FansAtVertex(surface, std::move(fans)).join(work)) return;
+    std::vector<uint32_t> first_fan(pieces.size()), first_part(pieces.size());
+    std::size_t fans = 0, parts = 0;
+    for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
+        first_fan[piece] = static_cast<uint32_t>(std::exchange(fans, fans + pieces[piece].fans.size()));
+        first_part[piece] = static_cast<uint32_t>(std::exchange(parts, parts + pieces[piece].parts.size()));
     }
+    surface.fans.reserve(fans);
+    surface.fan_parts.reserve(parts);
+    for (std::size_t piece = 0; piece < pieces.size(); ++piece) {
+        for (Fan fan : pieces[piece].fans) {
+            fan.next += first_fan[piece];
+            surface.fans.push_back(fan);
+        }
+        for (FanPart part : pieces[piece].parts) {
+            part.fan += first_fan[piece];
+            surface.fan_parts.push_back(part);
+        }
+        pieces[piece] = {};
+    }
+    in_pieces(faces.size(), work.threads(), [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f)
+            for (std::size_t corner = 0; corner < 3; ++corner) {
+                const std::size_t piece = faces[f].vertex[corner] / items_per_piece;
+                for (uint32_t& number : faces[f].fan_or_part[corner])
+                    number += (number & Surface::is_part ? first_part : first_fan)[piece];
+            }
+    });
 }
 
 } // namespace haptel::runtime

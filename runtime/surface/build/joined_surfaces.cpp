@@ -127,7 +127,7 @@ std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surface
     });
     std::map<uint32_t, BuildWork> work_of; // by the first of those near each other
     for_each_overlap(boxes, [&](uint32_t one, uint32_t other) {
-        const auto [at, is_new] = work_of.try_emplace(near.first(one), BuildWork::of_joining(loading));
+        const auto [at, is_new] = work_of.try_emplace(near.first(one), BuildWork::of_joining, loading);
         BuildWork& work = at->second;
         if (is_new) work.begin("which of its parts meet");
         if (work.spend() && !meeting.are_together(one, other) && !is_same(surfaces[one], surfaces[other]) &&

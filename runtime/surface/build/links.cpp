@@ -1,9 +1,11 @@
 #include "runtime/geometry/predicates.h"
 #include "runtime/surface/build/build.h"
-#include "runtime/surface/corner.h"
+#include "runtime/surface/build/edges.h"
 
 #include <algorithm>
-#include <cmath>
+#include <atomic>
+#include <span>
+#include <vector>
 
 namespace haptel::runtime {
 
@@ -18,6 +20,13 @@ struct Wing {
     // The side that is seen when turning counter-clockwise around the edge's direction, away from the face.
     uint32_t upper_side(const Surface& surface) const { return surface.faces[face].vertex[edge] == low ? 0 : 1; }
 };
+
+Wing wing_of(const Surface& surface, HalfEdge at)
+{
+    const auto& corners = surface.faces[at.face()].vertex;
+    const auto [low, high] = std::minmax({corners[at.edge()], corners[next(at.edge())]});
+    return {low, high, at.face(), at.edge(), corners[previous(at.edge())]};
+}
 
 // Counter-clockwise order around the edge, starting at the face with tip `reference`.
 struct RadialOrder {
@@ -62,36 +71,34 @@ void join(Surface& surface, const Wing& from, const Wing& to)
 
 } // namespace
 
-void link_faces(Surface& surface, MeshReport& report)
+void link_faces(Surface& surface, const Edges& edges, MeshReport& report, unsigned threads)
 {
-    std::vector<Wing> wings;
-    wings.reserve(3 * surface.faces.size());
-    for (uint32_t f = 0; f < surface.faces.size(); ++f) {
-        Face& face = surface.faces[f];
-        const auto& v = surface.vertices;
-        face.normal = exact_normal(v[face.vertex[0]], v[face.vertex[1]], v[face.vertex[2]]).unit();
-        for (uint32_t i = 0; i < 3; ++i) {
-            const uint32_t a = face.vertex[i], b = face.vertex[next(i)];
-            wings.push_back({std::min(a, b), std::max(a, b), f, i, face.vertex[previous(i)]});
+    const auto& v = surface.vertices;
+    in_pieces(surface.faces.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t f = begin; f < end; ++f) {
+            Face& face = surface.faces[f];
+            face.normal = exact_normal(v[face.vertex[0]], v[face.vertex[1]], v[face.vertex[2]]).unit();
         }
-    }
-    std::sort(wings.begin(), wings.end(), [](const Wing& a, const Wing& b) {
-        return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.face < b.face;
     });
-
-    for (size_t begin = 0; begin < wings.size();) {
-        size_t end = begin + 1;
-        while (end < wings.size() && wings[end].low == wings[begin].low && wings[end].high == wings[begin].high) ++end;
-        const size_t count = end - begin;
-        report.border_edges += count == 1;
-        report.nonmanifold_edges += count > 2;
-        if (count > 2) {
-            const Wing reference = wings[begin];
-            std::sort(wings.begin() + begin, wings.begin() + end, RadialOrder{surface.vertices, reference});
-        }
-        for (size_t k = begin; k < end; ++k) join(surface, wings[k], wings[k + 1 < end ? k + 1 : begin]);
-        begin = end;
-    }
+    std::atomic<std::size_t> border_edges = 0, nonmanifold_edges = 0;
+    in_pieces(edges.vertices(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+        std::vector<Wing> wings;
+        for (std::size_t low = begin; low < end; ++low)
+            edges.visit(low, [&](std::span<const uint32_t> codes) {
+                wings.clear();
+                for (const uint32_t code : codes) wings.push_back(wing_of(surface, HalfEdge{code}));
+                const std::size_t count = wings.size();
+                border_edges += count == 1;
+                nonmanifold_edges += count > 2;
+                if (count > 2) {
+                    const Wing reference = wings[0];
+                    std::sort(wings.begin(), wings.end(), RadialOrder{surface.vertices, reference});
+                }
+                for (std::size_t k = 0; k < count; ++k) join(surface, wings[k], wings[k + 1 < count ? k + 1 : 0]);
+            });
+    });
+    report.border_edges = border_edges;
+    report.nonmanifold_edges = nonmanifold_edges;
 }
 
 } // namespace haptel::runtime

@@ -1,9 +1,12 @@
 #include "runtime/geometry/predicates.h"
 #include "runtime/surface/box_tree.h"
 #include "runtime/surface/build/build.h"
-#include "runtime/surface/corner.h"
+#include "runtime/surface/build/edges.h"
 
 #include <algorithm>
+#include <atomic>
+#include <span>
+#include <vector>
 
 namespace haptel::runtime {
 
@@ -15,24 +18,18 @@ constexpr std::size_t looks_per_test = 8;
 // as touching. A face in the plane of the edge cannot stop a path along it.
 class EdgeAgainstFaces final : public SegmentVisitor {
 public:
-    EdgeAgainstFaces(const Surface& surface, BuildWork& work)
-        : is_pierced(surface.faces.size()), surface_(surface), work_(work), is_done_(3 * surface.faces.size())
+    EdgeAgainstFaces(const Surface& surface, BuildWork& work, std::vector<std::atomic<bool>>& is_pierced)
+        : surface_(surface), work_(work), is_pierced_(is_pierced)
     {
     }
 
-    // An edge once, with all the faces that have it.
-    void run(uint32_t face, uint32_t edge)
+    // With all the faces that have it.
+    void run(std::span<const uint32_t> edge)
     {
-        if (is_done_[3 * face + edge]) return;
-        faces_.clear();
-        for (SideEdge at(face, edge, 0); !is_done_[3 * at.face() + at.edge()];) {
-            is_done_[3 * at.face() + at.edge()] = true;
-            faces_.push_back(at.face());
-            const SideEdge next_face = surface_.faces[at.face()].link[at.edge()][at.side()];
-            at = SideEdge(next_face.face(), next_face.edge(), 1 - next_face.side());
-        }
-        from_ = surface_.faces[face].vertex[edge];
-        to_ = surface_.faces[face].vertex[next(edge)];
+        edge_ = edge;
+        const HalfEdge first{edge[0]};
+        from_ = surface_.faces[first.face()].vertex[first.edge()];
+        to_ = surface_.faces[first.face()].vertex[next(first.edge())];
         surface_.tree->segment(surface_.vertices[from_], surface_.vertices[to_], *this);
     }
 
@@ -44,12 +41,10 @@ public:
             if (corner == from_ || corner == to_) return 1.0;
         work_.spend(looks_per_test);
         if (!meets(corners)) return 1.0;
-        for (const uint32_t face : faces_) is_pierced[face] = true;
-        is_pierced[other] = true;
-        return work_.spend(faces_.size()) ? 1.0 : 0.0;
+        for (const uint32_t code : edge_) is_pierced_[HalfEdge{code}.face()].store(true, std::memory_order_relaxed);
+        is_pierced_[other].store(true, std::memory_order_relaxed);
+        return work_.spend(edge_.size()) ? 1.0 : 0.0;
     }
-
-    std::vector<bool> is_pierced; // by face
 
 private:
     bool meets(const std::array<uint32_t, 3>& corners) const
@@ -64,21 +59,24 @@ private:
     }
 
     const Surface& surface_;
-    BuildWork& work_;
-    std::vector<bool> is_done_; // [3 * face + edge]
-    std::vector<uint32_t> faces_;
+    BuildWork::Share work_;
+    std::vector<std::atomic<bool>>& is_pierced_; // by face
+    std::span<const uint32_t> edge_;
     uint32_t from_ = 0, to_ = 0;
 };
 
 } // namespace
 
-void find_piercing(Surface& surface, MeshReport& report, BuildWork& work)
+void find_piercing(Surface& surface, const Edges& edges, MeshReport& report, BuildWork& work)
 {
     if (!work.begin("which of its triangles cut each other")) return;
-    EdgeAgainstFaces edges(surface, work);
-    for (uint32_t f = 0; f < surface.faces.size() && !work.over(); ++f)
-        for (uint32_t i = 0; i < 3; ++i) edges.run(f, i);
-    report.pierced = static_cast<std::size_t>(std::count(edges.is_pierced.begin(), edges.is_pierced.end(), true));
+    std::vector<std::atomic<bool>> is_pierced(surface.faces.size());
+    in_pieces(edges.vertices(), work.threads(), [&](std::size_t begin, std::size_t end, std::size_t) {
+        EdgeAgainstFaces against(surface, work, is_pierced);
+        for (std::size_t low = begin; low < end && !work.over(); ++low)
+            edges.visit(low, [&](std::span<const uint32_t> edge) { against.run(edge); });
+    });
+    report.pierced = static_cast<std::size_t>(std::count(is_pierced.begin(), is_pierced.end(), true));
     surface.cuts_itself = report.pierced > 0;
 }
 

@@ -1,9 +1,13 @@
 #include "runtime/geometry/predicates.h"
 #include "runtime/surface/build/build.h"
+#include "runtime/surface/build/by_number.h"
+#include "runtime/surface/in_parallel.h"
 
 #include <algorithm>
+#include <atomic>
+#include <bit>
 #include <cmath>
-#include <numeric>
+#include <span>
 
 namespace haptel::runtime {
 
@@ -38,29 +42,57 @@ std::vector<size_t> sound_triangles(const Mesh& mesh, MeshReport& report)
     return sound;
 }
 
+// Equal for equal coordinates, else hardly ever, whatever grid they lie on (the finisher of SplitMix64).
+uint64_t mixed(const glm::dvec3& p)
+{
+    uint64_t mix = 0;
+    for (int k = 0; k < 3; ++k) {
+        mix += std::bit_cast<uint64_t>(p[k]) + 0x9e3779b97f4a7c15;
+        mix = (mix ^ mix >> 30) * 0xbf58476d1ce4e5b9;
+        mix = (mix ^ mix >> 27) * 0x94d049bb133111eb;
+        mix ^= mix >> 31;
+    }
+    return mix;
+}
+
 // Rounds the used positions to the lattice and welds equal ones: vertices in order of first use by position order,
 // so that the result depends on the mesh alone. Returns the vertex of each position.
-std::vector<uint32_t> weld(const Mesh& mesh, const std::vector<bool>& used, Surface& surface, MeshReport& report)
+std::vector<uint32_t> weld(const Mesh& mesh, const std::vector<bool>& used, Surface& surface, MeshReport& report,
+                           unsigned threads)
 {
-    std::vector<glm::dvec3> snapped(mesh.positions_m.size());
-    std::vector<uint32_t> order;
-    for (uint32_t i = 0; i < snapped.size(); ++i) {
-        if (!used[i]) continue;
-        snapped[i] = surface.lattice.snap_vertex(mesh.positions_m[i]) + 0.0; // no -0: equal means equal
-        order.push_back(i);
-    }
-    const auto key = [&](uint32_t i) { return std::array{snapped[i].x, snapped[i].y, snapped[i].z}; };
-    std::sort(order.begin(), order.end(),
-              [&](uint32_t a, uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
-
-    std::vector<uint32_t> first(snapped.size()); // the first position with these coordinates
-    for (size_t k = 0; k < order.size(); ++k) {
-        const bool same = k > 0 && snapped[order[k]] == snapped[order[k - 1]];
-        first[order[k]] = same ? first[order[k - 1]] : order[k];
-        report.vertices_welded += same;
-    }
-    std::vector<uint32_t> vertex(snapped.size());
-    for (uint32_t i = 0; i < snapped.size(); ++i) {
+    const std::size_t count = mesh.positions_m.size();
+    std::vector<glm::dvec3> snapped(count);
+    std::vector<uint32_t> place(count); // such that equal ones have the same
+    in_pieces(count, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t i = begin; i < end; ++i) {
+            place[i] = ByNumber::none;
+            if (!used[i]) continue;
+            snapped[i] = surface.lattice.snap_vertex(mesh.positions_m[i]) + 0.0; // no -0: equal means equal
+            place[i] = uint32_t(mixed(snapped[i]) % count);
+        }
+    });
+    ByNumber by_place(count, count, [&](std::size_t i) { return place[i]; });
+    std::vector<uint32_t>& first = place; // from now on the first position with these coordinates
+    std::atomic<std::size_t> welded = 0;
+    in_pieces(count, threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+        const auto key = [&](uint32_t i) { return std::array{snapped[i].x, snapped[i].y, snapped[i].z}; };
+        for (std::size_t number = begin; number < end; ++number) {
+            const std::span<uint32_t> order = by_place.of(number);
+            std::sort(order.begin(), order.end(),
+                      [&](uint32_t a, uint32_t b) { return key(a) != key(b) ? key(a) < key(b) : a < b; });
+            for (std::size_t k = 0; k < order.size(); ++k) {
+                const bool same = k > 0 && snapped[order[k]] == snapped[order[k - 1]];
+                first[order[k]] = same ? first[order[k - 1]] : order[k];
+                welded += same;
+            }
+        }
+    });
+    report.vertices_welded += welded;
+    std::size_t vertices = 0;
+    for (uint32_t i = 0; i < count; ++i) vertices += first[i] == i;
+    surface.vertices.reserve(vertices);
+    std::vector<uint32_t> vertex(count);
+    for (uint32_t i = 0; i < count; ++i) {
         if (!used[i]) continue;
         if (first[i] == i) {
             vertex[i] = uint32_t(surface.vertices.size());
@@ -73,8 +105,9 @@ std::vector<uint32_t> weld(const Mesh& mesh, const std::vector<bool>& used, Surf
 }
 
 // Keeps the faces told, with what belongs to them. Returns how many it dropped.
-size_t keep_faces(Surface& surface, const std::vector<bool>& keep)
+size_t keep_faces(Surface& surface, const std::vector<uint8_t>& keep)
 {
+    if (std::find(keep.begin(), keep.end(), 0) == keep.end()) return 0;
     const auto keep_of = [&](auto& records) {
         if (records.empty()) return;
         size_t kept = 0;
@@ -82,7 +115,7 @@ size_t keep_faces(Surface& surface, const std::vector<bool>& keep)
             if (keep[f]) records[kept++] = records[f];
         records.resize(kept);
     };
-    keep_of(surface.uv);
+    keep_of(surface.corner_uv);
     keep_of(surface.smoothing_groups);
     keep_of(surface.origins);
     keep_of(surface.faces);
@@ -91,35 +124,42 @@ size_t keep_faces(Surface& surface, const std::vector<bool>& keep)
 
 } // namespace
 
-size_t drop_flat_faces(Surface& surface)
+size_t drop_flat_faces(Surface& surface, unsigned threads)
 {
-    std::vector<bool> keep(surface.faces.size());
+    std::vector<uint8_t> keep(surface.faces.size());
     const auto& v = surface.vertices;
-    for (size_t f = 0; f < keep.size(); ++f) {
-        const Triangle& corners = surface.faces[f].vertex;
-        keep[f] = !exact_normal(v[corners[0]], v[corners[1]], v[corners[2]]).is_zero();
-    }
+    in_pieces(keep.size(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (size_t f = begin; f < end; ++f) {
+            const Triangle& corners = surface.faces[f].vertex;
+            keep[f] = !exact_normal(v[corners[0]], v[corners[1]], v[corners[2]]).is_zero();
+        }
+    });
     return keep_faces(surface, keep);
 }
 
-size_t drop_repeated_faces(Surface& surface)
+size_t drop_repeated_faces(Surface& surface, unsigned threads)
 {
-    std::vector<Triangle> sorted;
-    sorted.reserve(surface.faces.size());
-    for (const Face& face : surface.faces) {
-        sorted.push_back(face.vertex);
-        std::sort(sorted.back().begin(), sorted.back().end());
-    }
-    std::vector<uint32_t> order(sorted.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::sort(order.begin(), order.end(),
-              [&](uint32_t a, uint32_t b) { return sorted[a] != sorted[b] ? sorted[a] < sorted[b] : a < b; });
-    std::vector<bool> keep(sorted.size(), true);
-    for (size_t k = 1; k < order.size(); ++k) keep[order[k]] = sorted[order[k]] != sorted[order[k - 1]];
+    const auto sorted = [&](uint32_t f) {
+        Triangle corners = surface.faces[f].vertex;
+        std::sort(corners.begin(), corners.end());
+        return corners;
+    };
+    ByNumber by_lowest(surface.vertices.size(), surface.faces.size(), [&](uint32_t f) { return sorted(f)[0]; });
+    std::vector<uint8_t> keep(surface.faces.size(), 1);
+    in_pieces(by_lowest.numbers(), threads, [&](std::size_t begin, std::size_t end, std::size_t) {
+        for (std::size_t lowest = begin; lowest < end; ++lowest) {
+            const std::span<uint32_t> order = by_lowest.of(lowest);
+            std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+                const Triangle of_a = sorted(a), of_b = sorted(b);
+                return of_a != of_b ? of_a < of_b : a < b;
+            });
+            for (size_t k = 1; k < order.size(); ++k) keep[order[k]] = sorted(order[k]) != sorted(order[k - 1]);
+        }
+    });
     return keep_faces(surface, keep);
 }
 
-bool repair(const Mesh& mesh, Surface& surface, MeshReport& report)
+bool repair(const Mesh& mesh, Surface& surface, MeshReport& report, unsigned threads)
 {
     report.triangles_given = mesh.triangles.size();
     const std::vector<size_t> sound = sound_triangles(mesh, report);
@@ -134,12 +174,15 @@ bool repair(const Mesh& mesh, Surface& surface, MeshReport& report)
             maximum = glm::max(maximum, mesh.positions_m[i]);
         }
     surface.lattice = Lattice::around(minimum, maximum);
-    const std::vector<uint32_t> vertex = weld(mesh, used, surface, report);
+    const std::vector<uint32_t> vertex = weld(mesh, used, surface, report, threads);
 
     const bool has_uv = mesh.uv.size() == mesh.positions_m.size();
     const bool has_groups = mesh.smoothing_groups.size() == mesh.triangles.size();
     const bool has_origins = mesh.origins.size() == mesh.triangles.size();
     surface.faces.reserve(sound.size());
+    if (has_uv) surface.corner_uv.reserve(sound.size());
+    if (has_groups) surface.smoothing_groups.reserve(sound.size());
+    if (has_origins) surface.origins.reserve(sound.size());
     for (size_t t : sound) {
         const Triangle& given = mesh.triangles[t];
         surface.faces.emplace_back().vertex = {vertex[given[0]], vertex[given[1]], vertex[given[2]]};
@@ -151,10 +194,10 @@ bool repair(const Mesh& mesh, Surface& surface, MeshReport& report)
             uv[i] = mesh.uv[given[i]];
             if (!std::isfinite(uv[i].x) || !std::isfinite(uv[i].y)) uv[i] = {0, 0};
         }
-        surface.uv.push_back(uv);
+        surface.corner_uv.push_back(uv);
     }
-    report.degenerate = drop_flat_faces(surface);
-    report.duplicate = drop_repeated_faces(surface);
+    report.degenerate = drop_flat_faces(surface, threads);
+    report.duplicate = drop_repeated_faces(surface, threads);
     report.triangles_kept = surface.faces.size();
     if (surface.faces.empty()) return false;
 

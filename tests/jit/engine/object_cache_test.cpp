@@ -45,7 +45,7 @@ TEST_CASE("what is stored is found by its key and by no other, in this process a
     CHECK(cache.load(key) == object);
     CHECK_FALSE(cache.load(other_key));
     CHECK(ObjectCache(folder.path / "made" / "here").load(key) == object);
-    CHECK((cache.status().objects == 1 && cache.status().fault.empty() && cache.status().bytes > object.size()));
+    CHECK((cache.status().files == 1 && cache.status().fault.empty() && cache.status().bytes > object.size()));
     cache.store(key, "another");
     CHECK(cache.load(key) == "another");
     CHECK(files_in(folder.path / "made" / "here").size() == 1);
@@ -118,7 +118,7 @@ TEST_CASE("a folder that others can write, or that cannot be, is not used")
         CHECK_FALSE(cache.load(key));
         CHECK(cache.status().fault == "others can write there");
         cache.store(other_key, object);
-        CHECK(cache.status().objects == 1);
+        CHECK(cache.status().files == 1);
     }
     chmod((folder.path / "cache").c_str(), 0755);
     CHECK(cache.load(key) == object);
@@ -186,7 +186,7 @@ TEST_CASE("beyond the limit what was used least lately goes, and what a dead pro
     ObjectCache small(path, 10 * 5100);
     small.store(key_of(20), object);
     CHECK(small.status().bytes <= 10 * 5100 / 4 * 3);
-    CHECK(small.status().objects == 7);
+    CHECK(small.status().files == 7);
     for (int kept : {20, 19, 0, 1, 4}) CHECK(small.load(key_of(kept)));
     for (int gone : {18, 17, 10, 5}) CHECK_FALSE(small.load(key_of(gone)));
     CHECK_FALSE(fs::exists(path / "unfinished-old"));

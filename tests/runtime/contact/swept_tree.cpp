@@ -1,4 +1,4 @@
-// The tree that a shaft asks for triangles: it loses none, and a surface has one, however many styluses touch it.
+// The tree that a shaft asks for triangles: it loses none.
 #include "runtime/contact/swept_tree.h"
 #include "runtime/contact/stylus_contact.h"
 #include "runtime/servo/allocation_count.h"
@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <random>
-#include <thread>
 #include <vector>
 
 using namespace haptel::runtime;
@@ -21,6 +20,7 @@ TEST_CASE("all triangles that a moving shaft can meet are visited, each once")
     std::uniform_real_distribution<double> uniform(0, 1);
     for (const Mesh& mesh : {make_star(3), make_box(), make_torus(), make_plane(9)}) {
         const auto s = surface_of(mesh);
+        const SweptTree tree(*s);
         int met = 0, spared = 0;
         for (int i = 0; i < 1000; ++i) {
             const double length = 2 * std::pow(10.0, -3 * uniform(random)) * Lattice::extent;
@@ -31,11 +31,11 @@ TEST_CASE("all triangles that a moving shaft can meet are visited, each once")
                         tip_after = tip + anywhere(length), tail_after = tail + anywhere(length);
             std::vector<uint32_t> visited;
             const SweptRegion region(tip, tail, tip_after, tail_after, 0);
-            CHECK(s->swept_tree().for_each(region, [&](uint32_t face) {
+            CHECK(tree.for_each(region, [&](uint32_t face) {
                 visited.push_back(face);
                 return true;
             }));
-            CHECK(s->swept_tree().is_empty(region) == visited.empty());
+            CHECK(tree.is_empty(region) == visited.empty());
             std::sort(visited.begin(), visited.end());
             CHECK(std::adjacent_find(visited.begin(), visited.end()) == visited.end());
             spared += visited.size() < s->faces.size();
@@ -62,24 +62,10 @@ TEST_CASE("all triangles that a moving shaft can meet are visited, each once")
     }
 }
 
-TEST_CASE("a surface has one tree for all styluses, made with the first of them")
+TEST_CASE("a stylus makes no tree of its own")
 {
     const auto s = surface_of(make_icosphere(4));
-    const auto allocated = [&] {
-        const uint64_t before = allocations_of_this_thread();
-        const StylusContact stylus(s);
-        return allocations_of_this_thread() - before;
-    };
-    const uint64_t with_tree = allocated(), without = allocated();
-    CHECK(with_tree > without); // nobody had asked for it before
-    CHECK(without == 14);       // its ends, and for each of them six lists of what is around it
-
-    // Of several that ask at once one makes it.
-    const auto fresh = surface_of(make_icosphere(4));
-    std::vector<const SweptTree*> seen(8);
-    std::vector<std::thread> threads;
-    for (const SweptTree*& tree : seen) threads.emplace_back([&] { tree = &fresh->swept_tree(); });
-    for (std::thread& thread : threads) thread.join();
-    for (const SweptTree* tree : seen) CHECK(tree == seen[0]);
-    CHECK(seen[0] != &s->swept_tree());
+    const uint64_t before = allocations_of_this_thread();
+    const StylusContact stylus(s);
+    CHECK(allocations_of_this_thread() - before == 14); // its ends, and for each of them six lists of what is around it
 }

@@ -2,6 +2,8 @@
 // here; beyond a limit such a mesh is refused with the reason, and building ends when it is asked to.
 #include "runtime/surface/box_tree.h"
 #include "runtime/surface/build/build.h"
+#include "runtime/surface/build/by_number.h"
+#include "runtime/surface/build/edges.h"
 #include "runtime/surface/loading.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
@@ -106,8 +108,8 @@ size_t looks_of_fans(const Mesh& mesh)
     MeshReport report;
     BuildWork work(100'000'000); // as of so large a mesh: it does not end
     REQUIRE(repair(mesh, surface, report));
-    link_faces(surface, report);
-    make_fans(surface, work);
+    link_faces(surface, Edges(surface, 0), report, 0);
+    make_fans(surface, corners_by_vertex(surface), default_crease_deg, work);
     CHECK(!work.over());
     return work.looks();
 }
@@ -128,7 +130,7 @@ TEST_CASE("of sheets that meet in one vertex each is looked at from each other o
     // All of them see each other round their borders: one circle of fans round the vertex.
     const std::vector<Fan>& fans = built.surface->fans;
     std::set<uint32_t> circle;
-    for (uint32_t fan = built.surface->faces[0].fan[0][0]; circle.insert(fan).second;) fan = fans[fan].next;
+    for (uint32_t fan = built.surface->fan_of(0, 0, 0); circle.insert(fan).second;) fan = fans[fan].next;
     CHECK(circle.size() >= 400);
     CHECK(looks_of_fans(book(5000)) == 0); // one sheet with itself
 }
@@ -180,13 +182,14 @@ TEST_CASE("a step of building counts what it looks at for each triangle, alike f
         Surface surface;
         MeshReport report;
         BuildWork work(mesh.triangles.size());
-        std::string error;
         REQUIRE(repair(mesh, surface, report));
+        const Edges edges(surface, 0);
+        link_faces(surface, edges, report, 0);
         close_cracks(surface, report, work);
-        link_faces(surface, report);
-        make_fans(surface, work);
-        surface.tree = BoxTree::build(surface.vertices, surface.faces, error);
-        find_piercing(surface, report, work);
+        make_fans(surface, corners_by_vertex(surface), default_crease_deg, work);
+        surface.tree = std::make_unique<const BoxTree>(surface.vertices, surface.faces,
+                                                       box_tree_of(surface.vertices, surface.faces, work.threads()));
+        find_piercing(surface, edges, report, work);
         CHECK(double(work.looks()) < 60 * double(mesh.triangles.size()));
     }
 }

@@ -1,6 +1,8 @@
 #include "runtime/surface/surface.h"
 
 #include "runtime/contact/end_contact.h"
+#include "runtime/surface/build/build.h"
+#include "runtime/surface/build/edges.h"
 #include "runtime/surface/corner.h"
 #include "runtime/surface/shapes.h"
 #include "tests/runtime/surface/meshes.h"
@@ -200,8 +202,8 @@ TEST_CASE("vertex normals are weighted by angle, whatever the triangulation and 
         const uint32_t outside = glm::dot(s->faces[f].normal, middle) > 0 ? 0 : 1;
         for (uint32_t i = 0; i < 3; ++i) {
             const dvec3 outward = glm::sign(s->vertex_m(f, i)) * third;
-            const dvec3& out = s->fans[s->faces[f].fan[i][outside]].normal;
-            const dvec3& in = s->fans[s->faces[f].fan[i][1 - outside]].normal;
+            const dvec3& out = s->fans[s->fan_of(f, i, outside)].normal;
+            const dvec3& in = s->fans[s->fan_of(f, i, 1 - outside)].normal;
             CHECK(glm::length(out - outward) < 1e-12);
             CHECK(glm::length(in + outward) < 1e-12);
         }
@@ -259,7 +261,8 @@ TEST_CASE("cracks between borders are closed, and only cracks")
     CHECK(rowed.surface->faces.size() == 2 * (2 + 4 + 8 + 16) + 2 + 4 + 8);
     for (uint32_t f = 0; f < rowed.surface->faces.size(); ++f)
         for (uint32_t i = 0; i < 3; ++i)
-            CHECK(glm::length(rowed.surface->uv[f][i] - glm::dvec2(rowed.surface->vertex_m(f, i))) < 1e-9);
+            CHECK(glm::length(rowed.surface->uv[rowed.surface->uv_of[f][i]] -
+                              glm::dvec2(rowed.surface->vertex_m(f, i))) < 1e-9);
 
     // A hand that is drawn along the lines, pressing down and exactly on them, stays on top.
     const auto point = make_point(rowed.surface);
@@ -315,10 +318,10 @@ TEST_CASE("a border's corner that stands on a closed sheet: both its sides and t
     };
     const uint32_t flap = 4;
     std::set<uint32_t> ring;
-    for (uint32_t fan = s->faces[flap].fan[corner(flap)][0]; ring.insert(fan).second;) fan = s->fans[fan].next;
-    CHECK(ring.contains(s->faces[flap].fan[corner(flap)][1]));
-    CHECK(ring.contains(s->faces[0].fan[corner(0)][0])); // the roof from above
-    CHECK_FALSE(ring.contains(s->faces[0].fan[corner(0)][1]));
+    for (uint32_t fan = s->fan_of(flap, corner(flap), 0); ring.insert(fan).second;) fan = s->fans[fan].next;
+    CHECK(ring.contains(s->fan_of(flap, corner(flap), 1)));
+    CHECK(ring.contains(s->fan_of(0, corner(0), 0))); // the roof from above
+    CHECK_FALSE(ring.contains(s->fan_of(0, corner(0), 1)));
 
     // What slides down on the flap to its corner is held by the roof there.
     const auto point = make_point(s);
@@ -331,6 +334,26 @@ TEST_CASE("a border's corner that stands on a closed sheet: both its sides and t
     CHECK(std::abs(contact.contact().proxy_m.z) < 0.1);
 }
 
+TEST_CASE("texture coordinates that corners of a vertex share are held once")
+{
+    const Mesh mesh = make_sphere(40, 20); // its seam has two of them at each vertex, its poles forty
+    const auto s = surface_of(mesh);
+    std::set<std::array<double, 5>> given, held;
+    for (const auto& corners : mesh.triangles)
+        for (const uint32_t i : corners) {
+            const dvec3 p = s->lattice.snap_vertex(mesh.positions_m[i]);
+            given.insert({p.x + 0.0, p.y + 0.0, p.z + 0.0, mesh.uv[i].x, mesh.uv[i].y});
+        }
+    for (uint32_t f = 0; f < s->faces.size(); ++f)
+        for (uint32_t i = 0; i < 3; ++i) {
+            const dvec3& p = s->vertices[s->faces[f].vertex[i]];
+            const glm::dvec2& uv = s->uv[s->uv_of[f][i]];
+            held.insert({p.x, p.y, p.z, uv.x, uv.y});
+        }
+    CHECK((held == given));
+    CHECK(s->uv.size() == given.size());
+}
+
 TEST_CASE("faces that are cut where cracks close keep their smoothing group")
 {
     Mesh mesh; // rows of triangles between whole numbers of y, with T-junctions between them
@@ -341,9 +364,12 @@ TEST_CASE("faces that are cut where cracks close keep their smoothing group")
         const auto& p = mesh.positions_m;
         mesh.smoothing_groups.push_back(row((p[a].y + p[b].y + p[c].y) / 3));
     }
-    const SurfaceResult result = build_surface(mesh);
-    REQUIRE(result.surface);
-    const Surface& surface = *result.surface;
+    Surface surface;
+    MeshReport report;
+    BuildWork work(mesh.triangles.size());
+    REQUIRE(repair(mesh, surface, report));
+    link_faces(surface, Edges(surface, 0), report, 0);
+    close_cracks(surface, report, work);
     CHECK(surface.faces.size() > mesh.triangles.size());
     REQUIRE(surface.smoothing_groups.size() == surface.faces.size());
     for (uint32_t f = 0; f < surface.faces.size(); ++f) {

@@ -1,6 +1,7 @@
 #include "runtime/surface/box_tree.h"
 
 #include "runtime/geometry/nearest_point.h"
+#include "runtime/surface/build/build.h"
 #include "runtime/surface/collision.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
@@ -91,6 +92,19 @@ TEST_CASE("the tree never loses a crossing, whatever the segment")
         CHECK(tally.missed == 0);
         CHECK(tally.wrong == 0);
     }
+}
+
+TEST_CASE("the tree is the same on any number of threads")
+{
+    const Mesh mesh = make_bumpy_sphere(6); // 81920 triangles: several parts
+    const auto s = surface_of(mesh);
+    const auto bytes_on = [&](unsigned threads) {
+        const std::vector<BoxTree::Node> nodes = box_tree_of(s->vertices, s->faces, threads);
+        return std::string(reinterpret_cast<const char*>(nodes.data()), nodes.size() * sizeof nodes[0]);
+    };
+    const std::string alone = bytes_on(1);
+    for (const unsigned threads : {2u, 3u, 7u}) CHECK((bytes_on(threads) == alone));
+    CHECK(alone.size() < 40 * s->faces.size());
 }
 
 TEST_CASE("the tree never loses a crossing: long run", "[.long]")

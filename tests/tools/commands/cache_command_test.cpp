@@ -45,7 +45,7 @@ TEST_CASE("cache: shows, primes and empties; switched off or not to be used it s
     CHECK(primed["bytes"].get<uint64_t>() < primed["limit_bytes"].get<uint64_t>());
     CHECK(contains(run_command("cache", use).out, cache));
     ran = run_command("cache --clear", use);
-    CHECK(contains(ran.out, primed["objects"].dump() + " objects removed"));
+    CHECK(contains(ran.out, primed["objects"].dump() + " objects removed, 0 surfaces"));
     CHECK(status_of(cache)["objects"] == 0);
 
     CHECK(contains(run_command("cache", "HAPTEL_CACHE=off").out, "switched off"));
