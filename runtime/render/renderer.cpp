@@ -75,7 +75,7 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
 }
 
 // The same in the scene's space, with stiffness and damping stated for the hand.
-TickResult Renderer::tick_in_scene(const DevicePose& pose) noexcept
+TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
 {
     TickResult result;
     const uint64_t periods = std::max(uint64_t{1}, pose.periods);
@@ -102,8 +102,10 @@ TickResult Renderer::tick_in_scene(const DevicePose& pose) noexcept
         result.faults = fault_pose_not_finite;
         return result;
     }
-    velocity_.update(pose.tip_m, periods);
     const bool has_tail = probe_.has_tail();
+    last_tail_m_ = pose.tail_m;
+    if (!has_tail) pose.tail_m = pose.tip_m; // or who lies along it would be near
+    velocity_.update(pose.tip_m, periods);
     if (has_tail) tail_velocity_.update(pose.tail_m, periods);
     if (history_) history_->add(period_, pose.tip_m, pose.tail_m);
     const glm::dvec3 grip_m = result.grip_m = has_tail ? probe_.grip_of(pose.tip_m, pose.tail_m) : pose.tip_m;

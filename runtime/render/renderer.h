@@ -144,7 +144,7 @@ private:
     static std::vector<Body> make_bodies(const Scene& scene, const ProbeSettings& probe);
     static std::vector<BoundingSphere> bounding_spheres(const Scene& scene, const std::vector<Body>& bodies,
                                                         double probe_radius_m);
-    TickResult tick_in_scene(const DevicePose& pose) noexcept;
+    TickResult tick_in_scene(DevicePose pose) noexcept;
     void fade_shares(Degradation degradation, uint64_t periods) noexcept;
     void add_force(TickResult& result, const DevicePose& pose, double along, const glm::dvec3& force_n) const noexcept;
     std::span<const Contact> update_contact(Body& body, const ProbePose& pose, const EndsFriction& friction) noexcept;
@@ -199,6 +199,7 @@ private:
     ContactWork work_;
     std::optional<DevicePose> last_pose_;   // that was finite
     uint64_t last_pose_period_ = 0;         // of it
+    glm::dvec3 last_tail_m_{0};             // of it, also where the probe has none
     HandVelocity velocity_, tail_velocity_; // world frame
     std::optional<HandHistory> history_;    // where something moves within bounds
 

@@ -94,6 +94,8 @@ void Renderer::take_over(Renderer& before) noexcept
     computed_ = before.computed_;
     swapped_ = true;
     if (!last_pose_) return;
+    last_tail_m_ = before.last_tail_m_;
+    last_pose_->tail_m = probe_.has_tail() ? last_tail_m_ : last_pose_->tip_m;
 
     HeldBodies held;
     for (const uint32_t number : before.sleep_queue_.awake()) {

@@ -10,7 +10,14 @@ namespace {
 
 // A way counts in these, rounded up, and a gap rounded down: a picometre, finer than any hand, is 1e7 m on half of the
 // circle. What is larger than a quarter of that counts as such, and wakes everybody.
-constexpr double units_per_m = 0x1p40, units_most = 0x1p61;
+constexpr double units_per_m = 0x1p40;
+constexpr uint64_t units_most = uint64_t{1} << 61;
+
+uint64_t units(double m)
+{
+    const double all = m * units_per_m;
+    return all < static_cast<double>(units_most) ? static_cast<uint64_t>(all) : units_most;
+}
 
 // Coordinates are rounded, and of what turns a part of the gap is left over: nobody sleeps too long.
 constexpr double early = 1 - 1e-6, early_if_turning = 0.9;
@@ -38,19 +45,25 @@ BoundingSphere around_both(const BoundingSphere& a, const BoundingSphere& b)
 } // namespace
 
 SleepQueue::SleepQueue(std::vector<BoundingSphere> objects, bool leaves_alone)
-    : object_count_(objects.size()), spheres_(std::move(objects)), way_(way_at_start)
+    : object_count_(objects.size())
+    , spheres_(std::move(objects))
+    , nodes_(object_count_, Node{.at = way_at_start})
+    , way_(way_at_start)
 {
-    // Who turns is apart, since it has to be awake apart (wake_who_turns).
-    std::vector<uint32_t> at_rest, turning;
     awake_.reserve(object_count_);
-    for (uint32_t object = 0; object < object_count_; ++object)
-        if (!leaves_alone || !std::isfinite(spheres_[object].radius_m))
-            awake_.push_back(object);
-        else
-            (spheres_[object].turns ? turning : at_rest).push_back(object);
-    sleepers_.reserve(object_count_);
-    for (std::vector<uint32_t>* some : {&at_rest, &turning})
-        if (!some->empty()) sleepers_.push_back({way_, group(*some)});
+    if (!leaves_alone) {
+        for (uint32_t object = 0; object < object_count_; ++object) awake_.push_back(object);
+        return;
+    }
+    std::array<std::vector<uint32_t>, kinds> objects_of;
+    for (uint32_t object = 0; object < object_count_; ++object) {
+        const BoundingSphere& around = spheres_[object];
+        objects_of[!std::isfinite(around.radius_m) ? anywhere : around.turns ? turning : at_rest].push_back(object);
+    }
+    for (uint32_t kind = 0; kind < kinds; ++kind)
+        if (!objects_of[kind].empty()) root_[kind] = group(objects_of[kind]);
+    if (root_[anywhere] != none) wake_all(root_[anywhere]);
+    std::sort(awake_.begin(), awake_.end());
 }
 
 // Halves along the axis on which the objects are farthest apart.
@@ -71,9 +84,11 @@ uint32_t SleepQueue::group(std::span<uint32_t> objects)
                          return place_a != place_b ? place_a < place_b : a < b;
                      });
     const uint32_t first = group(objects.first(half)), second = group(objects.subspan(half));
-    groups_.push_back({first, second});
+    const auto both = static_cast<uint32_t>(nodes_.size());
+    nodes_.push_back({.at = way_, .first = first, .second = second});
+    nodes_[first].parent = nodes_[second].parent = both;
     spheres_.push_back(around_both(spheres_[first], spheres_[second]));
-    return static_cast<uint32_t>(spheres_.size() - 1);
+    return both;
 }
 
 double gap_m(const BoundingSphere& around, const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
@@ -90,81 +105,85 @@ double far_enough_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m, double wa
     return std::max({1e-6, 8 * way_m, 1e-6 * std::max({farthest.x, farthest.y, farthest.z})});
 }
 
-// On the circle, of which all sleepers are on the half that lies ahead.
-bool SleepQueue::later(const Sleeper& a, const Sleeper& b) noexcept
-{
-    return static_cast<int64_t>(a.at - b.at) > 0;
-}
-
+// On the circle, of which all that sleep are on the half that lies ahead.
 void SleepQueue::go(double way_m, const glm::dvec3& tip_m, const glm::dvec3& tail_m, double near_m) noexcept
 {
-    const double units = std::ceil(way_m * units_per_m);
-    if (units < units_most) {
-        way_ += static_cast<uint64_t>(units);
+    const uint64_t way = units(way_m);
+    if (way < units_most) {
+        way_ += way + (way_m > 0);
     } else { // or is no number
-        for (Sleeper& sleeper : sleepers_) sleeper.at = way_;
+        for (Node& node : nodes_) node.at = way_;
     }
-    while (!sleepers_.empty() && static_cast<int64_t>(sleepers_.front().at - way_) <= 0) {
-        const uint32_t node = sleepers_.front().node;
-        std::pop_heap(sleepers_.begin(), sleepers_.end(), later);
-        sleepers_.pop_back();
+    for (const uint32_t root : root_)
+        if (root != none && is_due(nodes_[root].at)) look_at(root, false, {tip_m, tail_m, near_m});
+}
+
+// Anew: it slept in its group, and what is known of it is older than that.
+void SleepQueue::look_at(uint32_t number, bool anew, const Probe& probe) noexcept
+{
+    Node& node = nodes_[number];
+    if (node.awake == 0 && (anew || !node.parted || is_due(node.far_from))) {
         ++compared_;
-        const double gap = runtime::gap_m(spheres_[node], tip_m, tail_m);
-        if (gap > near_m) {
-            sleep_for(node, gap);
-        } else if (is_group(node)) {
-            for (const uint32_t half : {group_of(node).first, group_of(node).second}) fall_asleep(half, 0);
-        } else {
-            wake(node);
-        }
+        const double gap = runtime::gap_m(spheres_[number], probe.tip_m, probe.tail_m);
+        if (gap > probe.near_m) return sleep_for(number, gap);
+        node.far_from = way_ + units(probe.near_m - gap);
     }
+    if (!is_group(number)) return wake(number);
+    anew = anew || !std::exchange(node.parted, true);
+    for (const uint32_t half : {node.first, node.second})
+        if (anew || is_due(nodes_[half].at)) look_at(half, anew, probe);
+    sum_up(number);
 }
 
 void SleepQueue::wake_who_turns() noexcept
 {
-    bool any = false;
-    for (std::size_t i = 0; i < sleepers_.size();) {
-        const uint32_t node = sleepers_[i].node;
-        if (!spheres_[node].turns) {
-            ++i;
-            continue;
-        }
-        any = true;
-        if (is_group(node)) {
-            sleepers_[i].node = group_of(node).first;
-            sleepers_.push_back({way_, group_of(node).second});
-        } else {
-            awake_.push_back(node);
-            sleepers_[i] = sleepers_.back();
-            sleepers_.pop_back();
-        }
-    }
-    if (!any) return;
-    std::sort(awake_.begin(), awake_.end());
-    std::make_heap(sleepers_.begin(), sleepers_.end(), later);
+    const std::size_t before = awake_.size();
+    if (root_[turning] != none) wake_all(root_[turning]);
+    if (awake_.size() > before) std::sort(awake_.begin(), awake_.end());
 }
 
 void SleepQueue::sleep(uint32_t object, double gap_m) noexcept
 {
     awake_.erase(std::lower_bound(awake_.begin(), awake_.end(), object));
+    nodes_[object].awake = 0;
     sleep_for(object, gap_m);
+    for (uint32_t group = nodes_[object].parent; group != none; group = nodes_[group].parent) sum_up(group);
 }
 
 void SleepQueue::sleep_for(uint32_t node, double gap_m) noexcept
 {
-    const double units = (spheres_[node].turns ? early_if_turning : early) * gap_m * units_per_m;
-    fall_asleep(node, units < units_most ? static_cast<uint64_t>(units) : static_cast<uint64_t>(units_most));
+    nodes_[node].at = way_ + units((spheres_[node].turns ? early_if_turning : early) * gap_m);
+    nodes_[node].parted = false;
 }
 
-void SleepQueue::fall_asleep(uint32_t node, uint64_t units) noexcept
-{
-    sleepers_.push_back({way_ + units, node}); // room for all was made
-    std::push_heap(sleepers_.begin(), sleepers_.end(), later);
-}
-
+// Room for all was made. Who is awake is asked for again after the longest way there is, and stays so.
 void SleepQueue::wake(uint32_t object) noexcept
 {
-    awake_.insert(std::lower_bound(awake_.begin(), awake_.end(), object), object); // room for all was made
+    nodes_[object].at = way_ + units_most;
+    if (std::exchange(nodes_[object].awake, 1) == 0)
+        awake_.insert(std::lower_bound(awake_.begin(), awake_.end(), object), object);
+}
+
+// In no order.
+void SleepQueue::wake_all(uint32_t number) noexcept
+{
+    Node& node = nodes_[number];
+    if (number < object_count_) {
+        node.at = way_ + units_most;
+        if (std::exchange(node.awake, 1) == 0) awake_.push_back(number);
+        return;
+    }
+    node.parted = true;
+    for (const uint32_t half : {node.first, node.second}) wake_all(half);
+    sum_up(number);
+}
+
+void SleepQueue::sum_up(uint32_t number) noexcept
+{
+    Node& group = nodes_[number];
+    const Node &first = nodes_[group.first], &second = nodes_[group.second];
+    group.at = static_cast<int64_t>(first.at - second.at) < 0 ? first.at : second.at;
+    group.awake = first.awake + second.awake;
 }
 
 } // namespace haptel::runtime

@@ -2,13 +2,14 @@
 // not looked at: neither its contact nor its texture costs anything, so that a tick does not grow with the scene.
 //
 // Known by the way that the hand has gone, added up: an object at least a gap away sleeps until the way has grown by
-// that gap. One heap, ordered by the way at which to wake. Who is then still far away, by the ball around it, sleeps
-// on: the hand goes up and down more than away. Objects that are joined are one here (body.h).
+// that gap. Who is then still far away, by the ball around it, sleeps on: the hand goes up and down more than away.
+// Objects that are joined are one here (body.h).
 //
-// Who was never near sleeps in groups: the leaves of a tree of balls, each around two below it. A group wakes as an
-// object does, and only if the hand is near its ball do the two groups in it sleep by themselves. So nobody looks at
-// all objects at once, not even when a scene begins. The way is counted in whole units round the circle of 64 bits,
-// so that it loses no digits however far the hand goes.
+// Who is far away sleeps in groups: the leaves of a tree of balls, each around two below it. A group wakes as an object
+// does, and only while the hand is near its ball do the two groups in it sleep by themselves: once it has left, they
+// are one again. So what a tick compares grows with those near the hand and with the depth of the tree, also after the
+// hand has been everywhere. The way is counted in whole units round the circle of 64 bits, so that it loses no digits
+// however far the hand goes.
 //
 // One that moves within known bounds (motion.h) is at rest here. The ball holds all the places that it can take. As it
 // sees the hand, that makes longer steps than it does: by what it sways, and by what it turns at its own edge, for
@@ -19,6 +20,7 @@
 
 #include <glm/glm.hpp>
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -66,26 +68,38 @@ public:
     uint64_t compared() const noexcept { return compared_; }
 
 private:
-    struct Sleeper {
-        uint64_t at;   // the way at which it wakes
-        uint32_t node; // an object, or a group behind them
+    static constexpr uint32_t none = ~uint32_t{0};
+
+    // Each in a tree of its own: who turns has to be awake apart, and a group with who may be anywhere may be anywhere.
+    enum : uint32_t { at_rest, turning, anywhere, kinds };
+
+    // An object, or behind them a group of two.
+    struct Node {
+        uint64_t at;            // the way at which it is looked at: of a parted group the first in it
+        uint64_t far_from = 0;  // of a parted group: before, the hand cannot be far from it again
+        uint32_t parent = none; // of a root
+        uint32_t first = none, second = none;
+        uint32_t awake = 0;  // objects in it
+        bool parted = false; // those in it sleep by themselves
     };
-    struct Group {
-        uint32_t first, second; // nodes
+    struct Probe {
+        const glm::dvec3 &tip_m, &tail_m;
+        double near_m;
     };
 
     uint32_t group(std::span<uint32_t> objects);
     bool is_group(uint32_t node) const noexcept { return node >= object_count_; }
-    const Group& group_of(uint32_t node) const noexcept { return groups_[node - object_count_]; }
-    static bool later(const Sleeper& a, const Sleeper& b) noexcept;
+    bool is_due(uint64_t at) const noexcept { return static_cast<int64_t>(at - way_) <= 0; }
+    void look_at(uint32_t node, bool anew, const Probe& probe) noexcept;
     void sleep_for(uint32_t node, double gap_m) noexcept;
-    void fall_asleep(uint32_t node, uint64_t units) noexcept;
     void wake(uint32_t object) noexcept;
+    void wake_all(uint32_t node) noexcept;
+    void sum_up(uint32_t group) noexcept;
 
     std::size_t object_count_;
-    std::vector<BoundingSphere> spheres_; // of the objects, then of the groups
-    std::vector<Group> groups_;
-    std::vector<Sleeper> sleepers_; // heap: the first to wake in front; together they hold each object once
+    std::vector<BoundingSphere> spheres_; // of the nodes
+    std::vector<Node> nodes_;
+    std::array<uint32_t, kinds> root_{none, none, none};
     std::vector<uint32_t> awake_;
     uint64_t way_;
     uint64_t compared_ = 0;

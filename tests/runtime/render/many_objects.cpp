@@ -105,6 +105,65 @@ TEST_CASE("groups are compared with the hand before those in them, whether it be
     }
 }
 
+TEST_CASE("what is compared with a hand that has been everywhere grows with the depth of the tree alone")
+{
+    // A cube of balls that lie close together: so many times as many on each side, and the hand in the middle again.
+    const auto compared = [](int across) {
+        std::vector<BoundingSphere> balls;
+        for (int i = 0; i < across * across * across; ++i)
+            balls.push_back({0.006 * dvec3(i % across, i / across % across, i / (across * across)), 0.002});
+        const double side_m = 0.006 * (across - 1);
+        SleepQueue queue(balls);
+        std::mt19937 random(9);
+        std::uniform_real_distribution<double> uniform(-0.5, 0.5);
+        dvec3 hand(0);
+        uint64_t before = 0;
+        constexpr double step_m = 5e-4, near_m = 8 * step_m;
+        constexpr int from = 4000, until = 8000; // ticks
+        for (int tick = 0; tick < until;) {
+            // From one place to the next, at last within a centimetre round the middle.
+            const double room_m = tick < from - 500 ? side_m : 0.01;
+            const dvec3 place = dvec3(side_m / 2) + room_m * dvec3(uniform(random), uniform(random), uniform(random));
+            const auto steps = static_cast<int>(glm::distance(hand, place) / step_m) + 1;
+            const dvec3 step = (place - hand) / double(steps);
+            for (int i = 0; i < steps; ++i, ++tick) {
+                hand += step;
+                queue.go(glm::length(step), hand, hand, near_m);
+                const std::vector<uint32_t> awake = queue.awake();
+                if (tick % 100 == 0) // whoever may be met in this tick is awake
+                    for (uint32_t ball = 0; ball < balls.size(); ++ball)
+                        if (gap_m(balls[ball], hand, hand) <= 0)
+                            REQUIRE(std::binary_search(awake.begin(), awake.end(), ball));
+                for (const uint32_t ball : awake)
+                    if (const double gap = gap_m(balls[ball], hand, hand); gap > near_m) queue.sleep(ball, gap);
+                if (tick == from) before = queue.compared();
+            }
+        }
+        return queue.compared() - before;
+    };
+    const uint64_t few = compared(8), many = compared(32);
+    CAPTURE(few, many);
+    CHECK(few > 1000);
+    CHECK(many < 2 * few); // of 64 times as many: 15 levels of the tree and not 9
+}
+
+TEST_CASE("the tail of a pose is nothing to a probe that has none")
+{
+    // It lies along all boxes of a row.
+    for (const ProbeKind kind : {ProbeKind::point, ProbeKind::sphere}) {
+        Scene scene = field_of_boxes();
+        scene.probe = {kind, 0.1, kind == ProbeKind::sphere ? 2e-3 : 0.0};
+        const auto field = shared(std::move(scene));
+        Renderer with(field), without(field);
+        for (int i = 0; i < 500; ++i) {
+            DevicePose pose = at(0.25 + 1e-5 * i, 0.25, 0.006);
+            const uint64_t looked = looked_at(without, pose);
+            pose.tail_m = pose.tip_m + dvec3(0.2 * std::sin(0.1 * i), 0.2, 0);
+            CHECK(looked_at(with, pose) == looked);
+        }
+    }
+}
+
 TEST_CASE("objects that go nobody knows where are compared with the hand in the first tick, and no more than that")
 {
     Scene scene = field_of_boxes();
