@@ -38,8 +38,9 @@ constexpr double unfelt_most = 16 * rest_gap;
 // rounding makes of the angle between them. What they push together is told as what is left.
 constexpr double opposed_push = 4;
 
-// Lattice units: what a tick may draw the springs of the ends out by, the hand being where it is.
-constexpr double uphill = 4096;
+// What a tick may draw the springs of the ends out by, the hand being where it is: what comes down is held up by its
+// radius.
+constexpr double uphill = 4 * rest_gap;
 
 // What a way that was blocked by nothing new is cut to.
 constexpr double shorter = 0.25;
@@ -178,11 +179,11 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
         shaft_);
 }
 
-// The share of the straight way there on which all that the ends may meet is known. In the air they are swept.
+// The share of the straight way there on which nothing is that the ends may meet: what is known around them, and
+// farther than that as far as they cross nothing.
 double StylusContact::known_share(const Shaft& to, const Projection<Shaft>& held, const FrictionOfEnds& ends) noexcept
 {
     double share = 1;
-    const bool in_air = held.count == 0;
     const double most = side_count_ > 0 ? on_reach : 1;
     const auto reaches = [&](const SphereContact& end, const EndRows& rows, const glm::dvec3& from,
                              const glm::dvec3& there, bool drags) {
@@ -190,11 +191,10 @@ double StylusContact::known_share(const Shaft& to, const Projection<Shaft>& held
         const double length = glm::length(way), reach = most * rows.reach;
         const bool lands = drags && rows.count == 0; // friction holds it from where it comes to touch
         Crossing crossing;
-        if (length > reach && !in_air)
-            share = std::min(share, reach / length);
-        else if ((length > reach || lands) &&
-                 first_crossing(surface(), from, glm::round(there), StartsOn::nothing(), crossing, collision_))
-            share = std::min(share, std::max(0.0, crossing.fraction() - 2 * rest_gap / length));
+        if ((length > reach || lands) &&
+            first_crossing(surface(), from, glm::round(there), StartsOn::nothing(), crossing, collision_))
+            share =
+                std::min(share, std::max(lands ? 0.0 : reach / length, crossing.fraction() - 2 * rest_gap / length));
         if (rows.count > 0 && rows.count < end.planes().size())
             share = std::min(share, open_share(end.planes(), from, way, distance_rounding));
     };

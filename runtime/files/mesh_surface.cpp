@@ -19,18 +19,21 @@ namespace {
 using input::Checksum;
 using input::checksum;
 
-// "missing" where there is none.
+constexpr const char* missing = "missing";
+
 std::string sum_of_file(const std::filesystem::path& file)
 {
     const input::FileBytes read = input::read_regular_file(file, mesh_bytes_max);
-    return read.refused.refusal == input::Refusal::none ? to_text(checksum(read.bytes)) : "missing";
+    return read.refused.refusal == input::Refusal::none ? to_text(checksum(read.bytes)) : missing;
 }
 
-std::string key_text(const std::filesystem::path& file, double size_m, std::optional<double> crease_deg)
+// Nothing of a file that cannot be read now.
+std::optional<std::string> key_text(const std::filesystem::path& file, double size_m, std::optional<double> crease_deg)
 {
+    const std::string sum = sum_of_file(file);
+    if (sum == missing) return {};
     std::ostringstream key;
-    key << std::hexfloat << file.extension().string() << ' ' << size_m << ' ' << crease_deg.value_or(-1) << ' '
-        << sum_of_file(file);
+    key << std::hexfloat << file.extension().string() << ' ' << size_m << ' ' << crease_deg.value_or(-1) << ' ' << sum;
     return key.str();
 }
 
@@ -83,9 +86,17 @@ MeshSurface surface_of_mesh_file(const std::filesystem::path& file, double size_
                                  const Loading& loading, input::KeptFiles& kept, double keep_from_s)
 {
     using Clock = std::chrono::steady_clock;
-    const std::string named = key_text(file, size_m, crease_deg);
-    const Checksum key = checksum(named);
-    if (std::optional<MeshSurface> found = find(file, key, loading.threads, kept)) return std::move(*found);
+    std::optional<std::string> named;
+    Checksum key;
+    try {
+        named = key_text(file, size_m, crease_deg);
+        if (named) {
+            key = checksum(*named);
+            if (std::optional<MeshSurface> found = find(file, key, loading.threads, kept)) return std::move(*found);
+        }
+    } catch (const std::exception&) { // too little memory: what is kept saves time alone
+        named.reset();
+    }
 
     const Clock::time_point begin = Clock::now();
     MeshFileResult read = load_mesh(file, std::nullopt, &loading);
@@ -97,18 +108,19 @@ MeshSurface surface_of_mesh_file(const std::filesystem::path& file, double size_
     if (size_m > 0) scale_to_size(read.mesh, size_m);
     SurfaceResult built = build_surface(read.mesh, crease_deg.value_or(default_crease_deg), &loading);
     const std::chrono::duration<double> took = Clock::now() - begin;
-    if (built.surface && took.count() >= keep_from_s) {
-        read.mesh = {};
-        Words words{read.warning, all_off ? "off" : ""};
-        for (const std::string& other : words_in(read.other_files)) {
-            words.push_back(other);
-            words.push_back(sum_of_file(file.parent_path() / other));
+    if (built.surface && named && took.count() >= keep_from_s) try {
+            read.mesh = {};
+            Words words{read.warning, all_off ? "off" : ""};
+            for (const std::string& other : words_in(read.other_files)) {
+                words.push_back(other);
+                words.push_back(sum_of_file(file.parent_path() / other));
+            }
+            std::string room;
+            const KeptSurface made{built.surface, built.report, text_of(words)};
+            if (key_text(file, size_m, crease_deg) == named) // not of a file that changed meanwhile
+                kept.store(to_text(key), pieces_of_file(made, key, loading.threads, room));
+        } catch (const std::exception&) {
         }
-        std::string room;
-        const KeptSurface made{built.surface, built.report, text_of(words)};
-        if (key_text(file, size_m, crease_deg) == named) // not of a file that changed meanwhile
-            kept.store(to_text(key), pieces_of_file(made, key, loading.threads, room));
-    }
     return {std::move(built.surface), built.report, std::move(built.error), std::move(read.warning), all_off};
 }
 

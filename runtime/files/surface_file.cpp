@@ -1,5 +1,6 @@
 #include "runtime/files/surface_file.h"
 
+#include "runtime/files/mesh_surface.h"
 #include "runtime/surface/box_tree.h"
 #include "runtime/surface/in_parallel.h"
 
@@ -124,7 +125,9 @@ std::optional<KeptSurface> read_surface(int file, const Checksum& key, unsigned 
     struct stat status = {};
     Head head;
     const Head expected;
-    if (fstat(file, &status) != 0 || !read_all(file, reinterpret_cast<char*>(&head), sizeof head, 0)) return {};
+    if (fstat(file, &status) != 0 || uint64_t(status.st_size) > kept_surfaces_bytes_max ||
+        !read_all(file, reinterpret_cast<char*>(&head), sizeof head, 0))
+        return {};
     if (std::memcmp(head.magic, expected.magic, sizeof head.magic) != 0 || head.key != key ||
         head.version != checksum(code_version) || head.text_bytes > text_max ||
         std::any_of(std::begin(head.counts), std::end(head.counts), [](uint64_t count) { return count > count_max; }))

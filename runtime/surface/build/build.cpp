@@ -14,17 +14,19 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg, const Loading* 
     BuildWork work(mesh.triangles.size(), loading);
     const unsigned threads = work.threads();
     work.begin("which of its vertices are one");
-    if (!repair(mesh, *surface, result.report, threads)) {
+    const auto nothing_left = [&] {
         const std::string warning = result.report.warning();
         result.error = "the mesh has no triangle to touch" + (warning.empty() ? "" : ": " + warning);
         return result;
-    }
+    };
+    if (!repair(mesh, *surface, result.report, threads)) return nothing_left();
     const bool is_joined = !surface->origins.empty(); // each part has been built by itself before
     std::optional<Edges> edges;
     if (work.begin("which of its triangles are neighbours")) {
         edges.emplace(*surface, threads);
         link_faces(*surface, *edges, result.report, threads);
         if (!is_joined) close_cracks(*surface, result.report, work);
+        if (surface->faces.empty()) return nothing_left(); // all of them lay in cracks
         if (result.report.cracks_closed > 0) {
             edges.emplace(*surface, threads);
             link_faces(*surface, *edges, result.report, threads);

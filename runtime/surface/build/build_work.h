@@ -60,7 +60,7 @@ public:
         {
             constexpr std::size_t lot = 1 << 10;
             looks_ += looks;
-            return looks_ < lot || work_.spend(std::exchange(looks_, 0));
+            return looks_ < lot ? !work_.over() : work_.spend(std::exchange(looks_, 0));
         }
 
     private:

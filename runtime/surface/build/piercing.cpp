@@ -26,6 +26,7 @@ public:
     // With all the faces that have it.
     void run(std::span<const uint32_t> edge)
     {
+        if (!work_.spend()) return;
         edge_ = edge;
         const HalfEdge first{edge[0]};
         from_ = surface_.faces[first.face()].vertex[first.edge()];

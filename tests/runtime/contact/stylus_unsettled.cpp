@@ -139,7 +139,7 @@ TEST_CASE("what a stylus pushes has a potential that the hand alone can raise")
                         REQUIRE(contact.depth_m < rounding_m + 8 * pulled_m);
                 }
                 if (held && held_before) {
-                    REQUIRE((*held - at).length() < (*held_before - at).length() + rounding_m);
+                    REQUIRE((*held - at).length() < (*held_before - at).length() + rounding_m + unfelt_m);
                     ++ticks;
                     const double step = (*held - *held_before).length() - (at - at_before).length();
                     steps += step > 0.25 * manner.deepest_m; // as where it slides off an edge

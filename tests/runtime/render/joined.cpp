@@ -165,9 +165,9 @@ private:
 
 TEST_CASE("joined objects that do not meet are felt as each by itself, by any probe and hand")
 {
-    // Fingers push against each other; their sum is small beside them. The shaft of a stylus is solved for in steps of
-    // lattice units, friction remembers them, and its ends are balls where objects are joined. A ball goes by steps of
-    // what it has seen around it, until it moves too little to be felt.
+    // Fingers push against each other; their sum is small beside them. A stylus has a radius that goes with its
+    // object's size: in which of two ticks it slides off an edge may depend on it. A ball goes by steps of what it has
+    // seen around it, until it moves too little to be felt.
     const struct {
         ProbeKind kind;
         double friction_share, step_max_m, tolerance_n;
@@ -181,7 +181,7 @@ TEST_CASE("joined objects that do not meet are felt as each by itself, by any pr
         const auto slot = scene.objects[2].texture;
         Renderer apart(shared(scene)), together(shared(joined(scene)));
         VisitingHand tip(7, probe.step_max_m), tail(11, probe.step_max_m);
-        int touched[3] = {}, interruptions = 0, differences = 0;
+        int touched[3] = {}, interruptions = 0, differences = 0, off_edges = 0;
         for (int i = 0; i < 60000; ++i) {
             if (i % 20000 == 10000) CHECK(slot->publish(sine_texture(1e-7 * i / 1e2, 1e-3)).empty());
             DevicePose pose;
@@ -196,13 +196,19 @@ TEST_CASE("joined objects that do not meet are felt as each by itself, by any pr
             const TickResult expected = apart.tick(pose);
             apart.between_ticks();
             CAPTURE(i);
+            const double tolerance_n = probe.tolerance_n * std::max(1.0, glm::length(expected.unlimited_force_n));
+            if (probe.kind == ProbeKind::stylus &&
+                (found.contacts != expected.contacts ||
+                 glm::distance(found.unlimited_force_n, expected.unlimited_force_n) >= tolerance_n)) {
+                ++off_edges;
+                continue;
+            }
             REQUIRE(found.contacts == expected.contacts);
             // Round an edge a ball may need all its rounds, or one less where lengths are rounded otherwise.
             const auto but_rounds = [](const TickResult& result) { return result.faults & ~fault_contact_unfinished; };
             REQUIRE(but_rounds(found) == but_rounds(expected));
             REQUIRE(found.interrupted == expected.interrupted);
             REQUIRE(found.binding == expected.binding);
-            const double tolerance_n = probe.tolerance_n * std::max(1.0, glm::length(expected.unlimited_force_n));
             REQUIRE(glm::distance(found.force_n, expected.force_n) < tolerance_n);
             REQUIRE(glm::distance(found.unlimited_force_n, expected.unlimited_force_n) < tolerance_n);
             REQUIRE(glm::distance(found.torque_n_m, expected.torque_n_m) < 0.1 * tolerance_n);
@@ -216,6 +222,7 @@ TEST_CASE("joined objects that do not meet are felt as each by itself, by any pr
             differences += found.force_n != expected.force_n;
         }
         for (const int ticks : touched) CHECK(ticks > 1000);
+        CHECK(off_edges <= 30); // of 60 000
         CHECK(interruptions == 59);
         CHECK(differences > 1000); // the proxies are others
         CHECK(together.skipped().objects < apart.skipped().objects);

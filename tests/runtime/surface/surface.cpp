@@ -123,6 +123,11 @@ TEST_CASE("a mesh without one good triangle is an error that says why")
 {
     Mesh mesh;
     CHECK(build_surface(mesh).error == "the mesh has no triangle to touch");
+    // All that is left lies in a crack that closes.
+    Mesh crack;
+    crack.positions_m = {{0, 0, 0}, {1, 0, 0}, {0, 1e-7, 0}, {1, 1e-7, 0}, {1, -1e-7, 0}, {0, -1e-7, 0}};
+    crack.triangles = {{0, 3, 4}, {1, 2, 5}};
+    CHECK(build_surface(crack).error.starts_with("the mesh has no triangle to touch"));
     mesh.positions_m = {{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {NAN, 0, 0}};
     mesh.triangles = {{0, 1, 2}, {0, 1, 3}};
     const SurfaceResult built = build_surface(mesh);
