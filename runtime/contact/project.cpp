@@ -163,8 +163,10 @@ Projection<Place> solve(std::span<const Row> rows, const Place& target, double t
         double by = tolerance;
         for (uint32_t i = 0; i < rows.size(); ++i) {
             const double violation = -height(rows[i], now.at);
-            if (violation <= by ||
-                std::find(refused.begin(), refused.begin() + refusals, i) != refused.begin() + refusals)
+            if (violation <= by) continue;
+            const Place way = direction(rows[i], gives);
+            const auto last = refused.begin() + std::ptrdiff_t(refusals);
+            if (dot(way, way) == 0 || std::find(refused.begin(), last, i) != last) // nothing of it can move
                 continue;
             by = violation;
             worst = i;

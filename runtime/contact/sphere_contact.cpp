@@ -53,7 +53,9 @@ void SphereContact::reset() noexcept
 {
     placed_ = false;
     proxy_ = {};
-    around_ = close_ = {};
+    forget();
+    hand_ = hand_before_ = glm::dvec3(0);
+    grown_ = radius_;
     lag_ = 0;
     path_begin_ = path_length_ = 0;
     contact_count_ = 0;
@@ -136,7 +138,7 @@ bool SphereContact::find_around(double margin) noexcept
         if (all) {
             around_ = {proxy_.at, margin};
             if (faces_.count() < few_faces) margin_ = std::min(2 * std::max(margin, margin_), Lattice::extent);
-            if (faces_.count() > many_faces) margin_ = 0.5 * margin;
+            if (faces_.count() > many_faces) margin_ = std::max(0.5 * margin, margin_least * radius_);
             return true;
         }
         margin = far ? std::max(near, less_far * margin) : less_far * margin;
@@ -327,7 +329,9 @@ double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t 
         return 0;
     if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(at, radius_) - distance_rounding);
     double within = std::min(reach, around_.room(at));
-    if (close_.centre == at && close_.margin >= within && close_.margin < stride_most * within) return within;
+    if (close_.centre == at && close_.margin >= within && close_.margin < stride_most * within &&
+        faces_.picked().size() <= most)
+        return within;
     for (pick(within); faces_.picked().size() > most; pick(within))
         if ((within *= less_far) < 1) return 0;
     return within;

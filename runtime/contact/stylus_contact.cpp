@@ -51,6 +51,8 @@ void StylusContact::reset() noexcept
     has_tail_ = tracked_ = false;
     side_count_ = contact_count_ = 0;
     clear_ = {};
+    reached_ = {};
+    stuck_ticks_ = 0;
     unspared_ = -1;
     collision_ = {};
     counters_ = {};
@@ -102,6 +104,7 @@ void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) no
     tip_->follow(tip_m);
     tracked_ = has_shaft_ = finite(tip_m) && take(tip_m, tail_m);
     side_count_ = 0;
+    clear_.radius = 0; // it may be out of it
     if (tracked_) {
         reached_ = hand_;
         shaft_ = within(hand_.tip, hand_.tail);
@@ -159,6 +162,7 @@ void StylusContact::start(const glm::dvec3& tip_m, const Friction& friction) noe
 {
     const Shaft whole = within(hand_.tip, hand_.tail);
     Crossing crossing;
+    clear_.radius = 0;
     const bool first = !tip_->is_placed();
     const bool crosses =
         first && first_crossing(surface(), whole.tail, whole.tip, StartsOn::nothing(), crossing, collision_);
@@ -303,7 +307,7 @@ double StylusContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) c
 
 bool StylusContact::shaft_crosses() const noexcept
 {
-    if (!has_tail_ || tracked_ || !tip_->is_placed() || tip_->contact().touching) return false;
+    if (!has_shaft_ || tracked_ || !tip_->is_placed() || tip_->contact().touching) return false;
     const Shaft whole = within(hand_.tip, hand_.tail);
     Crossing crossing;
     CollisionCount count;

@@ -195,7 +195,7 @@ double StylusContact::known_share(const Shaft& to, const Projection<Shaft>& held
             first_crossing(surface(), from, glm::round(there), StartsOn::nothing(), crossing, collision_))
             share =
                 std::min(share, std::max(lands ? 0.0 : reach / length, crossing.fraction() - 2 * rest_gap / length));
-        if (rows.count > 0 && rows.count < end.planes().size())
+        if (!lands) // the rows hold it off them, but for those that friction left out, or that contradict others
             share = std::min(share, open_share(end.planes(), from, way, distance_rounding));
     };
     if (begin_ == 0) reaches(*tip_, tip_rows_, shaft_.tip, to.tip, ends.tip.friction.static_coefficient > 0);
@@ -240,9 +240,14 @@ Shaft StylusContact::on_the_way(const Shaft& to, double share, const FrictionOfE
         at = next;
         if (agreed) break;
     }
-    const bool is_known =
-        glm::distance(at.tip, shaft_.tip) <= tip_rows_.reach && glm::distance(at.tail, shaft_.tail) <= tail_rows_.reach;
-    return rounded(is_known ? at : part);
+    const auto is_known = [](bool is_held, const SphereContact& end, const EndRows& rows, const glm::dvec3& from,
+                             const glm::dvec3& there) {
+        return !is_held || (glm::distance(from, there) <= rows.reach &&
+                            open_share(end.planes(), from, there - from, distance_rounding) == 1);
+    };
+    const bool known = is_known(begin_ == 0, *tip_, tip_rows_, shaft_.tip, at.tip) &&
+                       is_known(end_ == 1, *tail_, tail_rows_, shaft_.tail, at.tail);
+    return rounded(known ? at : part);
 }
 
 void StylusContact::resolve(const EndsFriction& friction) noexcept
@@ -266,12 +271,13 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     }
     double stride = stride_of_hand * farther(hand_, reached_);
     double most = 1; // share of the way that is tried at once
-    bool settled = false;
+    bool settled = false, blind = false;
     Shaft to = shaft_;
     uint32_t round = 0;
     for (; round < rounds_max && sweeps_left_ > 0 && !settled; ++round) {
         stride = std::max({stride, 64.0, stride_least * farther(extended(shaft_), hand_)});
-        if (!look(stride, ends)) break;
+        blind = !look(stride, ends);
+        if (blind) break;
         const Projection<Shaft> held = solve(ends);
         to = {held.at.at(begin_), held.at.at(end_)};
         for (Side& side : std::span(sides_.data(), side_count_)) side.push = 0;
@@ -294,11 +300,13 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     }
     if (away(shaft_) > away_first + uphill) { // what the springs hold is given by the hand, not by how that is found
         shaft_ = shaft_first, sides_ = sides_first, side_count_ = side_count_first;
+        ends.tip.slides = tip_->proxy().sliding, ends.tail.slides = tail_->proxy().sliding;
+        ends.tip.lag = ends.tail.lag = glm::dvec3(0);
         settled = false;
     }
     counters_.walk_steps += round;
     counters_.walks_cut += !settled;
-    const bool behind = !settled && farther(shaft_, to) > far_behind;
+    const bool behind = !settled && (blind || farther(shaft_, to) > far_behind);
     stuck_ticks_ = behind && away_first - away(shaft_) < far_behind ? stuck_ticks_ + 1 : 0;
     if (stuck_ticks_ == patience_ticks_) tracked_ = false;
     reached_ = hand_;
@@ -322,8 +330,14 @@ double StylusContact::away(const Shaft& part) const noexcept
 void StylusContact::hold(const FrictionOfEnds& ends, bool settled) noexcept
 {
     for (Side& side : std::span(sides_.data(), side_count_)) side.push = 0;
-    if (!look(rest_gap, {})) return; // what a line may come to that a ball does not
-    const Shaft whole = extended(shaft_), target{hand_.tip + ends.tip.lag, hand_.tail + ends.tail.lag};
+    const Shaft whole = extended(shaft_);
+    if (!look(rest_gap, {})) { // what a line may come to that a ball does not. There is too much: all of it is left
+        left_ = {whole.tip - hand_.tip, whole.tail - hand_.tail};
+        tip_->tell_held(hand_.tip, {}, {}, glm::dvec3(0));
+        tail_->tell_held(hand_.tail, {}, {}, glm::dvec3(0));
+        return;
+    }
+    const Shaft target{hand_.tip + ends.tip.lag, hand_.tail + ends.tail.lag};
     std::span<const ShaftRow> rows = turn_sides(shaft_, rest_gap);
     const std::span<ShaftRow> changed(rows_.data(), rows.size());
     if (!settled)
