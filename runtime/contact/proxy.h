@@ -32,9 +32,6 @@ struct WalkFriction {
     double static_coefficient = 0, dynamic_coefficient = 0;
 };
 
-// A lattice point just above what the proxy is on, on its side; where that is too sharp for one, on it.
-glm::dvec3 beside(const Surface& surface, const Proxy& proxy) noexcept;
-
 // In one tick; the walk goes on in the next.
 inline constexpr uint32_t walk_steps_max = 4096;
 

@@ -14,9 +14,9 @@
 // and takes no place in which exact arithmetic finds it crossing a triangle, so that nothing is passed through at any
 // speed. It is felt as a line: rows are projected once more without the radius.
 //
-// What one tick may look at is bounded. Where that is reached the stylus stays at the place that it has come to, no
-// farther from the hand than before the tick, and the part of the springs' force that no known contact explains is told
-// at the ends (Contact::unsettled).
+// What one tick may look at is bounded. Where that is reached the stylus stays at the place that it has come to, at
+// most four radii farther from the hand than before the tick, and the part of the springs' force that no known contact
+// explains is told at the ends (Contact::unsettled).
 //
 // A stylus that is put down across the surface, or comes from beyond the workspace of the lattice with its whole
 // length, is held by its tip alone until it crosses nothing; so is one that could not follow for 64 ms on end.
@@ -101,8 +101,7 @@ private:
         double time = 0; // share of the move
         int side = 0;
         bool exact = false; // not met on the way, but crossed at the end of it
-        double on_shaft = 0;
-        double height = 0; // over the edge that it comes near
+        double height = 0;  // over the edge that it comes near
     };
     struct FrictionOfEnds {
         EndFriction tip, tail;
@@ -141,6 +140,7 @@ private:
     bool blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept;
     bool is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Shaft& to) const noexcept;
     void approach(const Shaft& to, const Obstacle& obstacle) noexcept;
+    bool is_side(const glm::dvec3& edge0, const glm::dvec3& edge1) const noexcept;
     void touch(const Obstacle& obstacle) noexcept;
     void see(uint32_t face, uint32_t edge, const Shaft& to) noexcept;
     void let_go_of_ended() noexcept;

@@ -26,8 +26,6 @@ struct EndFriction {
 
     bool drags() const { return touches && friction.static_coefficient > 0; }
     double coefficient() const { return slides ? friction.dynamic_coefficient : friction.static_coefficient; }
-    // For the walk, which then holds the end or lets it slide as was found here.
-    Friction of_walk() const { return {coefficient(), friction.dynamic_coefficient}; }
 
     void take_hold(bool of_sides) noexcept;
     // One iteration. With the present friction the contacts of the shaft pull the end toward `aim`, and it comes to

@@ -47,6 +47,14 @@ bool StylusContact::move(const Shaft& to) noexcept
     return false;
 }
 
+bool StylusContact::is_side(const glm::dvec3& edge0, const glm::dvec3& edge1) const noexcept
+{
+    return std::any_of(sides_.begin(), sides_.begin() + side_count_, [&](const Side& side) {
+        const glm::dvec3 &c = edge_end(side.face, side.edge, 0), &d = edge_end(side.face, side.edge, 1);
+        return (edge0 == c && edge1 == d) || (edge0 == d && edge1 == c);
+    });
+}
+
 // What the shaft comes near to at the end of its move becomes a contact.
 void StylusContact::see(uint32_t face, uint32_t edge, const Shaft& to) noexcept
 {
@@ -58,14 +66,8 @@ void StylusContact::see(uint32_t face, uint32_t edge, const Shaft& to) noexcept
     const double beyond = std::max({0.0, -lines.on_edge, lines.on_edge - lines.edge_length});
     const double height = std::hypot(lines.height, beyond);
     if (!(height < close_.height)) return;
-    for (uint32_t i = 0; i < side_count_; ++i) {
-        const auto& corners = surface().faces[sides_[i].face].vertex;
-        const auto& own = surface().faces[face].vertex;
-        const uint32_t p = corners[sides_[i].edge], q = corners[next(sides_[i].edge)], u = own[edge],
-                       v = own[next(edge)];
-        if ((p == u && q == v) || (p == v && q == u)) return;
-    }
-    close_ = {face, edge, 1, sign, false, lines.on_shaft, height};
+    if (is_side(a, b)) return;
+    close_ = {face, edge, 1, sign, false, height};
 }
 
 // Whether an edge cannot be met by a shaft that goes to a place above one of its sides: the side's own edge, and what
@@ -108,7 +110,7 @@ bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstac
             const bool is_met = meets(from, to, a, b, obstacle.time, meeting);
             if (!met && meeting.close) see(f, edge, to);
             if (!is_met || is_below_a_side(face.vertex[edge], face.vertex[next(edge)], to)) continue;
-            obstacle = {f, edge, meeting.time, meeting.side, false, 0, 0};
+            obstacle = {f, edge, meeting.time, meeting.side, false, 0};
             met = true;
         }
         return true;
@@ -125,7 +127,7 @@ bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstac
     Crossing crossing;
     if (!first_crossing(s, to.tip, to.tail, StartsOn::nothing(), crossing, collision_)) return false;
     // Where the straight ways led below a vertex it is the next edge that stops the shaft, not one below that.
-    obstacle = {crossing.face, 0, 1, 0, true, crossing.fraction(), 0};
+    obstacle = {crossing.face, 0, 1, 0, true, 0};
     const auto& corners = s.faces[crossing.face].vertex;
     for (const bool below : {false, true}) {
         double nearest = HUGE_VAL;
@@ -167,11 +169,7 @@ void StylusContact::touch(const Obstacle& obstacle) noexcept
 {
     if (obstacle.side == 0) return;
     const glm::dvec3 &a = edge_end(obstacle.face, obstacle.edge, 0), &b = edge_end(obstacle.face, obstacle.edge, 1);
-    for (uint32_t i = 0; i < side_count_; ++i) {
-        const glm::dvec3 &c = edge_end(sides_[i].face, sides_[i].edge, 0),
-                         &d = edge_end(sides_[i].face, sides_[i].edge, 1);
-        if ((a == c && b == d) || (a == d && b == c)) return;
-    }
+    if (is_side(a, b)) return;
     if (side_count_ == sides_max) {
         const auto least = std::min_element(sides_.begin(), sides_.end(),
                                             [](const Side& x, const Side& y) { return x.push < y.push; });

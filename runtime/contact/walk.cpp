@@ -19,9 +19,6 @@ constexpr double clear_above = 2; // height that rounding to the lattice cannot 
 // Length of the sum of two unit normals below which the faces nearly fold onto each other.
 constexpr double sharp = 1.0 / 16;
 
-// Lattice units: how far above its feature a proxy is `beside` it, so that rounding does not matter.
-constexpr double clear_beside = 8;
-
 class Walk {
 public:
     Walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count)
@@ -356,30 +353,6 @@ void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const Wa
           uint32_t step_limit) noexcept
 {
     Walk(surface, proxy, hand, friction, count).run(step_limit);
-}
-
-glm::dvec3 beside(const Surface& surface, const Proxy& proxy) noexcept
-{
-    const Face& face = surface.faces[proxy.face];
-    const glm::dvec3 normal = surface.facet_normal(proxy.face, proxy.side);
-    switch (proxy.on) {
-    case Proxy::On::nothing: return proxy.at;
-    case Proxy::On::face: return glm::round(proxy.at + clear_beside * normal);
-    case Proxy::On::vertex:
-        return glm::round(proxy.at +
-                          clear_beside * surface.fans[surface.fan_of(proxy.face, proxy.index, proxy.side)].normal);
-    case Proxy::On::edge: break;
-    }
-    const SideEdge link = face.link[proxy.index][proxy.side];
-    const glm::dvec3 between = normal + surface.facet_normal(link.face(), link.side());
-    const double square = glm::dot(between, between);
-    if (square > sharp * sharp) return glm::round(proxy.at + 2 * clear_beside / square * between);
-    const glm::dvec3& begin = surface.vertices[face.vertex[proxy.index]];
-    const glm::dvec3 along = surface.vertices[face.vertex[next(proxy.index)]] - begin;
-    const glm::dvec3 outward = glm::normalize(glm::cross(along, face.normal));
-    const glm::dvec3& tip = surface.vertices[surface.faces[link.face()].vertex[previous(link.edge())]];
-    const bool ridge = link.face() == proxy.face || glm::dot(tip - begin, normal) < 0;
-    return ridge ? glm::round(proxy.at + clear_beside * outward) : proxy.at;
 }
 
 void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const glm::dvec3& from,

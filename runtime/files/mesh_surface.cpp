@@ -99,6 +99,7 @@ MeshSurface surface_of_mesh_file(const std::filesystem::path& file, double size_
     }
 
     const Clock::time_point begin = Clock::now();
+    const auto began = std::filesystem::file_time_type::clock::now();
     MeshFileResult read = load_mesh(file, std::nullopt, &loading);
     if (!read.error.empty()) return {nullptr, {}, read.error, {}};
     std::vector<uint32_t>& groups = read.mesh.smoothing_groups;
@@ -111,13 +112,16 @@ MeshSurface surface_of_mesh_file(const std::filesystem::path& file, double size_
     if (built.surface && named && took.count() >= keep_from_s) try {
             read.mesh = {};
             Words words{read.warning, all_off ? "off" : ""};
+            bool changes = false; // what is read is summed later: not of a file that changed meanwhile
             for (const std::string& other : words_in(read.other_files)) {
+                std::error_code none;
+                changes |= std::filesystem::last_write_time(file.parent_path() / other, none) >= began && !none;
                 words.push_back(other);
                 words.push_back(sum_of_file(file.parent_path() / other));
             }
             std::string room;
             const KeptSurface made{built.surface, built.report, text_of(words)};
-            if (key_text(file, size_m, crease_deg) == named) // not of a file that changed meanwhile
+            if (!changes && key_text(file, size_m, crease_deg) == named)
                 kept.store(to_text(key), pieces_of_file(made, key, loading.threads, room));
         } catch (const std::exception&) {
         }
