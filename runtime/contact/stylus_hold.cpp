@@ -191,7 +191,7 @@ double StylusContact::known_share(const Shaft& to, const Projection<Shaft>& held
         const double length = glm::length(way), reach = most * rows.reach;
         const bool lands = drags && rows.count == 0; // friction holds it from where it comes to touch
         Crossing crossing;
-        if ((length > reach || lands) &&
+        if ((length > reach || (lands && !end.planes().empty())) &&
             first_crossing(surface(), from, glm::round(there), StartsOn::nothing(), crossing, collision_))
             share =
                 std::min(share, std::max(lands ? 0.0 : reach / length, crossing.fraction() - 2 * rest_gap / length));
