@@ -90,6 +90,24 @@ bool StylusContact::is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Sh
     return false;
 }
 
+// Takes the triangle if the shaft crosses it, and none that it takes before.
+void StylusContact::cross(uint32_t face, const Shaft& at, std::optional<Crossing>& first) const noexcept
+{
+    const Surface& s = surface();
+    const auto& [a, b, c] = s.faces[face].vertex;
+    // Most are plainly on one side.
+    const glm::dvec3 &n = s.faces[face].normal, &corner = s.vertices[a];
+    const double tip = glm::dot(n, at.tip - corner), tail = glm::dot(n, at.tail - corner);
+    if ((tip > distance_rounding && tail > distance_rounding) ||
+        (tip < -distance_rounding && tail < -distance_rounding))
+        return;
+    Crossing crossing;
+    crossing.face = face;
+    if (crosses(at.tip, at.tail, corner, s.vertices[b], s.vertices[c], crossing) &&
+        (!first || earlier(crossing, *first)))
+        first = crossing;
+}
+
 // Whether the straight move meets an edge, or ends across a triangle.
 bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept
 {
@@ -100,9 +118,11 @@ bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstac
     ++collision_.sweeps;
     const uint64_t tested = collision_.triangles_tested;
     const SweptRegion swept(from.tip, from.tail, to.tip, to.tail, rest_gap + reach);
+    std::optional<Crossing> crossing;
     const bool all = tree_.for_each(swept, [&](uint32_t f) {
         if (collision_.triangles_tested++ - tested == triangles_per_move) return false;
         const Face& face = s.faces[f];
+        if (!met) cross(f, to, crossing);
         for (uint32_t edge = 0; edge < 3; ++edge) {
             if (std::min(face.link[edge][0].face(), face.link[edge][1].face()) < f) continue; // tested from there
             const glm::dvec3 &a = edge_end(f, edge, 0), &b = edge_end(f, edge, 1);
@@ -124,15 +144,14 @@ bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstac
     }
     if (met) return true;
 
-    Crossing crossing;
-    if (!first_crossing(s, to.tip, to.tail, StartsOn::nothing(), crossing, collision_)) return false;
+    if (!crossing) return false;
     // Where the straight ways led below a vertex it is the next edge that stops the shaft, not one below that.
-    obstacle = {crossing.face, 0, 1, 0, true, 0};
-    const auto& corners = s.faces[crossing.face].vertex;
+    obstacle = {crossing->face, 0, 1, 0, true, 0};
+    const auto& corners = s.faces[crossing->face].vertex;
     for (const bool below : {false, true}) {
         double nearest = HUGE_VAL;
         for (uint32_t edge = 0; edge < 3; ++edge) {
-            const glm::dvec3 &a = edge_end(crossing.face, edge, 0), &b = edge_end(crossing.face, edge, 1);
+            const glm::dvec3 &a = edge_end(crossing->face, edge, 0), &b = edge_end(crossing->face, edge, 1);
             const Passing then = passing(to, a, b), now = passing(from, a, b);
             if (then.parallel || now.parallel || !then.within(0, 0, reach)) continue;
             if (std::fabs(then.height) >= nearest) continue;

@@ -18,11 +18,12 @@ public:
     SweptRegion(const glm::dvec3& tip0, const glm::dvec3& tail0, const glm::dvec3& tip1, const glm::dvec3& tail1,
                 double margin) noexcept;
 
+    // The box around it.
+    const glm::dvec3& low() const noexcept { return minimum_; }
+    const glm::dvec3& high() const noexcept { return maximum_; }
+    // Whether it may meet another that meets its own.
     bool may_meet(const glm::dvec3& box_centre, const glm::dvec3& box_half) const noexcept
     {
-        if (glm::any(glm::lessThan(box_centre + box_half, minimum_)) ||
-            glm::any(glm::greaterThan(box_centre - box_half, maximum_)))
-            return false;
         for (uint32_t i = 0; i < axis_count_; ++i) {
             const double at = glm::dot(axes_[i].direction, box_centre), half = glm::dot(axes_[i].absolute, box_half);
             if (at + half < axes_[i].low || at - half > axes_[i].high) return false;
@@ -53,6 +54,7 @@ public:
     bool for_each(const SweptRegion& region, Visit&& visit) const
     {
         return tree_->for_each(
+            region.low(), region.high(),
             [&](const glm::dvec3& centre, const glm::dvec3& half) { return region.may_meet(centre, half); }, visit);
     }
     bool is_empty(const SweptRegion& region) const

@@ -39,6 +39,13 @@ Four most_of(Four a, Four b)
     return a > b ? a : b;
 }
 
+// One for each of a node's boxes, the first the lowest.
+uint32_t bits(FourBits first, FourBits second)
+{
+    const FourBits both = (first & FourBits{1, 2, 4, 8}) | (second & FourBits{16, 32, 64, 128});
+    return uint32_t(both[0] | both[1] | both[2] | both[3]);
+}
+
 // A query says which of a node's boxes it enters and where on its way (`at`), how far that still counts (`upto`), and
 // visits faces.
 class SegmentQuery {
@@ -183,16 +190,27 @@ void BoxTree::ask(Query& query) const noexcept
         }
         const Node& node = nodes_[child];
         alignas(16) float enters_at[width];
-        const FourBits entered = (query.enters(node, 0, enters_at) & FourBits{1, 2, 4, 8}) |
-                                 (query.enters(node, half, enters_at) & FourBits{16, 32, 64, 128});
         const std::size_t first = count;
-        for (auto hits = uint32_t(entered[0] | entered[1] | entered[2] | entered[3]); hits != 0; hits &= hits - 1) {
+        for (uint32_t hits = bits(query.enters(node, 0, enters_at), query.enters(node, half, enters_at)); hits != 0;
+             hits &= hits - 1) {
             const auto k = static_cast<uint32_t>(std::countr_zero(hits));
             std::size_t place = count++;
             for (; place > first && waiting[place - 1].at < enters_at[k]; --place) waiting[place] = waiting[place - 1];
             waiting[place] = {enters_at[k], node.child[k]};
         }
     }
+}
+
+uint32_t BoxTree::overlapping(const Node& node, const glm::vec3& low, const glm::vec3& high) noexcept
+{
+    const auto meet = [&](uint32_t first) {
+        FourBits all = {-1, -1, -1, -1};
+        for (int axis = 0; axis < 3; ++axis)
+            all &= (four(node.low[axis] + first) <= all_of(high[axis])) &
+                   (four(node.high[axis] + first) >= all_of(low[axis]));
+        return all;
+    };
+    return bits(meet(0), meet(half));
 }
 
 void BoxTree::segment(const glm::dvec3& from, const glm::dvec3& to, SegmentVisitor& visitor) const noexcept
