@@ -20,6 +20,9 @@ constexpr std::size_t lookahead = 8;
 constexpr std::size_t screens_most = 4;
 constexpr double rises = 1024;
 
+// Of the radius: planes seen from so near lie within 1/128 of it as those seen from here.
+constexpr double as_good = 1.0 / 8;
+
 } // namespace
 
 NearFaces::NearFaces(const Surface& surface) : surface_(&surface)
@@ -38,6 +41,8 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
     picked_.clear();
     place_of_.clear();
     see_from(centre);
+    renewed_at_ = centre;
+    renewed_since_ = centres_;
     const bool all = surface_->tree->ball(centre, radius, std::min(most, faces_.capacity()), faces_);
     boxes_ = faces_.size();
     if (!all) faces_.clear();
@@ -71,11 +76,16 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
     return all;
 }
 
-void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Screened screened) noexcept
+void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Screened screened, Laid laid) noexcept
 {
     picked_.clear();
     see_from(centre);
     radius_ = radius;
+    if (glm::distance(centre, renewed_at_) > as_good * radius) {
+        renewed_at_ = centre;
+        renewed_since_ = centres_;
+    }
+    const uint64_t since = laid == Laid::before ? renewed_since_ : centres_;
     const double near = radius + reach + distance_rounding;
     place_of_.resize(planes_.size());
     std::size_t close = 0;
@@ -86,10 +96,10 @@ void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Scre
     std::size_t picked = 0;
     for (std::size_t i = 0; i < close; ++i) {
         const uint32_t place = place_of_[i];
-        if (laid_[place] != centres_) lay(place);
+        if (laid_[place] < since) lay(place);
         if (ahead(planes_[place]) > near) continue;
         if (screened == Screened::yes)
-            picked_.push_back(before(place));
+            picked_.push_back(seen(place, laid));
         else
             picked_.push_back({planes_[place].normal, planes_[place].offset + radius});
         place_of_[picked++] = place;
@@ -98,9 +108,21 @@ void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Scre
     if (screened == Screened::yes) screen();
 }
 
-bool NearFaces::renew(uint32_t picked, const glm::dvec3& centre) noexcept
+void NearFaces::keep_near(double reach) noexcept
 {
-    see_from(centre);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < picked_.size(); ++i) {
+        if (ahead(picked_[i]) > reach + distance_rounding) continue;
+        picked_[kept] = picked_[i];
+        place_of_[kept++] = place_of_[i];
+    }
+    const auto screened = place_of_.begin() + std::ptrdiff_t(picked_.size());
+    place_of_.erase(place_of_.begin() + std::ptrdiff_t(kept), screened);
+    picked_.resize(kept);
+}
+
+bool NearFaces::renew(uint32_t picked) noexcept
+{
     const std::size_t place = place_of_[picked];
     if (laid_[place] == centres_) return false;
     lay(place);
@@ -110,17 +132,18 @@ bool NearFaces::renew(uint32_t picked, const glm::dvec3& centre) noexcept
 
 // Of a triangle that the ball touches the triangle's own plane, where that makes no difference: rounding does not tilt
 // it.
-HalfSpace NearFaces::before(std::size_t place) const noexcept
+HalfSpace NearFaces::seen(std::size_t place, Laid laid) const noexcept
 {
     const HalfSpace& plane = planes_[place];
-    if (ahead(plane) < radius_ + rises) {
+    const bool touches = ahead(plane) < radius_ + rises;
+    if (touches || laid == Laid::ahead) {
         const glm::dvec3& facet = surface_->faces[faces_[place]].normal;
         const double cosine = glm::dot(plane.normal, facet);
         const glm::dvec3 normal = cosine < 0 ? -facet : facet;
         const auto& [a, b, c] = corners_[place];
         const HalfSpace own{normal,
                             std::max({glm::dot(normal, a), glm::dot(normal, b), glm::dot(normal, c)}) + radius_};
-        if (std::fabs(cosine) > 1 - rises / radius_ && ahead(own) > -rises) return own;
+        if (touches ? std::fabs(cosine) > 1 - rises / radius_ && ahead(own) > -rises : ahead(own) > rises) return own;
     }
     return {plane.normal, plane.offset + radius_};
 }

@@ -21,7 +21,7 @@ namespace haptel::runtime {
 // What rounding may take from a distance: below 2e-12 of the object.
 inline constexpr double distance_rounding = 1;
 
-class NearFaces {
+class NearFaces final : public RenewedRows {
 public:
     explicit NearFaces(const Surface& surface);
 
@@ -33,12 +33,18 @@ public:
     std::size_t count() const noexcept { return faces_.size(); }
     std::size_t boxes() const noexcept { return boxes_; } // that the tree delivered
 
-    // Picks the triangles that a ball of this radius may touch while its centre stays within `reach` of this one, and
-    // computes their planes as seen from it. Screened: what lies behind the plane of a nearer one is left out. A ball
-    // that keeps before that plane does not come to it, and one that slides over an edge is not held by what falls off
-    // beyond; a plane that screens others cannot be renewed.
+    // Picks the triangles that a ball of this radius may touch while its centre stays within `reach` of this one. Their
+    // planes are those seen from this centre (`here`), or from one near it before (`before`): whoever is held by one of
+    // these renews it. `ahead`: of a triangle that is not touched its own plane where the ball is before
+    // that: it comes over the edges of a valley in one step. Where that ends planes have to be laid here.
+    enum class Laid : uint8_t { before, here, ahead };
+    // Screened: what lies behind the plane of a nearer one is left out. A ball that keeps before that plane does not
+    // come to it, and one that slides over an edge is not held by what falls off beyond; a plane that screens others
+    // cannot be renewed.
     enum class Screened : uint8_t { no, yes };
-    void pick(const glm::dvec3& centre, double radius, double reach, Screened screened) noexcept;
+    void pick(const glm::dvec3& centre, double radius, double reach, Screened screened, Laid laid) noexcept;
+    // Of those picked, as if they were picked again for a shorter reach.
+    void keep_near(double reach) noexcept;
     // Of those within reach, screened or not, all that may come within `radius` of a place.
     template <class Visit>
     void for_each_near(const glm::dvec3& at, double radius, Visit&& visit) const
@@ -57,16 +63,16 @@ public:
         double gap;
     };
     Touching touching(const glm::dvec3& centre, double within) noexcept;
-    // Computes the plane of a picked triangle again, as seen from this centre; false if it is already that one.
-    bool renew(uint32_t picked, const glm::dvec3& centre) noexcept;
+    // Computes the plane of a picked triangle again, as seen from the centre that they are picked from.
+    void see_from(const glm::dvec3& centre) noexcept;
+    bool renew(uint32_t picked) noexcept override;
 
     // Distance of the nearest one, but at most `most`.
     double distance(const glm::dvec3& centre, double most) noexcept;
 
 private:
-    void see_from(const glm::dvec3& centre) noexcept;
     void lay(std::size_t place) noexcept;
-    HalfSpace before(std::size_t place) const noexcept;
+    HalfSpace seen(std::size_t place, Laid laid) const noexcept;
     void screen() noexcept;
     double ahead(const HalfSpace& plane) const noexcept { return glm::dot(plane.normal, centre_) - plane.offset; }
 
@@ -75,12 +81,14 @@ private:
     std::size_t boxes_ = 0;
     std::vector<HalfSpace> planes_;
     std::vector<std::array<glm::dvec3, 3>> corners_; // of each, side by side in memory
-    std::vector<uint64_t> laid_;                     // seen from which centre
+    std::vector<uint64_t> laid_;                     // seen from which centre; 0: from none
     std::vector<HalfSpace> picked_;
     std::vector<uint32_t> place_of_; // of those picked, above; then of those that they screen
     double radius_ = 0;              // they were picked for
     glm::dvec3 centre_{0};           // seen from here
     uint64_t centres_ = 1;           // so far
+    glm::dvec3 renewed_at_{0};       // centre since which planes are as good as those seen from here,
+    uint64_t renewed_since_ = 1;     // and its number
 };
 
 } // namespace haptel::runtime

@@ -152,7 +152,8 @@ bool take_in(std::span<const Row> rows, uint32_t row, EndsGive gives, Projection
 }
 
 template <class Place, class Row>
-Projection<Place> solve(std::span<const Row> rows, const Place& target, double tolerance, EndsGive gives)
+Projection<Place> solve(std::span<const Row> rows, const Place& target, double tolerance, EndsGive gives,
+                        RenewedRows* renewed)
 {
     Projection<Place> now;
     now.at = target;
@@ -162,7 +163,8 @@ Projection<Place> solve(std::span<const Row> rows, const Place& target, double t
         uint32_t worst = none;
         double by = tolerance;
         for (uint32_t i = 0; i < rows.size(); ++i) {
-            const double violation = -height(rows[i], now.at);
+            double violation = -height(rows[i], now.at);
+            if (violation > by && renewed && renewed->renew(i)) violation = -height(rows[i], now.at);
             if (violation <= by) continue;
             const Place way = direction(rows[i], gives);
             const auto last = refused.begin() + std::ptrdiff_t(refusals);
@@ -193,9 +195,9 @@ double open_share(std::span<const HalfSpace> rows, const glm::dvec3& from, const
 }
 
 Projection<glm::dvec3> project(std::span<const HalfSpace> rows, const glm::dvec3& target, const glm::dvec3& inside,
-                               double tolerance) noexcept
+                               double tolerance, RenewedRows* renewed) noexcept
 {
-    Projection<glm::dvec3> held = solve(rows, target, tolerance, {});
+    Projection<glm::dvec3> held = solve(rows, target, tolerance, {}, renewed);
     const double share = open_share(rows, inside, held.at - inside, tolerance);
     if (share < 1) held.at = inside + share * (held.at - inside);
     return held;
@@ -204,7 +206,7 @@ Projection<glm::dvec3> project(std::span<const HalfSpace> rows, const glm::dvec3
 Projection<Shaft> project(std::span<const ShaftRow> rows, const Shaft& target, double tolerance,
                           EndsGive gives) noexcept
 {
-    return solve(rows, target, tolerance, gives);
+    return solve(rows, target, tolerance, gives, nullptr);
 }
 
 // What the rows leave free is what is at right angles to all of them.

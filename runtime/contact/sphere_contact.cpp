@@ -180,21 +180,26 @@ void SphereContact::pass(const Held& held) noexcept
 
 // A point meets few faces, and what lies behind others does not hold it at every edge. A ball meets hundreds: its
 // planes serve for several rounds, but for those that hold it.
-void SphereContact::pick(double reach) noexcept
+void SphereContact::pick(double reach, Laid laid) noexcept
 {
     close_ = {proxy_.at, reach};
-    faces_.pick(proxy_.at, grown_, reach, is_point_ ? NearFaces::Screened::yes : NearFaces::Screened::no);
+    laid_ = laid;
+    faces_.pick(proxy_.at, grown_, reach, is_point_ ? NearFaces::Screened::yes : NearFaces::Screened::no, laid);
+}
+
+// A ball that grows is wider than the planes that it had.
+SphereContact::Laid SphereContact::lays(bool in_air, bool is_first) const noexcept
+{
+    if (in_air || (!is_point_ && grown_ < radius_)) return Laid::here;
+    if (!is_point_) return Laid::before;
+    return is_first ? Laid::ahead : Laid::here;
 }
 
 SphereContact::Held SphereContact::held_by_picked() noexcept
 {
-    const std::span<const HalfSpace> planes = faces_.picked();
-    Projection<glm::dvec3> found;
-    for (bool renewed = true; renewed;) {
-        found = project(planes, hand_, proxy_.at, distance_rounding);
-        renewed = false;
-        for (std::size_t i = 0; i < found.count && !is_point_; ++i) renewed |= faces_.renew(found.active[i], proxy_.at);
-    }
+    faces_.see_from(proxy_.at);
+    const Projection<glm::dvec3> found =
+        project(faces_.picked(), hand_, proxy_.at, distance_rounding, is_point_ ? nullptr : &faces_);
     return as_rows(found);
 }
 
@@ -264,7 +269,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         stride = std::max(stride, is_point_ ? std::max(stride_first, stride_least * want) : stride_least * radius_);
         if (round == 0 || in_air || is_point_ || close_.room(proxy_.at) < std::min(open, stride) ||
             close_.margin > stride_most * stride)
-            pick(in_air ? open : std::min(open, stride));
+            pick(in_air ? open : std::min(open, stride), lays(in_air, round == 0));
         const double step_max = std::min(open, close_.room(proxy_.at));
         const glm::dvec3 before = proxy_.at;
         if (in_air)
@@ -321,7 +326,7 @@ void SphereContact::move(const Friction& friction) noexcept
     tell(held, held.at, true);
 }
 
-double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t most) noexcept
+double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t most, bool is_first) noexcept
 {
     proxy_.at = at;
     if (around_.room(at) < std::min(reach, look_again * margin_) &&
@@ -329,10 +334,13 @@ double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t 
         return 0;
     if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(at, radius_) - distance_rounding);
     double within = std::min(reach, around_.room(at));
-    if (close_.centre == at && close_.margin >= within && close_.margin < stride_most * within &&
-        faces_.picked().size() <= most)
+    if (close_.centre == at && close_.margin >= within && laid_ == Laid::here && faces_.picked().size() <= most) {
+        faces_.keep_near(within);
+        close_.margin = within;
         return within;
-    for (pick(within); faces_.picked().size() > most; pick(within))
+    }
+    const Laid laid = is_first ? Laid::ahead : Laid::here;
+    for (pick(within, laid); faces_.picked().size() > most; pick(within, laid))
         if ((within *= less_far) < 1) return 0;
     return within;
 }

@@ -69,8 +69,9 @@ public:
     // What is known of what is around.
     void forget() noexcept { around_ = close_ = {}, margin_ = margin_at_first_; }
     // Goes to a place and lays the planes that hold the end while it stays within the length that is returned, at most
-    // `reach`, of there. 0: there is too much around to be looked at, or more than `most` planes.
-    double look_from(const glm::dvec3& at, double reach, std::size_t most) noexcept;
+    // `reach`, of there. 0: there is too much around to be looked at, or more than `most` planes. `is_first`: of a
+    // tick, and what it holds at first is looked at again.
+    double look_from(const glm::dvec3& at, double reach, std::size_t most, bool is_first) noexcept;
     std::span<const HalfSpace> planes() const noexcept { return faces_.picked(); }
     double radius() const noexcept { return grown_; }
     // How many of the planes the end touches, or is as near to as its radius; these come first.
@@ -88,6 +89,8 @@ private:
     static constexpr double centre_settled = 1e-8; // of the radius: what is left of a way counts as none
     // In a tick; of the planes that a point comes to touch in a round against friction.
     static constexpr uint32_t rounds_max = 48, turns_max = 4;
+
+    using Laid = NearFaces::Laid;
 
     // Where it is known what may be met.
     struct Neighbourhood {
@@ -136,7 +139,8 @@ private:
     Held as_rows(const Projection<glm::dvec3>& found) const noexcept;
     Held rub(double step_max) noexcept;
     double share_past(double way, double pressed) noexcept;
-    void pick(double reach) noexcept;
+    void pick(double reach, Laid laid) noexcept;
+    Laid lays(bool in_air, bool is_first) const noexcept;
     bool rubs() const noexcept { return is_point_ && friction_.static_coefficient > 0; }
     Way travel(bool until_it_touches) noexcept;
     void move(const Friction& friction) noexcept;
@@ -158,6 +162,7 @@ private:
     Proxy proxy_; // the centre; on a face while it touches
     bool is_point_, placed_ = false, clamped_ = false;
     NearFaces faces_;
+    Laid laid_ = Laid::before;     // those picked last
     Neighbourhood around_, close_; // of all found, of those picked
     double margin_at_first_;       // of a point, which meets few: as far as it goes
     double margin_;                // that suits the density of the mesh here

@@ -49,7 +49,8 @@ bool SphereContact::move_out(double most_m) noexcept
             looked = true;
         }
         const double room = around_.room(proxy_.at), more = share * std::min(lacks, out_of_room * room);
-        faces_.pick(proxy_.at, grown_ + more + 2 * distance_rounding, room, NearFaces::Screened::no);
+        faces_.pick(proxy_.at, grown_ + more + 2 * distance_rounding, room, NearFaces::Screened::no,
+                    NearFaces::Laid::here);
         const glm::dvec3 out = project(faces_.picked(), proxy_.at, proxy_.at, distance_rounding).at;
         bool free = glm::distance(proxy_.at, out) <= room;
         for (const HalfSpace& space : faces_.picked())

@@ -55,6 +55,7 @@ void StylusContact::reset() noexcept
     stuck_ticks_ = 0;
     unspared_ = -1;
     collision_ = {};
+    rounds_ = 0;
     counters_ = {};
 }
 
@@ -295,7 +296,7 @@ void StylusContact::count() noexcept
     counters_.sweeps = tip.sweeps + tail.sweeps + collision_.sweeps;
     counters_.object_boxes_missed = tip.object_boxes_missed + tail.object_boxes_missed + collision_.object_boxes_missed;
     counters_.triangles_tested = tip.triangles_tested + tail.triangles_tested + collision_.triangles_tested;
-    counters_.walk_steps = tip.walk_steps + tail.walk_steps;
+    counters_.walk_steps = tip.walk_steps + tail.walk_steps + rounds_;
     counters_.walk_steps_max = std::max(tip.walk_steps_max, tail.walk_steps_max);
 }
 

@@ -128,7 +128,7 @@ private:
     bool pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
 
     void resolve(const EndsFriction& friction) noexcept;
-    bool look(double reach, const FrictionOfEnds& ends) noexcept;
+    bool look(double reach, const FrictionOfEnds& ends, bool is_first) noexcept;
     std::span<const ShaftRow> turn_sides(const Shaft& at, double gap) noexcept;
     void take_hold(EndFriction& friction, const EndRows& rows, const Projection<Shaft>& held, const glm::dvec3& at,
                    double radius) const noexcept;
@@ -137,6 +137,7 @@ private:
     Shaft on_the_way(const Shaft& to, double share, const FrictionOfEnds& ends) noexcept;
     void hold(const FrictionOfEnds& ends, bool settled) noexcept;
     bool move(const Shaft& to) noexcept;
+    void cross(uint32_t face, const Shaft& at, std::optional<Crossing>& first) const noexcept;
     bool blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept;
     bool is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Shaft& to) const noexcept;
     void approach(const Shaft& to, const Obstacle& obstacle) noexcept;
@@ -179,6 +180,7 @@ private:
     uint32_t stuck_ticks_ = 0; // in a row
     uint32_t patience_ticks_;  // patience_s
     CollisionCount collision_; // of the shaft
+    uint64_t rounds_ = 0;      // of both ends and the shaft together
     ContactCounters counters_;
 };
 

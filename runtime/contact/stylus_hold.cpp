@@ -56,14 +56,14 @@ constexpr double stride_of_hand = 1.5, stride_of_step = 0.5, stride_of_end = 4, 
 
 // Rows of both ends, with what friction needs of them: an end that friction may hold is borne by the planes that it
 // touches, and comes to touch others where its way leads it. False: it cannot be looked at.
-bool StylusContact::look(double reach, const FrictionOfEnds& ends) noexcept
+bool StylusContact::look(double reach, const FrictionOfEnds& ends, bool is_first) noexcept
 {
     row_count_ = 0;
     const auto look_from = [&](SphereContact& end, bool is_held, const glm::dvec3& at, bool drags, EndRows& rows,
                                double arm) {
         rows = {row_count_, 0, std::numeric_limits<double>::infinity()};
         if (!is_held) return true;
-        rows.reach = end.look_from(at, reach, planes_max);
+        rows.reach = end.look_from(at, reach, planes_max, is_first);
         if (rows.reach == 0) return false;
         const std::size_t count = drags ? end.touching() : end.planes().size();
         for (const HalfSpace& plane : end.planes().first(count))
@@ -276,7 +276,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     uint32_t round = 0;
     for (; round < rounds_max && sweeps_left_ > 0 && !settled; ++round) {
         stride = std::max({stride, 64.0, stride_least * farther(extended(shaft_), hand_)});
-        blind = !look(stride, ends);
+        blind = !look(stride, ends, round == 0);
         if (blind) break;
         const Projection<Shaft> held = solve(ends);
         to = {held.at.at(begin_), held.at.at(end_)};
@@ -304,7 +304,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         ends.tip.lag = ends.tail.lag = glm::dvec3(0);
         settled = false;
     }
-    counters_.walk_steps += round;
+    rounds_ += round;
     counters_.walks_cut += !settled;
     const bool behind = !settled && (blind || farther(shaft_, to) > far_behind);
     stuck_ticks_ = behind && away_first - away(shaft_) < far_behind ? stuck_ticks_ + 1 : 0;
@@ -331,7 +331,8 @@ void StylusContact::hold(const FrictionOfEnds& ends, bool settled) noexcept
 {
     for (Side& side : std::span(sides_.data(), side_count_)) side.push = 0;
     const Shaft whole = extended(shaft_);
-    if (!look(rest_gap, {})) { // what a line may come to that a ball does not. There is too much: all of it is left
+    if (!look(rest_gap, {},
+              false)) { // what a line may come to that a ball does not. There is too much: all of it is left
         left_ = {whole.tip - hand_.tip, whole.tail - hand_.tail};
         tip_->tell_held(hand_.tip, {}, {}, glm::dvec3(0));
         tail_->tell_held(hand_.tail, {}, {}, glm::dvec3(0));

@@ -54,7 +54,7 @@ TEST_CASE("near faces are all found, and each lies behind its plane wherever tha
             REQUIRE(near.find(centre, radius + margin));
             for (int step = 0; step < 4; ++step) {
                 const double room = margin - glm::distance(start, centre), reach = uniform(random) * room;
-                near.pick(centre, radius, reach, NearFaces::Screened::yes);
+                near.pick(centre, radius, reach, NearFaces::Screened::yes, NearFaces::Laid::here);
                 std::vector<uint32_t> picked;
                 for (uint32_t i = 0; i < near.picked().size(); ++i) {
                     picked.push_back(near.face(i));
