@@ -174,15 +174,27 @@ void NearFaces::screen() noexcept
 
 NearFaces::Touching NearFaces::touching(const glm::dvec3& centre, double within) noexcept
 {
-    const auto before_it = [&](const HalfSpace& space) { return glm::dot(space.normal, centre) - space.offset; };
+    const auto before_it = [&](std::size_t i) { // of a triangle that lies ahead its own plane may be touched beside it
+        const HalfSpace &seen = picked_[i], &laid = planes_[place_of_[i]];
+        const double by_seen = glm::dot(seen.normal, centre) - seen.offset;
+        const double by_laid = glm::dot(laid.normal, centre) - laid.offset - radius_;
+        return by_laid > by_seen + rises ? by_laid : by_seen;
+    };
     Touching touching{0, std::numeric_limits<double>::infinity()};
-    for (const HalfSpace& space : picked_) touching.gap = std::min(touching.gap, before_it(space));
+    for (std::size_t i = 0; i < picked_.size(); ++i) touching.gap = std::min(touching.gap, before_it(i));
     for (std::size_t i = 0; i < picked_.size(); ++i) {
-        if (before_it(picked_[i]) > std::max(0.0, touching.gap) + within) continue;
+        if (before_it(i) > std::max(0.0, touching.gap) + within) continue;
         std::swap(picked_[i], picked_[touching.count]);
         std::swap(place_of_[i], place_of_[touching.count++]);
     }
     return touching;
+}
+
+double NearFaces::gap() const noexcept
+{
+    double least = std::numeric_limits<double>::infinity();
+    for (const HalfSpace& plane : planes_) least = std::min(least, ahead(plane));
+    return least - radius_ - distance_rounding;
 }
 
 double NearFaces::distance(const glm::dvec3& centre, double most) noexcept

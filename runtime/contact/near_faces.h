@@ -67,6 +67,8 @@ public:
     void see_from(const glm::dvec3& centre) noexcept;
     bool renew(uint32_t picked) noexcept override;
 
+    // Of those found none comes nearer to the ball that they were picked for than this.
+    double gap() const noexcept;
     // Distance of the nearest one, but at most `most`.
     double distance(const glm::dvec3& centre, double most) noexcept;
 

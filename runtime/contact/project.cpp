@@ -75,7 +75,7 @@ template <class Place>
 struct Basis {
     static constexpr std::size_t n = Projection<Place>::active_max;
     std::array<Place, n> unit;
-    std::array<std::array<double, n>, n> made{}; // unit[i] = sum of made[i][j] * direction of the active row j
+    std::array<std::array<double, n>, n> made; // unit[i] = sum of made[i][j] * direction of the active row j
 };
 
 template <class Place, class Row>
@@ -84,6 +84,7 @@ Basis<Place> basis_of(std::span<const Row> rows, const Projection<Place>& now, E
     Basis<Place> basis;
     for (std::size_t i = 0; i < now.count; ++i) {
         Place left = direction(rows[now.active[i]], gives);
+        basis.made[i] = {};
         basis.made[i][i] = 1;
         for (int twice = 0; twice < 2; ++twice) // once leaves the rounding of nearly equal ones
             for (std::size_t j = 0; j < i; ++j) {

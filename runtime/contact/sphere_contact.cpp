@@ -334,6 +334,7 @@ double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t 
         return 0;
     if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(at, radius_) - distance_rounding);
     double within = std::min(reach, around_.room(at));
+    if (faces_.picked().empty() && close_.room(at) >= within) return within;
     if (close_.centre == at && close_.margin >= within && laid_ == Laid::here && faces_.picked().size() <= most) {
         faces_.keep_near(within);
         close_.margin = within;
@@ -342,7 +343,16 @@ double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t 
     const Laid laid = is_first ? Laid::ahead : Laid::here;
     for (pick(within, laid); faces_.picked().size() > most; pick(within, laid))
         if ((within *= less_far) < 1) return 0;
+    if (faces_.picked().empty()) close_.margin = std::min(around_.room(at), faces_.gap());
     return within;
+}
+
+bool SphereContact::stands(uint32_t plane, const glm::dvec3& at) const noexcept
+{
+    const uint32_t face = faces_.face(plane);
+    const glm::dvec3 &normal = faces_.picked()[plane].normal, &facet = surface_->faces[face].normal;
+    return (normal == facet || normal == -facet) &&
+           glm::all(glm::greaterThan(nearest_on(face, at).barycentric, glm::dvec3(0)));
 }
 
 std::size_t SphereContact::touching() noexcept

@@ -74,6 +74,8 @@ public:
     double look_from(const glm::dvec3& at, double reach, std::size_t most, bool is_first) noexcept;
     std::span<const HalfSpace> planes() const noexcept { return faces_.picked(); }
     double radius() const noexcept { return grown_; }
+    // Whether the plane is that of its triangle, and this place over the inside of that.
+    bool stands(uint32_t plane, const glm::dvec3& at) const noexcept;
     // How many of the planes the end touches, or is as near to as its radius; these come first.
     std::size_t touching() noexcept;
     // Tells what holds it, by planes and pushes of those alone; it aims at a place, and friction holds it by `lag`.

@@ -124,14 +124,12 @@ void StylusContact::take_hold(EndFriction& friction, const EndRows& rows, const 
 Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
 {
     EndFriction &tip = ends.tip, &tail = ends.tail;
-    const auto turned = [&](auto&& friction_follows, Shaft at) {
-        Projection<Shaft> held;
+    const auto turned = [&](auto&& friction_follows, Shaft at, Projection<Shaft> held = {}, bool is_held = false) {
         for (int turn = 0; turn < turns_max; ++turn) {
             const std::span<const ShaftRow> rows = turn_sides(at, rest_gap);
             const EndsGive gives{!tip.sticks, !tail.sticks};
-            held =
-                project(rows, {gives.tip ? hand_.tip + tip.lag : tip.at, gives.tail ? hand_.tail + tail.lag : tail.at},
-                        distance_rounding, gives);
+            const Shaft target{gives.tip ? hand_.tip + tip.lag : tip.at, gives.tail ? hand_.tail + tail.lag : tail.at};
+            if (turn > 0 || !is_held) held = project(rows, target, distance_rounding, gives);
             const Shaft next{held.at.at(begin_), held.at.at(end_)};
             const bool agreed = side_count_ == 0 || farther(next, at) < 0.25;
             at = next;
@@ -144,7 +142,8 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
     tip.lag = tail.lag = glm::dvec3(0);
     const Projection<Shaft> free = turned([](auto&, auto&, auto&, bool agreed) { return agreed; }, shaft_);
     if (tip.friction.static_coefficient == 0 && tail.friction.static_coefficient == 0) return free;
-    tip.lag = tip_lag, tail.lag = tail_lag;
+    const bool begins_free = side_count_ == 0; // else what friction was is nearer to what it will be
+    if (!begins_free) tip.lag = tip_lag, tail.lag = tail_lag;
     take_hold(tip, tip_rows_, free, shaft_.tip, tip_->radius());
     take_hold(tail, tail_rows_, free, shaft_.tail, tail_->radius());
     if (tip.sticks) tail.sticks = false; // else no side could push; it may stay where it is for all that
@@ -176,7 +175,7 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
             }
             return agreed;
         },
-        shaft_);
+        shaft_, free, begins_free);
 }
 
 // The share of the straight way there on which nothing is that the ends may meet: what is known around them, and
@@ -296,6 +295,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         else if (side_count_ == met)
             most *= shorter;
         let_go_of_ended();
+        settled = moved && share == 1 && side_count_ == 0 && stands(held);
         stride = share == known && known < 1 ? std::max(stride, stride_of_end * step) : stride_of_step * step;
     }
     if (away(shaft_) > away_first + uphill) { // what the springs hold is given by the hand, not by how that is found
@@ -314,6 +314,17 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     tip_->set_sliding(ends.tip.slides);
     tail_->set_sliding(ends.tail.slides);
     hold(ends, settled);
+}
+
+// Whether all that holds the stylus is planes of triangles on which its ends stand by now: from there the same would
+// hold it.
+bool StylusContact::stands(const Projection<Shaft>& held) const noexcept
+{
+    const uint32_t of_tip = tip_rows_.count, of_ends = of_tip + tail_rows_.count;
+    return std::all_of(held.active.begin(), held.active.begin() + std::ptrdiff_t(held.count), [&](uint32_t row) {
+        if (row >= of_ends) return false;
+        return row < of_tip ? tip_->stands(row, shaft_.tip) : tail_->stands(row - of_tip, shaft_.tail);
+    });
 }
 
 // How far the springs of both ends are drawn where the part in the workspace is there: their energy is half the

@@ -14,6 +14,9 @@ using namespace shaft_tolerance;
 
 namespace {
 
+// What is nearer to the shaft than this is seen: what it rests on is not.
+constexpr double near_enough = rest_gap * (1 - 1e-3);
+
 // A sweep past so many triangles counts as another one.
 constexpr uint64_t per_sweep = 256;
 
@@ -36,7 +39,7 @@ Passing StylusContact::passing_of(const Side& side, const Shaft& shaft) const no
 bool StylusContact::move(const Shaft& to) noexcept
 {
     close_ = {};
-    close_.height = rest_gap * (1 - 1e-3);
+    close_.height = near_enough;
     if (!blocked(shaft_, to, met_)) {
         shaft_ = to;
         touch(close_);
@@ -95,15 +98,9 @@ void StylusContact::cross(uint32_t face, const Shaft& at, std::optional<Crossing
 {
     const Surface& s = surface();
     const auto& [a, b, c] = s.faces[face].vertex;
-    // Most are plainly on one side.
-    const glm::dvec3 &n = s.faces[face].normal, &corner = s.vertices[a];
-    const double tip = glm::dot(n, at.tip - corner), tail = glm::dot(n, at.tail - corner);
-    if ((tip > distance_rounding && tail > distance_rounding) ||
-        (tip < -distance_rounding && tail < -distance_rounding))
-        return;
     Crossing crossing;
     crossing.face = face;
-    if (crosses(at.tip, at.tail, corner, s.vertices[b], s.vertices[c], crossing) &&
+    if (crosses(at.tip, at.tail, s.vertices[a], s.vertices[b], s.vertices[c], crossing) &&
         (!first || earlier(crossing, *first)))
         first = crossing;
 }
@@ -122,6 +119,11 @@ bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstac
     const bool all = tree_.for_each(swept, [&](uint32_t f) {
         if (collision_.triangles_tested++ - tested == triangles_per_move) return false;
         const Face& face = s.faces[f];
+        const auto above = [&](const glm::dvec3& end) {
+            return glm::dot(face.normal, end - s.vertices[face.vertex[0]]);
+        };
+        const auto [least, most] = std::minmax({above(from.tip), above(from.tail), above(to.tip), above(to.tail)});
+        if (least > near_enough || most < -near_enough) return true; // all of the way is on one side of it
         if (!met) cross(f, to, crossing);
         for (uint32_t edge = 0; edge < 3; ++edge) {
             if (std::min(face.link[edge][0].face(), face.link[edge][1].face()) < f) continue; // tested from there
