@@ -1,9 +1,11 @@
 #include "runtime/contact/near_faces.h"
 
 #include "runtime/geometry/nearest_point.h"
-#include "runtime/surface/box_tree.h"
+#include "runtime/surface/discs.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -20,14 +22,27 @@ constexpr std::size_t lookahead = 8;
 constexpr std::size_t screens_most = 4;
 constexpr double rises = 1024;
 
+// No ball is held by this.
+const HalfSpace nothing{glm::dvec3(0), -std::numeric_limits<double>::infinity()};
+
 // Of the radius: planes seen from so near lie within 1/128 of it as those seen from here.
 constexpr double as_good = 1.0 / 8;
+
+// For a start a plane at right angles to the way to a triangle's middle, which costs less than its nearest point.
+inline HalfSpace roughly_before(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c, const glm::dvec3& facet,
+                                const glm::dvec3& centre)
+{
+    const glm::dvec3 away = centre - (a + b + c) * (1.0 / 3);
+    const double square = glm::dot(away, away);
+    const glm::dvec3 normal = square > 0 ? away * (1 / std::sqrt(square)) : facet;
+    return {normal, std::max({glm::dot(normal, a), glm::dot(normal, b), glm::dot(normal, c)})};
+}
 
 } // namespace
 
 NearFaces::NearFaces(const Surface& surface) : surface_(&surface)
 {
-    const std::size_t room = std::min(faces_most, surface.faces.size());
+    const std::size_t room = std::min(faces_most, 2 * surface.faces.size()); // also for groups that were looked into
     faces_.reserve(room);
     planes_.reserve(room);
     corners_.reserve(room);
@@ -44,7 +59,7 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
     renewed_at_ = centre;
     renewed_since_ = centres_;
     const bool all = surface_->tree->ball(centre, radius, std::min(most, faces_.capacity()), faces_);
-    boxes_ = faces_.size();
+    boxes_ += faces_.size();
     if (!all) faces_.clear();
     const auto& faces = surface_->faces;
     const auto& vertices = surface_->vertices;
@@ -59,11 +74,7 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
             for (const uint32_t corner : faces[faces_[i + lookahead]].vertex) __builtin_prefetch(&vertices[corner]);
         const Face& face = faces[faces_[i]];
         const glm::dvec3 &a = vertices[face.vertex[0]], &b = vertices[face.vertex[1]], &c = vertices[face.vertex[2]];
-        // For a start a plane at right angles to the way to its middle, which costs less than its nearest point.
-        const glm::dvec3 away = centre - (a + b + c) * (1.0 / 3);
-        const double square = glm::dot(away, away);
-        const glm::dvec3 normal = square > 0 ? away * (1 / std::sqrt(square)) : face.normal;
-        const HalfSpace plane{normal, std::max({glm::dot(normal, a), glm::dot(normal, b), glm::dot(normal, c)})};
+        const HalfSpace plane = roughly_before(a, b, c, face.normal, centre);
         faces_[found] = faces_[i];
         planes_[found] = plane;
         corners_[found] = {a, b, c};
@@ -76,6 +87,74 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
     return all;
 }
 
+bool NearFaces::find_groups(const glm::dvec3& centre, double ball_radius, double radius) noexcept
+{
+    picked_.clear();
+    place_of_.clear();
+    faces_.clear();
+    planes_.clear();
+    corners_.clear();
+    laid_.clear();
+    see_from(centre);
+    renewed_at_ = found_at_ = centre;
+    renewed_since_ = centres_;
+    radius_ = ball_radius;
+    found_within_ = radius;
+    const bool all = add_behind(0);
+    if (!all) faces_.clear(), planes_.clear(), corners_.clear(), laid_.clear();
+    return all;
+}
+
+// What is behind a node and may be met while that is known which is around: groups that keep off the ball, and faces.
+// False: there is no room for it, and none is added.
+bool NearFaces::add_behind(uint32_t node) noexcept
+{
+    const std::size_t before = faces_.size();
+    std::array<uint32_t, BoxTree::depth_max*(BoxTree::width - 1) + BoxTree::width> waiting;
+    std::size_t count = 0;
+    waiting[count++] = node;
+    while (count > 0) {
+        const uint32_t next = waiting[--count];
+        for (uint32_t met = surface_->tree->children_near(next, found_at_, found_within_); met != 0; met &= met - 1) {
+            const uint32_t child = surface_->tree->nodes()[next].child[std::countr_zero(met)];
+            ++boxes_;
+            if (faces_.size() == faces_.capacity()) {
+                faces_.resize(before), planes_.resize(before), corners_.resize(before), laid_.resize(before);
+                return false;
+            }
+            if (child & BoxTree::is_face) {
+                const Face& face = surface_->faces[child & ~BoxTree::is_face];
+                const auto& vertices = surface_->vertices;
+                const glm::dvec3 &a = vertices[face.vertex[0]], &b = vertices[face.vertex[1]],
+                                 &c = vertices[face.vertex[2]];
+                faces_.push_back(child & ~BoxTree::is_face);
+                corners_.push_back({a, b, c});
+                planes_.push_back(roughly_before(a, b, c, face.normal, centre_));
+                laid_.push_back(0);
+                continue;
+            }
+            const DiscBound bound = bound_of(surface_->tree->disc(child), centre_);
+            if (bound.distance < radius_ + distance_rounding) {
+                waiting[count++] = child;
+                continue;
+            }
+            faces_.push_back(child | group);
+            corners_.push_back({});
+            planes_.push_back({bound.normal, glm::dot(bound.normal, centre_) - bound.distance});
+            laid_.push_back(centres_);
+        }
+    }
+    return true;
+}
+
+// Has what is behind a group take its place.
+bool NearFaces::look_into(std::size_t place) noexcept
+{
+    if (boxes_ > boxes_most || !add_behind(faces_[place] & ~group)) return false;
+    planes_[place] = nothing;
+    return true;
+}
+
 void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Screened screened, Laid laid) noexcept
 {
     picked_.clear();
@@ -86,25 +165,30 @@ void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Scre
         renewed_since_ = centres_;
     }
     const uint64_t since = laid == Laid::before ? renewed_since_ : centres_;
-    const double near = radius + reach + distance_rounding;
-    place_of_.resize(planes_.size());
+    near_ = radius + reach + distance_rounding;
+    const std::size_t known = planes_.size();
+    place_of_.resize(known);
     std::size_t close = 0;
-    for (std::size_t place = 0; place < planes_.size(); ++place) {
+    for (std::size_t place = 0; place < known; ++place) {
         place_of_[close] = static_cast<uint32_t>(place);
-        close += !(ahead(planes_[place]) > near);
+        close += !(ahead(planes_[place]) > near_);
     }
-    std::size_t picked = 0;
-    for (std::size_t i = 0; i < close; ++i) {
-        const uint32_t place = place_of_[i];
+    const auto take = [&](std::size_t place) {
         if (laid_[place] < since) lay(place);
-        if (ahead(planes_[place]) > near) continue;
+        if (ahead(planes_[place]) > near_) return false;
+        if (is_group(place) && ahead(planes_[place]) < radius && look_into(place)) return false;
         if (screened == Screened::yes)
             picked_.push_back(seen(place, laid));
         else
             picked_.push_back({planes_[place].normal, planes_[place].offset + radius});
-        place_of_[picked++] = place;
-    }
+        return true;
+    };
+    std::size_t picked = 0;
+    for (std::size_t i = 0; i < close; ++i)
+        if (const uint32_t place = place_of_[i]; take(place)) place_of_[picked++] = place;
     place_of_.resize(picked);
+    for (std::size_t place = known; place < planes_.size(); ++place) // from behind groups
+        if (take(place)) place_of_.push_back(static_cast<uint32_t>(place));
     if (screened == Screened::yes) screen();
 }
 
@@ -123,11 +207,33 @@ void NearFaces::keep_near(double reach) noexcept
 
 bool NearFaces::renew(uint32_t picked) noexcept
 {
-    const std::size_t place = place_of_[picked];
-    if (laid_[place] == centres_) return false;
-    lay(place);
-    picked_[picked] = {planes_[place].normal, planes_[place].offset + radius_};
+    const std::size_t place = place_of_[picked], known = planes_.size();
+    if (laid_[place] != centres_) {
+        lay(place);
+        picked_[picked] = {planes_[place].normal, planes_[place].offset + radius_};
+        return true;
+    }
+    if (!is_group(place) || !look_into(place)) return false;
+    picked_[picked] = nothing;
+    for (std::size_t behind = known; behind < planes_.size(); ++behind) {
+        if (ahead(planes_[behind]) > near_) continue;
+        picked_.push_back({planes_[behind].normal, planes_[behind].offset + radius_});
+        place_of_.push_back(static_cast<uint32_t>(behind));
+    }
     return true;
+}
+
+double NearFaces::open(const glm::dvec3& way, double tolerance) noexcept
+{
+    for (;;) {
+        double open = 1;
+        uint32_t first = 0;
+        for (uint32_t i = 0; i < picked_.size(); ++i) {
+            const double share = open_share({&picked_[i], 1}, centre_, way, tolerance);
+            if (share < open) open = share, first = i;
+        }
+        if (open == 1 || !renew(first)) return open;
+    }
 }
 
 // Of a triangle that the ball touches the triangle's own plane, where that makes no difference: rounding does not tilt
@@ -204,7 +310,8 @@ double NearFaces::distance(const glm::dvec3& centre, double most) noexcept
     for (std::size_t place = 0; place < planes_.size(); ++place) {
         if (ahead(planes_[place]) >= least) continue;
         lay(place);
-        least = std::min(least, ahead(planes_[place]));
+        const double here = ahead(planes_[place]);
+        if (here < least && (!is_group(place) || !look_into(place))) least = here;
     }
     return least;
 }
@@ -218,12 +325,18 @@ void NearFaces::see_from(const glm::dvec3& centre) noexcept
 
 void NearFaces::lay(std::size_t place) noexcept
 {
+    laid_[place] = centres_;
+    if (is_group(place)) {
+        const DiscBound bound = bound_of(surface_->tree->disc(faces_[place] & ~group), centre_);
+        if (bound.distance > ahead(planes_[place]))
+            planes_[place] = {bound.normal, glm::dot(bound.normal, centre_) - bound.distance};
+        return;
+    }
     const auto& [a, b, c] = corners_[place];
     const glm::dvec3 away = centre_ - nearest_point(a, b, c, centre_).at;
     const double distance = glm::length(away);
     const glm::dvec3 normal = distance > 0 ? away / distance : surface_->faces[faces_[place]].normal;
     planes_[place] = {normal, glm::dot(normal, centre_) - distance};
-    laid_[place] = centres_;
 }
 
 } // namespace haptel::runtime

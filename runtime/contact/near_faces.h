@@ -4,16 +4,22 @@
 // distance to the plane is a lower bound of the distance to the triangle. On a fine mesh with hundreds of triangles
 // near the ball that bound spares most of them, and a step of the solver recomputes only the planes that hold the ball.
 //
+// Of a fine mesh a ball meets hundreds at once, and is held by three. There it knows most of them in groups, each by
+// the plane of a flat cylinder around it (surface/discs.h), and looks into one only when the solver is about to make
+// its plane hold: what a tick looks at does not grow with the mesh. A group that there is no room to look into stays
+// solid.
+//
 // Lattice units. One servo thread owns one; only the constructor allocates.
 #pragma once
 
 #include "runtime/contact/project.h"
-#include "runtime/surface/surface.h"
+#include "runtime/surface/box_tree.h"
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace haptel::runtime {
@@ -27,11 +33,16 @@ public:
 
     // Room for so many.
     static constexpr std::size_t faces_most = 1 << 14;
+    // From one question for boxes() to the next no more groups are looked into.
+    static constexpr std::size_t boxes_most = 1 << 11;
 
     // Finds all that come within `radius` of the centre; false: their boxes are more than `most`, and none is kept.
     bool find(const glm::dvec3& centre, double radius, std::size_t most = faces_most) noexcept;
+    // The same, in groups as large as keep off a ball of `ball_radius` there.
+    bool find_groups(const glm::dvec3& centre, double ball_radius, double radius) noexcept;
     std::size_t count() const noexcept { return faces_.size(); }
-    std::size_t boxes() const noexcept { return boxes_; } // that the tree delivered
+    // That the tree delivered since it was asked last.
+    std::size_t boxes() noexcept { return std::exchange(boxes_, 0); }
 
     // Picks the triangles that a ball of this radius may touch while its centre stays within `reach` of this one. Their
     // planes are those seen from this centre (`here`), or from one near it before (`before`): whoever is held by one of
@@ -47,14 +58,24 @@ public:
     void keep_near(double reach) noexcept;
     // Of those within reach, screened or not, all that may come within `radius` of a place.
     template <class Visit>
-    void for_each_near(const glm::dvec3& at, double radius, Visit&& visit) const
+    void for_each_near(const glm::dvec3& at, double radius, Visit&& visit) noexcept
     {
-        for (const uint32_t place : place_of_)
-            if (glm::dot(planes_[place].normal, at) - planes_[place].offset <= radius) visit(faces_[place]);
+        for (std::size_t i = 0; i < place_of_.size(); ++i) {
+            const std::size_t place = place_of_[i];
+            if (glm::dot(planes_[place].normal, at) - planes_[place].offset > radius) continue;
+            if (!is_group(place))
+                visit(faces_[place]);
+            else
+                renew(static_cast<uint32_t>(i));
+        }
     }
     // Where its centre may be: in front of each of them by the radius.
     std::span<const HalfSpace> picked() const noexcept { return picked_; }
+    std::span<const HalfSpace> rows() const noexcept override { return picked_; }
     uint32_t face(uint32_t picked) const noexcept { return faces_[place_of_[picked]]; }
+    bool is_solid(uint32_t picked) const noexcept { return is_group(place_of_[picked]); } // a group
+    // The open_share of the way from the centre, as they are seen from there.
+    double open(const glm::dvec3& way, double tolerance) noexcept;
 
     // Brings those picked to the front that a ball there comes as near to as to any, but for `within`, and counts them;
     // how far before the nearest it is.
@@ -73,6 +94,11 @@ public:
     double distance(const glm::dvec3& centre, double most) noexcept;
 
 private:
+    static constexpr uint32_t group = BoxTree::is_face; // of a number in faces_: a node
+
+    bool is_group(std::size_t place) const noexcept { return faces_[place] & group; }
+    bool add_behind(uint32_t node) noexcept;
+    bool look_into(std::size_t place) noexcept;
     void lay(std::size_t place) noexcept;
     HalfSpace seen(std::size_t place, Laid laid) const noexcept;
     void screen() noexcept;
@@ -86,7 +112,9 @@ private:
     std::vector<uint64_t> laid_;                     // seen from which centre; 0: from none
     std::vector<HalfSpace> picked_;
     std::vector<uint32_t> place_of_; // of those picked, above; then of those that they screen
-    double radius_ = 0;              // they were picked for
+    double radius_ = 0, near_ = 0;   // they were picked for
+    glm::dvec3 found_at_{0};         // those around are known,
+    double found_within_ = 0;        // so far
     glm::dvec3 centre_{0};           // seen from here
     uint64_t centres_ = 1;           // so far
     glm::dvec3 renewed_at_{0};       // centre since which planes are as good as those seen from here,

@@ -152,9 +152,17 @@ bool take_in(std::span<const Row> rows, uint32_t row, EndsGive gives, Projection
     }
 }
 
-template <class Place, class Row>
-Projection<Place> solve(std::span<const Row> rows, const Place& target, double tolerance, EndsGive gives,
-                        RenewedRows* renewed)
+// Rows that are known as well as they will be.
+template <class Row>
+struct KnownRows {
+    std::span<const Row> all;
+
+    std::span<const Row> rows() const { return all; }
+    bool renew(uint32_t) { return false; }
+};
+
+template <class Place, class Rows>
+Projection<Place> solve(Rows& known, const Place& target, double tolerance, EndsGive gives)
 {
     Projection<Place> now;
     now.at = target;
@@ -163,9 +171,13 @@ Projection<Place> solve(std::span<const Row> rows, const Place& target, double t
     for (int step = 0; step < steps_max; ++step) {
         uint32_t worst = none;
         double by = tolerance;
+        auto rows = known.rows();
         for (uint32_t i = 0; i < rows.size(); ++i) {
             double violation = -height(rows[i], now.at);
-            if (violation > by && renewed && renewed->renew(i)) violation = -height(rows[i], now.at);
+            while (violation > by && known.renew(i)) {
+                rows = known.rows();
+                violation = -height(rows[i], now.at);
+            }
             if (violation <= by) continue;
             const Place way = direction(rows[i], gives);
             const auto last = refused.begin() + std::ptrdiff_t(refusals);
@@ -182,6 +194,15 @@ Projection<Place> solve(std::span<const Row> rows, const Place& target, double t
     return now;
 }
 
+template <class Rows>
+Projection<glm::dvec3> solve_from(Rows& known, const glm::dvec3& target, const glm::dvec3& inside, double tolerance)
+{
+    Projection<glm::dvec3> held = solve(known, target, tolerance, {});
+    const double share = open_share(known.rows(), inside, held.at - inside, tolerance);
+    if (share < 1) held.at = inside + share * (held.at - inside);
+    return held;
+}
+
 } // namespace
 
 double open_share(std::span<const HalfSpace> rows, const glm::dvec3& from, const glm::dvec3& way,
@@ -196,18 +217,23 @@ double open_share(std::span<const HalfSpace> rows, const glm::dvec3& from, const
 }
 
 Projection<glm::dvec3> project(std::span<const HalfSpace> rows, const glm::dvec3& target, const glm::dvec3& inside,
-                               double tolerance, RenewedRows* renewed) noexcept
+                               double tolerance) noexcept
 {
-    Projection<glm::dvec3> held = solve(rows, target, tolerance, {}, renewed);
-    const double share = open_share(rows, inside, held.at - inside, tolerance);
-    if (share < 1) held.at = inside + share * (held.at - inside);
-    return held;
+    KnownRows<HalfSpace> known{rows};
+    return solve_from(known, target, inside, tolerance);
+}
+
+Projection<glm::dvec3> project(RenewedRows& rows, const glm::dvec3& target, const glm::dvec3& inside,
+                               double tolerance) noexcept
+{
+    return solve_from(rows, target, inside, tolerance);
 }
 
 Projection<Shaft> project(std::span<const ShaftRow> rows, const Shaft& target, double tolerance,
                           EndsGive gives) noexcept
 {
-    return solve(rows, target, tolerance, gives, nullptr);
+    KnownRows<ShaftRow> known{rows};
+    return solve(known, target, tolerance, gives);
 }
 
 // What the rows leave free is what is at right angles to all of them.

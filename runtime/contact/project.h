@@ -55,20 +55,23 @@ struct Projection {
 Projection<Shaft> project(std::span<const ShaftRow> rows, const Shaft& target, double tolerance,
                           EndsGive gives = {}) noexcept;
 
-// Rows of a point that may be better known than they are. `renew` lays the row anew if it is an old one, and says
-// whether it was; each row that is felt in the end has been asked for.
+// `inside` satisfies all rows. It guards against rounding: if the solution does not, the result is the last place that
+// does on the straight way from `inside` to it.
+Projection<glm::dvec3> project(std::span<const HalfSpace> rows, const glm::dvec3& target, const glm::dvec3& inside,
+                               double tolerance) noexcept;
+
+// Rows that become better known when they are asked for: `renew` lays a row anew, or has others take its place, which
+// are told behind the rest, and says whether it did. What is active in the end has been asked for.
 class RenewedRows {
 public:
+    virtual std::span<const HalfSpace> rows() const noexcept = 0;
     virtual bool renew(uint32_t row) noexcept = 0;
 
 protected:
     ~RenewedRows() = default;
 };
-
-// `inside` satisfies all rows. It guards against rounding: if the solution does not, the result is the last place that
-// does on the straight way from `inside` to it.
-Projection<glm::dvec3> project(std::span<const HalfSpace> rows, const glm::dvec3& target, const glm::dvec3& inside,
-                               double tolerance, RenewedRows* renewed = nullptr) noexcept;
+Projection<glm::dvec3> project(RenewedRows& rows, const glm::dvec3& target, const glm::dvec3& inside,
+                               double tolerance) noexcept;
 
 // The share, 0 .. 1, of the straight way from `from`, which satisfies all rows, that does so within `tolerance`.
 double open_share(std::span<const HalfSpace> rows, const glm::dvec3& from, const glm::dvec3& way,

@@ -14,6 +14,9 @@ namespace {
 // Of the radius: how far around is looked at once at least, and when anew.
 constexpr double margin_most = 1.0 / 16, margin_least = 1.0 / 64;
 
+// In groups it looks so far, of the radius: groups are the larger the farther off they are.
+constexpr double margin_of_groups = 1.0 / 4;
+
 // A point looks anew where it knows less far than this share of what a look may tell.
 constexpr double look_again = 0.25;
 
@@ -32,6 +35,10 @@ constexpr uint64_t faces_per_tick = 1 << 11;
 // How far a round may lead is what planes are picked for: of the hand's way, of the last step, of a last step that came
 // to the end of what was picked; of the radius at least; and picked anew where it is so many times as far as needed.
 constexpr double stride_of_hand = 1.1, stride_of_step = 0.5, stride_of_end = 4, stride_least = 1e-3, stride_most = 8;
+
+// Steps follow each other if they go the same way, by the cosine, and get so much shorter at least: one that is more
+// than twice as long as it would be leads away from the hand.
+constexpr double follows = 0.99, follows_most = 0.5;
 
 } // namespace
 
@@ -124,19 +131,30 @@ double SphereContact::gap_m(const glm::dvec3& centre_m) const noexcept
     return std::max(0.0, surface_->gap_to_box_m(centre_m, centre_m) - radius_ * surface_->lattice.unit_m);
 }
 
-// Finds the faces within the radius and a margin, or within less where there are too many. False: nothing less is left.
+// Finds the faces within the radius and a margin, or within less where there are too many; a ball does in groups where
+// there are many. False: nothing less is left.
 bool SphereContact::find_around(double margin) noexcept
 {
     close_.margin = -1;
-    const double near = margin_most * radius_;
+    const double near = margin_most * radius_, beyond = radius_ + distance_rounding;
     for (int looks = 0; looks < looks_most;) {
-        const bool far = margin > near;
-        const bool all =
-            faces_.find(proxy_.at, radius_ + margin + distance_rounding, far ? far_faces : NearFaces::faces_most);
+        const bool far = margin > near && !in_groups_;
+        double known = margin;
+        bool all = false;
+        if (!in_groups_) {
+            all = faces_.find(proxy_.at, beyond + margin,
+                              far ? far_faces : is_point_ ? NearFaces::faces_most : many_faces);
+            in_groups_ = !all && !far && !is_point_;
+        }
+        if (in_groups_) {
+            known = std::max(margin, margin_of_groups * radius_);
+            all = faces_.find_groups(proxy_.at, grown_, beyond + known);
+            in_groups_ = faces_.count() > few_faces;
+        }
         ++counters_.sweeps;
         counters_.triangles_tested += faces_.boxes();
         if (all) {
-            around_ = {proxy_.at, margin};
+            around_ = {proxy_.at, known};
             if (faces_.count() < few_faces) margin_ = std::min(2 * std::max(margin, margin_), Lattice::extent);
             if (faces_.count() > many_faces) margin_ = std::max(0.5 * margin, margin_least * radius_);
             return true;
@@ -156,21 +174,36 @@ void SphereContact::fly(double step_max) noexcept
     const glm::dvec3 to_hand = hand_ - proxy_.at;
     const double length = glm::length(to_hand), within = std::min(length, step_max);
     if (!(length > 0)) return;
-    const double share = open_share(faces_.picked(), proxy_.at, within / length * to_hand, 0);
+    const double share = faces_.open(within / length * to_hand, 0);
     proxy_.at += share * within / length * to_hand;
     if (share < 1 && (!is_point_ || share * within <= touching_gap)) pass({});
 }
 
 // One straight step to where the planes around let it come nearest to the hand. Those that hold it are seen from here.
-SphereContact::Held SphereContact::slide(double step_max) noexcept
+SphereContact::Held SphereContact::slide(double step_max, glm::dvec3* along_before) noexcept
 {
     const Held held = held_by_picked();
+    if (solid_) return {};
     if (held.count == 0) path_begin_ = path_length_; // off again
-    const glm::dvec3 way = held.at - proxy_.at;
+    const glm::dvec3 to = held.at - proxy_.at, way = along_before ? further(held, to, *along_before) : to;
     const double length = glm::length(way);
     proxy_.at += length > step_max ? step_max / length * way : way;
     if (held.count > 0) pass(held);
     return held;
+}
+
+// Round an edge or a vertex each step along its plane is the same share of the one before, of the depth over the
+// radius: it goes at once as far as all that would follow.
+glm::dvec3 SphereContact::further(const Held& held, const glm::dvec3& way, glm::dvec3& along_before) noexcept
+{
+    if (held.count != 1) return way;
+    const glm::dvec3& normal = held.row[0].normal;
+    const glm::dvec3 along = way - glm::dot(way, normal) * normal;
+    const glm::dvec3 last = std::exchange(along_before, along);
+    const double length = glm::length(along), before = glm::length(last);
+    if (!(length < follows_most * before) || glm::dot(along, last) < follows * length * before) return way;
+    const glm::dvec3 farther = way + length / (before - length) * along;
+    return faces_.open(farther, distance_rounding) == 1 ? farther : way;
 }
 
 void SphereContact::pass(const Held& held) noexcept
@@ -198,8 +231,10 @@ SphereContact::Laid SphereContact::lays(bool in_air, bool is_first) const noexce
 SphereContact::Held SphereContact::held_by_picked() noexcept
 {
     faces_.see_from(proxy_.at);
-    const Projection<glm::dvec3> found =
-        project(faces_.picked(), hand_, proxy_.at, distance_rounding, is_point_ ? nullptr : &faces_);
+    const Projection<glm::dvec3> found = is_point_ ? project(faces_.picked(), hand_, proxy_.at, distance_rounding)
+                                                   : project(faces_, hand_, proxy_.at, distance_rounding);
+    solid_ = std::any_of(found.active.begin(), found.active.begin() + std::ptrdiff_t(found.count),
+                         [&](uint32_t picked) { return faces_.is_solid(picked); });
     return as_rows(found);
 }
 
@@ -244,6 +279,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
     }
     Way done;
     auto& [held, round, cut, on_the_way, blind] = done;
+    glm::dvec3 along_before(0); // of the last round
     double stride = stride_of_hand * glm::distance(hand_, hand_before_) + lag_;
     // A point meets few faces: what it slides by is looked at once.
     const double stride_first = stride;
@@ -253,11 +289,11 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         if (want == 0) break;
         cut = round == rounds_max;
         if (cut) break;
+        if (round > 0 && counters_.triangles_tested - seen > faces_per_tick) {
+            cut = on_the_way = true;
+            break;
+        }
         if (around_.room(proxy_.at) < std::min(want, is_point_ ? look_again * margin_ : margin_least * radius_)) {
-            if (round > 0 && counters_.triangles_tested - seen > faces_per_tick) {
-                cut = on_the_way = true;
-                break;
-            }
             const double most = std::max(margin_, margin_most * radius_);
             if (!find_around(std::clamp(2 * want, margin_least * radius_, most))) {
                 blind = true;
@@ -275,7 +311,13 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         if (in_air)
             fly(step_max);
         else
-            held = rubs() ? rub(step_max) : slide(step_max);
+            held = rubs() ? rub(step_max) : slide(step_max, round + 1 < rounds_max ? &along_before : nullptr);
+        counters_.triangles_tested += faces_.boxes();
+        if (solid_) {
+            solid_ = false;
+            blind = true;
+            return done;
+        }
         const double step = glm::distance(before, proxy_.at);
         on_the_way = step > 0.5 * open;
         if (rests_) break;

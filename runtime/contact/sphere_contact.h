@@ -67,7 +67,7 @@ public:
     void set_sliding(bool sliding) noexcept { proxy_.sliding = sliding; }
     void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept; // a tick begins
     // What is known of what is around.
-    void forget() noexcept { around_ = close_ = {}, margin_ = margin_at_first_; }
+    void forget() noexcept { around_ = close_ = {}, margin_ = margin_at_first_, in_groups_ = false; }
     // Goes to a place and lays the planes that hold the end while it stays within the length that is returned, at most
     // `reach`, of there. 0: there is too much around to be looked at, or more than `most` planes. `is_first`: of a
     // tick, and what it holds at first is looked at again.
@@ -136,7 +136,8 @@ private:
     bool find_around(double margin) noexcept;
     bool is_in_air() const noexcept { return path_begin_ == path_length_; }
     void fly(double step_max) noexcept;
-    Held slide(double step_max) noexcept;
+    Held slide(double step_max, glm::dvec3* along_before) noexcept;
+    glm::dvec3 further(const Held& held, const glm::dvec3& way, glm::dvec3& along_before) noexcept;
     Held held_by_picked() noexcept;
     Held as_rows(const Projection<glm::dvec3>& found) const noexcept;
     Held rub(double step_max) noexcept;
@@ -153,7 +154,7 @@ private:
     Held only(const Held& held, uint32_t bits) const noexcept;
     void keep_told() noexcept;
     NearestPoint nearest_on(uint32_t face, const glm::dvec3& centre) const noexcept;
-    uint32_t touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) const noexcept;
+    uint32_t touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) noexcept;
     void tell(const Held& held, const glm::dvec3& nearest, bool lags) noexcept;
     void tell_free() noexcept;
     void tell_nothing() noexcept;
@@ -167,9 +168,11 @@ private:
     Laid laid_ = Laid::before;     // those picked last
     Neighbourhood around_, close_; // of all found, of those picked
     double margin_at_first_;       // of a point, which meets few: as far as it goes
+    bool in_groups_ = false;       // what is around a ball is known so
     double margin_;                // that suits the density of the mesh here
     WalkFriction friction_;        // of this tick
     bool rests_ = false;           // friction holds the point where it is
+    bool solid_ = false;           // held by a group that there was no room to look into
     double lag_ = 0;               // by which friction held the ball back
     // Of this tick, where it touched; from `path_begin_` on without a break, until now. Nobody asks for it later: the
     // balls of a thread share the room for it.

@@ -39,7 +39,7 @@ NearestPoint SphereContact::nearest_on(uint32_t face, const glm::dvec3& centre) 
 }
 
 // The face that a ball touches which `normal` pushes there. Friction may hold it off the place where `face` does.
-uint32_t SphereContact::touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) const noexcept
+uint32_t SphereContact::touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) noexcept
 {
     // Lattice units: as near as the nearest, and at the same place by that: where a point touches, an angle of 3e-4.
     constexpr double as_near = 64;

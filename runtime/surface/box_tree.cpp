@@ -1,9 +1,12 @@
 #include "runtime/surface/box_tree.h"
 
+#include "runtime/surface/discs.h"
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace haptel::runtime {
 
@@ -171,6 +174,18 @@ private:
 };
 
 } // namespace
+
+BoxTree::BoxTree(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces, std::vector<Node> nodes)
+    : vertices_(vertices), faces_(faces), nodes_(std::move(nodes)), discs_(discs_of(vertices, faces, nodes_))
+{
+}
+
+uint32_t BoxTree::children_near(uint32_t node, const glm::dvec3& centre, double radius) const noexcept
+{
+    alignas(16) float at[width];
+    const BallQuery query(centre, radius);
+    return bits(query.enters(nodes_[node], 0, at), query.enters(nodes_[node], half, at));
+}
 
 template <class Query>
 void BoxTree::ask(Query& query) const noexcept

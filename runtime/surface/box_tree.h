@@ -12,6 +12,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace haptel::runtime {
@@ -47,15 +48,23 @@ public:
         uint32_t child[width];               // a node behind this one, or a face with `is_face`
     };
 
+    // Around all that is behind a node (discs.h). Lattice units, of a length of 1 within rounding.
+    struct Disc {
+        static constexpr std::size_t faces_most = 512; // behind one: beyond that it would not be flat
+
+        glm::vec3 centre{0}, axis{0, 0, 1};
+        float radius = std::numeric_limits<float>::infinity(), half_height = radius;
+    };
+
     // Of faces that live as long as this and do not change.
-    BoxTree(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces, std::vector<Node> nodes)
-        : vertices_(vertices), faces_(faces), nodes_(std::move(nodes))
-    {
-    }
+    BoxTree(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces, std::vector<Node> nodes);
     BoxTree(const BoxTree&) = delete;
     BoxTree& operator=(const BoxTree&) = delete;
 
     const std::vector<Node>& nodes() const { return nodes_; }
+    const Disc& disc(uint32_t node) const noexcept { return discs_[node]; }
+    // A bit for each child of a node whose box comes within `radius` of the centre.
+    uint32_t children_near(uint32_t node, const glm::dvec3& centre, double radius) const noexcept;
 
     void segment(const glm::dvec3& from, const glm::dvec3& to, SegmentVisitor& visitor) const noexcept;
 
@@ -106,6 +115,7 @@ private:
     const std::vector<glm::dvec3>& vertices_;
     const std::vector<Face>& faces_;
     std::vector<Node> nodes_; // the root is the first
+    std::vector<Disc> discs_; // of each
 };
 
 } // namespace haptel::runtime

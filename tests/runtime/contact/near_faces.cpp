@@ -89,3 +89,55 @@ TEST_CASE("near faces are all found, and each lies behind its plane wherever tha
         }
     }
 }
+
+TEST_CASE("what is known in groups keeps a ball off every triangle, and holds it by triangles alone")
+{
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    std::size_t entries = 0, around = 0;
+    for (const Mesh& mesh : {make_bumpy_sphere(5), make_star(4), make_stairs()}) {
+        const auto surface = surface_of(mesh);
+        const auto corner = [&](uint32_t face, int i) { return surface->vertices[surface->faces[face].vertex[i]]; };
+        const auto distance = [&](uint32_t face, const dvec3& p) {
+            return distance_to(corner(face, 0), corner(face, 1), corner(face, 2), p);
+        };
+        constexpr double slack = 4; // lattice units, as above
+        NearFaces near(*surface), listed(*surface);
+        for (int trial = 0; trial < 60; ++trial) {
+            const auto over = static_cast<uint32_t>(random() % surface->faces.size());
+            dvec3 centre = corner(over, 0) + uniform(random) * Lattice::extent * random_direction(random);
+            double radius = INFINITY;
+            for (uint32_t face = 0; face < surface->faces.size(); ++face)
+                radius = std::min(radius, distance(face, centre));
+            if (radius < 1e-4 * Lattice::extent) continue;
+            radius *= trial % 2 == 0 ? 1 - 1e-9 : uniform(random); // it touches, or does not
+            const double margin = 0.3 * radius;
+            REQUIRE(near.find_groups(centre, radius, radius + margin));
+            (void)near.boxes(); // from here on it may look into so many more
+            near.pick(centre, radius, margin, NearFaces::Screened::no, NearFaces::Laid::here);
+            entries += near.count();
+            const double turned = 1e-2 * 2 * Lattice::extent / radius;
+            for (uint32_t face = 0; face < surface->faces.size(); ++face) {
+                if (distance(face, centre) > radius + margin) continue;
+                ++around;
+                REQUIRE(std::any_of(near.picked().begin(), near.picked().end(), [&](const HalfSpace& row) {
+                    double highest = -INFINITY;
+                    for (int c = 0; c < 3; ++c) highest = std::max(highest, glm::dot(row.normal, corner(face, c)));
+                    return highest <= row.offset - radius + slack + turned;
+                }));
+            }
+            // It goes as near to the hand as planes of all triangles let it, or nearer.
+            const dvec3 hand = centre + margin * uniform(random) * random_direction(random);
+            const Projection<dvec3> held = project(near, hand, centre, distance_rounding);
+            for (std::size_t i = 0; i < held.count; ++i) REQUIRE(!near.is_solid(held.active[i]));
+            for (uint32_t face = 0; face < surface->faces.size(); ++face)
+                REQUIRE(distance(face, held.at) > radius - slack);
+            REQUIRE(listed.find(centre, radius + margin));
+            listed.pick(centre, radius, margin, NearFaces::Screened::no, NearFaces::Laid::here);
+            const dvec3 there = project(listed.picked(), hand, centre, distance_rounding).at;
+            REQUIRE(glm::distance(held.at, hand) <= glm::distance(there, hand) + slack);
+        }
+    }
+    CAPTURE(entries, around);
+    CHECK(2 * entries < around); // they are groups
+}

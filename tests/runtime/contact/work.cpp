@@ -1,4 +1,5 @@
 // What a tick looks at does not grow with the mesh or the scene: counted, not timed.
+#include "runtime/contact/sphere_contact.h"
 #include "runtime/render/renderer.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
@@ -15,6 +16,24 @@ using namespace haptel::runtime;
 using namespace haptel::tests;
 
 namespace {
+
+// A ball is put on a bumpy one of radius 1, a fifth of it large, and goes over it: triangles and groups looked at.
+double seen_by_ball(uint32_t subdivisions)
+{
+    const auto surface = test::surface_of(test::make_bumpy_sphere(subdivisions));
+    constexpr double radius = 0.2;
+    SphereContact ball(surface, radius);
+    const auto place = [&](int i, double over) {
+        const glm::dvec3 d(std::cos(1e-3 * i), std::sin(1e-3 * i), 0);
+        return d * (test::bumpy_radius(d) + radius + over);
+    };
+    ball.update(place(0, 0.05));
+    ball.update(place(0, -0.02));
+    const uint64_t before = ball.counters().triangles_tested;
+    for (int i = 0; i < 2000; ++i) ball.update(place(i, -0.02));
+    CHECK(ball.counters().walks_cut == 0);
+    return static_cast<double>(ball.counters().triangles_tested - before) / 2000;
+}
 
 struct Seen {
     uint64_t queries = 0;          // in all ticks
@@ -114,4 +133,11 @@ TEST_CASE("among blades that stand through a plane a tick looks at those around,
     CAPTURE(few.first, few.second, many.first, many.second);
     CHECK(many.first <= 2048);
     CHECK(many.second < 64 * 1000);
+}
+
+TEST_CASE("what a ball looks at in a tick does not grow with the mesh that it lies on")
+{
+    const double coarse = seen_by_ball(5), fine = seen_by_ball(7);
+    CAPTURE(coarse, fine);
+    CHECK(fine < 4 * coarse); // 16 times as many triangles
 }

@@ -3,6 +3,8 @@
 #include "runtime/geometry/nearest_point.h"
 #include "runtime/surface/build/build.h"
 #include "runtime/surface/collision.h"
+#include "runtime/surface/discs.h"
+#include "tests/runtime/surface/distance.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
 
@@ -246,5 +248,48 @@ TEST_CASE("the faces around a point are all listed, and few that are farther awa
             CHECK(cut.size() == listed.size() - 1);
             CHECK(s->tree->ball(centre, radius, listed.size(), cut));
         }
+    }
+}
+
+TEST_CASE("all that is behind a node lies behind the plane that its disc puts before a place, no nearer than that")
+{
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> normal;
+    for (const Mesh& mesh : {make_bumpy_sphere(4), make_star(3), make_stairs()}) {
+        const auto surface = surface_of(mesh);
+        const BoxTree& tree = *surface->tree;
+        double flat = 0, discs = 0;
+        for (uint32_t node = 0; node < tree.nodes().size(); ++node) {
+            std::vector<uint32_t> behind, waiting{node};
+            while (!waiting.empty()) {
+                const BoxTree::Node& at = tree.nodes()[waiting.back()];
+                waiting.pop_back();
+                for (uint32_t k = 0; k < BoxTree::width; ++k)
+                    if (at.low[0][k] <= at.high[0][k])
+                        at.child[k] & BoxTree::is_face ? behind.push_back(at.child[k] & ~BoxTree::is_face)
+                                                       : waiting.push_back(at.child[k]);
+            }
+            const BoxTree::Disc& disc = tree.disc(node);
+            if (behind.size() > BoxTree::Disc::faces_most) {
+                CHECK(std::isinf(disc.radius));
+                continue;
+            }
+            flat += disc.half_height < 0.2 * disc.radius;
+            ++discs;
+            for (int trial = 0; trial < 4; ++trial) {
+                const double far = std::pow(10.0, -2 * trial) * Lattice::extent;
+                const dvec3 place = dvec3(disc.centre) + far * dvec3(normal(random), normal(random), normal(random));
+                const DiscBound bound = bound_of(disc, place);
+                if (bound.distance == 0) continue;
+                for (const uint32_t face : behind) {
+                    dvec3 corner[3];
+                    for (int c = 0; c < 3; ++c) corner[c] = surface->vertices[surface->faces[face].vertex[c]];
+                    for (const dvec3& c : corner) REQUIRE(glm::dot(bound.normal, place - c) >= bound.distance - 0.01);
+                    REQUIRE(distance_to(corner[0], corner[1], corner[2], place) >= bound.distance - 0.01);
+                }
+            }
+        }
+        CHECK(discs > 10);
+        if (mesh.triangles.size() > 1000) CHECK(flat > 0.5 * discs);
     }
 }
