@@ -11,24 +11,6 @@ namespace haptel::runtime {
 
 namespace {
 
-// Of the radius: how far around is looked at once at least, and when anew.
-constexpr double margin_most = 1.0 / 16, margin_least = 1.0 / 64;
-
-// In groups it looks so far, of the radius: groups are the larger the farther off they are.
-constexpr double margin_of_groups = 1.0 / 4;
-
-// A point looks anew where it knows less far than this share of what a look may tell.
-constexpr double look_again = 0.25;
-
-// Where there are fewer faces the ball looks farther around, where there are more less far.
-constexpr std::size_t few_faces = 16, many_faces = 64;
-
-// It looks farther around than margin_most only for so many faces. Where there are too many it looks less far by this,
-// so often below margin_most.
-constexpr std::size_t far_faces = 256;
-constexpr double less_far = 1.0 / 8;
-constexpr int looks_most = 4;
-
 // Looked at in one tick before the rest of the way is left to the next: it bounds the time of a tick.
 constexpr uint64_t faces_per_tick = 1 << 11;
 
@@ -131,42 +113,6 @@ double SphereContact::gap_m(const glm::dvec3& centre_m) const noexcept
     return std::max(0.0, surface_->gap_to_box_m(centre_m, centre_m) - radius_ * surface_->lattice.unit_m);
 }
 
-// Finds the faces within the radius and a margin, or within less where there are too many; a ball does in groups where
-// there are many. False: nothing less is left.
-bool SphereContact::find_around(double margin) noexcept
-{
-    close_.margin = -1;
-    const double near = margin_most * radius_, beyond = radius_ + distance_rounding;
-    for (int looks = 0; looks < looks_most;) {
-        const bool far = margin > near && !in_groups_;
-        double known = margin;
-        bool all = false;
-        if (!in_groups_) {
-            all = faces_.find(proxy_.at, beyond + margin,
-                              far ? far_faces : is_point_ ? NearFaces::faces_most : many_faces);
-            in_groups_ = !all && !far && !is_point_;
-        }
-        if (in_groups_) {
-            known = std::max(margin, margin_of_groups * radius_);
-            all = faces_.find_groups(proxy_.at, grown_, beyond + known);
-            in_groups_ = faces_.count() > few_faces;
-        }
-        ++counters_.sweeps;
-        counters_.triangles_tested += faces_.boxes();
-        if (all) {
-            around_ = {proxy_.at, known};
-            if (faces_.count() < few_faces) margin_ = std::min(2 * std::max(margin, margin_), Lattice::extent);
-            if (faces_.count() > many_faces) margin_ = std::max(0.5 * margin, margin_least * radius_);
-            return true;
-        }
-        margin = far ? std::max(near, less_far * margin) : less_far * margin;
-        margin_ = margin;
-        looks += !far;
-    }
-    around_.margin = -1;
-    return false;
-}
-
 // Straight on toward the hand, at most so far. The plane that ends a way is seen from where it began: a point touches
 // where it cannot go on.
 void SphereContact::fly(double step_max) noexcept
@@ -211,23 +157,6 @@ void SphereContact::pass(const Held& held) noexcept
     path_[path_length_++] = {proxy_.at, held};
 }
 
-// A point meets few faces, and what lies behind others does not hold it at every edge. A ball meets hundreds: its
-// planes serve for several rounds, but for those that hold it.
-void SphereContact::pick(double reach, Laid laid) noexcept
-{
-    close_ = {proxy_.at, reach};
-    laid_ = laid;
-    faces_.pick(proxy_.at, grown_, reach, is_point_ ? NearFaces::Screened::yes : NearFaces::Screened::no, laid);
-}
-
-// A ball that grows is wider than the planes that it had.
-SphereContact::Laid SphereContact::lays(bool in_air, bool is_first) const noexcept
-{
-    if (in_air || (!is_point_ && grown_ < radius_)) return Laid::here;
-    if (!is_point_) return Laid::before;
-    return is_first ? Laid::ahead : Laid::here;
-}
-
 SphereContact::Held SphereContact::held_by_picked() noexcept
 {
     faces_.see_from(proxy_.at);
@@ -263,8 +192,9 @@ void SphereContact::take_off_radius(Held& held) const noexcept
         for (Row& row : held.row) row.push = 0;
         for (std::size_t i = 0; i < found.count; ++i) held.row[found.active[i]].push = found.push[i];
     }
-    std::sort(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
-              [](const Row& a, const Row& b) { return a.push > b.push; });
+    if (held.count > 1)
+        std::sort(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
+                  [](const Row& a, const Row& b) { return a.push > b.push; });
 }
 
 // Toward the hand, as near as it can slide, or to where it touches.
@@ -293,12 +223,9 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
             cut = on_the_way = true;
             break;
         }
-        if (around_.room(proxy_.at) < std::min(want, is_point_ ? look_again * margin_ : margin_least * radius_)) {
-            const double most = std::max(margin_, margin_most * radius_);
-            if (!find_around(std::clamp(2 * want, margin_least * radius_, most))) {
-                blind = true;
-                return done;
-            }
+        if (!look_as_far_as(want)) {
+            blind = true;
+            return done;
         }
         const bool in_air = is_in_air();
         const double open = std::min(want, around_.room(proxy_.at));
@@ -321,6 +248,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         const double step = glm::distance(before, proxy_.at);
         on_the_way = step > 0.5 * open;
         if (rests_) break;
+        if (!in_air && has_come_to(held)) break;
         if (in_air || is_in_air()) {
             if (until_it_touches && !is_in_air()) break;
             continue;
@@ -366,41 +294,6 @@ void SphereContact::move(const Friction& friction) noexcept
     lag_ = held.count > 0 ? glm::distance(proxy_.at, held.at) : 0;
     if (held.count == 0) return tell_free();
     tell(held, held.at, true);
-}
-
-double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t most, bool is_first) noexcept
-{
-    proxy_.at = at;
-    if (around_.room(at) < std::min(reach, look_again * margin_) &&
-        !find_around(std::clamp(2 * reach, margin_least * radius_, std::max(margin_, margin_most * radius_))))
-        return 0;
-    if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(at, radius_) - distance_rounding);
-    double within = std::min(reach, around_.room(at));
-    if (faces_.picked().empty() && close_.room(at) >= within) return within;
-    if (close_.centre == at && close_.margin >= within && laid_ == Laid::here && faces_.picked().size() <= most) {
-        faces_.keep_near(within);
-        close_.margin = within;
-        return within;
-    }
-    const Laid laid = is_first ? Laid::ahead : Laid::here;
-    for (pick(within, laid); faces_.picked().size() > most; pick(within, laid))
-        if ((within *= less_far) < 1) return 0;
-    if (faces_.picked().empty()) close_.margin = std::min(around_.room(at), faces_.gap());
-    return within;
-}
-
-bool SphereContact::stands(uint32_t plane, const glm::dvec3& at) const noexcept
-{
-    const uint32_t face = faces_.face(plane);
-    const glm::dvec3 &normal = faces_.picked()[plane].normal, &facet = surface_->faces[face].normal;
-    return (normal == facet || normal == -facet) &&
-           glm::all(glm::greaterThan(nearest_on(face, at).barycentric, glm::dvec3(0)));
-}
-
-std::size_t SphereContact::touching() noexcept
-{
-    const auto [count, gap] = faces_.touching(proxy_.at, radius_);
-    return gap > radius_ ? 0 : count;
 }
 
 void SphereContact::tell_held(const glm::dvec3& aim, std::span<const uint32_t> planes, std::span<const double> pushes,

@@ -134,6 +134,7 @@ private:
     void aim(const glm::dvec3& hand) noexcept;
     void place(const glm::dvec3& at) noexcept;
     bool find_around(double margin) noexcept;
+    bool look_as_far_as(double way) noexcept;
     bool is_in_air() const noexcept { return path_begin_ == path_length_; }
     void fly(double step_max) noexcept;
     Held slide(double step_max, glm::dvec3* along_before) noexcept;
@@ -153,6 +154,8 @@ private:
     void take_off_radius(Held& held) const noexcept;
     Held only(const Held& held, uint32_t bits) const noexcept;
     void keep_told() noexcept;
+    bool has_come_to(const Held& held) const noexcept;
+    bool stands(uint32_t face, const glm::dvec3& normal, const glm::dvec3& at) const noexcept;
     NearestPoint nearest_on(uint32_t face, const glm::dvec3& centre) const noexcept;
     uint32_t touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) noexcept;
     void tell(const Held& held, const glm::dvec3& nearest, bool lags) noexcept;

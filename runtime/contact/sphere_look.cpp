@@ -1,0 +1,143 @@
+// What a ball knows of the faces around it, and from where.
+#include "runtime/contact/sphere_contact.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace haptel::runtime {
+
+namespace {
+
+// Of the radius: how far around is looked at once at least, and when anew.
+constexpr double margin_most = 1.0 / 16, margin_least = 1.0 / 64;
+
+// A ball knows so many faces one by one; where there are more, in groups. These reach so far, of the radius: they are
+// the larger the farther off they are.
+constexpr std::size_t alone_faces = 32;
+constexpr double margin_of_groups = 1.0 / 4;
+
+// A point looks anew where it knows less far than this share of what a look may tell.
+constexpr double look_again = 0.25;
+
+// Where there are fewer faces the ball looks farther around, where there are more less far.
+constexpr std::size_t few_faces = 16, many_faces = 64;
+
+// It looks farther around than margin_most only for so many faces. Where there are too many it looks less far by this,
+// so often below margin_most.
+constexpr std::size_t far_faces = 256;
+constexpr double less_far = 1.0 / 8;
+constexpr int looks_most = 4;
+
+// A plane is that of its triangle if the cosine between their normals is 1 within rounding.
+constexpr double facet_cosine = 1 - 1e-15;
+
+} // namespace
+
+// Finds the faces within the radius and a margin, or within less where there are too many; a ball does in groups where
+// there are many. False: nothing less is left.
+bool SphereContact::find_around(double margin) noexcept
+{
+    close_.margin = -1;
+    const double near = margin_most * radius_, beyond = radius_ + distance_rounding;
+    for (int looks = 0; looks < looks_most;) {
+        const bool far = margin > near && !in_groups_;
+        double known = margin;
+        bool all = false;
+        if (!in_groups_) {
+            all = faces_.find(proxy_.at, beyond + margin,
+                              far         ? far_faces
+                              : is_point_ ? NearFaces::faces_most
+                                          : alone_faces);
+            in_groups_ = !all && !far && !is_point_;
+        }
+        if (in_groups_) {
+            known = std::max(margin, margin_of_groups * radius_);
+            all = faces_.find_groups(proxy_.at, grown_, beyond + known);
+            in_groups_ = faces_.count() > few_faces;
+        }
+        ++counters_.sweeps;
+        counters_.triangles_tested += faces_.boxes();
+        if (all) {
+            around_ = {proxy_.at, known};
+            if (faces_.count() < few_faces) margin_ = std::min(2 * std::max(margin, margin_), Lattice::extent);
+            if (faces_.count() > many_faces) margin_ = std::max(0.5 * margin, margin_least * radius_);
+            return true;
+        }
+        margin = far ? std::max(near, less_far * margin) : less_far * margin;
+        margin_ = margin;
+        looks += !far;
+    }
+    around_.margin = -1;
+    return false;
+}
+
+// Looks anew where less is known around than it may need. False: it cannot.
+bool SphereContact::look_as_far_as(double way) noexcept
+{
+    const double enough = is_point_ ? look_again * margin_ : margin_least * radius_;
+    if (around_.room(proxy_.at) >= std::min(way, enough)) return true;
+    return find_around(std::clamp(2 * way, margin_least * radius_, std::max(margin_, margin_most * radius_)));
+}
+
+// A point meets few faces, and what lies behind others does not hold it at every edge. A ball meets hundreds: its
+// planes serve for several rounds, but for those that hold it.
+void SphereContact::pick(double reach, Laid laid) noexcept
+{
+    close_ = {proxy_.at, reach};
+    laid_ = laid;
+    faces_.pick(proxy_.at, grown_, reach, is_point_ ? NearFaces::Screened::yes : NearFaces::Screened::no, laid);
+}
+
+// A ball that grows is wider than the planes that it had.
+SphereContact::Laid SphereContact::lays(bool in_air, bool is_first) const noexcept
+{
+    if (in_air || (!is_point_ && grown_ < radius_)) return Laid::here;
+    if (!is_point_) return Laid::before;
+    return is_first ? Laid::ahead : Laid::here;
+}
+
+double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t most, bool is_first) noexcept
+{
+    proxy_.at = at;
+    if (!look_as_far_as(reach)) return 0;
+    if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(at, radius_) - distance_rounding);
+    double within = std::min(reach, around_.room(at));
+    if (faces_.picked().empty() && close_.room(at) >= within) return within;
+    if (close_.centre == at && close_.margin >= within && laid_ == Laid::here && faces_.picked().size() <= most) {
+        faces_.keep_near(within);
+        close_.margin = within;
+        return within;
+    }
+    const Laid laid = is_first ? Laid::ahead : Laid::here;
+    for (pick(within, laid); faces_.picked().size() > most; pick(within, laid))
+        if ((within *= less_far) < 1) return 0;
+    if (faces_.picked().empty()) close_.margin = std::min(around_.room(at), faces_.gap());
+    return within;
+}
+
+bool SphereContact::stands(uint32_t plane, const glm::dvec3& at) const noexcept
+{
+    return stands(faces_.face(plane), faces_.picked()[plane].normal, at);
+}
+
+bool SphereContact::stands(uint32_t face, const glm::dvec3& normal, const glm::dvec3& at) const noexcept
+{
+    return std::fabs(glm::dot(normal, surface_->faces[face].normal)) > facet_cosine &&
+           glm::all(glm::greaterThan(nearest_on(face, at).barycentric, glm::dvec3(0)));
+}
+
+std::size_t SphereContact::touching() noexcept
+{
+    const auto [count, gap] = faces_.touching(proxy_.at, radius_);
+    return gap > radius_ ? 0 : count;
+}
+
+// Whether it is where it was to go, on triangles that hold it from there by the same planes.
+bool SphereContact::has_come_to(const Held& held) const noexcept
+{
+    return held.count > 0 && glm::distance(proxy_.at, held.at) <= distance_rounding &&
+           std::all_of(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
+                       [&](const Row& row) { return stands(row.face, row.normal, proxy_.at); });
+}
+
+} // namespace haptel::runtime
