@@ -28,8 +28,9 @@ constexpr std::size_t far_faces = 256;
 constexpr double less_far = 1.0 / 8;
 constexpr int looks_most = 4;
 
-// A plane is that of its triangle if the cosine between their normals is 1 within rounding.
-constexpr double facet_cosine = 1 - 1e-15;
+// The plane before a ball is that of its triangle if the cosine between their normals is 1 within rounding; a point has
+// been given the triangle's own.
+constexpr double parallel = 1 - 1e-15;
 
 } // namespace
 
@@ -122,8 +123,9 @@ bool SphereContact::stands(uint32_t plane, const glm::dvec3& at) const noexcept
 
 bool SphereContact::stands(uint32_t face, const glm::dvec3& normal, const glm::dvec3& at) const noexcept
 {
-    return std::fabs(glm::dot(normal, surface_->faces[face].normal)) > facet_cosine &&
-           glm::all(glm::greaterThan(nearest_on(face, at).barycentric, glm::dvec3(0)));
+    const glm::dvec3& facet = surface_->faces[face].normal;
+    const bool is_own = is_point_ ? normal == facet || normal == -facet : std::fabs(glm::dot(normal, facet)) > parallel;
+    return is_own && glm::all(glm::greaterThan(nearest_on(face, at).barycentric, glm::dvec3(0)));
 }
 
 std::size_t SphereContact::touching() noexcept
