@@ -3,8 +3,9 @@
 #include "runtime/geometry/finite.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 
 namespace haptel::runtime {
 
@@ -13,25 +14,29 @@ namespace {
 // Heights may exceed their bound by rounding only.
 constexpr double bound_slack_m = 1e-12;
 
-// The inputs that the entry reads; the others stay zero.
-haptel_point inputs(const SurfacePoint& at, uint32_t reads)
+// Takes the inputs that the entry reads into a point whose others are zero. Whether one of them is another than it was.
+bool take_in(haptel_point& point, const SurfacePoint& at, uint32_t reads)
 {
-    haptel_point point = {};
-    for (int i = 0; i < 3; ++i) point.p[i] = at.p_m[i];
+    bool changed = false;
+    const auto set = [&](double& input, double value) {
+        changed |= std::bit_cast<uint64_t>(input) != std::bit_cast<uint64_t>(value);
+        input = value;
+    };
+    for (int i = 0; i < 3; ++i) set(point.p[i], at.p_m[i]);
     if (reads & HAPTEL_READS_NORMAL) {
         for (int i = 0; i < 3; ++i) {
-            point.n[i] = at.shading.normal[i];
-            for (int j = 0; j < 3; ++j) point.n_dp[i][j] = at.shading.normal_dp[j][i];
+            set(point.n[i], at.shading.normal[i]);
+            for (int j = 0; j < 3; ++j) set(point.n_dp[i][j], at.shading.normal_dp[j][i]);
         }
     }
     if (reads & HAPTEL_READS_UV) {
         for (int i = 0; i < 2; ++i) {
-            point.uv[i] = at.shading.uv[i];
-            for (int j = 0; j < 3; ++j) point.uv_dp[i][j] = at.shading.uv_dp[j][i];
+            set(point.uv[i], at.shading.uv[i]);
+            for (int j = 0; j < 3; ++j) set(point.uv_dp[i][j], at.shading.uv_dp[j][i]);
         }
     }
-    if (reads & HAPTEL_READS_TIME) point.time_s = at.time_s;
-    return point;
+    if (reads & HAPTEL_READS_TIME) set(point.time_s, at.time_s);
+    return changed;
 }
 
 // Bindings are made by code that is not ours: the guarantees of abi.h are checked again at the last door before the
@@ -85,7 +90,9 @@ TextureSample felt(const TextureBinding& binding, const haptel_sample& sample, c
 TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& at) noexcept
 {
     if (!binding.texture) return {};
-    return felt(binding, evaluate(binding, inputs(at, binding.texture->reads)), at.shading.normal);
+    haptel_point point = {};
+    take_in(point, at, binding.texture->reads);
+    return felt(binding, evaluate(binding, point), at.shading.normal);
 }
 
 TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at, LastSample& last) noexcept
@@ -93,9 +100,9 @@ TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at
     const auto& [serial, binding] = reader.to();
     TextureSample to;
     if (binding.texture) {
-        const haptel_point point = inputs(at, binding.texture->reads);
-        if (last.serial != serial || std::memcmp(&last.point, &point, sizeof point) != 0)
-            last = {serial, point, evaluate(binding, point)};
+        const bool is_new = last.serial != serial;
+        if (is_new) last = {.serial = serial};
+        if (take_in(last.point, at, binding.texture->reads) || is_new) last.sample = evaluate(binding, last.point);
         to = felt(binding, last.sample, at.shading.normal);
     }
     return reader.fading() ? mixed(sample_texture(reader.from().binding, at), to, reader.weight()) : to;
