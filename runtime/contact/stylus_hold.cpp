@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 namespace haptel::runtime {
 
@@ -20,10 +21,6 @@ constexpr double step_settled = 4, turned_settled = 4 / rest_gap;
 
 // Of its limit. Where both ends drag none is free to make way for an edge: they have to be right within the gap.
 constexpr double friction_settled = 1e-6, both_settled = 1e-9;
-
-// A contact that slides off its edge does so by this many units and this share of its way, so that it is not found
-// there again, wherever the way bends.
-constexpr double beyond = 0.25 * rest_gap, past_the_end = 0.05;
 
 // How often the directions of contacts follow the shaft that they turn.
 constexpr int turns_max = 48;
@@ -44,9 +41,6 @@ constexpr double uphill = 4 * rest_gap;
 
 // What a way that was blocked by nothing new is cut to.
 constexpr double shorter = 0.25;
-
-// Of what is known around its ends a shaft that rests on edges goes so far at once: it is raised there.
-constexpr double on_reach = 0.9;
 
 // How far around its ends a round looks: of the hand's way in this tick, of the last step, of a last step that came to
 // the end of what was known, and of the way that is left at least.
@@ -153,6 +147,9 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
         double tip, tail;
     } news{tip.drags() ? HUGE_VAL : 0, tail.drags() ? HUGE_VAL : 0};
     bool of_tip = false;
+    // Without sides the friction of one end depends on nothing but the rows that hold it: it is found once for them.
+    const bool alone = side_count_ == 0 && tip.drags() != tail.drags();
+    std::optional<Projection<Shaft>> found_for;
     return turned(
         [&](std::span<const ShaftRow> rows, const Projection<Shaft>& held, EndsGive gives, bool agreed) {
             Shaft aim = hand_;
@@ -163,7 +160,11 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
                 aim.tail += row.arm * held.push[k] * row.normal;
             }
             of_tip = tip.drags() && !(of_tip && tail.drags());
-            if (of_tip)
+            if (alone && found_for && found_for->count == held.count &&
+                std::equal(held.active.begin(), held.active.begin() + std::ptrdiff_t(held.count),
+                           found_for->active.begin()))
+                news = {};
+            else if (found_for = held; of_tip)
                 news.tip = tip.follow(aim.tip, held.at.tip, compliance(ShaftEnd::tip, rows, held, gives));
             else
                 news.tail = tail.follow(aim.tail, held.at.tail, compliance(ShaftEnd::tail, rows, held, gives));
@@ -172,49 +173,11 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
                 if (!agreed || !end->drags() || !end->moves || end->slides) continue;
                 end->slides = true; // more than static friction holds: from here on dynamic friction does
                 agreed = false;
+                found_for.reset();
             }
             return agreed;
         },
         shaft_, free, begins_free);
-}
-
-// The share of the straight way there on which nothing is that the ends may meet: what is known around them, and
-// farther than that as far as they cross nothing.
-double StylusContact::known_share(const Shaft& to, const Projection<Shaft>& held, const FrictionOfEnds& ends) noexcept
-{
-    double share = 1;
-    const double most = side_count_ > 0 ? on_reach : 1;
-    const auto reaches = [&](const SphereContact& end, const EndRows& rows, const glm::dvec3& from,
-                             const glm::dvec3& there, bool drags) {
-        const glm::dvec3 way = there - from;
-        const double length = glm::length(way), reach = most * rows.reach;
-        const bool lands = drags && rows.count == 0; // friction holds it from where it comes to touch
-        Crossing crossing;
-        if ((length > reach || (lands && !end.planes().empty())) &&
-            first_crossing(surface(), from, glm::round(there), StartsOn::nothing(), crossing, collision_))
-            share =
-                std::min(share, std::max(lands ? 0.0 : reach / length, crossing.fraction() - 2 * rest_gap / length));
-        if (!lands) // the rows hold it off them, but for those that friction left out, or that contradict others
-            share = std::min(share, open_share(end.planes(), from, way, distance_rounding));
-    };
-    if (begin_ == 0) reaches(*tip_, tip_rows_, shaft_.tip, to.tip, ends.tip.friction.static_coefficient > 0);
-    if (end_ == 1) reaches(*tail_, tail_rows_, shaft_.tail, to.tail, ends.tail.friction.static_coefficient > 0);
-    for (std::size_t k = 0; k < held.count; ++k) {
-        const uint32_t row = held.active[k], first = tip_rows_.count + tail_rows_.count;
-        if (row < first) continue;
-        const Passing now = passing_of(sides_[row - first], shaft_), then = passing_of(sides_[row - first], to);
-        if (now.parallel || then.parallel) continue;
-        const auto stay = [&](double from, double there, double low, double high) {
-            const double over = past_the_end * std::fabs(there - from);
-            low -= over, high += over;
-            const double end = there < low ? low : there > high ? high : there;
-            if (end != there && from > low && from < high) share = std::min(share, (end - from) / (there - from));
-        };
-        const double off = let_go + beyond, off_shaft = (let_go_by_end + beyond) / now.shaft_length;
-        stay(now.on_edge, then.on_edge, -off, now.edge_length + off);
-        stay(now.on_shaft, then.on_shaft, -off_shaft, 1 + off_shaft);
-    }
-    return share;
 }
 
 // A share of the straight way to there. The straight ways of a shaft's ends lead it below an edge on which it turns and

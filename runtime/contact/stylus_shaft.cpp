@@ -17,6 +17,13 @@ namespace {
 // What is nearer to the shaft than this is seen: what it rests on is not.
 constexpr double near_enough = rest_gap * (1 - 1e-3);
 
+// A contact that slides off its edge does so by this many units and this share of its way, so that it is not found
+// there again, wherever the way bends.
+constexpr double beyond = 0.25 * rest_gap, past_the_end = 0.05;
+
+// Of what is known around its ends a shaft that rests on edges goes so far at once: it is raised there.
+constexpr double on_reach = 0.9;
+
 // A sweep past so many triangles counts as another one.
 constexpr uint64_t per_sweep = 256;
 
@@ -33,6 +40,45 @@ const glm::dvec3& StylusContact::edge_end(uint32_t face, uint32_t edge, uint32_t
 Passing StylusContact::passing_of(const Side& side, const Shaft& shaft) const noexcept
 {
     return passing(shaft, edge_end(side.face, side.edge, 0), edge_end(side.face, side.edge, 1));
+}
+
+// The share of the straight way there on which nothing is that the ends may meet: what is known around them, and
+// farther than that as far as they cross nothing.
+double StylusContact::known_share(const Shaft& to, const Projection<Shaft>& held, const FrictionOfEnds& ends) noexcept
+{
+    double share = 1;
+    const double most = side_count_ > 0 ? on_reach : 1;
+    const auto reaches = [&](const SphereContact& end, const EndRows& rows, const glm::dvec3& from,
+                             const glm::dvec3& there, bool drags) {
+        const glm::dvec3 way = there - from;
+        const double length = glm::length(way), reach = most * rows.reach;
+        const bool lands = drags && rows.count == 0; // friction holds it from where it comes to touch
+        Crossing crossing;
+        if ((length > reach || (lands && !end.planes().empty())) &&
+            first_crossing(surface(), from, glm::round(there), StartsOn::nothing(), crossing, collision_))
+            share =
+                std::min(share, std::max(lands ? 0.0 : reach / length, crossing.fraction() - 2 * rest_gap / length));
+        if (!lands) // the rows hold it off them, but for those that friction left out, or that contradict others
+            share = std::min(share, open_share(end.planes(), from, way, distance_rounding));
+    };
+    if (begin_ == 0) reaches(*tip_, tip_rows_, shaft_.tip, to.tip, ends.tip.friction.static_coefficient > 0);
+    if (end_ == 1) reaches(*tail_, tail_rows_, shaft_.tail, to.tail, ends.tail.friction.static_coefficient > 0);
+    for (std::size_t k = 0; k < held.count; ++k) {
+        const uint32_t row = held.active[k], first = tip_rows_.count + tail_rows_.count;
+        if (row < first) continue;
+        const Passing now = passing_of(sides_[row - first], shaft_), then = passing_of(sides_[row - first], to);
+        if (now.parallel || then.parallel) continue;
+        const auto stay = [&](double from, double there, double low, double high) {
+            const double over = past_the_end * std::fabs(there - from);
+            low -= over, high += over;
+            const double end = there < low ? low : there > high ? high : there;
+            if (end != there && from > low && from < high) share = std::min(share, (end - from) / (there - from));
+        };
+        const double off = let_go + beyond, off_shaft = (let_go_by_end + beyond) / now.shaft_length;
+        stay(now.on_edge, then.on_edge, -off, now.edge_length + off);
+        stay(now.on_shaft, then.on_shaft, -off_shaft, 1 + off_shaft);
+    }
+    return share;
 }
 
 // Straight to there. False: it met something on its way, which now is a contact.
