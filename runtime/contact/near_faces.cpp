@@ -84,6 +84,7 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
     planes_.resize(found);
     corners_.resize(found);
     laid_.assign(found, 0);
+    found_ = found;
     return all;
 }
 
@@ -102,6 +103,7 @@ bool NearFaces::find_groups(const glm::dvec3& centre, double ball_radius, double
     found_within_ = radius;
     const bool all = add_behind(0);
     if (!all) faces_.clear(), planes_.clear(), corners_.clear(), laid_.clear();
+    found_ = faces_.size();
     return all;
 }
 
@@ -113,18 +115,33 @@ bool NearFaces::add_behind(uint32_t node) noexcept
     std::array<uint32_t, BoxTree::depth_max*(BoxTree::width - 1) + BoxTree::width> waiting;
     std::size_t count = 0;
     waiting[count++] = node;
+    const BoxTree& tree = *surface_->tree;
+    const auto& vertices = surface_->vertices;
     while (count > 0) {
         const uint32_t next = waiting[--count];
-        for (uint32_t met = surface_->tree->children_near(next, found_at_, found_within_); met != 0; met &= met - 1) {
-            const uint32_t child = surface_->tree->nodes()[next].child[std::countr_zero(met)];
-            ++boxes_;
-            if (faces_.size() == faces_.capacity()) {
-                faces_.resize(before), planes_.resize(before), corners_.resize(before), laid_.resize(before);
-                return false;
-            }
+        std::array<uint32_t, BoxTree::width> children;
+        std::size_t met = 0;
+        for (uint32_t bits = tree.children_near(next, found_at_, found_within_); bits != 0; bits &= bits - 1)
+            children[met++] = tree.nodes()[next].child[std::countr_zero(bits)];
+        boxes_ += met;
+        if (faces_.size() + met > faces_.capacity()) {
+            faces_.resize(before), planes_.resize(before), corners_.resize(before), laid_.resize(before);
+            return false;
+        }
+        // They are far apart in memory: all are asked for before the first is waited for.
+        for (std::size_t i = 0; i < met; ++i)
+            if (const uint32_t child = children[i]; child & BoxTree::is_face)
+                __builtin_prefetch(&surface_->faces[child & ~BoxTree::is_face]);
+            else
+                __builtin_prefetch(&tree.disc(child));
+        for (std::size_t i = 0; i < met; ++i)
+            if (children[i] & BoxTree::is_face)
+                for (const uint32_t corner : surface_->faces[children[i] & ~BoxTree::is_face].vertex)
+                    __builtin_prefetch(&vertices[corner]);
+        for (std::size_t i = 0; i < met; ++i) {
+            const uint32_t child = children[i];
             if (child & BoxTree::is_face) {
                 const Face& face = surface_->faces[child & ~BoxTree::is_face];
-                const auto& vertices = surface_->vertices;
                 const glm::dvec3 &a = vertices[face.vertex[0]], &b = vertices[face.vertex[1]],
                                  &c = vertices[face.vertex[2]];
                 faces_.push_back(child & ~BoxTree::is_face);
@@ -133,9 +150,11 @@ bool NearFaces::add_behind(uint32_t node) noexcept
                 laid_.push_back(0);
                 continue;
             }
-            const DiscBound bound = bound_of(surface_->tree->disc(child), centre_);
+            const DiscBound bound = bound_of(tree.disc(child), centre_);
             if (bound.distance < radius_ + distance_rounding) {
                 waiting[count++] = child;
+                for (int line = 0; line < 4; ++line)
+                    __builtin_prefetch(reinterpret_cast<const char*>(&tree.nodes()[child]) + 64 * line);
                 continue;
             }
             faces_.push_back(child | group);
@@ -160,6 +179,7 @@ void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Scre
     picked_.clear();
     see_from(centre);
     radius_ = radius;
+    picked_at_ = centre;
     if (glm::distance(centre, renewed_at_) > as_good * radius) {
         renewed_at_ = centre;
         renewed_since_ = centres_;
@@ -215,8 +235,9 @@ bool NearFaces::renew(uint32_t picked) noexcept
     }
     if (!is_group(place) || !look_into(place)) return false;
     picked_[picked] = nothing;
+    const double near = near_ + glm::distance(centre_, picked_at_);
     for (std::size_t behind = known; behind < planes_.size(); ++behind) {
-        if (ahead(planes_[behind]) > near_) continue;
+        if (ahead(planes_[behind]) > near) continue;
         picked_.push_back({planes_[behind].normal, planes_[behind].offset + radius_});
         place_of_.push_back(static_cast<uint32_t>(behind));
     }
@@ -225,15 +246,13 @@ bool NearFaces::renew(uint32_t picked) noexcept
 
 double NearFaces::open(const glm::dvec3& way, double tolerance) noexcept
 {
-    for (;;) {
-        double open = 1;
-        uint32_t first = 0;
-        for (uint32_t i = 0; i < picked_.size(); ++i) {
-            const double share = open_share({&picked_[i], 1}, centre_, way, tolerance);
-            if (share < open) open = share, first = i;
-        }
-        if (open == 1 || !renew(first)) return open;
+    double open = 1;
+    for (uint32_t i = 0; i < picked_.size(); ++i) { // what was behind a group comes behind them
+        double share = open_share({&picked_[i], 1}, centre_, way, tolerance);
+        while (share < open && renew(i)) share = open_share({&picked_[i], 1}, centre_, way, tolerance);
+        open = std::min(open, share);
     }
+    return open;
 }
 
 // Of a triangle that the ball touches the triangle's own plane, where that makes no difference: rounding does not tilt

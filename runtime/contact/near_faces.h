@@ -41,6 +41,9 @@ public:
     // The same, in groups as large as keep off a ball of `ball_radius` there.
     bool find_groups(const glm::dvec3& centre, double ball_radius, double radius) noexcept;
     std::size_t count() const noexcept { return faces_.size(); }
+    // So many groups were looked into that finding anew costs less than going through all.
+    bool is_crowded() const noexcept { return faces_.size() > found_ + 1024; }
+    bool is_full() const noexcept { return faces_.size() + BoxTree::width > faces_.capacity(); }
     // That the tree delivered since it was asked last.
     std::size_t boxes() noexcept { return std::exchange(boxes_, 0); }
 
@@ -62,15 +65,13 @@ public:
     {
         for (std::size_t i = 0; i < place_of_.size(); ++i) {
             const std::size_t place = place_of_[i];
-            if (glm::dot(planes_[place].normal, at) - planes_[place].offset > radius) continue;
-            if (!is_group(place))
-                visit(faces_[place]);
-            else
-                renew(static_cast<uint32_t>(i));
+            const auto is_near = [&] { return glm::dot(planes_[place].normal, at) - planes_[place].offset <= radius; };
+            if (!is_group(place) && is_near()) visit(faces_[place]);
+            while (is_group(place) && is_near() && renew(static_cast<uint32_t>(i))) {
+            }
         }
     }
     // Where its centre may be: in front of each of them by the radius.
-    std::span<const HalfSpace> picked() const noexcept { return picked_; }
     std::span<const HalfSpace> rows() const noexcept override { return picked_; }
     uint32_t face(uint32_t picked) const noexcept { return faces_[place_of_[picked]]; }
     bool is_solid(uint32_t picked) const noexcept { return is_group(place_of_[picked]); } // a group
@@ -106,13 +107,14 @@ private:
 
     const Surface* surface_;
     std::vector<uint32_t> faces_; // room for all is made beforehand
-    std::size_t boxes_ = 0;
+    std::size_t boxes_ = 0, found_ = 0;
     std::vector<HalfSpace> planes_;
     std::vector<std::array<glm::dvec3, 3>> corners_; // of each, side by side in memory
     std::vector<uint64_t> laid_;                     // seen from which centre; 0: from none
     std::vector<HalfSpace> picked_;
     std::vector<uint32_t> place_of_; // of those picked, above; then of those that they screen
-    double radius_ = 0, near_ = 0;   // they were picked for
+    double radius_ = 0, near_ = 0;   // they were picked for,
+    glm::dvec3 picked_at_{0};        // from here
     glm::dvec3 found_at_{0};         // those around are known,
     double found_within_ = 0;        // so far
     glm::dvec3 centre_{0};           // seen from here

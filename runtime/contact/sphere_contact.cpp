@@ -16,7 +16,7 @@ constexpr uint64_t faces_per_tick = 1 << 11;
 
 // How far a round may lead is what planes are picked for: of the hand's way, of the last step, of a last step that came
 // to the end of what was picked; of the radius at least; and picked anew where it is so many times as far as needed.
-constexpr double stride_of_hand = 1.1, stride_of_step = 0.5, stride_of_end = 4, stride_least = 1e-3, stride_most = 8;
+constexpr double stride_of_hand = 1.25, stride_of_step = 0.5, stride_of_end = 4, stride_least = 1e-3, stride_most = 8;
 
 // Steps follow each other if they go the same way, by the cosine, and get so much shorter at least: one that is more
 // than twice as long as it would be leads away from the hand.
@@ -49,6 +49,7 @@ void SphereContact::reset() noexcept
     path_begin_ = path_length_ = 0;
     contact_count_ = 0;
     contacts_[0] = {};
+    (void)faces_.boxes();
     counters_ = {};
 }
 
@@ -160,7 +161,7 @@ void SphereContact::pass(const Held& held) noexcept
 SphereContact::Held SphereContact::held_by_picked() noexcept
 {
     faces_.see_from(proxy_.at);
-    const Projection<glm::dvec3> found = is_point_ ? project(faces_.picked(), hand_, proxy_.at, distance_rounding)
+    const Projection<glm::dvec3> found = is_point_ ? project(faces_.rows(), hand_, proxy_.at, distance_rounding)
                                                    : project(faces_, hand_, proxy_.at, distance_rounding);
     solid_ = std::any_of(found.active.begin(), found.active.begin() + std::ptrdiff_t(found.count),
                          [&](uint32_t picked) { return faces_.is_solid(picked); });
@@ -172,7 +173,7 @@ SphereContact::Held SphereContact::as_rows(const Projection<glm::dvec3>& found) 
     Held held{found.at, found.count, {}};
     for (std::size_t i = 0; i < found.count; ++i) {
         const uint32_t picked = found.active[i];
-        held.row[i] = {faces_.face(picked), faces_.picked()[picked].normal, found.push[i]};
+        held.row[i] = {faces_.face(picked), faces_.rows()[picked].normal, found.push[i]};
     }
     take_off_radius(held);
     return held;
@@ -210,10 +211,10 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
     Way done;
     auto& [held, round, cut, on_the_way, blind] = done;
     glm::dvec3 along_before(0); // of the last round
-    double stride = stride_of_hand * glm::distance(hand_, hand_before_) + lag_;
+    double stride = stride_of_hand * (glm::distance(hand_, hand_before_) + lag_);
     // A point meets few faces: what it slides by is looked at once.
     const double stride_first = stride;
-    const uint64_t seen = counters_.triangles_tested;
+    uint64_t seen = counters_.triangles_tested;
     for (;; ++round) {
         const double want = glm::distance(hand_, proxy_.at);
         if (want == 0) break;
@@ -227,6 +228,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
             blind = true;
             return done;
         }
+        if (round == 0) seen = counters_.triangles_tested; // or one that needs a long look would never land
         const bool in_air = is_in_air();
         const double open = std::min(want, around_.room(proxy_.at));
         stride = std::max(stride, is_point_ ? std::max(stride_first, stride_least * want) : stride_least * radius_);
@@ -241,6 +243,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
             held = rubs() ? rub(step_max) : slide(step_max, round + 1 < rounds_max ? &along_before : nullptr);
         counters_.triangles_tested += faces_.boxes();
         if (solid_) {
+            if (faces_.is_full()) forget(); // there is room where it looks anew
             solid_ = false;
             blind = true;
             return done;
@@ -303,7 +306,7 @@ void SphereContact::tell_held(const glm::dvec3& aim, std::span<const uint32_t> p
     clamped_ = false;
     Held held{proxy_.at, std::min<std::size_t>(planes.size(), 3), {}};
     for (std::size_t i = 0; i < held.count; ++i)
-        held.row[i] = {faces_.face(planes[i]), faces_.picked()[planes[i]].normal, pushes[i]};
+        held.row[i] = {faces_.face(planes[i]), faces_.rows()[planes[i]].normal, pushes[i]};
     std::sort(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
               [](const Row& a, const Row& b) { return a.push > b.push; });
     if (held.count == 0) return tell_free();

@@ -72,7 +72,7 @@ public:
     // `reach`, of there. 0: there is too much around to be looked at, or more than `most` planes. `is_first`: of a
     // tick, and what it holds at first is looked at again.
     double look_from(const glm::dvec3& at, double reach, std::size_t most, bool is_first) noexcept;
-    std::span<const HalfSpace> planes() const noexcept { return faces_.picked(); }
+    std::span<const HalfSpace> planes() const noexcept { return faces_.rows(); }
     double radius() const noexcept { return grown_; }
     // Whether the plane is that of its triangle, and this place over the inside of that.
     bool stands(uint32_t plane, const glm::dvec3& at) const noexcept;

@@ -22,7 +22,7 @@ SphereContact::Held SphereContact::rub(double step_max) noexcept
     for (uint32_t turn = 0;; ++turn) {
         const auto [touching, gap] = faces_.touching(proxy_.at, touching_gap);
         const Projection<glm::dvec3> found =
-            project(faces_.picked().first(touching), hand_, proxy_.at, distance_rounding);
+            project(faces_.rows().first(touching), hand_, proxy_.at, distance_rounding);
         if (found.count == 0 || gap > touching_gap) { // off again, or its way has led straight over an edge
             path_begin_ = path_length_;
             return {};
@@ -34,7 +34,7 @@ SphereContact::Held SphereContact::rub(double step_max) noexcept
         if (share == 0) return held;
         const double within = std::min(share * length, step_max - gone);
         const glm::dvec3 step = within / length * way;
-        const double open = open_share(faces_.picked(), proxy_.at, step, distance_rounding);
+        const double open = open_share(faces_.rows(), proxy_.at, step, distance_rounding);
         proxy_.at += open * step;
         gone += open * within;
         pass(held);

@@ -11,8 +11,8 @@ namespace {
 // Of the radius: how far around is looked at once at least, and when anew.
 constexpr double margin_most = 1.0 / 16, margin_least = 1.0 / 64;
 
-// A ball knows so many faces one by one; where there are more, in groups. These reach so far, of the radius: they are
-// the larger the farther off they are.
+// A ball knows so many faces near it one by one; where there are more, in groups. These reach so far, of the radius:
+// they are the larger the farther off they are.
 constexpr std::size_t alone_faces = 32;
 constexpr double margin_of_groups = 1.0 / 4;
 
@@ -52,7 +52,7 @@ bool SphereContact::find_around(double margin) noexcept
             in_groups_ = !all && !far && !is_point_;
         }
         if (in_groups_) {
-            known = std::max(margin, margin_of_groups * radius_);
+            if (looks == 0) known = std::max(margin, margin_of_groups * radius_);
             all = faces_.find_groups(proxy_.at, grown_, beyond + known);
             in_groups_ = faces_.count() > few_faces;
         }
@@ -72,11 +72,12 @@ bool SphereContact::find_around(double margin) noexcept
     return false;
 }
 
-// Looks anew where less is known around than it may need. False: it cannot.
+// Looks anew where less is known around than it may need, or where many groups were looked into that it has left.
+// False: it cannot.
 bool SphereContact::look_as_far_as(double way) noexcept
 {
     const double enough = is_point_ ? look_again * margin_ : margin_least * radius_;
-    if (around_.room(proxy_.at) >= std::min(way, enough)) return true;
+    if (around_.room(proxy_.at) >= std::min(way, enough) && !faces_.is_crowded()) return true;
     return find_around(std::clamp(2 * way, margin_least * radius_, std::max(margin_, margin_most * radius_)));
 }
 
@@ -101,31 +102,37 @@ double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t 
 {
     proxy_.at = at;
     if (!look_as_far_as(reach)) return 0;
-    if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(at, radius_) - distance_rounding);
+    if (grown_ < radius_) {
+        grown_ = std::max(grown_, faces_.distance(at, radius_) - distance_rounding);
+        close_ = {}; // that was of a smaller one
+    }
     double within = std::min(reach, around_.room(at));
-    if (faces_.picked().empty() && close_.room(at) >= within) return within;
-    if (close_.centre == at && close_.margin >= within && laid_ == Laid::here && faces_.picked().size() <= most) {
+    if (faces_.rows().empty() && close_.room(at) >= within) return within;
+    if (close_.centre == at && close_.margin >= within && laid_ == Laid::here && faces_.rows().size() <= most) {
         faces_.keep_near(within);
         close_.margin = within;
         return within;
     }
     const Laid laid = is_first ? Laid::ahead : Laid::here;
-    for (pick(within, laid); faces_.picked().size() > most; pick(within, laid))
+    for (pick(within, laid); faces_.rows().size() > most; pick(within, laid))
         if ((within *= less_far) < 1) return 0;
-    if (faces_.picked().empty()) close_.margin = std::min(around_.room(at), faces_.gap());
+    if (faces_.rows().empty()) close_.margin = std::min(around_.room(at), faces_.gap());
     return within;
 }
 
 bool SphereContact::stands(uint32_t plane, const glm::dvec3& at) const noexcept
 {
-    return stands(faces_.face(plane), faces_.picked()[plane].normal, at);
+    return stands(faces_.face(plane), faces_.rows()[plane].normal, at);
 }
 
 bool SphereContact::stands(uint32_t face, const glm::dvec3& normal, const glm::dvec3& at) const noexcept
 {
     const glm::dvec3& facet = surface_->faces[face].normal;
     const bool is_own = is_point_ ? normal == facet || normal == -facet : std::fabs(glm::dot(normal, facet)) > parallel;
-    return is_own && glm::all(glm::greaterThan(nearest_on(face, at).barycentric, glm::dvec3(0)));
+    if (!is_own) return false;
+    const NearestPoint foot = nearest_on(face, at);
+    return glm::dot(normal, at - foot.at) <= grown_ + 4 * distance_rounding &&
+           glm::all(glm::greaterThan(foot.barycentric, glm::dvec3(0)));
 }
 
 std::size_t SphereContact::touching() noexcept

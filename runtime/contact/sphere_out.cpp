@@ -51,9 +51,9 @@ bool SphereContact::move_out(double most_m) noexcept
         const double room = around_.room(proxy_.at), more = share * std::min(lacks, out_of_room * room);
         faces_.pick(proxy_.at, grown_ + more + 2 * distance_rounding, room, NearFaces::Screened::no,
                     NearFaces::Laid::here);
-        const glm::dvec3 out = project(faces_.picked(), proxy_.at, proxy_.at, distance_rounding).at;
+        const glm::dvec3 out = project(faces_.rows(), proxy_.at, proxy_.at, distance_rounding).at;
         bool free = glm::distance(proxy_.at, out) <= room;
-        for (const HalfSpace& space : faces_.picked())
+        for (const HalfSpace& space : faces_.rows())
             free = free && glm::dot(space.normal, out) - space.offset >= -2 * distance_rounding;
         share = free ? std::min(1.0, 2 * share) : 0.5 * share;
         if (!free) continue;

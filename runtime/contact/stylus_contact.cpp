@@ -55,7 +55,7 @@ void StylusContact::reset() noexcept
     stuck_ticks_ = 0;
     unspared_ = -1;
     collision_ = {};
-    rounds_ = 0;
+    rounds_ = rounds_most_ = 0;
     counters_ = {};
 }
 
@@ -297,7 +297,7 @@ void StylusContact::count() noexcept
     counters_.object_boxes_missed = tip.object_boxes_missed + tail.object_boxes_missed + collision_.object_boxes_missed;
     counters_.triangles_tested = tip.triangles_tested + tail.triangles_tested + collision_.triangles_tested;
     counters_.walk_steps = tip.walk_steps + tail.walk_steps + rounds_;
-    counters_.walk_steps_max = std::max(tip.walk_steps_max, tail.walk_steps_max);
+    counters_.walk_steps_max = std::max({tip.walk_steps_max, tail.walk_steps_max, rounds_most_});
 }
 
 double StylusContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept

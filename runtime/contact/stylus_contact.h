@@ -177,11 +177,11 @@ private:
     double unspared_ = -1;                        // as a point's
     std::array<Contact, sides_max + 8> contacts_; // of each end three, and what is left
     uint32_t contact_count_ = 0;
-    uint32_t sweeps_left_ = 0; // in this tick
-    uint32_t stuck_ticks_ = 0; // in a row
-    uint32_t patience_ticks_;  // patience_s
-    CollisionCount collision_; // of the shaft
-    uint64_t rounds_ = 0;      // of both ends and the shaft together
+    uint32_t sweeps_left_ = 0;              // in this tick
+    uint32_t stuck_ticks_ = 0;              // in a row
+    uint32_t patience_ticks_;               // patience_s
+    CollisionCount collision_;              // of the shaft
+    uint64_t rounds_ = 0, rounds_most_ = 0; // of both ends and the shaft together, in all and in one tick
     ContactCounters counters_;
 };
 

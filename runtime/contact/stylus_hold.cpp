@@ -258,7 +258,8 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         else if (side_count_ == met)
             most *= shorter;
         let_go_of_ended();
-        settled = moved && share == 1 && side_count_ == 0 && stands(held);
+        const bool known_there = step <= std::min(tip_rows_.reach, tail_rows_.reach);
+        settled = moved && share == 1 && known_there && side_count_ == 0 && stands(held);
         stride = share == known && known < 1 ? std::max(stride, stride_of_end * step) : stride_of_step * step;
     }
     if (away(shaft_) > away_first + uphill) { // what the springs hold is given by the hand, not by how that is found
@@ -268,6 +269,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         settled = false;
     }
     rounds_ += round;
+    rounds_most_ = std::max<uint64_t>(rounds_most_, round);
     counters_.walks_cut += !settled;
     const bool behind = !settled && (blind || farther(shaft_, to) > far_behind);
     stuck_ticks_ = behind && away_first - away(shaft_) < far_behind ? stuck_ticks_ + 1 : 0;
@@ -305,8 +307,8 @@ void StylusContact::hold(const FrictionOfEnds& ends, bool settled) noexcept
 {
     for (Side& side : std::span(sides_.data(), side_count_)) side.push = 0;
     const Shaft whole = extended(shaft_);
-    if (!look(rest_gap, {},
-              false)) { // what a line may come to that a ball does not. There is too much: all of it is left
+    // What a line may come to that a ball does not. Where there is too much all of it is left.
+    if (!look(rest_gap, {}, false)) {
         left_ = {whole.tip - hand_.tip, whole.tail - hand_.tail};
         tip_->tell_held(hand_.tip, {}, {}, glm::dvec3(0));
         tail_->tell_held(hand_.tail, {}, {}, glm::dvec3(0));

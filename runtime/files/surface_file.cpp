@@ -161,7 +161,7 @@ std::optional<KeptSurface> read_surface(int file, const Checksum& key, unsigned 
     surface->box_minimum_m = head.box_minimum_m, surface->box_maximum_m = head.box_maximum_m;
     surface->normal_turn_max_per_m = head.normal_turn_max_per_m;
     surface->cuts_itself = head.cuts_itself != 0;
-    surface->tree = std::make_unique<const BoxTree>(surface->vertices, surface->faces, std::move(nodes));
+    surface->tree = std::make_unique<const BoxTree>(surface->vertices, surface->faces, std::move(nodes), threads);
     kept.surface = std::move(surface);
     return kept;
 }

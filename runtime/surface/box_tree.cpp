@@ -175,8 +175,9 @@ private:
 
 } // namespace
 
-BoxTree::BoxTree(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces, std::vector<Node> nodes)
-    : vertices_(vertices), faces_(faces), nodes_(std::move(nodes)), discs_(discs_of(vertices, faces, nodes_))
+BoxTree::BoxTree(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces, std::vector<Node> nodes,
+                 unsigned threads)
+    : vertices_(vertices), faces_(faces), nodes_(std::move(nodes)), discs_(discs_of(vertices, faces, nodes_, threads))
 {
 }
 

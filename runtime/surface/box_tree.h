@@ -56,8 +56,9 @@ public:
         float radius = std::numeric_limits<float>::infinity(), half_height = radius;
     };
 
-    // Of faces that live as long as this and do not change.
-    BoxTree(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces, std::vector<Node> nodes);
+    // Of faces that live as long as this and do not change. `threads`: for its discs, 0: one for each processor.
+    BoxTree(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces, std::vector<Node> nodes,
+            unsigned threads);
     BoxTree(const BoxTree&) = delete;
     BoxTree& operator=(const BoxTree&) = delete;
 

@@ -55,7 +55,7 @@ BoxTree::Disc disc_around(ForEach&& for_each)
 } // namespace
 
 std::vector<BoxTree::Disc> discs_of(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces,
-                                    const std::vector<BoxTree::Node>& nodes)
+                                    const std::vector<BoxTree::Node>& nodes, unsigned threads)
 {
     // A node's children come after it, and all that is behind one of few faces right behind it.
     std::vector<std::size_t> behind(nodes.size()), end(nodes.size());
@@ -70,7 +70,7 @@ std::vector<BoxTree::Disc> discs_of(const std::vector<glm::dvec3>& vertices, con
         }
     }
     std::vector<BoxTree::Disc> discs(nodes.size());
-    in_pieces(nodes.size(), 0, [&](std::size_t first, std::size_t last, std::size_t) {
+    in_pieces(nodes.size(), threads, [&](std::size_t first, std::size_t last, std::size_t) {
         for (std::size_t i = first; i < last; ++i)
             if (behind[i] > 0 && behind[i] <= BoxTree::Disc::faces_most)
                 discs[i] = disc_around([&](auto&& visit) {

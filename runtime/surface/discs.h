@@ -29,9 +29,9 @@ inline DiscBound bound_of(const BoxTree::Disc& disc, const glm::dvec3& place) no
     return {distance > 0 ? way / distance : axis, distance};
 }
 
-// One for each node; of those with more than BoxTree::Disc::faces_most faces behind them an infinite one. On all
-// processors.
+// One for each node; of those with more than BoxTree::Disc::faces_most faces behind them an infinite one.
+// `threads`: as many, or 0: one for each processor.
 std::vector<BoxTree::Disc> discs_of(const std::vector<glm::dvec3>& vertices, const std::vector<Face>& faces,
-                                    const std::vector<BoxTree::Node>& nodes);
+                                    const std::vector<BoxTree::Node>& nodes, unsigned threads);
 
 } // namespace haptel::runtime

@@ -36,8 +36,8 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg, const Loading* 
         gather_uv(*surface, corners);
     }
     if (work.begin("where its triangles lie")) {
-        surface->tree = std::make_unique<const BoxTree>(surface->vertices, surface->faces,
-                                                        box_tree_of(surface->vertices, surface->faces, threads));
+        surface->tree = std::make_unique<const BoxTree>(
+            surface->vertices, surface->faces, box_tree_of(surface->vertices, surface->faces, threads), threads);
         if (!is_joined) find_piercing(*surface, *edges, result.report, work);
     }
     if (work.begin("how round it is")) find_normal_turn(*surface, threads);

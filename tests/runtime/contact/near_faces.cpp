@@ -56,9 +56,9 @@ TEST_CASE("near faces are all found, and each lies behind its plane wherever tha
                 const double room = margin - glm::distance(start, centre), reach = uniform(random) * room;
                 near.pick(centre, radius, reach, NearFaces::Screened::yes, NearFaces::Laid::here);
                 std::vector<uint32_t> picked;
-                for (uint32_t i = 0; i < near.picked().size(); ++i) {
+                for (uint32_t i = 0; i < near.rows().size(); ++i) {
                     picked.push_back(near.face(i));
-                    const HalfSpace& space = near.picked()[i];
+                    const HalfSpace& space = near.rows()[i];
                     const double turned = 1e-2 * 2 * Lattice::extent / distance(near.face(i), centre);
                     for (int c = 0; c < 3; ++c)
                         REQUIRE(glm::dot(space.normal, corner(near.face(i), c)) <=
@@ -80,7 +80,7 @@ TEST_CASE("near faces are all found, and each lies behind its plane wherever tha
                         return highest <= space.offset - radius + slack + rises + turned;
                     };
                     if (away < radius + reach)
-                        REQUIRE((is_picked || std::any_of(near.picked().begin(), near.picked().end(), is_behind)));
+                        REQUIRE((is_picked || std::any_of(near.rows().begin(), near.rows().end(), is_behind)));
                     if (away > radius + reach + slack) REQUIRE(!is_picked);
                 }
                 REQUIRE(std::abs(near.distance(centre, radius) - std::min(least, radius)) < slack);
@@ -120,7 +120,7 @@ TEST_CASE("what is known in groups keeps a ball off every triangle, and holds it
             for (uint32_t face = 0; face < surface->faces.size(); ++face) {
                 if (distance(face, centre) > radius + margin) continue;
                 ++around;
-                REQUIRE(std::any_of(near.picked().begin(), near.picked().end(), [&](const HalfSpace& row) {
+                REQUIRE(std::any_of(near.rows().begin(), near.rows().end(), [&](const HalfSpace& row) {
                     double highest = -INFINITY;
                     for (int c = 0; c < 3; ++c) highest = std::max(highest, glm::dot(row.normal, corner(face, c)));
                     return highest <= row.offset - radius + slack + turned;
@@ -134,7 +134,7 @@ TEST_CASE("what is known in groups keeps a ball off every triangle, and holds it
                 REQUIRE(distance(face, held.at) > radius - slack);
             REQUIRE(listed.find(centre, radius + margin));
             listed.pick(centre, radius, margin, NearFaces::Screened::no, NearFaces::Laid::here);
-            const dvec3 there = project(listed.picked(), hand, centre, distance_rounding).at;
+            const dvec3 there = project(listed.rows(), hand, centre, distance_rounding).at;
             REQUIRE(glm::distance(held.at, hand) <= glm::distance(there, hand) + slack);
         }
     }

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -299,4 +300,28 @@ TEST_CASE("a ball's pose that is not a number holds the contact, and equal poses
         for (const Contact& contact : held) CHECK(contact.hand_held);
         second.update({0, INFINITY, 0}, {0.3, 0.2});
     }
+}
+
+TEST_CASE("a probe lands where there is more around than a tick looks at twice")
+{
+    Mesh fan; // a disc of thin triangles: the boxes of hundreds hold any one place
+    constexpr uint32_t sides = 8'000;
+    fan.positions_m.emplace_back(0, 0, 0);
+    for (uint32_t i = 0; i < sides; ++i) {
+        const double angle = 2 * std::numbers::pi * i / sides;
+        fan.positions_m.emplace_back(std::cos(angle), std::sin(angle), 0);
+        fan.triangles.push_back({0, i + 1, (i + 1) % sides + 1});
+    }
+    const auto surface = surface_of(fan);
+    for (const double r : {Lattice::point_radius * surface->lattice.unit_m, 0.05, 0.3})
+        for (const auto felt : {SphereContact::Felt::as_point, SphereContact::Felt::as_ball}) {
+            if (felt == SphereContact::Felt::as_point && r > 1e-3) continue;
+            CAPTURE(r, static_cast<int>(felt));
+            SphereContact contact(surface, r, felt);
+            const dvec3 over(0.3, 0.17, 0);
+            contact.update(over + dvec3(0, 0, 1));
+            for (int i = 0; i < 8; ++i) contact.update(over + dvec3(0, 0, -0.01));
+            REQUIRE(contact.contacts().size() >= 1);
+            CHECK(contact.contact().depth_m > 0.009);
+        }
 }

@@ -167,16 +167,23 @@ TEST_CASE("forces rise from zero after every interruption")
 
 TEST_CASE("a probe that cannot go all its way in a tick says so, and only then")
 {
-    // A ball that fills a hollow ball of more triangles than a tick looks at.
+    // A ball on the edges of few blades, or of thousands, which no disc around many of them keeps off it.
     for (const bool fits : {true, false}) {
         CAPTURE(fits);
-        Mesh mesh = make_icosphere(fits ? 3 : 6);
-        scale_to_size(mesh, 0.1);
-        Scene scene = bare_scene(mesh);
-        scene.probe = {ProbeKind::sphere, 0, 0.0495};
+        Mesh blades;
+        const uint32_t count = fits ? 100 : 10'000;
+        for (uint32_t i = 0; i < count; ++i) {
+            const double x = 0.1 * i / count - 0.05;
+            for (const glm::dvec3& corner : {glm::dvec3(x, -0.05, 0), glm::dvec3(x, 0.05, 0), glm::dvec3(x, 0, -0.02)})
+                blades.positions_m.push_back(corner);
+            blades.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+        }
+        Scene scene = bare_scene(blades);
+        scene.probe = {ProbeKind::sphere, 0, 0.02};
         Renderer renderer(shared(std::move(scene)));
-        uint32_t faults = 0;
-        for (int i = 0; i < 300; ++i) faults |= renderer.tick(at(i * 3e-5, 0, 0)).faults;
+        uint32_t faults = renderer.tick(at(-0.02, 0, 0.03)).faults;
+        for (int i = 0; i < 300; ++i)
+            faults |= renderer.tick(at(-0.02 + (fits ? i * 1e-5 : i % 2 * 0.04), 0, 0.019)).faults;
         CHECK(faults == (fits ? 0u : uint32_t{fault_contact_unfinished}));
     }
 }

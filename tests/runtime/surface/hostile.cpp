@@ -188,7 +188,8 @@ TEST_CASE("a step of building counts what it looks at for each triangle, alike f
         close_cracks(surface, report, work);
         make_fans(surface, corners_by_vertex(surface), default_crease_deg, work);
         surface.tree = std::make_unique<const BoxTree>(surface.vertices, surface.faces,
-                                                       box_tree_of(surface.vertices, surface.faces, work.threads()));
+                                                       box_tree_of(surface.vertices, surface.faces, work.threads()),
+                                                       work.threads());
         find_piercing(surface, edges, report, work);
         CHECK(double(work.looks()) < 60 * double(mesh.triangles.size()));
     }
