@@ -14,8 +14,9 @@ namespace {
 // Looked at in one tick before the rest of the way is left to the next: it bounds the time of a tick.
 constexpr uint64_t faces_per_tick = 1 << 11;
 
-// How far a round may lead is what planes are picked for: of the hand's way, of the last step, of a last step that came
-// to the end of what was picked; of the radius at least; and picked anew where it is so many times as far as needed.
+// How far a round may lead is what planes are picked for: of the hand's way with what friction holds it back by, of the
+// last step, of a last step that came to the end of what was picked; of the radius at least; and picked anew where it
+// is so many times as far as needed.
 constexpr double stride_of_hand = 1.25, stride_of_step = 0.5, stride_of_end = 4, stride_least = 1e-3, stride_most = 8;
 
 // Steps follow each other if they go the same way, by the cosine, and get so much shorter at least: one that is more

@@ -83,8 +83,8 @@ bool EndFriction::oppose(const glm::dvec3& way, const glm::dmat3& give, double m
                              std::max(least_give, 0.5 * (uu + vv) - root)};
     const double ways[2] = {glm::dot(way, axis[0]), glm::dot(way, axis[1])};
 
-    double slip = std::max(0.0, std::sqrt(ways[0] * ways[0] + ways[1] * ways[1]) / most -
-                                    gives[0]); // right where both axes give alike
+    // At most what it will be, and just that where both axes give alike.
+    double slip = std::max(0.0, std::sqrt(ways[0] * ways[0] + ways[1] * ways[1]) / most - gives[0]);
     for (int i = 0; i < 2; ++i) slip = std::max(slip, std::fabs(ways[i]) / most - gives[i]);
     for (int step = 0; step < friction_steps_max; ++step) {
         double square = 0, slope = 0;

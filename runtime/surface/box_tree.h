@@ -1,4 +1,4 @@
-// Which triangles' boxes does a segment or a ball meet? A tree of boxes, eight to a node, and nothing else.
+// Which triangles' boxes does a segment or a ball meet? A tree of boxes, eight to a node.
 //
 // Boxes are in single precision, widened by more than rounding a query to it can be off; what is handed back are
 // candidates, and whoever asks decides in exact arithmetic (collision.h). Rounding can therefore only add candidates,
@@ -48,7 +48,7 @@ public:
         uint32_t child[width];               // a node behind this one, or a face with `is_face`
     };
 
-    // Around all that is behind a node (discs.h). Lattice units, of a length of 1 within rounding.
+    // A cylinder around all that is behind a node (discs.h). Lattice units; the axis has a length of 1 within rounding.
     struct Disc {
         static constexpr std::size_t faces_most = 512; // behind one: beyond that it would not be flat
 

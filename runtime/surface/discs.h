@@ -5,6 +5,7 @@
 
 #include "runtime/surface/box_tree.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
