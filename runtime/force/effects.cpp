@@ -5,7 +5,6 @@
 #include "runtime/scene/scene.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -16,23 +15,6 @@ namespace {
 bool of_tip(const Contact& contact)
 {
     return contact.along == 0 && !contact.by_shaft;
-}
-
-// What contacts leave of a pull, each taking along its normal up to its depth times the stiffness: all that they can of
-// it together, to which they come in turns.
-glm::dvec3 not_held_n(glm::dvec3 pull_n, std::span<const Contact> contacts, double stiffness_n_per_m)
-{
-    constexpr int turns = 32;
-    std::array<double, 16> held_n{};
-    for (int turn = 0; turn < turns; ++turn)
-        for (std::size_t i = 0; i < contacts.size() && i < held_n.size(); ++i) {
-            if (!of_tip(contacts[i])) continue;
-            const double most_n = stiffness_n_per_m * contacts[i].depth_m;
-            const double held = std::clamp(held_n[i] + glm::dot(pull_n, contacts[i].normal), -most_n, most_n);
-            pull_n -= (held - held_n[i]) * contacts[i].normal;
-            held_n[i] = held;
-        }
-    return pull_n;
 }
 
 } // namespace
@@ -49,7 +31,7 @@ Effects::Effects(const Scene& scene, const HandSettings& hand)
     for (const SceneObject& object : scene.objects) {
         const bool has = object.effects.act();
         act_ = act_ || has;
-        objects_.push_back(has ? std::make_unique<Near>(Near{object.effects, SurfaceDistance(object.surface), {}})
+        objects_.push_back(has ? std::make_unique<Near>(Near{object.effects, SurfaceDistance(object.surface), {}, {}})
                                : nullptr);
     }
 }
@@ -76,48 +58,45 @@ void Effects::begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) no
     }
 }
 
-void Effects::update(std::size_t object, const Placement& placement, std::span<const Contact> contacts,
-                     std::span<const Contact> joined) noexcept
+glm::dvec3 Effects::pull(std::size_t object, const Placement& placement, const glm::dvec3& held_out_m) noexcept
+{
+    Near& near = *objects_[object];
+    near.distance_m = std::numeric_limits<double>::infinity();
+    const double reach_m = near.effects.reach_m();
+    if (reach_m == 0) return glm::dvec3(0);
+    const glm::dvec3 tip_m = placement.to_object(tip_m_ + held_out_m);
+    const uint64_t queries = near.distance.queries(), triangles = near.distance.triangles();
+    const auto nearest = near.distance.within(tip_m, reach_m + probe_radius_m_);
+    queries_ += near.distance.queries() - queries;
+    triangles_ += near.distance.triangles() - triangles;
+    if (!nearest) return glm::dvec3(0);
+    near.distance_m = std::max(0.0, nearest->distance_m - probe_radius_m_);
+    if (!near.effects.magnet.acts() || near.distance_m == 0) return glm::dvec3(0);
+    const glm::dvec3 toward = placement.direction_to_world((nearest->point_m - tip_m) / nearest->distance_m);
+    const double pull_n = near.effects.magnet.pull_n(near.distance_m);
+    sum_n_ += pull_n * toward;
+    const double stiffness_n_per_m = scene_.objects[object].material.stiffness_n_per_m / scale_;
+    return std::min(pull_n / stiffness_n_per_m, near.distance_m) * toward;
+}
+
+void Effects::update(std::size_t object, const Placement& placement, std::span<const Contact> contacts) noexcept
 {
     Near& near = *objects_[object];
     const ObjectEffects& effects = near.effects;
-    double distance_m = 0;
-    glm::dvec3 toward(0);
-    if (std::none_of(contacts.begin(), contacts.end(), of_tip)) {
-        // What holds the tip holds it out here: a hand in a floor is as far from a wall on it as its proxy.
-        const glm::dvec3 tip_m = placement.to_object(held_out_m(joined));
-        const double reach_m = effects.reach_m();
-        const uint64_t queries = near.distance.queries(), triangles = near.distance.triangles();
-        const auto nearest = reach_m > 0 ? near.distance.within(tip_m, reach_m + probe_radius_m_) : std::nullopt;
-        queries_ += near.distance.queries() - queries;
-        triangles_ += near.distance.triangles() - triangles;
-        distance_m =
-            nearest ? std::max(0.0, nearest->distance_m - probe_radius_m_) : std::numeric_limits<double>::infinity();
-        if (distance_m > 0 && nearest)
-            toward = placement.direction_to_world((nearest->point_m - tip_m) / nearest->distance_m);
-    }
-    if (effects.magnet.acts()) {
-        glm::dvec3 pull_n = effects.magnet.pull_n(distance_m) * toward;
-        const double stiffness_n_per_m = scene_.objects[object].material.stiffness_n_per_m / scale_;
-        sum_n_ += not_held_n(pull_n, joined, stiffness_n_per_m);
-    }
-    const auto share = [&](double reach_m) {
-        return distance_m == 0 ? 1.0 : distance_m < reach_m ? 1 - distance_m / reach_m : 0.0;
+    const bool touches = std::any_of(contacts.begin(), contacts.end(), of_tip);
+    const auto share = [&](double within_m) {
+        return touches ? 1.0 : near.distance_m < within_m ? 1 - near.distance_m / within_m : 0.0;
     };
     damping_n_s_per_m_ += effects.damping_n_s_per_m * share(effects.damping_reach_m);
     vibrate(effects.vibration, near.level, contacts.empty() ? share(effects.vibration_reach_m) : 1, placement);
 }
 
-// Where what holds the tip holds it: a ball by its middle, whatever its way there is divided among.
-glm::dvec3 Effects::held_out_m(std::span<const Contact> joined) const noexcept
+glm::dvec3 Effects::held_out_m(std::span<const Contact> contacts) noexcept
 {
-    glm::dvec3 middle_m = tip_m_;
-    for (const Contact& contact : joined) {
-        if (!of_tip(contact)) continue;
-        if (probe_radius_m_ == 0) return contact.proxy_m;
-        middle_m += contact.depth_m * contact.normal + contact.lag_m;
-    }
-    return middle_m;
+    glm::dvec3 out_m(0);
+    for (const Contact& contact : contacts)
+        if (of_tip(contact)) out_m += contact.depth_m * contact.normal + contact.lag_m;
+    return out_m;
 }
 
 glm::dvec3 Effects::force_n() noexcept

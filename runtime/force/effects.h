@@ -33,15 +33,17 @@ public:
     // Nearer than this to the object something may be felt now, or still: 0 without effects.
     double awake_within_m(std::size_t object) const noexcept;
 
-    // One tick, if act(): begin(), then update() for each object that has effects and may be near, then force_n().
-    // `contacts` are those with the object itself, `joined` those with all objects that it is joined with, in the
-    // scene's space. A magnet does not pull across a surface that holds the tip: the part of its pull along the normals
-    // in `joined` is left out, up to the force that each of these contacts exerts, so that it fades in and out with
-    // them.
+    // One tick, if act(): begin(), then pull() and update() for each object that has effects and may be near, then
+    // force_n(). `contacts` are those with the object itself.
     void begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) noexcept;
-    void update(std::size_t object, const Placement& placement, std::span<const Contact> contacts,
-                std::span<const Contact> joined) noexcept;
+    // Of its magnet, at a tip that contacts hold so far off the hand, in the scene's space: a hand in a floor is as far
+    // from a wall on it as its proxy would be if nothing pulled that. Returns how far the pull draws the proxy, by the
+    // stiffness of the object: there the contact of joined objects aims in the next tick. So a magnet presses the proxy
+    // onto what lies between, and one potential rules.
+    glm::dvec3 pull(std::size_t object, const Placement& placement, const glm::dvec3& held_out_m) noexcept;
+    void update(std::size_t object, const Placement& placement, std::span<const Contact> contacts) noexcept;
     glm::dvec3 force_n() noexcept;
+    static glm::dvec3 held_out_m(std::span<const Contact> contacts) noexcept; // of the tip
 
     void lose_hand() noexcept { trail_.lose_hand(); }
 
@@ -50,13 +52,13 @@ public:
     uint64_t triangles() const noexcept { return triangles_; }
 
 private:
-    glm::dvec3 held_out_m(std::span<const Contact> joined) const noexcept;
     void vibrate(const Vibration& vibration, VibrationLevel& level, double share, const Placement& placement) noexcept;
 
     struct Near {
         ObjectEffects effects;
         SurfaceDistance distance;
         VibrationLevel level;
+        double distance_m = 0; // of the tip, in this tick
     };
 
     const Scene& scene_;

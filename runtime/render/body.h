@@ -75,6 +75,7 @@ struct Body {
     bool asleep = false;
     // Of the tick before, since the contact needs friction before textures are evaluated.
     MeanFriction tip_friction, tail_friction;
+    glm::dvec3 aim_m{0}; // of the tick before: how far magnets aim the tip of joined objects' proxy off the hand
 
     ProbePose pose_of(const DevicePose& pose) const noexcept
     {

@@ -135,8 +135,10 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
         skipped_.objects -= body.objects.numbers().size();
         work_.objects += body.objects.numbers().size();
         const uint64_t spared = body.contact.counters().skipped, cut = body.contact.counters().walks_cut;
+        ProbePose probe = body.pose_of(pose);
+        if (effects_act && body.objects.joined) probe.tip_m += body.aim_m;
         std::span<const Contact> contacts =
-            update_contact(body, body.pose_of(pose), {body.tip_friction.mean, body.tail_friction.mean});
+            update_contact(body, probe, {body.tip_friction.mean, body.tail_friction.mean});
         contacts = crease_rows_.of(*body.objects.surface(*scene_), contacts);
         if (body.bounded) track_velocity(number, pose, periods, !contacts.empty());
         skipped.query = skipped.query && body.contact.counters().skipped > spared;
@@ -317,17 +319,21 @@ void Renderer::track_velocity(uint32_t number, const DevicePose& pose, uint64_t 
     }
 }
 
-void Renderer::update_effects(const Body& body, std::span<const Contact> contacts,
+void Renderer::update_effects(Body& body, std::span<const Contact> contacts,
                               std::span<const PartContacts> parts) noexcept
 {
     const std::span<const uint32_t> numbers = body.objects.numbers();
+    const glm::dvec3 held_out_m = body.placement.direction_to_world(Effects::held_out_m(contacts));
+    body.aim_m = glm::dvec3(0);
     for (uint32_t part = 0; part < numbers.size(); ++part) {
         if (!effects_.of(numbers[part])) continue;
+        const Placement& placement = body.placement_of(scene_->objects[numbers[part]]);
         const auto touched =
             std::find_if(parts.begin(), parts.end(), [&](const PartContacts& of) { return of.part == part; });
-        const std::span<const Contact> none;
-        effects_.update(numbers[part], body.placement_of(scene_->objects[numbers[part]]),
-                        touched == parts.end() ? none : touched->contacts, body.objects.joined ? contacts : none);
+        if (body.objects.joined || held_out_m == glm::dvec3(0)) // nothing pulls to what holds the tip
+            body.aim_m += effects_.pull(numbers[part], placement, held_out_m);
+        effects_.update(numbers[part], placement,
+                        touched == parts.end() ? std::span<const Contact>() : touched->contacts);
     }
 }
 

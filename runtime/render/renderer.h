@@ -163,8 +163,7 @@ private:
     bool sleeps(uint32_t body, const DevicePose& pose) noexcept;
     double gap_to_sleep_m(uint32_t body, const DevicePose& pose) const noexcept;
     void track_velocity(uint32_t body, const DevicePose& pose, uint64_t periods, bool touching) noexcept;
-    void update_effects(const Body& body, std::span<const Contact> contacts,
-                        std::span<const PartContacts> parts) noexcept;
+    void update_effects(Body& body, std::span<const Contact> contacts, std::span<const PartContacts> parts) noexcept;
     bool feels_in_air(const Body& body, const DevicePose& pose) noexcept;
     ObjectForce force_of(const Body& body, Touched& touched, const Placement& placement,
                          const Contact& contact) noexcept;

@@ -110,7 +110,8 @@ TEST_CASE("a magnet pulls a tip that is free, whatever else holds the stylus")
     Effects effects(*scene, {});
     const auto pull_n = [&](const Contact& contact) {
         effects.begin({0.01, 0.02, 1e-3}, 0, 1);
-        effects.update(0, {}, {&contact, 1}, {&contact, 1});
+        (void)effects.pull(0, {}, Effects::held_out_m({&contact, 1}));
+        effects.update(0, {}, {&contact, 1});
         return effects.force_n().z;
     };
     Contact contact; // 0.1 m of it are drawn up by the shaft
@@ -119,28 +120,6 @@ TEST_CASE("a magnet pulls a tip that is free, whatever else holds the stylus")
     CHECK(pull_n(contact) == 0);
     contact.by_shaft = true;
     CHECK(pull_n(contact) == Approx(-Magnet{2, 5e-3}.pull_n(1e-3)));
-}
-
-TEST_CASE("two faces that hold the tip at an angle together take all of a pull between them")
-{
-    const auto scene = shared(magnet_scene(plane_mesh(), 2, 5e-3));
-    Effects effects(*scene, {});
-    const auto pull_n = [&](double degrees, double depth_m) {
-        Contact faces[2];
-        for (int i : {0, 1}) {
-            const double angle = (i == 0 ? 1 : -1) * degrees / 360 * pi;
-            faces[i].proxy_m = {0.01, 0.02, 1e-3};
-            faces[i].normal = {std::sin(angle), 0, std::cos(angle)};
-            faces[i].depth_m = depth_m;
-        }
-        effects.begin({0.01, 0.02, -5e-3}, 0, 1);
-        effects.update(0, {}, {}, faces);
-        return effects.force_n();
-    };
-    for (const double degrees : {60.0, 90.0, 120.0}) {
-        CHECK(glm::length(pull_n(degrees, 0.1)) < 1e-6);
-        CHECK(glm::distance(pull_n(degrees, 1e-9), {0, 0, -Magnet{2, 5e-3}.pull_n(1e-3)}) < 1e-5); // they hold nothing
-    }
 }
 
 TEST_CASE("a magnet pulls to the nearest point of a box, wherever it stands, and a ball by its rim")
