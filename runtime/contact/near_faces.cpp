@@ -186,6 +186,7 @@ void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Scre
     }
     const uint64_t since = laid == Laid::before ? renewed_since_ : centres_;
     near_ = radius + reach + distance_rounding;
+    screened_ = screened == Screened::yes;
     const std::size_t known = planes_.size();
     place_of_.resize(known);
     std::size_t close = 0;
@@ -244,13 +245,26 @@ bool NearFaces::renew(uint32_t picked) noexcept
     return true;
 }
 
-double NearFaces::open(const glm::dvec3& way, double tolerance) noexcept
+bool NearFaces::is_behind(std::size_t place, const HalfSpace& row) const noexcept
+{
+    const double behind = row.offset - radius_ + rises;
+    return std::all_of(corners_[place].begin(), corners_[place].end(),
+                       [&](const glm::dvec3& corner) { return glm::dot(row.normal, corner) <= behind; });
+}
+
+double NearFaces::open(const glm::dvec3& way, double tolerance, std::span<const uint32_t> along) noexcept
 {
     double open = 1;
     for (uint32_t i = 0; i < picked_.size(); ++i) { // what was behind a group comes behind them
+        if (ahead(picked_[i]) + glm::dot(picked_[i].normal, way) >= -tolerance) continue;
         double share = open_share({&picked_[i], 1}, centre_, way, tolerance);
         while (share < open && renew(i)) share = open_share({&picked_[i], 1}, centre_, way, tolerance);
-        open = std::min(open, share);
+        if (share >= open) continue;
+        if (!is_group(place_of_[i]) && std::any_of(along.begin(), along.end(), [&](uint32_t picked) {
+                return is_behind(place_of_[i], picked_[picked]);
+            }))
+            continue;
+        open = share;
     }
     return open;
 }
@@ -282,13 +296,9 @@ void NearFaces::screen() noexcept
             if (ahead(picked_[i]) < ahead(picked_[nearest])) nearest = i;
         std::swap(picked_[screen], picked_[nearest]);
         std::swap(place_of_[screen], place_of_[nearest]);
-        const glm::dvec3& normal = picked_[screen].normal;
-        const double behind = picked_[screen].offset - radius_ + rises;
         std::size_t left = screen + 1;
         for (std::size_t i = left; i < kept; ++i) {
-            const auto& [a, b, c] = corners_[place_of_[i]];
-            if (glm::dot(normal, a) <= behind && glm::dot(normal, b) <= behind && glm::dot(normal, c) <= behind)
-                continue;
+            if (is_behind(place_of_[i], picked_[screen])) continue;
             std::swap(picked_[left], picked_[i]);
             std::swap(place_of_[left++], place_of_[i]);
         }
@@ -299,20 +309,38 @@ void NearFaces::screen() noexcept
 
 NearFaces::Touching NearFaces::touching(const glm::dvec3& centre, double within) noexcept
 {
-    const auto before_it = [&](std::size_t i) { // of a triangle that lies ahead its own plane may be touched beside it
-        const HalfSpace &seen = picked_[i], &laid = planes_[place_of_[i]];
-        const double by_seen = glm::dot(seen.normal, centre) - seen.offset;
-        const double by_laid = glm::dot(laid.normal, centre) - laid.offset - radius_;
-        return by_laid > by_seen + rises ? by_laid : by_seen;
+    const auto above = [&](const HalfSpace& plane) { return glm::dot(plane.normal, centre) - plane.offset; };
+    const auto before = [&](std::size_t i) {
+        const double seen = above(picked_[i]);
+        if (!screened_) return seen;
+        const double laid = above(planes_[place_of_[i]]) - radius_;
+        return laid > seen + rises ? laid
+                                   : seen; // of a triangle that lies ahead its own plane may be touched beside it
     };
-    Touching touching{0, std::numeric_limits<double>::infinity()};
-    for (std::size_t i = 0; i < picked_.size(); ++i) touching.gap = std::min(touching.gap, before_it(i));
-    for (std::size_t i = 0; i < picked_.size(); ++i) {
-        if (before_it(i) > std::max(0.0, touching.gap) + within) continue;
-        std::swap(picked_[i], picked_[touching.count]);
-        std::swap(place_of_[i], place_of_[touching.count++]);
+    const auto known = [&](std::size_t i, double most) {
+        double here = before(i);
+        while (!screened_ && here <= most && renew(static_cast<uint32_t>(i))) here = before(i);
+        return here;
+    };
+    std::size_t nearest = 0;
+    double gap = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < picked_.size(); ++i)
+        if (const double here = before(i); here < gap) gap = here, nearest = i;
+    if (gap <= near_) gap = known(nearest, near_);
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < picked_.size(); ++i) { // what was behind a group comes behind them
+        const double here = known(i, std::min(std::max(0.0, gap) + within, near_));
+        if (here > std::max(0.0, gap) + within) continue;
+        gap = std::min(gap, here);
+        std::swap(picked_[i], picked_[count]);
+        std::swap(place_of_[i], place_of_[count++]);
     }
-    return touching;
+    for (std::size_t i = count; i-- > 0;) {
+        if (before(i) <= std::max(0.0, gap) + within) continue;
+        std::swap(picked_[i], picked_[--count]);
+        std::swap(place_of_[i], place_of_[count]);
+    }
+    return {count, gap};
 }
 
 double NearFaces::gap() const noexcept

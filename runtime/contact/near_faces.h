@@ -75,11 +75,12 @@ public:
     std::span<const HalfSpace> rows() const noexcept override { return picked_; }
     uint32_t face(uint32_t picked) const noexcept { return faces_[place_of_[picked]]; }
     bool is_solid(uint32_t picked) const noexcept { return is_group(place_of_[picked]); } // a group
-    // The open_share of the way from the centre, as they are seen from there.
-    double open(const glm::dvec3& way, double tolerance) noexcept;
+    // The open_share of the way from the centre, as they are seen from there. It stays in front of the rows `along`:
+    // what lies behind one of those is not met.
+    double open(const glm::dvec3& way, double tolerance, std::span<const uint32_t> along = {}) noexcept;
 
     // Brings those picked to the front that a ball there comes as near to as to any, but for `within`, and counts them;
-    // how far before the nearest it is.
+    // how far before the nearest it is. Unless they screen others they are seen from the centre.
     struct Touching {
         std::size_t count;
         double gap;
@@ -100,6 +101,7 @@ private:
     bool is_group(std::size_t place) const noexcept { return faces_[place] & group; }
     bool add_behind(uint32_t node) noexcept;
     bool look_into(std::size_t place) noexcept;
+    bool is_behind(std::size_t place, const HalfSpace& row) const noexcept;
     void lay(std::size_t place) noexcept;
     HalfSpace seen(std::size_t place, Laid laid) const noexcept;
     void screen() noexcept;
@@ -113,14 +115,15 @@ private:
     std::vector<uint64_t> laid_;                     // seen from which centre; 0: from none
     std::vector<HalfSpace> picked_;
     std::vector<uint32_t> place_of_; // of those picked, above; then of those that they screen
-    double radius_ = 0, near_ = 0;   // they were picked for,
-    glm::dvec3 picked_at_{0};        // from here
-    glm::dvec3 found_at_{0};         // those around are known,
-    double found_within_ = 0;        // so far
-    glm::dvec3 centre_{0};           // seen from here
-    uint64_t centres_ = 1;           // so far
-    glm::dvec3 renewed_at_{0};       // centre since which planes are as good as those seen from here,
-    uint64_t renewed_since_ = 1;     // and its number
+    bool screened_ = false;
+    double radius_ = 0, near_ = 0; // they were picked for,
+    glm::dvec3 picked_at_{0};      // from here
+    glm::dvec3 found_at_{0};       // those around are known,
+    double found_within_ = 0;      // so far
+    glm::dvec3 centre_{0};         // seen from here
+    uint64_t centres_ = 1;         // so far
+    glm::dvec3 renewed_at_{0};     // centre since which planes are as good as those seen from here,
+    uint64_t renewed_since_ = 1;   // and its number
 };
 
 } // namespace haptel::runtime

@@ -20,13 +20,15 @@ constexpr uint64_t faces_per_tick = 1 << 11;
 constexpr double stride_of_hand = 1.25, stride_of_step = 0.5, stride_of_end = 4, stride_least = 1e-3, stride_most = 8;
 
 // Steps follow each other if they go the same way, by the cosine, and get so much shorter at least: one that is more
-// than twice as long as it would be leads away from the hand.
-constexpr double follows = 0.99, follows_most = 0.5;
+// than twice as long as it would be leads away from the hand. Where friction ends the way it may be more: what goes too
+// far goes back.
+constexpr double follows = 0.99, follows_most = 0.5, follows_rubbing = 0.8;
 
 } // namespace
 
-constinit thread_local std::array<SphereContact::Step, SphereContact::turns_max*(SphereContact::rounds_max + 1)>
+constinit thread_local std::array<glm::dvec3, SphereContact::turns_max*(SphereContact::rounds_max + 1)>
     SphereContact::path_{};
+constinit thread_local uint32_t SphereContact::path_length_ = 0;
 
 SphereContact::SphereContact(std::shared_ptr<const Surface> surface, double radius_m, Felt felt)
     : surface_(std::move(surface))
@@ -47,7 +49,6 @@ void SphereContact::reset() noexcept
     hand_ = hand_before_ = glm::dvec3(0);
     grown_ = radius_;
     lag_ = 0;
-    path_begin_ = path_length_ = 0;
     contact_count_ = 0;
     contacts_[0] = {};
     (void)faces_.boxes();
@@ -71,7 +72,7 @@ void SphereContact::tick(const glm::dvec3& hand_m, const Friction& friction, con
             tail && first_crossing(*surface_, *tail, hand_, StartsOn::nothing(), crossing, count) && crossing.side == 0;
         place(enters ? *tail : hand_);
     }
-    move(friction);
+    (void)move(friction);
     counters_.touching_ticks += contact_count_ > 0;
 }
 
@@ -124,53 +125,54 @@ void SphereContact::fly(double step_max) noexcept
     if (!(length > 0)) return;
     const double share = faces_.open(within / length * to_hand, 0);
     proxy_.at += share * within / length * to_hand;
-    if (share < 1 && (!is_point_ || share * within <= touching_gap)) pass({});
+    in_air_ = !(share < 1 && (!is_point_ || share * within <= touching_gap));
+    if (!in_air_) pass();
 }
 
 // One straight step to where the planes around let it come nearest to the hand. Those that hold it are seen from here.
-SphereContact::Held SphereContact::slide(double step_max, glm::dvec3* along_before) noexcept
+SphereContact::Held SphereContact::slide(double step_max, Stride& last) noexcept
 {
     const Held held = held_by_picked();
     if (solid_) return {};
-    if (held.count == 0) path_begin_ = path_length_; // off again
-    const glm::dvec3 to = held.at - proxy_.at, way = along_before ? further(held, to, *along_before) : to;
+    in_air_ = held.count == 0; // off again
+    const glm::dvec3 to = held.at - proxy_.at, way = further(held, to, last);
     const double length = glm::length(way);
     proxy_.at += length > step_max ? step_max / length * way : way;
-    if (held.count > 0) pass(held);
+    if (length > step_max) last = {}; // the next step goes on with this one
+    if (held.count > 0) pass();
+    proxy_.sliding |= held.count > 0 && length > distance_rounding;
     return held;
 }
 
 // Round an edge or a vertex each step along its plane is the same share of the one before, of the depth over the
 // radius: it goes at once as far as all that would follow.
-glm::dvec3 SphereContact::further(const Held& held, const glm::dvec3& way, glm::dvec3& along_before) noexcept
+glm::dvec3 SphereContact::further(const Held& held, const glm::dvec3& way, Stride& stride) noexcept
 {
+    stride.further = glm::dvec3(0);
     if (held.count != 1) return way;
     const glm::dvec3& normal = held.row[0].normal;
     const glm::dvec3 along = way - glm::dot(way, normal) * normal;
-    const glm::dvec3 last = std::exchange(along_before, along);
+    const glm::dvec3 last = std::exchange(stride.along, along);
     const double length = glm::length(along), before = glm::length(last);
-    if (!(length < follows_most * before) || glm::dot(along, last) < follows * length * before) return way;
+    if (!(length < (rubs() ? follows_rubbing : follows_most) * before) ||
+        glm::dot(along, last) < follows * length * before)
+        return way;
     const glm::dvec3 farther = way + length / (before - length) * along;
-    return faces_.open(farther, distance_rounding) == 1 ? farther : way;
-}
-
-void SphereContact::pass(const Held& held) noexcept
-{
-    path_[path_length_++] = {proxy_.at, held};
+    if (faces_.open(farther, distance_rounding) < 1) return way;
+    return stride.further = farther;
 }
 
 SphereContact::Held SphereContact::held_by_picked() noexcept
 {
     faces_.see_from(proxy_.at);
-    const Projection<glm::dvec3> found = is_point_ ? project(faces_.rows(), hand_, proxy_.at, distance_rounding)
-                                                   : project(faces_, hand_, proxy_.at, distance_rounding);
-    solid_ = std::any_of(found.active.begin(), found.active.begin() + std::ptrdiff_t(found.count),
-                         [&](uint32_t picked) { return faces_.is_solid(picked); });
-    return as_rows(found);
+    return as_rows(is_point_ ? project(faces_.rows(), hand_, proxy_.at, distance_rounding)
+                             : project(faces_, hand_, proxy_.at, distance_rounding));
 }
 
-SphereContact::Held SphereContact::as_rows(const Projection<glm::dvec3>& found) const noexcept
+SphereContact::Held SphereContact::as_rows(const Projection<glm::dvec3>& found) noexcept
 {
+    solid_ = std::any_of(found.active.begin(), found.active.begin() + std::ptrdiff_t(found.count),
+                         [&](uint32_t picked) { return faces_.is_solid(picked); });
     Held held{found.at, found.count, {}};
     for (std::size_t i = 0; i < found.count; ++i) {
         const uint32_t picked = found.active[i];
@@ -202,16 +204,13 @@ void SphereContact::take_off_radius(Held& held) const noexcept
 // Toward the hand, as near as it can slide, or to where it touches.
 SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
 {
-    path_begin_ = path_length_ = 0;
+    path_length_ = 0;
     rests_ = false;
-    if (proxy_.touches()) {
-        Held held{proxy_.at, contact_count_, {}};
-        for (std::size_t i = 0; i < contact_count_; ++i) held.row[i].normal = contacts_[i].normal;
-        pass(held);
-    }
+    in_air_ = !proxy_.touches();
+    if (!in_air_) pass();
     Way done;
     auto& [held, round, cut, on_the_way, blind] = done;
-    glm::dvec3 along_before(0); // of the last round
+    Stride last;
     double stride = stride_of_hand * (glm::distance(hand_, hand_before_) + lag_);
     // A point meets few faces: what it slides by is looked at once.
     const double stride_first = stride;
@@ -230,7 +229,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
             return done;
         }
         if (round == 0) seen = counters_.triangles_tested; // or one that needs a long look would never land
-        const bool in_air = is_in_air();
+        const bool in_air = in_air_;
         const double open = std::min(want, around_.room(proxy_.at));
         stride = std::max(stride, is_point_ ? std::max(stride_first, stride_least * want) : stride_least * radius_);
         if (round == 0 || in_air || is_point_ || close_.room(proxy_.at) < std::min(open, stride) ||
@@ -241,7 +240,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         if (in_air)
             fly(step_max);
         else
-            held = rubs() ? rub(step_max) : slide(step_max, round + 1 < rounds_max ? &along_before : nullptr);
+            held = rubs() ? rub(step_max, last) : slide(step_max, last);
         counters_.triangles_tested += faces_.boxes();
         if (solid_) {
             if (faces_.is_full()) forget(); // there is room where it looks anew
@@ -252,36 +251,40 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         const double step = glm::distance(before, proxy_.at);
         on_the_way = step > 0.5 * open;
         if (rests_) break;
-        if (!in_air && has_come_to(held)) break;
-        if (in_air || is_in_air()) {
-            if (until_it_touches && !is_in_air()) break;
+        if (!in_air && held.count > 0 && glm::distance(proxy_.at, held.at) <= distance_rounding && stands(held)) break;
+        if (in_air || in_air_) {
+            if (until_it_touches && !in_air_) break;
             continue;
         }
         if (step <= std::max(4 * distance_rounding, centre_settled * radius_)) break;
-        if (glm::distance(hand_, proxy_.at) >= want) break; // to and fro, by rounding
+        if (!last.went_back && glm::distance(hand_, proxy_.at) >= want) break; // to and fro, by rounding
         stride = (step > 0.9 * step_max ? stride_of_end : stride_of_step) * step;
     }
     return done;
 }
 
-void SphereContact::move(const Friction& friction) noexcept
+// False: it is on its way to where it may rest.
+bool SphereContact::move(const Friction& friction) noexcept
 {
     friction_ = checked(friction);
-    path_begin_ = path_length_ = 0;
-    if (!placed_) return tell_free();
+    if (!placed_) {
+        tell_free();
+        return false;
+    }
     const bool in_air = !proxy_.touches();
     const glm::dvec3 start = proxy_.at;
     Way way = travel(in_air);
     // How far it had looked around before decides how its way is cut into steps, and friction feels them: where it
     // comes to touch it goes there once more, knowing nothing. Whoever comes the same way then feels the same.
-    if (in_air && !way.blind && (way.cut || !is_in_air())) {
+    if (in_air && !way.blind && (way.cut || !in_air_)) {
         proxy_.at = start;
         forget();
         way = travel(false);
     }
     if (way.blind) { // too much at once: what is touched stays touched
         ++counters_.walks_cut;
-        return keep_told();
+        keep_told();
+        return false;
     }
     auto& [held, round, cut, on_the_way, blind] = way;
     if (in_air && held.count == 0 && glm::distance(proxy_.at, hand_) <= distance_rounding) proxy_.at = hand_;
@@ -290,14 +293,25 @@ void SphereContact::move(const Friction& friction) noexcept
     counters_.walks_cut += cut;
     counters_.skipped += round == 0;
     if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(proxy_.at, radius_) - distance_rounding);
-    if (cut && on_the_way) return keep_told();
-    if (!rubs()) {
-        held.at = proxy_.at;
-        hold_by_friction(held);
+    if (cut && (on_the_way || in_air_)) {
+        keep_told();
+        return false;
     }
+    if (!rubs()) held.at = proxy_.at;
     lag_ = held.count > 0 ? glm::distance(proxy_.at, held.at) : 0;
-    if (held.count == 0) return tell_free();
-    tell(held, held.at, true);
+    if (held.count == 0)
+        tell_free();
+    else
+        tell(held, held.at, true);
+    return !cut;
+}
+
+bool SphereContact::go(const glm::dvec3& hand, const Friction& friction) noexcept
+{
+    aim(hand);
+    const bool rests = move(friction);
+    proxy_.at = glm::round(proxy_.at);
+    return rests;
 }
 
 void SphereContact::tell_held(const glm::dvec3& aim, std::span<const uint32_t> planes, std::span<const double> pushes,

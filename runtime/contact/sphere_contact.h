@@ -54,17 +54,16 @@ public:
     const Proxy& proxy() const noexcept override { return proxy_; }
 
     // Of the last tick of this thread's balls: where each straight piece of its way ended, as far as it touched.
-    template <class Visit>
-    void for_each_place(Visit&& visit) const
-    {
-        for (uint32_t i = 0; i < path_length_; ++i) visit(path_[i].at);
-    }
+    static std::span<const glm::dvec3> places() noexcept { return {path_.data(), path_length_}; }
 
     // For a stylus, which holds both its ends and its shaft by one projection. Lattice units.
     bool is_placed() const noexcept { return placed_; }
     void restart(const glm::dvec3& at) noexcept; // anew, at a free place
     void count_tick() noexcept { ++counters_.ticks; }
     void set_sliding(bool sliding) noexcept { proxy_.sliding = sliding; }
+    // As a point of its own, to a lattice point; what it touches is told. False: it has not come to rest, and does not
+    // know what it touches.
+    bool go(const glm::dvec3& hand, const Friction& friction) noexcept;
     void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept; // a tick begins
     // What is known of what is around.
     void forget() noexcept { around_ = close_ = {}, margin_ = margin_at_first_, in_groups_ = false; }
@@ -89,7 +88,7 @@ private:
     // Lattice units: a point that can fly no farther has landed.
     static constexpr double touching_gap = 64;
     static constexpr double centre_settled = 1e-8; // of the radius: what is left of a way counts as none
-    // In a tick; of the planes that a point comes to touch in a round against friction.
+    // In a tick; of the planes that it comes to touch in a round against friction.
     static constexpr uint32_t rounds_max = 48, turns_max = 4;
 
     using Laid = NearFaces::Laid;
@@ -116,10 +115,12 @@ private:
         double pushes() const { return row[0].push + row[1].push + row[2].push; }
     };
 
-    // Of its path: where a straight piece ends, and what the ball was held by on it.
-    struct Step {
-        glm::dvec3 at{0};
-        Held held; // count 0: it flew
+    // Of the last round.
+    struct Stride {
+        glm::dvec3 along{0};            // the plane that held it: of all the way that it had to go
+        glm::dvec3 from{0}, further{0}; // all of its step, if it went as far as those that would follow
+        double left = 0;                // before that: what friction left of the way
+        bool went_back = false;
     };
 
     // What became of a tick's way.
@@ -135,26 +136,22 @@ private:
     void place(const glm::dvec3& at) noexcept;
     bool find_around(double margin) noexcept;
     bool look_as_far_as(double way) noexcept;
-    bool is_in_air() const noexcept { return path_begin_ == path_length_; }
     void fly(double step_max) noexcept;
-    Held slide(double step_max, glm::dvec3* along_before) noexcept;
-    glm::dvec3 further(const Held& held, const glm::dvec3& way, glm::dvec3& along_before) noexcept;
+    Held slide(double step_max, Stride& last) noexcept;
+    glm::dvec3 further(const Held& held, const glm::dvec3& way, Stride& last) noexcept;
     Held held_by_picked() noexcept;
-    Held as_rows(const Projection<glm::dvec3>& found) const noexcept;
-    Held rub(double step_max) noexcept;
+    Held as_rows(const Projection<glm::dvec3>& found) noexcept;
+    Held rub(double step_max, Stride& last) noexcept;
     double share_past(double way, double pressed) noexcept;
     void pick(double reach, Laid laid) noexcept;
     Laid lays(bool in_air, bool is_first) const noexcept;
-    bool rubs() const noexcept { return is_point_ && friction_.static_coefficient > 0; }
+    bool rubs() const noexcept { return friction_.static_coefficient > 0; }
     Way travel(bool until_it_touches) noexcept;
-    void move(const Friction& friction) noexcept;
-    void hold_by_friction(Held& held) noexcept;
-    static uint32_t borne_by(const Held& held, const Step& from) noexcept;
-    void pass(const Held& held) noexcept;
+    bool move(const Friction& friction) noexcept;
     void take_off_radius(Held& held) const noexcept;
-    Held only(const Held& held, uint32_t bits) const noexcept;
+    void pass() noexcept { path_[path_length_++] = proxy_.at; }
     void keep_told() noexcept;
-    bool has_come_to(const Held& held) const noexcept;
+    bool stands(const Held& held) const noexcept;
     bool stands(uint32_t face, const glm::dvec3& normal, const glm::dvec3& at) const noexcept;
     NearestPoint nearest_on(uint32_t face, const glm::dvec3& centre) const noexcept;
     uint32_t touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) noexcept;
@@ -174,13 +171,12 @@ private:
     bool in_groups_ = false;       // what is around a ball is known so
     double margin_;                // that suits the density of the mesh here
     WalkFriction friction_;        // of this tick
-    bool rests_ = false;           // friction holds the point where it is
+    bool in_air_ = true;           // by now
+    bool rests_ = false;           // friction holds it where it is
     bool solid_ = false;           // held by a group that there was no room to look into
     double lag_ = 0;               // by which friction held the ball back
-    // Of this tick, where it touched; from `path_begin_` on without a break, until now. Nobody asks for it later: the
-    // balls of a thread share the room for it.
-    static constinit thread_local std::array<Step, turns_max*(rounds_max + 1)> path_;
-    uint32_t path_begin_ = 0, path_length_ = 0;
+    static constinit thread_local std::array<glm::dvec3, turns_max*(rounds_max + 1)> path_;
+    static constinit thread_local uint32_t path_length_;
     Contact contacts_[3];
     std::size_t contact_count_ = 0;
     ContactCounters counters_;

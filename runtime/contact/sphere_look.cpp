@@ -141,11 +141,10 @@ std::size_t SphereContact::touching() noexcept
     return gap > radius_ ? 0 : count;
 }
 
-// Whether it is where it was to go, on triangles that hold it from there by the same planes.
-bool SphereContact::has_come_to(const Held& held) const noexcept
+// Whether it is on triangles that hold it from there by the same planes.
+bool SphereContact::stands(const Held& held) const noexcept
 {
-    return held.count > 0 && glm::distance(proxy_.at, held.at) <= distance_rounding &&
-           std::all_of(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
+    return std::all_of(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
                        [&](const Row& row) { return stands(row.face, row.normal, proxy_.at); });
 }
 
