@@ -127,6 +127,7 @@ private:
     void start(const glm::dvec3& tip_m, const Friction& friction) noexcept;
     bool pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept;
 
+    bool go_apart(const EndsFriction& friction) noexcept;
     void resolve(const EndsFriction& friction) noexcept;
     bool look(double reach, const FrictionOfEnds& ends, bool is_first) noexcept;
     std::span<const ShaftRow> turn_sides(const Shaft& at, double gap) noexcept;

@@ -227,6 +227,9 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     ends.tip.slides = tip_->proxy().sliding;
     ends.tail.slides = tail_->proxy().sliding;
     sweeps_left_ = sweeps_max;
+    if (go_apart(friction)) return;
+    tip_->set_sliding(ends.tip.slides);
+    tail_->set_sliding(ends.tail.slides);
     if (contact_count_ == 0) { // whoever comes to touch from the same place feels the same
         tip_->forget();
         tail_->forget();

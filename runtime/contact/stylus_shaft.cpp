@@ -96,6 +96,23 @@ bool StylusContact::move(const Shaft& to) noexcept
     return false;
 }
 
+// While the shaft rests on nothing its ends are two points. False: it would meet something, or they find no rest.
+bool StylusContact::go_apart(const EndsFriction& friction) noexcept
+{
+    if (side_count_ > 0 || begin_ > 0 || end_ < 1) return false;
+    if (!tip_->go(hand_.tip, friction.tip) || !tail_->go(hand_.tail, friction.tail)) return false;
+    const Shaft to{tip_->proxy().at, tail_->proxy().at};
+    if (to != shaft_) {
+        close_ = {};
+        close_.height = near_enough;
+        if (blocked(shaft_, to, met_) || close_.side != 0) return false;
+    }
+    shaft_ = to;
+    reached_ = hand_;
+    stuck_ticks_ = 0;
+    return true;
+}
+
 bool StylusContact::is_side(const glm::dvec3& edge0, const glm::dvec3& edge1) const noexcept
 {
     return std::any_of(sides_.begin(), sides_.begin() + side_count_, [&](const Side& side) {
