@@ -7,7 +7,7 @@ namespace haptel::runtime {
 
 namespace {
 
-// Of the radius: a ball that is off what it slid along by no more is on its way round that.
+// Of the radius and of its depth: who is off what it slid along by no more is on its way round that.
 constexpr double lifted = 1.0 / 64;
 
 // Of what friction may hold: what is left of a way counts as none.
@@ -26,7 +26,8 @@ SphereContact::Held SphereContact::rub(double step_max, Stride& last) noexcept
         const Projection<glm::dvec3> found =
             project(faces_.rows().first(touching), hand_, proxy_.at, distance_rounding);
         const double depth = glm::distance(found.at, hand_);
-        if (depth == 0 || gap > std::max(touching_gap, lifted * radius_)) { // off again, or straight over an edge
+        if (depth == 0 ||
+            gap > std::max(touching_gap, lifted * std::max(radius_, depth))) { // off again, or straight over an edge
             in_air_ = true;
             return {};
         }

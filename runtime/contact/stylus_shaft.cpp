@@ -100,14 +100,30 @@ bool StylusContact::move(const Shaft& to) noexcept
 bool StylusContact::go_apart(const EndsFriction& friction) noexcept
 {
     if (side_count_ > 0 || begin_ > 0 || end_ < 1) return false;
-    if (!tip_->go(hand_.tip, friction.tip) || !tail_->go(hand_.tail, friction.tail)) return false;
-    const Shaft to{tip_->proxy().at, tail_->proxy().at};
-    if (to != shaft_) {
+    if (!tail_->go(hand_.tail, friction.tail) || !tip_->go(hand_.tip, friction.tip)) return false;
+    const Shaft from = shaft_, to{tip_->proxy().at, tail_->proxy().at};
+    const auto goes = [&](const Shaft& there) {
         close_ = {};
         close_.height = near_enough;
-        if (blocked(shaft_, to, met_) || close_.side != 0) return false;
+        if (there != shaft_ && (blocked(shaft_, there, met_) || close_.side != 0)) return false;
+        shaft_ = there;
+        return true;
+    };
+    if (!goes(to)) { // straight on its tip would get below an edge: along the way that it has gone
+        for (const glm::dvec3& place : SphereContact::places()) {
+            const glm::dvec3 left = to.tip - place;
+            const double share = glm::length(left) / glm::distance(to.tip, from.tip);
+            const Shaft part{glm::round(place), glm::round(to.tail + share * (from.tail - to.tail))};
+            if (sweeps_left_ < sweeps_max / 2 || !goes(part)) {
+                shaft_ = from;
+                return false;
+            }
+        }
+        if (!goes(to)) {
+            shaft_ = from;
+            return false;
+        }
     }
-    shaft_ = to;
     reached_ = hand_;
     stuck_ticks_ = 0;
     return true;
