@@ -184,7 +184,6 @@ void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Scre
         renewed_at_ = centre;
         renewed_since_ = centres_;
     }
-    const uint64_t since = laid == Laid::before ? renewed_since_ : centres_;
     near_ = radius + reach + distance_rounding;
     screened_ = screened == Screened::yes;
     const std::size_t known = planes_.size();
@@ -194,14 +193,14 @@ void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Scre
         place_of_[close] = static_cast<uint32_t>(place);
         close += !(ahead(planes_[place]) > near_);
     }
+    place_of_.resize(close);
+    if (screened_) return pick_screened(laid);
+    const uint64_t since = laid == Laid::before ? renewed_since_ : centres_;
     const auto take = [&](std::size_t place) {
         if (laid_[place] < since) lay(place);
         if (ahead(planes_[place]) > near_) return false;
         if (is_group(place) && ahead(planes_[place]) < radius && look_into(place)) return false;
-        if (screened == Screened::yes)
-            picked_.push_back(seen(place, laid));
-        else
-            picked_.push_back({planes_[place].normal, planes_[place].offset + radius});
+        picked_.push_back({planes_[place].normal, planes_[place].offset + radius});
         return true;
     };
     std::size_t picked = 0;
@@ -210,7 +209,36 @@ void NearFaces::pick(const glm::dvec3& centre, double radius, double reach, Scre
     place_of_.resize(picked);
     for (std::size_t place = known; place < planes_.size(); ++place) // from behind groups
         if (take(place)) place_of_.push_back(static_cast<uint32_t>(place));
-    if (screened == Screened::yes) screen();
+}
+
+// The nearest first: what lies behind it need not be laid.
+void NearFaces::pick_screened(Laid laid) noexcept
+{
+    std::size_t left = place_of_.size(); // that are not screened
+    const auto is_near = [&](std::size_t i) {
+        const uint32_t place = place_of_[i];
+        if (laid_[place] < centres_) lay(place);
+        if (!(ahead(planes_[place]) > near_)) return true;
+        place_of_[i] = place_of_[--left];
+        place_of_[left] = place_of_.back();
+        place_of_.pop_back();
+        return false;
+    };
+    std::size_t screen = 0;
+    while (screen < screens_most && screen < left) {
+        std::size_t nearest = screen;
+        for (std::size_t i = screen + 1; i < left; ++i)
+            if (ahead(planes_[place_of_[i]]) < ahead(planes_[place_of_[nearest]])) nearest = i;
+        const bool is_laid = laid_[place_of_[nearest]] == centres_;
+        if (!is_near(nearest) || !is_laid) continue; // another one may be nearer
+        std::swap(place_of_[screen], place_of_[nearest]);
+        picked_.push_back(seen(place_of_[screen], laid));
+        for (std::size_t i = left; i-- > screen + 1;)
+            if (is_behind(place_of_[i], picked_[screen])) std::swap(place_of_[i], place_of_[--left]);
+        ++screen;
+    }
+    for (std::size_t i = screen; i < left;)
+        if (is_near(i)) picked_.push_back(seen(place_of_[i++], laid));
 }
 
 void NearFaces::keep_near(double reach) noexcept
@@ -285,26 +313,6 @@ HalfSpace NearFaces::seen(std::size_t place, Laid laid) const noexcept
         if (touches ? std::fabs(cosine) > 1 - rises / radius_ && ahead(own) > -rises : ahead(own) > rises) return own;
     }
     return {plane.normal, plane.offset + radius_};
-}
-
-void NearFaces::screen() noexcept
-{
-    std::size_t kept = picked_.size();
-    for (std::size_t screen = 0; screen < screens_most && screen + 1 < kept; ++screen) {
-        std::size_t nearest = screen;
-        for (std::size_t i = screen + 1; i < kept; ++i)
-            if (ahead(picked_[i]) < ahead(picked_[nearest])) nearest = i;
-        std::swap(picked_[screen], picked_[nearest]);
-        std::swap(place_of_[screen], place_of_[nearest]);
-        std::size_t left = screen + 1;
-        for (std::size_t i = left; i < kept; ++i) {
-            if (is_behind(place_of_[i], picked_[screen])) continue;
-            std::swap(picked_[left], picked_[i]);
-            std::swap(place_of_[left++], place_of_[i]);
-        }
-        kept = left;
-    }
-    picked_.resize(kept);
 }
 
 NearFaces::Touching NearFaces::touching(const glm::dvec3& centre, double within) noexcept

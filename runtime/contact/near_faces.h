@@ -104,7 +104,7 @@ private:
     bool is_behind(std::size_t place, const HalfSpace& row) const noexcept;
     void lay(std::size_t place) noexcept;
     HalfSpace seen(std::size_t place, Laid laid) const noexcept;
-    void screen() noexcept;
+    void pick_screened(Laid laid) noexcept;
     double ahead(const HalfSpace& plane) const noexcept { return glm::dot(plane.normal, centre_) - plane.offset; }
 
     const Surface* surface_;
