@@ -194,7 +194,7 @@ TEST_CASE("bounds of a texture that reads the normal hold on the mesh that it is
         const TextureBinding binding = bound_for(program, "in_three_planes", *surface);
         std::mt19937_64 random(8);
         double steepest = 0, highest = -1, lowest = 1;
-        for (int i = 0; i < tries(50000); ++i) {
+        for (int i = 0; i < tries(20000); ++i) {
             const SurfacePoint point =
                 point_on(*surface, uint32_t(random() % surface->faces.size()), uint32_t(i % 2), random_weights(random));
             steepest = std::max(steepest, slope_of(binding, point));
@@ -224,7 +224,7 @@ TEST_CASE("bounds of a texture that reads mesh coordinates hold on the mesh that
         const UvFigures figures = uv_figures(*surface);
         std::mt19937_64 random(8);
         double steepest = 0;
-        for (int i = 0; i < tries(50000); ++i) {
+        for (int i = 0; i < tries(20000); ++i) {
             const SurfacePoint point =
                 point_on(*surface, uint32_t(random() % surface->faces.size()), uint32_t(i % 2), random_weights(random));
             steepest = std::max(steepest, slope_of(binding, point));

@@ -1,4 +1,5 @@
 // How strong a texture feels does not depend on triangles or size: height and wavelength are metres.
+#include "tests/support/tries.h"
 #include "tests/surface/textured.h"
 
 #include <cmath>
@@ -34,7 +35,7 @@ Felt felt_on(const std::shared_ptr<const Scene>& scene)
     std::uniform_real_distribution<double> depth_m(0.3e-3, 0.6e-3);
     Felt felt;
     double lateral = 0, normal = 0;
-    for (int i = 0; i < 20000; ++i) {
+    for (int i = 0; i < tries(20000); ++i) {
         const double t = i * 1e-3;
         const glm::dvec3 f =
             renderer.tick(at(4e-3 * std::sin(1.1 * t), 4e-3 * std::cos(1.7 * t), -depth_m(random))).force_n;
@@ -68,7 +69,7 @@ TEST_CASE("anchors row 2: texture strength is the same from 2 to 131072 triangle
             return felt_on(textured_scene(plane_mesh(side_m, cells), program, texture, values));
         };
         const Felt coarse = on(0.1, 1);
-        REQUIRE(coarse.forces_n.size() == 20000);
+        REQUIRE(coarse.forces_n.size() == std::size_t(tries(20000)));
         CHECK(coarse.lateral_per_normal > 0.02);
         for (const auto& [side_m, cells] : {std::pair{0.1, 4u}, {0.1, 256u}, {0.01, 1u}, {0.01, 256u}, {1.0, 256u}}) {
             CAPTURE(side_m, cells);

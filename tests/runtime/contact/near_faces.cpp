@@ -4,6 +4,7 @@
 #include "tests/runtime/surface/distance.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
+#include "tests/support/tries.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,7 +45,7 @@ TEST_CASE("near faces are all found, and each lies behind its plane wherever tha
         constexpr double slack = 4;
         constexpr double rises = 1024; // by so much one may rise above the plane of another that it is left out for
         NearFaces near(*surface);
-        for (int trial = 0; trial < 200; ++trial) {
+        for (int trial = 0; trial < haptel::test::tries(200); ++trial) {
             // Somewhere over a face, and from there a few steps within the margin.
             const auto over = static_cast<uint32_t>(random() % surface->faces.size());
             const double radius = Lattice::extent * std::pow(10.0, -3 * uniform(random));
@@ -103,7 +104,7 @@ TEST_CASE("what is known in groups keeps a ball off every triangle, and holds it
         };
         constexpr double slack = 4; // lattice units, as above
         NearFaces near(*surface), listed(*surface);
-        for (int trial = 0; trial < 60; ++trial) {
+        for (int trial = 0; trial < haptel::test::tries(60); ++trial) {
             const auto over = static_cast<uint32_t>(random() % surface->faces.size());
             dvec3 centre = corner(over, 0) + uniform(random) * Lattice::extent * random_direction(random);
             double radius = INFINITY;

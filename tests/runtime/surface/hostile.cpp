@@ -7,6 +7,7 @@
 #include "runtime/surface/loading.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
+#include "tests/support/tries.h"
 
 #include <algorithm>
 #include <atomic>
@@ -165,6 +166,7 @@ TEST_CASE("large triangles at random, in space or nearly in a plane, are refused
     CHECK(build_surface(large_soup(300, 1)).surface);
     CHECK(build_surface(large_soup(300, 0)).surface);
     for (const double height : {1.0, 1e-7, 0.0}) {
+        if (haptel::test::is_sanitized && height == 1e-7) continue;
         CAPTURE(height);
         const SurfaceResult built = build_surface(large_soup(20'000, height));
         CHECK(!built.surface);
