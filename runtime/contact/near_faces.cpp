@@ -226,11 +226,17 @@ void NearFaces::pick_screened(Laid laid) noexcept
     };
     std::size_t screen = 0;
     while (screen < screens_most && screen < left) {
-        std::size_t nearest = screen;
-        for (std::size_t i = screen + 1; i < left; ++i)
-            if (ahead(planes_[place_of_[i]]) < ahead(planes_[place_of_[nearest]])) nearest = i;
-        const bool is_laid = laid_[place_of_[nearest]] == centres_;
-        if (!is_near(nearest) || !is_laid) continue; // another one may be nearer
+        std::size_t nearest = 0;
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = screen; i < left;) {
+            if (!(ahead(planes_[place_of_[i]]) < least)) { // laid it would be farther still
+                ++i;
+            } else if (is_near(i)) {
+                if (const double here = ahead(planes_[place_of_[i]]); here < least) least = here, nearest = i;
+                ++i;
+            }
+        }
+        if (screen == left) break; // none is near enough
         std::swap(place_of_[screen], place_of_[nearest]);
         picked_.push_back(seen(place_of_[screen], laid));
         for (std::size_t i = left; i-- > screen + 1;)
@@ -288,10 +294,9 @@ double NearFaces::open(const glm::dvec3& way, double tolerance, std::span<const 
         double share = open_share({&picked_[i], 1}, centre_, way, tolerance);
         while (share < open && renew(i)) share = open_share({&picked_[i], 1}, centre_, way, tolerance);
         if (share >= open) continue;
-        if (!is_group(place_of_[i]) && std::any_of(along.begin(), along.end(), [&](uint32_t picked) {
-                return is_behind(place_of_[i], picked_[picked]);
-            }))
-            continue;
+        const bool is_along = std::find(along.begin(), along.end(), i) != along.end();
+        const auto screens = [&](uint32_t row) { return is_behind(place_of_[i], picked_[row]); };
+        if (!is_along && !is_group(place_of_[i]) && std::any_of(along.begin(), along.end(), screens)) continue;
         open = share;
     }
     return open;

@@ -75,8 +75,8 @@ public:
     std::span<const HalfSpace> rows() const noexcept override { return picked_; }
     uint32_t face(uint32_t picked) const noexcept { return faces_[place_of_[picked]]; }
     bool is_solid(uint32_t picked) const noexcept { return is_group(place_of_[picked]); } // a group
-    // The open_share of the way from the centre, as they are seen from there. It stays in front of the rows `along`:
-    // what lies behind one of those is not met.
+    // The open_share of the way from the centre, as they are seen from there. As long as it stays in front of the rows
+    // `along` it does not meet what lies behind one of those.
     double open(const glm::dvec3& way, double tolerance, std::span<const uint32_t> along = {}) noexcept;
 
     // Brings those picked to the front that a ball there comes as near to as to any, but for `within`, and counts them;

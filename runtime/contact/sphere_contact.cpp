@@ -130,12 +130,13 @@ void SphereContact::fly(double step_max) noexcept
 }
 
 // One straight step to where the planes around let it come nearest to the hand. Those that hold it are seen from here.
-SphereContact::Held SphereContact::slide(double step_max, Stride& last) noexcept
+SphereContact::Held SphereContact::slide(double step_max, Stride& last, bool is_last) noexcept
 {
     const Held held = held_by_picked();
     if (solid_) return {};
     in_air_ = held.count == 0; // off again
-    const glm::dvec3 to = held.at - proxy_.at, way = further(held, to, last);
+    if (in_air_) last = {};
+    const glm::dvec3 to = held.at - proxy_.at, way = is_last ? to : further(held, to, last);
     const double length = glm::length(way);
     proxy_.at += length > step_max ? step_max / length * way : way;
     if (length > step_max) last = {}; // the next step goes on with this one
@@ -240,7 +241,8 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         if (in_air)
             fly(step_max);
         else
-            held = rubs() ? rub(step_max, last) : slide(step_max, last);
+            held =
+                rubs() ? rub(step_max, last, round + 1 == rounds_max) : slide(step_max, last, round + 1 == rounds_max);
         counters_.triangles_tested += faces_.boxes();
         if (solid_) {
             if (faces_.is_full()) forget(); // there is room where it looks anew
@@ -257,7 +259,8 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
             continue;
         }
         if (step <= std::max(4 * distance_rounding, centre_settled * radius_)) break;
-        if (!last.went_back && glm::distance(hand_, proxy_.at) >= want) break; // to and fro, by rounding
+        const bool is_sought = last.went_back || last.further != glm::dvec3(0);
+        if (!is_sought && glm::distance(hand_, proxy_.at) >= want) break; // to and fro, by rounding
         stride = (step > 0.9 * step_max ? stride_of_end : stride_of_step) * step;
     }
     return done;
@@ -267,6 +270,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
 bool SphereContact::move(const Friction& friction) noexcept
 {
     friction_ = checked(friction);
+    path_length_ = 0;
     if (!placed_) {
         tell_free();
         return false;
@@ -309,9 +313,18 @@ bool SphereContact::move(const Friction& friction) noexcept
 bool SphereContact::go(const glm::dvec3& hand, const Friction& friction) noexcept
 {
     aim(hand);
+    grown_before_ = grown_;
     const bool rests = move(friction);
     proxy_.at = glm::round(proxy_.at);
     return rests;
+}
+
+// As wide as it has grown it may not fit there, and what it knows is of another width.
+void SphereContact::come_back(const glm::dvec3& at) noexcept
+{
+    if (grown_ != grown_before_) forget();
+    grown_ = grown_before_;
+    proxy_.at = at;
 }
 
 void SphereContact::tell_held(const glm::dvec3& aim, std::span<const uint32_t> planes, std::span<const double> pushes,

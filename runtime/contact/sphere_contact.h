@@ -64,6 +64,7 @@ public:
     // As a point of its own, to a lattice point; what it touches is told. False: it has not come to rest, and does not
     // know what it touches.
     bool go(const glm::dvec3& hand, const Friction& friction) noexcept;
+    void come_back(const glm::dvec3& at) noexcept;                             // from there to where it was
     void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept; // a tick begins
     // What is known of what is around.
     void forget() noexcept { around_ = close_ = {}, margin_ = margin_at_first_, in_groups_ = false; }
@@ -137,11 +138,11 @@ private:
     bool find_around(double margin) noexcept;
     bool look_as_far_as(double way) noexcept;
     void fly(double step_max) noexcept;
-    Held slide(double step_max, Stride& last) noexcept;
+    Held slide(double step_max, Stride& last, bool is_last) noexcept;
     glm::dvec3 further(const Held& held, const glm::dvec3& way, Stride& last) noexcept;
     Held held_by_picked() noexcept;
     Held as_rows(const Projection<glm::dvec3>& found) noexcept;
-    Held rub(double step_max, Stride& last) noexcept;
+    Held rub(double step_max, Stride& last, bool is_last) noexcept;
     double share_past(double way, double pressed) noexcept;
     void pick(double reach, Laid laid) noexcept;
     Laid lays(bool in_air, bool is_first) const noexcept;
@@ -160,7 +161,8 @@ private:
     void tell_nothing() noexcept;
 
     std::shared_ptr<const Surface> surface_;
-    double radius_, grown_; // lattice units; `grown_` of the ball that was put down into something
+    double radius_, grown_;   // lattice units; `grown_` of the ball that was put down into something
+    double grown_before_ = 0; // it went
     glm::dvec3 hand_{0}, hand_before_{0};
     Proxy proxy_; // the centre; on a face while it touches
     bool is_point_, placed_ = false, clamped_ = false;

@@ -17,7 +17,7 @@ constexpr double settled = 1e-6;
 
 // It goes along what it touches as the walk does, from one plane to the next: the way ends early, by the coefficient
 // times what presses, or does not begin.
-SphereContact::Held SphereContact::rub(double step_max, Stride& last) noexcept
+SphereContact::Held SphereContact::rub(double step_max, Stride& last, bool is_last) noexcept
 {
     double gone = 0;
     for (uint32_t turn = 0;; ++turn) {
@@ -29,6 +29,7 @@ SphereContact::Held SphereContact::rub(double step_max, Stride& last) noexcept
         if (depth == 0 ||
             gap > std::max(touching_gap, lifted * std::max(radius_, depth))) { // off again, or straight over an edge
             in_air_ = true;
+            last = {};
             return {};
         }
         const Held held = as_rows(found);
@@ -50,7 +51,7 @@ SphereContact::Held SphereContact::rub(double step_max, Stride& last) noexcept
         const glm::dvec3 next = down + share * along;
         const double left = step_max - gone;
         last.from = proxy_.at, last.left = share * length, last.went_back = false;
-        glm::dvec3 step = turn == 0 && !is_point_ ? further(held, next, last) : next;
+        glm::dvec3 step = turn == 0 && !is_point_ && !is_last && share > 0 ? further(held, next, last) : next;
         if (glm::length(step) > left) step = next, last.further = glm::dvec3(0);
         const double within = glm::length(step);
         if (within > left) step *= left / within;

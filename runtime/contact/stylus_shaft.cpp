@@ -100,8 +100,13 @@ bool StylusContact::move(const Shaft& to) noexcept
 bool StylusContact::go_apart(const EndsFriction& friction) noexcept
 {
     if (side_count_ > 0 || begin_ > 0 || end_ < 1) return false;
-    if (!tail_->go(hand_.tail, friction.tail) || !tip_->go(hand_.tip, friction.tip)) return false;
-    const Shaft from = shaft_, to{tip_->proxy().at, tail_->proxy().at};
+    const Shaft from = shaft_;
+    if (!tail_->go(hand_.tail, friction.tail) || !tip_->go(hand_.tip, friction.tip)) {
+        tip_->come_back(from.tip);
+        tail_->come_back(from.tail);
+        return false;
+    }
+    const Shaft to{tip_->proxy().at, tail_->proxy().at};
     const auto goes = [&](const Shaft& there) {
         close_ = {};
         close_.height = near_enough;
@@ -109,20 +114,27 @@ bool StylusContact::go_apart(const EndsFriction& friction) noexcept
         shaft_ = there;
         return true;
     };
-    if (!goes(to)) { // straight on its tip would get below an edge: along the way that it has gone
-        for (const glm::dvec3& place : SphereContact::places()) {
-            const glm::dvec3 left = to.tip - place;
-            const double share = glm::length(left) / glm::distance(to.tip, from.tip);
+    const auto gives_up = [&] {
+        shaft_ = from;
+        tip_->come_back(from.tip);
+        tail_->come_back(from.tail);
+        return false;
+    };
+    // Both ends at once may go through one triangle: the straight way of one of them has to be free.
+    const std::span<const glm::dvec3> places = SphereContact::places(); // of the tip
+    const bool is_straight = places.empty() || (places.size() <= 2 && places.front() == from.tip);
+    Crossing crossing;
+    const bool is_free =
+        is_straight || !first_crossing(surface(), from.tip, to.tip, StartsOn::nothing(), crossing, collision_);
+    if (!(is_free && goes(to))) { // on it the tip would get below an edge: along the way that it has gone
+        const double way = glm::distance(to.tip, from.tip);
+        if (way == 0) return gives_up();
+        for (const glm::dvec3& place : places) {
+            const double share = std::min(1.0, glm::distance(to.tip, place) / way);
             const Shaft part{glm::round(place), glm::round(to.tail + share * (from.tail - to.tail))};
-            if (sweeps_left_ < sweeps_max / 2 || !goes(part)) {
-                shaft_ = from;
-                return false;
-            }
+            if (sweeps_left_ < 3 * sweeps_max / 4 || !goes(part)) return gives_up();
         }
-        if (!goes(to)) {
-            shaft_ = from;
-            return false;
-        }
+        if (!goes(to)) return gives_up();
     }
     reached_ = hand_;
     stuck_ticks_ = 0;

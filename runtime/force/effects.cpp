@@ -58,7 +58,8 @@ void Effects::begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) no
     }
 }
 
-glm::dvec3 Effects::pull(std::size_t object, const Placement& placement, const glm::dvec3& held_out_m) noexcept
+glm::dvec3 Effects::pull(std::size_t object, const Placement& placement, const glm::dvec3& held_out_m,
+                         double stiffness_n_per_m) noexcept
 {
     Near& near = *objects_[object];
     near.distance_m = std::numeric_limits<double>::infinity();
@@ -75,8 +76,10 @@ glm::dvec3 Effects::pull(std::size_t object, const Placement& placement, const g
     const glm::dvec3 toward = placement.direction_to_world((nearest->point_m - tip_m) / nearest->distance_m);
     const double pull_n = near.effects.magnet.pull_n(near.distance_m);
     sum_n_ += pull_n * toward;
-    const double stiffness_n_per_m = scene_.objects[object].material.stiffness_n_per_m / scale_;
-    return std::min(pull_n / stiffness_n_per_m, near.distance_m) * toward;
+    // A magnet that is steeper than what holds the proxy would throw it to and fro.
+    const Magnet& magnet = near.effects.magnet;
+    const double steepest_n_per_m = std::max(stiffness_n_per_m / scale_, 4 * magnet.force_n / magnet.reach_m);
+    return std::min(pull_n / steepest_n_per_m, near.distance_m) * toward;
 }
 
 void Effects::update(std::size_t object, const Placement& placement, std::span<const Contact> contacts) noexcept

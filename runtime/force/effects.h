@@ -38,9 +38,10 @@ public:
     void begin(const glm::dvec3& tip_m, double time_s, uint64_t periods) noexcept;
     // Of its magnet, at a tip that contacts hold so far off the hand, in the scene's space: a hand in a floor is as far
     // from a wall on it as its proxy would be if nothing pulled that. Returns how far the pull draws the proxy, by the
-    // stiffness of the object: there the contact of joined objects aims in the next tick. So a magnet presses the proxy
-    // onto what lies between, and one potential rules.
-    glm::dvec3 pull(std::size_t object, const Placement& placement, const glm::dvec3& held_out_m) noexcept;
+    // stiffness of what holds it: there the contact of joined objects aims in the next tick. So a magnet presses the
+    // proxy onto what lies between, and one potential rules.
+    glm::dvec3 pull(std::size_t object, const Placement& placement, const glm::dvec3& held_out_m,
+                    double stiffness_n_per_m) noexcept;
     void update(std::size_t object, const Placement& placement, std::span<const Contact> contacts) noexcept;
     glm::dvec3 force_n() noexcept;
     static glm::dvec3 held_out_m(std::span<const Contact> contacts) noexcept; // of the tip

@@ -97,6 +97,7 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
         for (const uint32_t body : sleep_queue_.awake()) { // who sleeps knows of no hand
             bodies_[body].velocity.lose_hand();
             bodies_[body].tail_velocity.lose_hand();
+            bodies_[body].aim_m = glm::dvec3(0);
         }
         interrupted_ = true;
         result.faults = fault_pose_not_finite;
@@ -136,7 +137,7 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
         work_.objects += body.objects.numbers().size();
         const uint64_t spared = body.contact.counters().skipped, cut = body.contact.counters().walks_cut;
         ProbePose probe = body.pose_of(pose);
-        if (effects_act && body.objects.joined) probe.tip_m += body.aim_m;
+        if (effects_act && body.objects.joined) probe.tip_m += shares_.effects * body.aim_m;
         std::span<const Contact> contacts =
             update_contact(body, probe, {body.tip_friction.mean, body.tail_friction.mean});
         contacts = crease_rows_.of(*body.objects.surface(*scene_), contacts);
@@ -146,6 +147,7 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
         const PartContacts alone{0, contacts};
         const std::span<const PartContacts> parts =
             body.objects.joined ? by_part_.of(*scene_, *body.objects.joined, contacts) : std::span(&alone, 1);
+        body.aim_m = glm::dvec3(0);
         if (effects_act) update_effects(body, contacts, parts);
         body.tip_friction = body.tail_friction = {};
         if (contacts.empty()) {
@@ -324,14 +326,23 @@ void Renderer::update_effects(Body& body, std::span<const Contact> contacts,
 {
     const std::span<const uint32_t> numbers = body.objects.numbers();
     const glm::dvec3 held_out_m = body.placement.direction_to_world(Effects::held_out_m(contacts));
-    body.aim_m = glm::dvec3(0);
+    // Of what presses the tip most; where nothing does, what would press it least.
+    double stiffness_n_per_m = 0, most_m = 0;
+    for (const uint32_t number : numbers)
+        stiffness_n_per_m = std::max(stiffness_n_per_m, scene_->objects[number].material.stiffness_n_per_m);
+    for (const PartContacts& part : parts)
+        for (const Contact& contact : part.contacts) {
+            if (contact.by_shaft || contact.along != 0 || !(contact.depth_m > most_m)) continue;
+            most_m = contact.depth_m;
+            stiffness_n_per_m = scene_->objects[numbers[part.part]].material.stiffness_n_per_m;
+        }
     for (uint32_t part = 0; part < numbers.size(); ++part) {
         if (!effects_.of(numbers[part])) continue;
         const Placement& placement = body.placement_of(scene_->objects[numbers[part]]);
         const auto touched =
             std::find_if(parts.begin(), parts.end(), [&](const PartContacts& of) { return of.part == part; });
         if (body.objects.joined || held_out_m == glm::dvec3(0)) // nothing pulls to what holds the tip
-            body.aim_m += effects_.pull(numbers[part], placement, held_out_m);
+            body.aim_m += effects_.pull(numbers[part], placement, held_out_m, stiffness_n_per_m);
         effects_.update(numbers[part], placement,
                         touched == parts.end() ? std::span<const Contact>() : touched->contacts);
     }

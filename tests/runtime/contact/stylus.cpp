@@ -350,3 +350,24 @@ TEST_CASE("a shaft that jumps past a thin pole in one tick is caught by it, at a
             CHECK(wrench(stylus, after).force.y < -0.8 * jump_m); // back, about twice half of the jump
         }
 }
+
+TEST_CASE("a shaft whose ends go round either border of a rail in one tick stays on it")
+{
+    Mesh rail;
+    rail.positions_m = {{-2e-3, -0.15, 0}, {2e-3, -0.15, 0}, {2e-3, 0.15, 0}, {-2e-3, 0.15, 0}};
+    rail.triangles = {{0, 1, 2}, {0, 2, 3}};
+    const auto surface = surface_of(rail);
+    for (const double mu : {0.0, 0.3}) {
+        StylusContact stylus(surface);
+        const Friction friction{mu, mu};
+        for (const double z : {5e-3, 1e-3, 0.0, -5e-4}) stylus.update({0, -0.05, z}, {0, 0.05, z}, friction);
+        REQUIRE(stylus.ideal());
+        const auto middle_z = [&] { return surface->lattice.metres(stylus.ideal()->at(0.5)).z; };
+        CHECK(middle_z() > 0);
+        for (int i = 0; i < 50; ++i) {
+            stylus.update({-4e-3, -0.05, -3e-3}, {4e-3, 0.05, -3e-3}, friction);
+            CAPTURE(mu, i);
+            if (stylus.ideal()) CHECK(middle_z() > 0);
+        }
+    }
+}
