@@ -323,12 +323,9 @@ HalfSpace NearFaces::seen(std::size_t place, Laid laid) const noexcept
 NearFaces::Touching NearFaces::touching(const glm::dvec3& centre, double within) noexcept
 {
     const auto above = [&](const HalfSpace& plane) { return glm::dot(plane.normal, centre) - plane.offset; };
-    const auto before = [&](std::size_t i) {
-        const double seen = above(picked_[i]);
-        if (!screened_) return seen;
-        const double laid = above(planes_[place_of_[i]]) - radius_;
-        return laid > seen + rises ? laid
-                                   : seen; // of a triangle that lies ahead its own plane may be touched beside it
+    const auto before = [&](std::size_t i) { // of a triangle that lies ahead its own plane may be touched beside it
+        const double seen = above(picked_[i]), laid = screened_ ? above(planes_[place_of_[i]]) - radius_ : seen;
+        return laid > seen + rises ? laid : seen;
     };
     const auto known = [&](std::size_t i, double most) {
         double here = before(i);

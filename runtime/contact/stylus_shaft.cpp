@@ -101,11 +101,14 @@ bool StylusContact::go_apart(const EndsFriction& friction) noexcept
 {
     if (side_count_ > 0 || begin_ > 0 || end_ < 1) return false;
     const Shaft from = shaft_;
-    if (!tail_->go(hand_.tail, friction.tail) || !tip_->go(hand_.tip, friction.tip)) {
+    const auto gives_up = [&] {
+        shaft_ = from;
         tip_->come_back(from.tip);
         tail_->come_back(from.tail);
         return false;
-    }
+    };
+    const bool tail_rests = tail_->go(hand_.tail, friction.tail), tip_rests = tip_->go(hand_.tip, friction.tip);
+    if (!tail_rests || !tip_rests) return gives_up();
     const Shaft to{tip_->proxy().at, tail_->proxy().at};
     const auto goes = [&](const Shaft& there) {
         close_ = {};
@@ -114,15 +117,11 @@ bool StylusContact::go_apart(const EndsFriction& friction) noexcept
         shaft_ = there;
         return true;
     };
-    const auto gives_up = [&] {
-        shaft_ = from;
-        tip_->come_back(from.tip);
-        tail_->come_back(from.tail);
-        return false;
-    };
     // Both ends at once may go through one triangle: the straight way of one of them has to be free.
     const std::span<const glm::dvec3> places = SphereContact::places(); // of the tip
-    const bool is_straight = places.empty() || (places.size() <= 2 && places.front() == from.tip);
+    const bool is_straight = std::all_of(places.begin(), places.end(), [&](const glm::dvec3& place) {
+        return place == from.tip || glm::round(place) == to.tip;
+    });
     Crossing crossing;
     const bool is_free =
         is_straight || !first_crossing(surface(), from.tip, to.tip, StartsOn::nothing(), crossing, collision_);
