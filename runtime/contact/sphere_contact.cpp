@@ -212,6 +212,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
     Way done;
     auto& [held, round, cut, on_the_way, blind] = done;
     Stride last;
+    uint32_t raised = 0; // by rounding
     double stride = stride_of_hand * (glm::distance(hand_, hand_before_) + lag_);
     // A point meets few faces: what it slides by is looked at once.
     const double stride_first = stride;
@@ -260,7 +261,10 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         }
         if (step <= std::max(4 * distance_rounding, centre_settled * radius_)) break;
         const bool is_sought = last.went_back || last.further != glm::dvec3(0);
-        if (!is_sought && glm::distance(hand_, proxy_.at) >= want) break; // to and fro, by rounding
+        // A face that rounding has let it into raises it, and tilted where it ends: from there it is seen as it is.
+        // The second time it goes to and fro by rounding.
+        raised += !is_sought && glm::distance(hand_, proxy_.at) >= want;
+        if (raised == 2) break;
         stride = (step > 0.9 * step_max ? stride_of_end : stride_of_step) * step;
     }
     return done;
