@@ -34,6 +34,7 @@ constexpr double crossing_rounding = 0x1p-50;
 // Rising roots in [0, 1) of c0 + c1 t + c2 t^2 at which it changes its sign.
 int roots(double c0, double c1, double c2, double (&t)[2])
 {
+    if (c0 * (c0 + c1 + c2) > 0 && (c0 * c1 >= 0 || c0 * (c1 + 2 * c2) <= 0)) return 0; // it does not turn between
     int count = 0;
     const auto take = [&](double root) {
         if (root >= 0 && root < 1) t[count++] = root;
@@ -49,26 +50,40 @@ int roots(double c0, double c1, double c2, double (&t)[2])
 
 } // namespace
 
-bool meets(const Shaft& from, const Shaft& to, const glm::dvec3& edge0, const glm::dvec3& edge1, double before,
-           EdgeMeeting& meeting) noexcept
+ShaftMove::ShaftMove(const Shaft& from, const Shaft& to) noexcept
+    : from_(from)
+    , way_(to.tip - from.tip)
+    , along_(from.tail - from.tip)
+    , turn_(to.tail - to.tip - along_)
+    , way_by_along_(glm::cross(way_, along_))
+    , way_by_turn_(glm::cross(way_, turn_))
+    , along_square_(glm::dot(along_, along_))
+    , along_then_square_(glm::dot(along_ + turn_, along_ + turn_))
 {
-    const glm::dvec3 edge = edge1 - edge0;
-    const glm::dvec3 along = from.tail - from.tip, turn = (to.tail - to.tip) - along;
-    const glm::dvec3 offset = from.tip - edge0, way = to.tip - from.tip;
-    const glm::dvec3 across = glm::cross(along, edge), across_turn = glm::cross(turn, edge);
-    double c0 = glm::dot(across, offset);
+}
+
+bool ShaftMove::meets(const glm::dvec3& edge0, const glm::dvec3& edge1, double before,
+                      EdgeMeeting& meeting) const noexcept
+{
+    const glm::dvec3 edge = edge1 - edge0, offset = from_.tip - edge0;
+    double c0 = glm::dot(glm::cross(offset, along_), edge);
     // Where rounding may have decided on which side it begins, exact arithmetic does.
-    const double doubt = crossing_rounding * glm::length(along) * glm::length(edge) * glm::length(offset);
-    if (std::fabs(c0) <= doubt) c0 = -side_of_line(from.tip, from.tail, edge0, edge1) * doubt;
-    const double c1 = glm::dot(across_turn, offset) + glm::dot(across, way), c2 = glm::dot(across_turn, way);
-    const double c = c0 + c1 + c2;
-    const glm::dvec3 across_then = across + across_turn;
-    meeting.close = c * c < shaft_tolerance::rest_gap * shaft_tolerance::rest_gap * glm::dot(across_then, across_then);
+    const double edge_square = glm::dot(edge, edge);
+    const double doubt =
+        crossing_rounding * crossing_rounding * along_square_ * edge_square * glm::dot(offset, offset); // squared
+    if (c0 * c0 <= doubt) c0 = -side_of_line(from_.tip, from_.tail, edge0, edge1) * std::sqrt(doubt);
+    const double c1 = glm::dot(glm::cross(offset, turn_) + way_by_along_, edge), c2 = glm::dot(way_by_turn_, edge);
+    const double c = c0 + c1 + c2, gap_square = shaft_tolerance::rest_gap * shaft_tolerance::rest_gap;
+    meeting.close = false;
+    if (c * c < gap_square * along_then_square_ * edge_square) {
+        const glm::dvec3 across_then = glm::cross(along_ + turn_, edge);
+        meeting.close = c * c < gap_square * glm::dot(across_then, across_then);
+    }
     double t[2];
     const int count = roots(c0, c1, c2, t);
     for (int i = 0; i < count && t[i] < before; ++i) {
-        const Shaft there{from.tip + t[i] * way, from.tail + t[i] * (to.tail - from.tail)};
-        const Passing at = passing(there, edge0, edge1);
+        const glm::dvec3 tip = from_.tip + t[i] * way_;
+        const Passing at = passing({tip, tip + along_ + t[i] * turn_}, edge0, edge1);
         if (at.parallel || !at.within(0, 0, shaft_tolerance::reach)) continue;
         const double slope = c1 + 2 * c2 * t[i];
         meeting.time = t[i];

@@ -56,10 +56,20 @@ struct EdgeMeeting {
     bool close = false; // at the end of the move the line of the shaft is within the gap of the edge's
 };
 
-// The first meeting before `before`. With the ends on straight ways and the edge at rest the height changes its sign
-// where a quadratic polynomial does. `from` has lattice points for ends, so that the side on which it begins is known
-// exactly.
-bool meets(const Shaft& from, const Shaft& to, const glm::dvec3& edge0, const glm::dvec3& edge1, double before,
-           EdgeMeeting& meeting) noexcept;
+// A straight move of both ends, from lattice points, so that the side on which it begins is known exactly.
+class ShaftMove {
+public:
+    ShaftMove(const Shaft& from, const Shaft& to) noexcept;
+
+    // The first meeting before `before`. With the ends on straight ways and the edge at rest the height changes its
+    // sign where a quadratic polynomial does.
+    bool meets(const glm::dvec3& edge0, const glm::dvec3& edge1, double before, EdgeMeeting& meeting) const noexcept;
+
+private:
+    Shaft from_;
+    glm::dvec3 way_, along_, turn_;         // of the tip; from tip to tail, and what the move changes of it
+    glm::dvec3 way_by_along_, way_by_turn_; // cross products
+    double along_square_, along_then_square_;
+};
 
 } // namespace haptel::runtime

@@ -12,7 +12,7 @@ namespace haptel::runtime {
 namespace {
 
 // Looked at in one tick before the rest of the way is left to the next: it bounds the time of a tick.
-constexpr uint64_t faces_per_tick = 1 << 11;
+constexpr uint64_t faces_per_tick = 1 << 10;
 
 // How far a round may lead is what planes are picked for: of the hand's way with what friction holds it back by, of the
 // last step, of a last step that came to the end of what was picked; of the radius at least; and picked anew where it

@@ -39,7 +39,6 @@ StylusContact::StylusContact(std::shared_ptr<const Surface> surface, bool skips_
     : tip_(as_end(surface))
     , tail_(as_end(surface))
     , skips_free_space_(skips_free_space)
-    , tree_(*surface)
     , patience_ticks_(static_cast<uint32_t>(std::max(1.0, std::round(patience_s * rate_hz))))
 {
 }
@@ -187,10 +186,9 @@ bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_
     if (!(farther(clear_.at, to) < clear_.radius)) {
         ++collision_.sweeps;
         clear_.radius = 0;
-        if (!tree_.is_empty(SweptRegion(shaft_.tip, shaft_.tail, to.tip, to.tail, rest_gap + reach))) return false;
-        const double step = farther(shaft_, to);
-        shaft_ = to;
-        if (skips_free_space_) unspared_ = step;
+        if (!SweptRegion(shaft_.tip, shaft_.tail, to.tip, to.tail, rest_gap + reach).is_empty(*surface().tree))
+            return false;
+        if (skips_free_space_) unspared_ = farther(shaft_, to);
     }
     shaft_ = to;
     reached_ = hand_;
@@ -209,7 +207,8 @@ void StylusContact::look_around() noexcept
     if (clear_.next_radius == 0) clear_.next_radius = 0.25 * Lattice::extent;
     if (clear_.next_radius < ticks_per_region * step) {
         clear_.next_radius *= 1.1;
-    } else if (tree_.is_empty(SweptRegion(shaft_.tip, shaft_.tail, shaft_.tip, shaft_.tail, clear_.next_radius))) {
+    } else if (SweptRegion(shaft_.tip, shaft_.tail, shaft_.tip, shaft_.tail, clear_.next_radius)
+                   .is_empty(*surface().tree)) {
         clear_.at = shaft_;
         clear_.radius = clear_.next_radius;
         clear_.next_radius = std::min(1.4 * clear_.next_radius, Lattice::extent);

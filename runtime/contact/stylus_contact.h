@@ -31,7 +31,7 @@
 #include "runtime/contact/shaft.h"
 #include "runtime/contact/sphere_contact.h"
 #include "runtime/contact/stylus_friction.h"
-#include "runtime/contact/swept_tree.h"
+#include "runtime/surface/swept_region.h"
 
 #include <array>
 #include <cstdint>
@@ -85,6 +85,9 @@ private:
     static constexpr std::size_t planes_max = 96; // of an end
     static constexpr double push_settled = 1e-3;  // lattice units: what a push may leave violated
     static constexpr uint32_t rounds_max = 24, sweeps_max = 32;
+    // So many triangles are looked at on one straight way: four times what strokes meet on fine meshes. A longer one is
+    // tried in part.
+    static constexpr std::size_t triangles_per_move = 512;
 
     // A contact of the shaft with an edge.
     struct Side {
@@ -134,13 +137,15 @@ private:
     void take_hold(EndFriction& friction, const EndRows& rows, const Projection<Shaft>& held, const glm::dvec3& at,
                    double radius) const noexcept;
     Projection<Shaft> solve(FrictionOfEnds& ends) noexcept;
-    double known_share(const Shaft& to, const Projection<Shaft>& held, const FrictionOfEnds& ends) noexcept;
+    double known_share(const Shaft& to, double stride, const Projection<Shaft>& held,
+                       const FrictionOfEnds& ends) noexcept;
     Shaft on_the_way(const Shaft& to, double share, const FrictionOfEnds& ends) noexcept;
     bool stands(const Projection<Shaft>& held) const noexcept;
     void hold(const FrictionOfEnds& ends, bool settled) noexcept;
     bool move(const Shaft& to) noexcept;
     void cross(uint32_t face, const Shaft& at, std::optional<Crossing>& first) const noexcept;
-    bool blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept;
+    bool find_near(const Shaft& to) noexcept;
+    bool blocked(const Shaft& to, Obstacle& obstacle) noexcept;
     bool is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Shaft& to) const noexcept;
     void approach(const Shaft& to, const Obstacle& obstacle) noexcept;
     bool is_side(const glm::dvec3& edge0, const glm::dvec3& edge1) const noexcept;
@@ -159,7 +164,6 @@ private:
 
     std::unique_ptr<SphereContact> tip_, tail_;
     bool skips_free_space_;
-    SweptTree tree_;                            // of the surface, which the ends hold
     Shaft hand_;                                // lattice units, neither rounded nor clamped
     double begin_ = 0, end_ = 1;                // shares of the stylus that lie in the workspace
     Shaft reached_;                             // the hand for which the shaft was held last
@@ -178,6 +182,8 @@ private:
     double unspared_ = -1;                        // as a point's
     std::array<Contact, sides_max + 8> contacts_; // of each end three, and what is left
     uint32_t contact_count_ = 0;
+    std::array<uint32_t, triangles_per_move> near_; // triangles, of the way that was looked at last
+    std::size_t near_count_ = 0;
     uint32_t sweeps_left_ = 0;              // in this tick
     uint32_t stuck_ticks_ = 0;              // in a row
     uint32_t patience_ticks_;               // patience_s

@@ -249,7 +249,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         for (std::size_t k = 0; k < held.count; ++k)
             if (const uint32_t first = tip_rows_.count + tail_rows_.count; held.active[k] >= first)
                 sides_[held.active[k] - first].push = held.push[k];
-        const double known = known_share(to, held, ends), share = std::min(most, known);
+        const double known = known_share(to, stride, held, ends), share = std::min(most, known);
         const Shaft next = on_the_way(to, share, ends);
         const double step = farther(next, shaft_);
         settled = farther(to, shaft_) <= step_settled + turned_settled * away(shaft_);
@@ -327,13 +327,13 @@ void StylusContact::hold(const FrictionOfEnds& ends, bool settled) noexcept
         changed[i].offset -= i < of_tip ? tip_->radius() : i < of_ends ? tail_->radius() : rest_gap;
     Projection<Shaft> held;
     Shaft at = shaft_;
-    for (int turn = 0; turn < turns_max; ++turn) {
+    for (int turn = 0; turn < turns_max; ++turn) { // what is told is told by the rows that were projected last
+        if (turn > 0) rows = turn_sides(at, 0);
         held = project(rows, target, push_settled);
         const Shaft next{held.at.at(begin_), held.at.at(end_)};
         const bool agreed = !settled || side_count_ == 0 || farther(next, at) < 0.25;
-        at = next;
-        if (agreed) break;
-        rows = turn_sides(at, 0);
+        if (agreed || (turn > 0 && at == shaft_)) break;
+        at = farther(next, shaft_) < unfelt_most ? next : shaft_; // from farther off edges may lie beyond its ends
     }
     // In a fold that a line gets into, and a ball does not, more than the radius is left.
     const double off = farther(whole, held.at), left = off > unfelt_most ? 1 - unfelt_most / off : 0.0;

@@ -25,10 +25,9 @@ constexpr double beyond = 0.25 * rest_gap, past_the_end = 0.05;
 constexpr double on_reach = 0.9;
 
 // A sweep past so many triangles counts as another one.
-constexpr uint64_t per_sweep = 256;
+constexpr uint64_t per_sweep = 64;
 
-// So many are looked at on one straight way: 20 times what strokes meet on fine meshes. A longer one is tried in part.
-constexpr uint64_t triangles_per_move = 1024;
+constexpr std::size_t lookahead = 8;
 
 } // namespace
 
@@ -43,8 +42,9 @@ Passing StylusContact::passing_of(const Side& side, const Shaft& shaft) const no
 }
 
 // The share of the straight way there on which nothing is that the ends may meet: what is known around them, and
-// farther than that as far as they cross nothing.
-double StylusContact::known_share(const Shaft& to, const Projection<Shaft>& held, const FrictionOfEnds& ends) noexcept
+// farther than that, up to `stride`, as far as they cross nothing.
+double StylusContact::known_share(const Shaft& to, double stride, const Projection<Shaft>& held,
+                                  const FrictionOfEnds& ends) noexcept
 {
     double share = 1;
     const double most = side_count_ > 0 ? on_reach : 1;
@@ -54,10 +54,14 @@ double StylusContact::known_share(const Shaft& to, const Projection<Shaft>& held
         const double length = glm::length(way), reach = most * rows.reach;
         const bool lands = drags && rows.count == 0; // friction holds it from where it comes to touch
         Crossing crossing;
-        if ((length > reach || (lands && !end.planes().empty())) &&
-            first_crossing(surface(), from, glm::round(there), StartsOn::nothing(), crossing, collision_))
-            share =
-                std::min(share, std::max(lands ? 0.0 : reach / length, crossing.fraction() - 2 * rest_gap / length));
+        if (length > reach || (lands && !end.planes().empty())) {
+            const double farthest = std::min(1.0, std::max(reach, stride) / length);
+            share = std::min(share, farthest);
+            if (first_crossing(surface(), from, glm::round(from + farthest * way), StartsOn::nothing(), crossing,
+                               collision_))
+                share = std::min(share, std::max(lands ? 0.0 : reach / length,
+                                                 farthest * crossing.fraction() - 2 * rest_gap / length));
+        }
         if (!lands) // the rows hold it off them, but for those that friction left out, or that contradict others
             share = std::min(share, open_share(end.planes(), from, way, distance_rounding));
     };
@@ -81,12 +85,14 @@ double StylusContact::known_share(const Shaft& to, const Projection<Shaft>& held
     return share;
 }
 
-// Straight to there. False: it met something on its way, which now is a contact.
+// Straight to there. False: it met something on its way, which now is a contact, or the way is too long.
 bool StylusContact::move(const Shaft& to) noexcept
 {
     close_ = {};
     close_.height = near_enough;
-    if (!blocked(shaft_, to, met_)) {
+    met_ = {};
+    if (!find_near(to)) return false;
+    if (!blocked(to, met_)) {
         shaft_ = to;
         touch(close_);
         return true;
@@ -113,7 +119,7 @@ bool StylusContact::go_apart(const EndsFriction& friction) noexcept
     const auto goes = [&](const Shaft& there) {
         close_ = {};
         close_.height = near_enough;
-        if (there != shaft_ && (blocked(shaft_, there, met_) || close_.side != 0)) return false;
+        if (there != shaft_ && (!find_near(there) || blocked(there, met_) || close_.side != 0)) return false;
         shaft_ = there;
         return true;
     };
@@ -195,44 +201,52 @@ void StylusContact::cross(uint32_t face, const Shaft& at, std::optional<Crossing
         first = crossing;
 }
 
-// Whether the straight move meets an edge, or ends across a triangle.
-bool StylusContact::blocked(const Shaft& from, const Shaft& to, Obstacle& obstacle) noexcept
+// What may be met on a straight way from where it is. False: more than may be looked at on one way.
+bool StylusContact::find_near(const Shaft& to) noexcept
+{
+    const Surface& s = surface();
+    const SweptRegion swept(shaft_.tip, shaft_.tail, to.tip, to.tail, rest_gap + reach);
+    near_count_ = 0;
+    const bool all = s.tree->for_each(swept, [&](uint32_t face) {
+        if (near_count_ == near_.size()) return false;
+        __builtin_prefetch(&s.faces[face]); // they are far apart in memory
+        near_[near_count_++] = face;
+        return true;
+    });
+    ++collision_.sweeps;
+    collision_.triangles_tested += near_count_;
+    sweeps_left_ -= static_cast<uint32_t>(std::min<std::size_t>(1 + near_count_ / per_sweep, sweeps_left_));
+    return all;
+}
+
+// Whether the straight move meets an edge, or ends across a triangle, of those found on it.
+bool StylusContact::blocked(const Shaft& to, Obstacle& obstacle) noexcept
 {
     const Surface& s = surface();
     bool met = false;
     obstacle.time = 1;
     obstacle.exact = false;
-    ++collision_.sweeps;
-    const uint64_t tested = collision_.triangles_tested;
+    const Shaft& from = shaft_;
+    const ShaftMove move(from, to);
     const SweptRegion swept(from.tip, from.tail, to.tip, to.tail, rest_gap + reach);
     std::optional<Crossing> crossing;
-    const bool all = tree_.for_each(swept, [&](uint32_t f) {
-        if (collision_.triangles_tested++ - tested == triangles_per_move) return false;
+    for (std::size_t i = 0; i < near_count_; ++i) {
+        if (i + lookahead < near_count_)
+            for (const uint32_t corner : s.faces[near_[i + lookahead]].vertex) __builtin_prefetch(&s.vertices[corner]);
+        const uint32_t f = near_[i];
         const Face& face = s.faces[f];
-        const auto above = [&](const glm::dvec3& end) {
-            return glm::dot(face.normal, end - s.vertices[face.vertex[0]]);
-        };
-        const auto [least, most] = std::minmax({above(from.tip), above(from.tail), above(to.tip), above(to.tail)});
-        if (least > near_enough || most < -near_enough) return true; // all of the way is on one side of it
+        if (!swept.meets(s, f)) continue;
         if (!met) cross(f, to, crossing);
         for (uint32_t edge = 0; edge < 3; ++edge) {
             if (std::min(face.link[edge][0].face(), face.link[edge][1].face()) < f) continue; // tested from there
-            const glm::dvec3 &a = edge_end(f, edge, 0), &b = edge_end(f, edge, 1);
+            const uint32_t a = face.vertex[edge], b = face.vertex[next(edge)];
             EdgeMeeting meeting;
-            const bool is_met = meets(from, to, a, b, obstacle.time, meeting);
+            const bool is_met = move.meets(s.vertices[a], s.vertices[b], obstacle.time, meeting);
             if (!met && meeting.close) see(f, edge, to);
-            if (!is_met || is_below_a_side(face.vertex[edge], face.vertex[next(edge)], to)) continue;
+            if (!is_met || is_below_a_side(a, b, to)) continue;
             obstacle = {f, edge, meeting.time, meeting.side, false, 0};
             met = true;
         }
-        return true;
-    });
-    const uint64_t cost = 1 + (collision_.triangles_tested - tested) / per_sweep;
-    sweeps_left_ -= static_cast<uint32_t>(std::min<uint64_t>(cost, sweeps_left_));
-    if (!all) { // the way is too long to be looked at
-        obstacle = {};
-        obstacle.exact = true;
-        return true;
     }
     if (met) return true;
 
@@ -269,7 +283,7 @@ void StylusContact::approach(const Shaft& to, const Obstacle& obstacle) noexcept
         const Shaft there{glm::round(shaft_.tip + time * (to.tip - shaft_.tip)),
                           glm::round(shaft_.tail + time * (to.tail - shaft_.tail))};
         Obstacle other;
-        if (blocked(shaft_, there, other)) continue;
+        if (blocked(there, other)) continue;
         shaft_ = there;
         return;
     }

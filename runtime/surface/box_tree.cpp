@@ -1,6 +1,7 @@
 #include "runtime/surface/box_tree.h"
 
 #include "runtime/surface/discs.h"
+#include "runtime/surface/four_boxes.h"
 
 #include <algorithm>
 #include <bit>
@@ -17,36 +18,6 @@ constexpr uint32_t width = BoxTree::width;
 glm::vec3 rounded(const glm::dvec3& p)
 {
     return glm::vec3(p * BoxTree::scale);
-}
-
-// Half of a node's boxes at once: the processor's own vectors, which g++ and clang have for every processor.
-using Four = float __attribute__((vector_size(16), may_alias));
-using FourBits = int32_t __attribute__((vector_size(16)));
-constexpr uint32_t half = 4;
-static_assert(width == 2 * half);
-
-Four four(const float* first)
-{
-    return *reinterpret_cast<const Four*>(first);
-}
-Four all_of(float value)
-{
-    return Four{value, value, value, value};
-}
-Four least(Four a, Four b)
-{
-    return a < b ? a : b;
-}
-Four most_of(Four a, Four b)
-{
-    return a > b ? a : b;
-}
-
-// One for each of a node's boxes, the first the lowest.
-uint32_t bits(FourBits first, FourBits second)
-{
-    const FourBits both = (first & FourBits{1, 2, 4, 8}) | (second & FourBits{16, 32, 64, 128});
-    return uint32_t(both[0] | both[1] | both[2] | both[3]);
 }
 
 // A query says which of a node's boxes it enters and where on its way (`at`), how far that still counts (`upto`), and
@@ -215,18 +186,6 @@ void BoxTree::ask(Query& query) const noexcept
             waiting[place] = {enters_at[k], node.child[k]};
         }
     }
-}
-
-uint32_t BoxTree::overlapping(const Node& node, const glm::vec3& low, const glm::vec3& high) noexcept
-{
-    const auto meet = [&](uint32_t first) {
-        FourBits all = {-1, -1, -1, -1};
-        for (int axis = 0; axis < 3; ++axis)
-            all &= (four(node.low[axis] + first) <= all_of(high[axis])) &
-                   (four(node.high[axis] + first) >= all_of(low[axis]));
-        return all;
-    };
-    return bits(meet(0), meet(half));
 }
 
 void BoxTree::segment(const glm::dvec3& from, const glm::dvec3& to, SegmentVisitor& visitor) const noexcept

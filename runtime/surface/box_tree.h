@@ -74,23 +74,19 @@ public:
     // The same faces, and some a little farther away, as a list that has room for so many; false if there are more.
     bool ball(const glm::dvec3& centre, double radius, std::size_t most, std::vector<uint32_t>& faces) const noexcept;
 
-    // Calls visit(face) for each face whose box meets the one from `low` to `high`, roughly, if may_meet(centre, half)
-    // says yes to it and to all boxes around it, until visit says false. Returns whether all were visited.
-    template <class MayMeet, class Visit>
-    bool for_each(const glm::dvec3& low, const glm::dvec3& high, MayMeet&& may_meet, Visit&& visit) const
+    // Calls visit(face) for each face whose box a region may meet, and all boxes around it, until that says false.
+    // Returns whether all were visited. region.met(node): a bit for each of the node's boxes that it may meet.
+    template <class Region, class Visit>
+    bool for_each(const Region& region, Visit&& visit) const
     {
-        const glm::vec3 low_here(low * scale), high_here(high * scale);
         uint32_t waiting[depth_max * (width - 1) + width];
         std::size_t count = 0;
         waiting[count++] = 0;
         while (count > 0) {
             const Node& node = nodes_[waiting[--count]];
-            for (uint32_t met = overlapping(node, low_here, high_here); met != 0;) {
+            for (uint32_t met = region.met(node); met != 0;) {
                 const auto k = static_cast<uint32_t>(std::bit_width(met)) - 1;
                 met ^= 1u << k;
-                const glm::dvec3 least(node.low[0][k], node.low[1][k], node.low[2][k]),
-                    most(node.high[0][k], node.high[1][k], node.high[2][k]);
-                if (!may_meet((0.5 / scale) * (least + most), (0.5 / scale) * (most - least))) continue;
                 if (!(node.child[k] & is_face))
                     waiting[count++] = node.child[k];
                 else if (!visit(node.child[k] & ~is_face))
@@ -110,8 +106,6 @@ public:
 private:
     template <class Query>
     void ask(Query& query) const noexcept;
-    // A bit for each box of the node that meets the one from `low` to `high`.
-    static uint32_t overlapping(const Node& node, const glm::vec3& low, const glm::vec3& high) noexcept;
 
     const std::vector<glm::dvec3>& vertices_;
     const std::vector<Face>& faces_;

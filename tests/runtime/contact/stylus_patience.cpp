@@ -1,6 +1,7 @@
 // A shaft that cannot follow its ends: how long it is waited for.
 #include "runtime/contact/stylus_contact.h"
 #include "runtime/surface/shapes.h"
+#include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
 
 #include <optional>
@@ -8,14 +9,15 @@
 #include <vector>
 
 using namespace haptel::runtime;
+using namespace haptel::test;
 using glm::dvec3;
 
 namespace {
 
-// Hands that jump round a ring and then stay: after how many ticks at rest each shaft is let go, if it is.
+// Hands that jump among spikes and then stay: after how many ticks at rest each shaft is let go, if it is.
 std::vector<std::optional<int>> ticks_until_let_go(double rate_hz, int wait_ticks)
 {
-    Mesh mesh = make_torus(0.4, 32, 16);
+    Mesh mesh = make_star(3);
     scale_to_size(mesh, 0.1);
     const auto surface = build_surface(mesh).surface;
     std::vector<std::optional<int>> let_go;

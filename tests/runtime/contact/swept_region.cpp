@@ -1,5 +1,5 @@
-// The tree that a shaft asks for triangles: it loses none.
-#include "runtime/contact/swept_tree.h"
+// The region that a tree is asked for the triangles that a shaft may meet: it loses none.
+#include "runtime/surface/swept_region.h"
 #include "runtime/contact/stylus_contact.h"
 #include "runtime/servo/allocation_count.h"
 
@@ -20,7 +20,6 @@ TEST_CASE("all triangles that a moving shaft can meet are visited, each once")
     std::uniform_real_distribution<double> uniform(0, 1);
     for (const Mesh& mesh : {make_star(3), make_box(), make_torus(), make_plane(9)}) {
         const auto s = surface_of(mesh);
-        const SweptTree tree(*s);
         int met = 0, spared = 0;
         for (int i = 0; i < 1000; ++i) {
             const double length = 2 * std::pow(10.0, -3 * uniform(random)) * Lattice::extent;
@@ -31,11 +30,11 @@ TEST_CASE("all triangles that a moving shaft can meet are visited, each once")
                         tip_after = tip + anywhere(length), tail_after = tail + anywhere(length);
             std::vector<uint32_t> visited;
             const SweptRegion region(tip, tail, tip_after, tail_after, 0);
-            CHECK(tree.for_each(region, [&](uint32_t face) {
+            CHECK(s->tree->for_each(region, [&](uint32_t face) {
                 visited.push_back(face);
                 return true;
             }));
-            CHECK(tree.is_empty(region) == visited.empty());
+            CHECK(region.is_empty(*s->tree) == visited.empty());
             std::sort(visited.begin(), visited.end());
             CHECK(std::adjacent_find(visited.begin(), visited.end()) == visited.end());
             spared += visited.size() < s->faces.size();
