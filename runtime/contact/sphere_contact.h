@@ -74,8 +74,6 @@ public:
     double look_from(const glm::dvec3& at, double reach, std::size_t most, bool is_first) noexcept;
     std::span<const HalfSpace> planes() const noexcept { return faces_.rows(); }
     double radius() const noexcept { return grown_; }
-    // Whether the plane is that of its triangle, and this place over the inside of that.
-    bool stands(uint32_t plane, const glm::dvec3& at) const noexcept;
     // How many of the planes the end touches, or is as near to as its radius; these come first.
     std::size_t touching() noexcept;
     // Tells what holds it, by planes and pushes of those alone; it aims at a place, and friction holds it by `lag`.
@@ -153,7 +151,6 @@ private:
     void pass() noexcept { path_[path_length_++] = proxy_.at; }
     void keep_told() noexcept;
     bool stands(const Held& held) const noexcept;
-    bool stands(uint32_t face, const glm::dvec3& normal, const glm::dvec3& at) const noexcept;
     NearestPoint nearest_on(uint32_t face, const glm::dvec3& centre) const noexcept;
     uint32_t touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) noexcept;
     void tell(const Held& held, const glm::dvec3& nearest, bool lags) noexcept;

@@ -120,32 +120,24 @@ double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t 
     return within;
 }
 
-bool SphereContact::stands(uint32_t plane, const glm::dvec3& at) const noexcept
-{
-    return stands(faces_.face(plane), faces_.rows()[plane].normal, at);
-}
-
-bool SphereContact::stands(uint32_t face, const glm::dvec3& normal, const glm::dvec3& at) const noexcept
-{
-    const glm::dvec3& facet = surface_->faces[face].normal;
-    const bool is_own = is_point_ ? normal == facet || normal == -facet : std::fabs(glm::dot(normal, facet)) > parallel;
-    if (!is_own) return false;
-    const NearestPoint foot = nearest_on(face, at);
-    return glm::dot(normal, at - foot.at) <= grown_ + 4 * distance_rounding &&
-           glm::all(glm::greaterThan(foot.barycentric, glm::dvec3(0)));
-}
-
 std::size_t SphereContact::touching() noexcept
 {
     const auto [count, gap] = faces_.touching(proxy_.at, radius_);
     return gap > radius_ ? 0 : count;
 }
 
-// Whether it is on triangles that hold it from there by the same planes.
+// Whether what holds it are the planes of their own triangles, over the inside of which it is.
 bool SphereContact::stands(const Held& held) const noexcept
 {
-    return std::all_of(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
-                       [&](const Row& row) { return stands(row.face, row.normal, proxy_.at); });
+    return std::all_of(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count), [&](const Row& row) {
+        const glm::dvec3& facet = surface_->faces[row.face].normal;
+        const bool is_own =
+            is_point_ ? row.normal == facet || row.normal == -facet : std::fabs(glm::dot(row.normal, facet)) > parallel;
+        if (!is_own) return false;
+        const NearestPoint foot = nearest_on(row.face, proxy_.at);
+        return glm::dot(row.normal, proxy_.at - foot.at) <= grown_ + 4 * distance_rounding &&
+               glm::all(glm::greaterThan(foot.barycentric, glm::dvec3(0)));
+    });
 }
 
 } // namespace haptel::runtime

@@ -140,7 +140,6 @@ private:
     double known_share(const Shaft& to, double stride, const Projection<Shaft>& held,
                        const FrictionOfEnds& ends) noexcept;
     Shaft on_the_way(const Shaft& to, double share, const FrictionOfEnds& ends) noexcept;
-    bool stands(const Projection<Shaft>& held) const noexcept;
     void hold(const FrictionOfEnds& ends, bool settled) noexcept;
     bool move(const Shaft& to) noexcept;
     void cross(uint32_t face, const Shaft& at, std::optional<Crossing>& first) const noexcept;

@@ -7,7 +7,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 namespace haptel::runtime {
 
@@ -147,9 +146,6 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
         double tip, tail;
     } news{tip.drags() ? HUGE_VAL : 0, tail.drags() ? HUGE_VAL : 0};
     bool of_tip = false;
-    // Without sides the friction of one end depends on nothing but the rows that hold it: it is found once for them.
-    const bool alone = side_count_ == 0 && tip.drags() != tail.drags();
-    std::optional<Projection<Shaft>> found_for;
     return turned(
         [&](std::span<const ShaftRow> rows, const Projection<Shaft>& held, EndsGive gives, bool agreed) {
             Shaft aim = hand_;
@@ -160,11 +156,7 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
                 aim.tail += row.arm * held.push[k] * row.normal;
             }
             of_tip = tip.drags() && !(of_tip && tail.drags());
-            if (alone && found_for && found_for->count == held.count &&
-                std::equal(held.active.begin(), held.active.begin() + std::ptrdiff_t(held.count),
-                           found_for->active.begin()))
-                news = {};
-            else if (found_for = held; of_tip)
+            if (of_tip)
                 news.tip = tip.follow(aim.tip, held.at.tip, compliance(ShaftEnd::tip, rows, held, gives));
             else
                 news.tail = tail.follow(aim.tail, held.at.tail, compliance(ShaftEnd::tail, rows, held, gives));
@@ -173,7 +165,6 @@ Projection<Shaft> StylusContact::solve(FrictionOfEnds& ends) noexcept
                 if (!agreed || !end->drags() || !end->moves || end->slides) continue;
                 end->slides = true; // more than static friction holds: from here on dynamic friction does
                 agreed = false;
-                found_for.reset();
             }
             return agreed;
         },
@@ -261,8 +252,6 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         else if (side_count_ == met)
             most *= shorter;
         let_go_of_ended();
-        const bool known_there = step <= std::min(tip_rows_.reach, tail_rows_.reach);
-        settled = moved && share == 1 && known_there && side_count_ == 0 && stands(held);
         stride = share == known && known < 1 ? std::max(stride, stride_of_end * step) : stride_of_step * step;
     }
     if (away(shaft_) > away_first + uphill) { // what the springs hold is given by the hand, not by how that is found
@@ -282,17 +271,6 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     tip_->set_sliding(ends.tip.slides);
     tail_->set_sliding(ends.tail.slides);
     hold(ends, settled);
-}
-
-// Whether all that holds the stylus is planes of triangles on which its ends stand by now: from there the same would
-// hold it.
-bool StylusContact::stands(const Projection<Shaft>& held) const noexcept
-{
-    const uint32_t of_tip = tip_rows_.count, of_ends = of_tip + tail_rows_.count;
-    return std::all_of(held.active.begin(), held.active.begin() + std::ptrdiff_t(held.count), [&](uint32_t row) {
-        if (row >= of_ends) return false;
-        return row < of_tip ? tip_->stands(row, shaft_.tip) : tail_->stands(row - of_tip, shaft_.tail);
-    });
 }
 
 // How far the springs of both ends are drawn where the part in the workspace is there: their energy is half the
