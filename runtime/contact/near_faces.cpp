@@ -272,6 +272,7 @@ bool NearFaces::renew(uint32_t picked) noexcept
     picked_[picked] = nothing;
     const double near = near_ + glm::distance(centre_, picked_at_);
     for (std::size_t behind = known; behind < planes_.size(); ++behind) {
+        if (ahead(planes_[behind]) < radius_ && !is_group(behind)) lay(behind); // it does not separate them
         if (ahead(planes_[behind]) > near) continue;
         picked_.push_back({planes_[behind].normal, planes_[behind].offset + radius_});
         place_of_.push_back(static_cast<uint32_t>(behind));

@@ -8,22 +8,17 @@ namespace haptel::runtime {
 
 namespace {
 
-// Of the radius: how far around is looked at once at least, and when anew.
-constexpr double margin_most = 1.0 / 16, margin_least = 1.0 / 64;
-
-// A ball knows so many faces near it one by one; where there are more, in groups. These reach so far, of the radius:
-// they are the larger the farther off they are.
-constexpr std::size_t alone_faces = 32;
-constexpr double margin_of_groups = 1.0 / 4;
+// Of the radius: how far around a point looks at once at least, and a ball; and when anew.
+constexpr double margin_of_point = 1.0 / 16, margin_of_ball = 1.0 / 8, margin_least = 1.0 / 64;
 
 // A point looks anew where it knows less far than this share of what a look may tell.
 constexpr double look_again = 0.25;
 
-// Where there are fewer faces the ball looks farther around, where there are more less far.
+// Where there are fewer faces it looks farther around, where there are more less far.
 constexpr std::size_t few_faces = 16, many_faces = 64;
 
-// It looks farther around than margin_most only for so many faces. Where there are too many it looks less far by this,
-// so often below margin_most.
+// A point looks farther around than that only for so many faces. Where there are too many it looks less far by this,
+// so often below that.
 constexpr std::size_t far_faces = 256;
 constexpr double less_far = 1.0 / 8;
 constexpr int looks_most = 4;
@@ -34,32 +29,21 @@ constexpr double parallel = 1 - 1e-15;
 
 } // namespace
 
-// Finds the faces within the radius and a margin, or within less where there are too many; a ball does in groups where
-// there are many. False: nothing less is left.
+// Finds the faces within the radius and a margin, or within less where there are too many; a ball's in groups. False:
+// nothing less is left.
 bool SphereContact::find_around(double margin) noexcept
 {
     close_.margin = -1;
-    const double near = margin_most * radius_, beyond = radius_ + distance_rounding;
+    const double near = margin_of_point * radius_, beyond = radius_ + distance_rounding;
+    if (!is_point_) margin = std::max(margin, margin_of_ball * radius_);
     for (int looks = 0; looks < looks_most;) {
-        const bool far = margin > near && !in_groups_;
-        double known = margin;
-        bool all = false;
-        if (!in_groups_) {
-            all = faces_.find(proxy_.at, beyond + margin,
-                              far         ? far_faces
-                              : is_point_ ? NearFaces::faces_most
-                                          : alone_faces);
-            in_groups_ = !all && !far && !is_point_;
-        }
-        if (in_groups_) {
-            if (looks == 0) known = std::max(margin, margin_of_groups * radius_);
-            all = faces_.find_groups(proxy_.at, grown_, beyond + known);
-            in_groups_ = faces_.count() > few_faces;
-        }
+        const bool far = is_point_ && margin > near;
+        const bool all = is_point_ ? faces_.find(proxy_.at, beyond + margin, far ? far_faces : NearFaces::faces_most)
+                                   : faces_.find_groups(proxy_.at, grown_, beyond + margin);
         ++counters_.sweeps;
         counters_.triangles_tested += faces_.boxes();
         if (all) {
-            around_ = {proxy_.at, known};
+            around_ = {proxy_.at, margin};
             if (faces_.count() < few_faces) margin_ = std::min(2 * std::max(margin, margin_), Lattice::extent);
             if (faces_.count() > many_faces) margin_ = std::max(0.5 * margin, margin_least * radius_);
             return true;
@@ -78,7 +62,7 @@ bool SphereContact::look_as_far_as(double way) noexcept
 {
     const double enough = is_point_ ? look_again * margin_ : margin_least * radius_;
     if (around_.room(proxy_.at) >= std::min(way, enough) && !faces_.is_crowded()) return true;
-    return find_around(std::clamp(2 * way, margin_least * radius_, std::max(margin_, margin_most * radius_)));
+    return find_around(std::clamp(2 * way, margin_least * radius_, std::max(margin_, margin_of_point * radius_)));
 }
 
 // A point meets few faces, and what lies behind others does not hold it at every edge. A ball meets hundreds: its
