@@ -69,3 +69,25 @@ TEST_CASE("a magnet under an edge, or in a groove, of what the hand presses on g
             CHECK(worst_j < 2e-3 * magnet.force_n * magnet.reach_m);
         }
 }
+
+TEST_CASE("a magnet between a hard object and a soft one pulls without a step")
+{
+    constexpr Magnet magnet{1, 5e-3};
+    for (const double softness : {1.0, 3.0})
+        for (const double degrees : {60.0, 90.0, 120.0, 180.0})
+            for (const ProbeKind kind : {ProbeKind::point, ProbeKind::sphere}) {
+                constexpr double stiffness = 1000;
+                const Wedge wedge{degrees};
+                std::vector<SceneObject> objects = {wedge.floor(stiffness), wedge.wall(stiffness / softness)};
+                objects[1].effects.magnet = magnet;
+                Stroke stroke(with_probe(joined(std::move(objects)), kind), dvec3(0));
+                const dvec3 up = {-std::cos(wedge.radians()), 0, std::sin(wedge.radians())};
+                for (const dvec3& corner :
+                     {dvec3(-12e-3, 0, 8e-3), dvec3(-12e-3, 0, -2e-3), -2.5e-3 * wedge.between(),
+                      12e-3 * up - 1e-3 * wedge.wall_normal(), 12e-3 * up + 8e-3 * wedge.wall_normal()})
+                    stroke.to(corner);
+                CAPTURE(softness, degrees, static_cast<int>(kind), stroke.largest_n(), stroke.given_j());
+                CHECK(stroke.largest_n() < 1.1 * stiffness * step_m);
+                CHECK(stroke.touching() > 500);
+            }
+}
