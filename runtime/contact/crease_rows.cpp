@@ -10,9 +10,8 @@ namespace haptel::runtime {
 
 namespace {
 
-// Walls of a groove narrower than some 30 degrees bear more than so many times what presses, against each other: there
-// it stays one contact. And what rounding alone leaves to a piece is none.
-constexpr double opposed_most = 4, least_share = 1e-12;
+// What rounding alone leaves to a piece is none.
+constexpr double least_share = 1e-12;
 
 bool may_be_on_crease(const Surface& surface, const Contact& contact)
 {

@@ -17,6 +17,9 @@
 
 namespace haptel::runtime {
 
+// Free space around the hand is worth looking for if it needs so many ticks to cross it.
+inline constexpr double ticks_per_clearance = 4;
+
 class EndContact {
 public:
     virtual ~EndContact() = default;

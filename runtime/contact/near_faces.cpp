@@ -14,9 +14,6 @@ namespace haptel::runtime {
 
 namespace {
 
-// Faces that follow each other here are far apart in memory: each is asked for so many ahead.
-constexpr std::size_t lookahead = 8;
-
 // Behind how many planes others are left out, and by how many lattice units they may rise above one: faces in one plane
 // do, as their vertices are rounded.
 constexpr std::size_t screens_most = 4;
@@ -69,9 +66,10 @@ bool NearFaces::find(const glm::dvec3& centre, double radius, std::size_t most) 
     // Which of them stay is as good as random: all are written, and those that stay are counted.
     std::size_t found = 0;
     for (std::size_t i = 0; i < boxes; ++i) {
-        if (i + 2 * lookahead < boxes) __builtin_prefetch(&faces[faces_[i + 2 * lookahead]]);
-        if (i + lookahead < boxes)
-            for (const uint32_t corner : faces[faces_[i + lookahead]].vertex) __builtin_prefetch(&vertices[corner]);
+        if (i + 2 * BoxTree::lookahead < boxes) __builtin_prefetch(&faces[faces_[i + 2 * BoxTree::lookahead]]);
+        if (i + BoxTree::lookahead < boxes)
+            for (const uint32_t corner : faces[faces_[i + BoxTree::lookahead]].vertex)
+                __builtin_prefetch(&vertices[corner]);
         const Face& face = faces[faces_[i]];
         const glm::dvec3 &a = vertices[face.vertex[0]], &b = vertices[face.vertex[1]], &c = vertices[face.vertex[2]];
         const HalfSpace plane = roughly_before(a, b, c, face.normal, centre);

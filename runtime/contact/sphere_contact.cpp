@@ -1,5 +1,6 @@
 #include "runtime/contact/sphere_contact.h"
 
+#include "runtime/contact/reach.h"
 #include "runtime/geometry/finite.h"
 #include "runtime/surface/collision.h"
 
@@ -14,10 +15,8 @@ namespace {
 // Looked at in one tick before the rest of the way is left to the next: it bounds the time of a tick.
 constexpr uint64_t faces_per_tick = 1 << 10;
 
-// How far a round may lead is what planes are picked for: of the hand's way with what friction holds it back by, of the
-// last step, of a last step that came to the end of what was picked; of the radius at least; and picked anew where it
-// is so many times as far as needed.
-constexpr double stride_of_hand = 1.25, stride_of_step = 0.5, stride_of_end = 4, stride_least = 1e-3, stride_most = 8;
+// Planes are picked anew where they are so many times as far as needed.
+constexpr double stride_most = 8;
 
 // Steps follow each other if they go the same way, by the cosine, and get so much shorter at least: one that is more
 // than twice as long as it would be leads away from the hand. Where friction ends the way it may be more: what goes too
@@ -213,7 +212,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
     auto& [held, round, cut, on_the_way, blind] = done;
     Stride last;
     uint32_t raised = 0; // by rounding
-    double stride = stride_of_hand * (glm::distance(hand_, hand_before_) + lag_);
+    double stride = first_reach * (glm::distance(hand_, hand_before_) + lag_);
     // A point meets few faces: what it slides by is looked at once.
     const double stride_first = stride;
     uint64_t seen = counters_.triangles_tested;
@@ -233,7 +232,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         if (round == 0) seen = counters_.triangles_tested; // or one that needs a long look would never land
         const bool in_air = in_air_;
         const double open = std::min(want, around_.room(proxy_.at));
-        stride = std::max(stride, is_point_ ? std::max(stride_first, stride_least * want) : stride_least * radius_);
+        stride = std::max(stride, is_point_ ? std::max(stride_first, least_reach * want) : least_reach * radius_);
         if (round == 0 || in_air || is_point_ || close_.room(proxy_.at) < std::min(open, stride) ||
             close_.margin > stride_most * stride)
             pick(in_air ? open : std::min(open, stride), lays(in_air, round == 0));
@@ -265,7 +264,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
         // The second time it goes to and fro by rounding.
         raised += !is_sought && glm::distance(hand_, proxy_.at) >= want;
         if (raised == 2) break;
-        stride = (step > 0.9 * step_max ? stride_of_end : stride_of_step) * step;
+        stride = next_reach(step, step > 0.9 * step_max);
     }
     return done;
 }

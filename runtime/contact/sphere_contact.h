@@ -81,9 +81,6 @@ public:
                    const glm::dvec3& lag) noexcept;
 
 private:
-    // Of the way from the hand to the ball: walls of a groove narrower than some 30 degrees push more than this in sum,
-    // each by a stiffness and a texture of its own, and share the way itself beyond it.
-    static constexpr double opposed_most = 4;
     // Lattice units: a point that can fly no farther has landed.
     static constexpr double touching_gap = 64;
     static constexpr double centre_settled = 1e-8; // of the radius: what is left of a way counts as none

@@ -24,9 +24,6 @@ constexpr double least_length = 4096;
 // Lattice units, and share of what the springs are drawn by: what is not known and pushes less is not told.
 constexpr double least_push = 4096, least_push_share = 1e-6;
 
-// A clear region is worth looking for if the hand needs several ticks to cross it.
-constexpr double ticks_per_region = 4;
-
 std::unique_ptr<SphereContact> as_end(const std::shared_ptr<const Surface>& surface)
 {
     return std::make_unique<SphereContact>(surface, Lattice::point_radius * surface->lattice.unit_m,
@@ -205,7 +202,7 @@ void StylusContact::look_around() noexcept
     const double step = std::exchange(unspared_, -1);
     if (step < 0) return;
     if (clear_.next_radius == 0) clear_.next_radius = 0.25 * Lattice::extent;
-    if (clear_.next_radius < ticks_per_region * step) {
+    if (clear_.next_radius < ticks_per_clearance * step) {
         clear_.next_radius *= 1.1;
     } else if (SweptRegion(shaft_.tip, shaft_.tail, shaft_.tip, shaft_.tail, clear_.next_radius)
                    .is_empty(*surface().tree)) {

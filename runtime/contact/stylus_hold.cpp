@@ -1,6 +1,7 @@
 // How a stylus is held: the planes of both its ends and the edges that its shaft rests on are rows of one projection.
 // It says where the rows let the stylus come nearest to the hand; there it goes straight, as far as it knows what is
 // around its ends and as its shaft meets no other edge, and looks again.
+#include "runtime/contact/reach.h"
 #include "runtime/contact/stylus_contact.h"
 
 #include <algorithm>
@@ -30,20 +31,12 @@ constexpr double far_behind = 0x1p20; // lattice units: a millionth of the objec
 // The radius is not felt, nor what it makes of places: on a lever, and between walls at an angle, more than itself.
 constexpr double unfelt_most = 16 * rest_gap;
 
-// Of what the springs are drawn by: contacts that push more than that push against each other, as in a fold, by what
-// rounding makes of the angle between them. What they push together is told as what is left.
-constexpr double opposed_push = 4;
-
 // What a tick may draw the springs of the ends out by, the hand being where it is: what comes down is held up by its
 // radius.
 constexpr double uphill = 4 * rest_gap;
 
 // What a way that was blocked by nothing new is cut to.
 constexpr double shorter = 0.25;
-
-// How far around its ends a round looks: of the hand's way in this tick, of the last step, of a last step that came to
-// the end of what was known, and of the way that is left at least.
-constexpr double stride_of_hand = 1.5, stride_of_step = 0.5, stride_of_end = 4, stride_least = 1e-3;
 
 } // namespace
 
@@ -225,13 +218,13 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         tip_->forget();
         tail_->forget();
     }
-    double stride = stride_of_hand * farther(hand_, reached_);
+    double stride = first_reach * farther(hand_, reached_);
     double most = 1; // share of the way that is tried at once
     bool settled = false, blind = false;
     Shaft to = shaft_;
     uint32_t round = 0;
     for (; round < rounds_max && sweeps_left_ > 0 && !settled; ++round) {
-        stride = std::max({stride, 64.0, stride_least * farther(extended(shaft_), hand_)});
+        stride = std::max({stride, 64.0, least_reach * farther(extended(shaft_), hand_)});
         blind = !look(stride, ends, round == 0);
         if (blind) break;
         const Projection<Shaft> held = solve(ends);
@@ -252,7 +245,8 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         else if (side_count_ == met)
             most *= shorter;
         let_go_of_ended();
-        stride = share == known && known < 1 ? std::max(stride, stride_of_end * step) : stride_of_step * step;
+        const bool to_the_end = share == known && known < 1;
+        stride = std::max(next_reach(step, to_the_end), to_the_end ? stride : 0.0);
     }
     if (away(shaft_) > away_first + uphill) { // what the springs hold is given by the hand, not by how that is found
         shaft_ = shaft_first, sides_ = sides_first, side_count_ = side_count_first;
@@ -324,7 +318,7 @@ void StylusContact::hold(const FrictionOfEnds& ends, bool settled) noexcept
     for (std::size_t k = 0; k < held.count; ++k) {
         const uint32_t i = held.active[k];
         const double push = held.push[k];
-        if (push >= opposed_push * drawn) {
+        if (push >= opposed_most * drawn) { // what they push together is told as what is left
             left_.tip += (1 - rows[i].arm) * push * rows[i].normal;
             left_.tail += rows[i].arm * push * rows[i].normal;
             continue;

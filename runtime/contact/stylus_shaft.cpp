@@ -27,8 +27,6 @@ constexpr double on_reach = 0.9;
 // A sweep past so many triangles counts as another one.
 constexpr uint64_t per_sweep = 64;
 
-constexpr std::size_t lookahead = 8;
-
 } // namespace
 
 const glm::dvec3& StylusContact::edge_end(uint32_t face, uint32_t edge, uint32_t which) const noexcept
@@ -231,8 +229,9 @@ bool StylusContact::blocked(const Shaft& to, Obstacle& obstacle) noexcept
     const SweptRegion swept(from.tip, from.tail, to.tip, to.tail, rest_gap + reach);
     std::optional<Crossing> crossing;
     for (std::size_t i = 0; i < near_count_; ++i) {
-        if (i + lookahead < near_count_)
-            for (const uint32_t corner : s.faces[near_[i + lookahead]].vertex) __builtin_prefetch(&s.vertices[corner]);
+        if (i + BoxTree::lookahead < near_count_)
+            for (const uint32_t corner : s.faces[near_[i + BoxTree::lookahead]].vertex)
+                __builtin_prefetch(&s.vertices[corner]);
         const uint32_t f = near_[i];
         const Face& face = s.faces[f];
         if (!swept.meets(s, f)) continue;

@@ -14,9 +14,6 @@ namespace {
 // Below this many lattice units the direction from hand to proxy is rounding.
 constexpr double direction_needs = 64;
 
-// A ball is worth looking for if the hand needs several ticks to cross it.
-constexpr double ticks_per_ball = 4;
-
 } // namespace
 
 WalkContact::WalkContact(std::shared_ptr<const Surface> surface, bool skips_free_space)
@@ -132,7 +129,7 @@ void WalkContact::look_around() noexcept
     const double step = std::exchange(unspared_, -1);
     if (step < 0 || proxy_.touches()) return;
     clear_.radius = 0;
-    if (clear_.next_radius < ticks_per_ball * step) {
+    if (clear_.next_radius < ticks_per_clearance * step) {
         clear_.next_radius = clear_.next_radius == 0 ? 0.25 * Lattice::extent : 1.1 * clear_.next_radius;
         return;
     }

@@ -48,6 +48,10 @@ public:
         uint32_t child[width];               // a node behind this one, or a face with `is_face`
     };
 
+    // Faces that a query names one after another are far apart in memory: whoever reads them asks for each so many
+    // ahead.
+    static constexpr std::size_t lookahead = 8;
+
     // A cylinder around all that is behind a node (discs.h). Lattice units; the axis has a length of 1 within rounding.
     struct Disc {
         static constexpr std::size_t faces_most = 512; // behind one: beyond that it would not be flat

@@ -1,0 +1,17 @@
+// How far around a round of a tick looks: what it finds there has to do for the way that it goes.
+#pragma once
+
+namespace haptel::runtime {
+
+// In the first round: of the hand's way, with what friction holds it back by.
+inline constexpr double first_reach = 1.5;
+// Of the way that is left, at least.
+inline constexpr double least_reach = 1e-3;
+
+// After a step, which came to the end of what was known.
+inline double next_reach(double step, bool to_the_end) noexcept
+{
+    return (to_the_end ? 4 : 0.5) * step;
+}
+
+} // namespace haptel::runtime
