@@ -309,7 +309,7 @@ bool SphereContact::move(const Friction& friction) noexcept
     if (held.count == 0)
         tell_free();
     else
-        tell(held, held.at, true);
+        tell(held, held.at);
     return !cut;
 }
 
@@ -341,7 +341,7 @@ void SphereContact::tell_held(const glm::dvec3& aim, std::span<const uint32_t> p
     std::sort(held.row.begin(), held.row.begin() + std::ptrdiff_t(held.count),
               [](const Row& a, const Row& b) { return a.push > b.push; });
     if (held.count == 0) return tell_free();
-    tell(held, proxy_.at - lag, true);
+    tell(held, proxy_.at - lag);
 }
 
 } // namespace haptel::runtime

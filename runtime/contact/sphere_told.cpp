@@ -87,16 +87,15 @@ void SphereContact::tell_nothing() noexcept
     contacts_[0].hand_held = false;
 }
 
-// What holds the ball there; `lags`: it is held off that place by friction.
-void SphereContact::tell(const Held& held, const glm::dvec3& nearest, bool lags) noexcept
+// What holds the ball where it is, off the nearest place by friction.
+void SphereContact::tell(const Held& held, const glm::dvec3& nearest) noexcept
 {
     contact_count_ = 0;
     const double sum = held.pushes();
-    const glm::dvec3 centre = lags && is_point_ ? proxy_.at : nearest;
     glm::dvec3 way(0);
     for (std::size_t i = 0; i < held.count; ++i) way += held.row[i].push * held.row[i].normal;
     const double kept = sum > 0 ? std::min(1.0, opposed_most * glm::length(way) / sum) : 1.0;
-    const glm::dvec3 lag_m = lags ? (proxy_.at - nearest) * surface_->lattice.unit_m : glm::dvec3(0);
+    const glm::dvec3 lag_m = (proxy_.at - nearest) * surface_->lattice.unit_m;
     for (std::size_t i = 0; i < held.count; ++i) {
         const auto& [face, normal, push] = held.row[i];
         if (is_point_ && push == 0) continue; // by the radius alone
@@ -106,8 +105,8 @@ void SphereContact::tell(const Held& held, const glm::dvec3& nearest, bool lags)
         contact.sliding = proxy_.sliding;
         contact.hand_clamped = clamped_;
         contact.normal = normal;
-        contact.face = touching_face(face, normal, centre);
-        const NearestPoint point = nearest_on(contact.face, centre);
+        contact.face = touching_face(face, normal, proxy_.at);
+        const NearestPoint point = nearest_on(contact.face, proxy_.at);
         contact.side = glm::dot(contact.normal, surface_->faces[contact.face].normal) >= 0 ? 0 : 1;
         contact.facet_normal = surface_->facet_normal(contact.face, contact.side);
         contact.barycentric = point.barycentric;
