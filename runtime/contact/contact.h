@@ -20,7 +20,8 @@ WalkFriction checked(const Friction& friction) noexcept;
 inline constexpr double sticks_again = 0.5;
 
 // Contacts that push more than so many times what presses push against each other, as the walls of a groove narrower
-// than some 30 degrees: beyond it they are not felt each by itself.
+// than some 30 degrees do in sum, and of a shaft's each one where rounding makes the angle between them: beyond it they
+// are not felt each by itself.
 inline constexpr double opposed_most = 4;
 
 // Of a probe that has two ends, which may touch what is different. One for both of them: Friction.

@@ -4,7 +4,7 @@
 // distance to the plane is a lower bound of the distance to the triangle. On a fine mesh with hundreds of triangles
 // near the ball that bound spares most of them, and a step of the solver recomputes only the planes that hold the ball.
 //
-// Of a fine mesh a ball meets hundreds at once, and is held by three. There it knows most of them in groups, each by
+// Of a fine mesh a ball meets hundreds at once, and is held by three. It knows those near together in groups, each by
 // the plane of a flat cylinder around it (surface/discs.h), and looks into one only when the solver is about to make
 // its plane hold: what a tick looks at does not grow with the mesh. A group that there is no room to look into stays
 // solid.

@@ -5,10 +5,10 @@ namespace haptel::runtime {
 
 // In the first round: of the hand's way, with what friction holds it back by.
 inline constexpr double first_reach = 1.5;
-// Of the way that is left, at least.
+// At least, of the way that is left, or of the radius of a ball.
 inline constexpr double least_reach = 1e-3;
 
-// After a step, which came to the end of what was known.
+// After a step: the next is shorter, unless this one was as long as what was known.
 inline double next_reach(double step, bool to_the_end) noexcept
 {
     return (to_the_end ? 4 : 0.5) * step;

@@ -17,8 +17,8 @@ constexpr double look_again = 0.25;
 // Where there are fewer faces it looks farther around, where there are more less far.
 constexpr std::size_t few_faces = 16, many_faces = 64;
 
-// A point looks farther around than that only for so many faces. Where there are too many it looks less far by this,
-// so often below that.
+// A point looks farther around than margin_of_point only for so many faces. Where there are too many for a point or a
+// ball it looks less far by this, so often below its margin.
 constexpr std::size_t far_faces = 256;
 constexpr double less_far = 1.0 / 8;
 constexpr int looks_most = 4;

@@ -85,9 +85,9 @@ private:
     static constexpr std::size_t planes_max = 96; // of an end
     static constexpr double push_settled = 1e-3;  // lattice units: what a push may leave violated
     static constexpr uint32_t rounds_max = 24, sweeps_max = 32;
-    // So many triangles are looked at on one straight way: four times what strokes meet on fine meshes. A longer one is
-    // tried in part.
-    static constexpr std::size_t triangles_per_move = 512;
+    // So many boxes of triangles are looked at on one straight way: what a shaft meets that lies on a plate of 256 by
+    // 256 cells. A longer way is tried in part.
+    static constexpr std::size_t triangles_per_move = 1024;
 
     // A contact of the shaft with an edge.
     struct Side {

@@ -211,6 +211,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     ends.tip.slides = tip_->proxy().sliding;
     ends.tail.slides = tail_->proxy().sliding;
     sweeps_left_ = sweeps_max;
+    met_ = {};
     if (go_apart(friction)) return;
     tip_->set_sliding(ends.tip.slides);
     tail_->set_sliding(ends.tail.slides);
@@ -223,7 +224,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     bool settled = false, blind = false;
     Shaft to = shaft_;
     uint32_t round = 0;
-    for (; round < rounds_max && sweeps_left_ > 0 && !settled; ++round) {
+    for (; round < rounds_max && sweeps_left_ > 0; ++round) {
         stride = std::max({stride, 64.0, least_reach * farther(extended(shaft_), hand_)});
         blind = !look(stride, ends, round == 0);
         if (blind) break;
@@ -304,8 +305,9 @@ void StylusContact::hold(const FrictionOfEnds& ends, bool settled) noexcept
         held = project(rows, target, push_settled);
         const Shaft next{held.at.at(begin_), held.at.at(end_)};
         const bool agreed = !settled || side_count_ == 0 || farther(next, at) < 0.25;
-        if (agreed || (turn > 0 && at == shaft_)) break;
-        at = farther(next, shaft_) < unfelt_most ? next : shaft_; // from farther off edges may lie beyond its ends
+        const bool is_near = farther(next, shaft_) < unfelt_most; // from farther off edges may lie beyond its ends
+        if (agreed || (!is_near && at == shaft_)) break;
+        at = is_near ? next : shaft_;
     }
     // In a fold that a line gets into, and a ball does not, more than the radius is left.
     const double off = farther(whole, held.at), left = off > unfelt_most ? 1 - unfelt_most / off : 0.0;

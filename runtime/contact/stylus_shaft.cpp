@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace haptel::runtime {
 
@@ -25,7 +24,7 @@ constexpr double beyond = 0.25 * rest_gap, past_the_end = 0.05;
 constexpr double on_reach = 0.9;
 
 // A sweep past so many triangles counts as another one.
-constexpr uint64_t per_sweep = 64;
+constexpr uint64_t per_sweep = 256;
 
 } // namespace
 
@@ -53,9 +52,10 @@ double StylusContact::known_share(const Shaft& to, double stride, const Projecti
         const bool lands = drags && rows.count == 0; // friction holds it from where it comes to touch
         Crossing crossing;
         if (length > reach || (lands && !end.planes().empty())) {
-            const double farthest = std::min(1.0, std::max(reach, stride) / length);
+            const double farthest = std::min(1.0, std::max(reach, most * stride) / length);
             share = std::min(share, farthest);
-            if (first_crossing(surface(), from, glm::round(from + farthest * way), StartsOn::nothing(), crossing,
+            if ((lands || farthest * length > reach) &&
+                first_crossing(surface(), from, glm::round(from + farthest * way), StartsOn::nothing(), crossing,
                                collision_))
                 share = std::min(share, std::max(lands ? 0.0 : reach / length,
                                                  farthest * crossing.fraction() - 2 * rest_gap / length));

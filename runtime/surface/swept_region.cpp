@@ -3,7 +3,6 @@
 #include "runtime/surface/four_boxes.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace haptel::runtime {
 

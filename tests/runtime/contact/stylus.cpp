@@ -371,3 +371,23 @@ TEST_CASE("a shaft whose ends go round either border of a rail in one tick stays
         }
     }
 }
+
+TEST_CASE("a shaft lies on a plate of fine cells, and is not let go of")
+{
+    Mesh plate = make_plane(256);
+    scale_to_size(plate, 0.1);
+    const auto surface = build_surface(plate).surface;
+    for (const double degrees : {0.0, 10.0, 45.0}) {
+        const dvec3 along(std::cos(glm::radians(degrees)), std::sin(glm::radians(degrees)), 0);
+        StylusContact stylus(surface);
+        for (int tick = 0; tick < 300; ++tick) {
+            const dvec3 tip = -0.04 * along + dvec3(0, 2e-5 * tick, std::max(-1e-3, 1e-3 - 5e-5 * tick));
+            stylus.update(tip, tip + 0.08 * along, {});
+        }
+        CAPTURE(degrees, stylus.counters().walks_cut);
+        CHECK(stylus.ideal().has_value());
+        double pushes_m = 0; // of both ends together
+        for (const Contact& contact : stylus.contacts()) pushes_m += contact.depth_m * contact.normal.z;
+        CHECK(pushes_m == Approx(2e-3).epsilon(1e-6));
+    }
+}

@@ -52,6 +52,10 @@ TEST_CASE("all triangles that a moving shaft can meet are visited, each once")
                         continue;
                     ++met;
                     CHECK(std::binary_search(visited.begin(), visited.end(), f));
+                    CHECK(region.meets(*s, f));
+                    // A part of the way meets nothing that the whole does not.
+                    const SweptRegion part(glm::round(tip), glm::round(tail), from, to, 0);
+                    CHECK(part.meets(*s, f));
                 }
             }
         }
