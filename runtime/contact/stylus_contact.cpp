@@ -183,8 +183,7 @@ bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_
     if (!(farther(clear_.at, to) < clear_.radius)) {
         ++collision_.sweeps;
         clear_.radius = 0;
-        if (!SweptRegion(shaft_.tip, shaft_.tail, to.tip, to.tail, rest_gap + reach).is_empty(*surface().tree))
-            return false;
+        if (!swept_to(to).is_empty(*surface().tree)) return false;
         if (skips_free_space_) unspared_ = farther(shaft_, to);
     }
     shaft_ = to;

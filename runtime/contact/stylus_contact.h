@@ -143,8 +143,9 @@ private:
     void hold(const FrictionOfEnds& ends, bool settled) noexcept;
     bool move(const Shaft& to) noexcept;
     void cross(uint32_t face, const Shaft& at, std::optional<Crossing>& first) const noexcept;
-    bool find_near(const Shaft& to) noexcept;
-    bool blocked(const Shaft& to, Obstacle& obstacle) noexcept;
+    SweptRegion swept_to(const Shaft& to) const noexcept;
+    bool find_near(const SweptRegion& swept) noexcept;
+    bool blocked(const Shaft& to, const SweptRegion& swept, Obstacle& obstacle) noexcept;
     bool is_below_a_side(uint32_t vertex0, uint32_t vertex1, const Shaft& to) const noexcept;
     void approach(const Shaft& to, const Obstacle& obstacle) noexcept;
     bool is_side(const glm::dvec3& edge0, const glm::dvec3& edge1) const noexcept;

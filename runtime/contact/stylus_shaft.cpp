@@ -89,8 +89,9 @@ bool StylusContact::move(const Shaft& to) noexcept
     close_ = {};
     close_.height = near_enough;
     met_ = {};
-    if (!find_near(to)) return false;
-    if (!blocked(to, met_)) {
+    const SweptRegion swept = swept_to(to);
+    if (!find_near(swept)) return false;
+    if (!blocked(to, swept, met_)) {
         shaft_ = to;
         touch(close_);
         return true;
@@ -117,7 +118,10 @@ bool StylusContact::go_apart(const EndsFriction& friction) noexcept
     const auto goes = [&](const Shaft& there) {
         close_ = {};
         close_.height = near_enough;
-        if (there != shaft_ && (!find_near(there) || blocked(there, met_) || close_.side != 0)) return false;
+        if (there != shaft_)
+            if (const SweptRegion swept = swept_to(there);
+                !find_near(swept) || blocked(there, swept, met_) || close_.side != 0)
+                return false;
         shaft_ = there;
         return true;
     };
@@ -199,11 +203,15 @@ void StylusContact::cross(uint32_t face, const Shaft& at, std::optional<Crossing
         first = crossing;
 }
 
+SweptRegion StylusContact::swept_to(const Shaft& to) const noexcept
+{
+    return {shaft_.tip, shaft_.tail, to.tip, to.tail, rest_gap + reach};
+}
+
 // What may be met on a straight way from where it is. False: more than may be looked at on one way.
-bool StylusContact::find_near(const Shaft& to) noexcept
+bool StylusContact::find_near(const SweptRegion& swept) noexcept
 {
     const Surface& s = surface();
-    const SweptRegion swept(shaft_.tip, shaft_.tail, to.tip, to.tail, rest_gap + reach);
     near_count_ = 0;
     const bool all = s.tree->for_each(swept, [&](uint32_t face) {
         if (near_count_ == near_.size()) return false;
@@ -218,7 +226,7 @@ bool StylusContact::find_near(const Shaft& to) noexcept
 }
 
 // Whether the straight move meets an edge, or ends across a triangle, of those found on it.
-bool StylusContact::blocked(const Shaft& to, Obstacle& obstacle) noexcept
+bool StylusContact::blocked(const Shaft& to, const SweptRegion& swept, Obstacle& obstacle) noexcept
 {
     const Surface& s = surface();
     bool met = false;
@@ -226,7 +234,6 @@ bool StylusContact::blocked(const Shaft& to, Obstacle& obstacle) noexcept
     obstacle.exact = false;
     const Shaft& from = shaft_;
     const ShaftMove move(from, to);
-    const SweptRegion swept(from.tip, from.tail, to.tip, to.tail, rest_gap + reach);
     std::optional<Crossing> crossing;
     for (std::size_t i = 0; i < near_count_; ++i) {
         if (i + BoxTree::lookahead < near_count_)
@@ -282,7 +289,7 @@ void StylusContact::approach(const Shaft& to, const Obstacle& obstacle) noexcept
         const Shaft there{glm::round(shaft_.tip + time * (to.tip - shaft_.tip)),
                           glm::round(shaft_.tail + time * (to.tail - shaft_.tail))};
         Obstacle other;
-        if (blocked(there, other)) continue;
+        if (blocked(there, swept_to(there), other)) continue;
         shaft_ = there;
         return;
     }
