@@ -279,6 +279,14 @@ bool SphereContact::move(const Friction& friction) noexcept
         return false;
     }
     const bool in_air = !proxy_.touches();
+    if (in_air && grown_ == radius_ && faces_.count() == 0 &&
+        around_.room(proxy_.at) >= glm::distance(hand_, proxy_.at)) { // nothing is near
+        ++counters_.skipped;
+        proxy_.at = hand_;
+        lag_ = 0;
+        tell_free();
+        return true;
+    }
     const glm::dvec3 start = proxy_.at;
     Way way = travel(in_air);
     // How far it had looked around before decides how its way is cut into steps, and friction feels them: where it

@@ -18,6 +18,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 
 namespace haptel::runtime {
 
@@ -149,7 +150,8 @@ private:
     void keep_told() noexcept;
     bool stands(const Held& held) const noexcept;
     NearestPoint nearest_on(uint32_t face, const glm::dvec3& centre) const noexcept;
-    uint32_t touching_face(uint32_t face, const glm::dvec3& normal, const glm::dvec3& centre) noexcept;
+    std::pair<uint32_t, NearestPoint> touching_face(uint32_t face, const glm::dvec3& normal,
+                                                    const glm::dvec3& centre) noexcept;
     void tell(const Held& held, const glm::dvec3& nearest) noexcept;
     void tell_free() noexcept;
     void tell_nothing() noexcept;

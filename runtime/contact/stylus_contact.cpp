@@ -122,19 +122,20 @@ bool StylusContact::take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noex
     hand_ = hand;
     if (tip_->proxy().touches()) hand_.tip = Lattice::snap_units(hand_.tip); // it does not let go of a hand that is far
     const glm::dvec3 along = hand_.tail - hand_.tip;
+    const auto in_workspace = [](const glm::dvec3& end) {
+        return glm::all(glm::lessThanEqual(glm::abs(end), glm::dvec3(Lattice::workspace)));
+    };
+    const bool tip_is_in = in_workspace(hand_.tip), tail_is_in = in_workspace(hand_.tail);
     begin_ = 0, end_ = 1;
-    for (int k = 0; k < 3; ++k) {
+    for (int k = 0; k < 3 && !(tip_is_in && tail_is_in); ++k) {
         const double low = -drawn_in - hand_.tip[k], high = drawn_in - hand_.tip[k];
         if (along[k] == 0 && (low > 0 || high < 0)) return false;
         if (along[k] == 0) continue;
         begin_ = std::max(begin_, std::min(low / along[k], high / along[k]));
         end_ = std::min(end_, std::max(low / along[k], high / along[k]));
     }
-    const auto in_workspace = [](const glm::dvec3& end) {
-        return glm::all(glm::lessThanEqual(glm::abs(end), glm::dvec3(Lattice::workspace)));
-    };
-    if (in_workspace(hand_.tip)) begin_ = 0, hand_.tip = glm::round(hand_.tip); // as the hand of a point is
-    if (in_workspace(hand_.tail)) end_ = 1, hand_.tail = glm::round(hand_.tail);
+    if (tip_is_in) begin_ = 0, hand_.tip = glm::round(hand_.tip); // as the hand of a point is
+    if (tail_is_in) end_ = 1, hand_.tail = glm::round(hand_.tail);
     return (end_ - begin_) * glm::length(along) > least_length; // false for what is not finite, too
 }
 
@@ -263,6 +264,7 @@ void StylusContact::tell(double along, uint32_t face, const glm::dvec3& point, c
 // have not come to agree it is held by what it does not know yet. So the force is that of the potential in every tick.
 void StylusContact::tell_what_is_left() noexcept
 {
+    if (left_ == Shaft()) return;
     const Shaft ideal = extended(shaft_);
     const glm::dvec3 &tip = left_.tip, &tail = left_.tail;
     const double least = std::max(least_push / (end_ - begin_), least_push_share * away(shaft_));

@@ -198,10 +198,6 @@ Shaft StylusContact::on_the_way(const Shaft& to, double share, const FrictionOfE
 
 void StylusContact::resolve(const EndsFriction& friction) noexcept
 {
-    const double away_first = away(shaft_);
-    const Shaft shaft_first = shaft_;
-    const auto sides_first = sides_;
-    const uint32_t side_count_first = side_count_;
     FrictionOfEnds ends;
     ends.tip.friction = checked(friction.tip);
     ends.tail.friction = checked(friction.tail);
@@ -213,6 +209,10 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     sweeps_left_ = sweeps_max;
     met_ = {};
     if (go_apart(friction)) return;
+    const double away_first = away(shaft_);
+    const Shaft shaft_first = shaft_;
+    const auto sides_first = sides_;
+    const uint32_t side_count_first = side_count_;
     tip_->set_sliding(ends.tip.slides);
     tail_->set_sliding(ends.tail.slides);
     if (contact_count_ == 0) { // whoever comes to touch from the same place feels the same

@@ -25,6 +25,7 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
     : refused_(validate(scene.get(), hand))
     , scene_(refused_.empty() ? std::move(scene) : std::make_shared<const Scene>())
     , hand_(refused_.empty() ? hand : HandSettings())
+    , in_workspace_(hand_.workspace.moves())
     , probe_(hand_.probe.value_or(scene_->probe))
     , period_s_(1 / scene_->servo.rate_hz)
     , force_limit_n_(hand_.force_max_n > 0 ? std::min(hand_.force_max_n, scene_->servo.force_limit_n)
@@ -64,7 +65,7 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
 {
     if (!refused_.empty()) return {.faults = fault_scene_refused};
     const Workspace& workspace = hand_.workspace;
-    if (!workspace.moves()) return tick_in_scene(pose);
+    if (!in_workspace_) return tick_in_scene(pose);
     TickResult result = tick_in_scene(workspace.to_scene(pose));
     result.force_n = workspace.direction_to_hand(result.force_n);
     result.unlimited_force_n = workspace.direction_to_hand(result.unlimited_force_n);
@@ -135,15 +136,16 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
         if (!take_pose(body, pose, periods)) continue;
         skipped_.objects -= body.objects.numbers().size();
         work_.objects += body.objects.numbers().size();
-        const uint64_t spared = body.contact.counters().skipped, cut = body.contact.counters().walks_cut;
+        const ContactCounters& counters = body.contact.counters();
+        const uint64_t spared = counters.skipped, cut = counters.walks_cut;
         ProbePose probe = body.pose_of(pose);
         if (effects_act && body.objects.joined) probe.tip_m += shares_.effects * body.aim_m;
         std::span<const Contact> contacts =
             update_contact(body, probe, {body.tip_friction.mean, body.tail_friction.mean});
         contacts = crease_rows_.of(*body.objects.surface(*scene_), contacts);
         if (body.bounded) track_velocity(number, pose, periods, !contacts.empty());
-        skipped.query = skipped.query && body.contact.counters().skipped > spared;
-        if (body.contact.counters().walks_cut > cut) result.faults |= fault_contact_unfinished;
+        skipped.query = skipped.query && counters.skipped > spared;
+        if (counters.walks_cut > cut) result.faults |= fault_contact_unfinished;
         const PartContacts alone{0, contacts};
         const std::span<const PartContacts> parts =
             body.objects.joined ? by_part_.of(*scene_, *body.objects.joined, contacts) : std::span(&alone, 1);
@@ -157,7 +159,8 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
         }
         for (const PartContacts& part : parts) render_object(body, contacts, part, pose, result, skipped);
     }
-    const double left_work_j = last_pose_ ? work_j(swapped_ ? sent_ : left_, *last_pose_, pose) : 0.0;
+    const OnHand& left = swapped_ ? sent_ : left_;
+    const double left_work_j = last_pose_ && left != OnHand() ? work_j(left, *last_pose_, pose) : 0.0;
     last_pose_ = pose;
     last_pose_period_ = period_;
     skipped_.free_space += skipped.query;

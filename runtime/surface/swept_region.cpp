@@ -3,6 +3,7 @@
 #include "runtime/surface/four_boxes.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace haptel::runtime {
 
@@ -28,24 +29,22 @@ SweptRegion::SweptRegion(const glm::dvec3& tip0, const glm::dvec3& tail0, const 
     const glm::dvec3 shaft = ends[1] - ends[0];
     const double length = glm::length(shaft);
     if (length == 0) return;
-    const auto add = [&](const glm::dvec3& across) {
-        const double size = glm::length(across);
-        if (!(size > 0)) return;
-        const glm::dvec3 direction = across / size;
+    const auto add = [&](const glm::dvec3& across, double square) { // of its length
+        const glm::dvec3 direction = across * (1 / std::sqrt(square));
         const double at[] = {glm::dot(direction, ends[0]), glm::dot(direction, ends[1]), glm::dot(direction, ends[2]),
                              glm::dot(direction, ends[3])};
-        const auto [least, most] = std::minmax({at[0], at[1], at[2], at[3]});
-        axes_[axis_count_++] = {direction, static_cast<float>(least - wide), static_cast<float>(most + wide)};
+        axes_[axis_count_++] = {direction,
+                                static_cast<float>(std::min(std::min(at[0], at[1]), std::min(at[2], at[3])) - wide),
+                                static_cast<float>(std::max(std::max(at[0], at[1]), std::max(at[2], at[3])) + wide)};
     };
     const glm::dvec3 along = shaft / length;
-    add(glm::cross(along, 0.5 * (ends[2] + ends[3] - ends[0] - ends[1])));
-    for (int k = 0; k < 3; ++k) { // two of the three span what is across; each is the best against some boxes
-        glm::dvec3 unit(0);
-        unit[k] = 1;
-        const glm::dvec3 across = glm::cross(along, unit);
-        if (glm::dot(across, across) > least_across) add(across);
-    }
-    add(along);
+    const glm::dvec3 turned = glm::cross(along, 0.5 * (ends[2] + ends[3] - ends[0] - ends[1]));
+    if (const double square = glm::dot(turned, turned); square > 0) add(turned, square);
+    // Two of the three span what is across; each is the best against some boxes.
+    const glm::dvec3 across[] = {{0, along.z, -along.y}, {-along.z, 0, along.x}, {along.y, -along.x, 0}};
+    for (int k = 0; k < 3; ++k)
+        if (const double square = 1 - along[k] * along[k]; square > least_across) add(across[k], square);
+    add(along, 1);
 }
 
 bool SweptRegion::meets(const Surface& surface, uint32_t face) const noexcept
@@ -71,22 +70,27 @@ uint32_t SweptRegion::met(const BoxTree::Node& node) const noexcept
             all &= (four(node.low[k] + first) <= all_of(high_[k])) & (four(node.high[k] + first) >= all_of(low_[k]));
         return all;
     };
+    // Of a box by its centre and half its size.
     const auto along_axes = [&](uint32_t first, FourBits all) {
+        Four centre[3], half_size[3];
+        for (int k = 0; k < 3; ++k) {
+            const Four low = four(node.low[k] + first), high = four(node.high[k] + first);
+            centre[k] = 0.5f * (low + high);
+            half_size[k] = 0.5f * (high - low);
+        }
         for (uint32_t i = 0; i < axis_count_; ++i) {
             const auto& [direction, low, high] = axes_[i];
-            Four least_there = all_of(0), most_there = all_of(0);
-            for (int k = 0; k < 3; ++k) {
-                const bool backward = direction[k] < 0;
-                least_there += all_of(direction[k]) * four((backward ? node.high : node.low)[k] + first);
-                most_there += all_of(direction[k]) * four((backward ? node.low : node.high)[k] + first);
-            }
-            all &= (least_there <= all_of(high)) & (most_there >= all_of(low));
+            const glm::vec3 size = glm::abs(direction);
+            const Four at = direction.x * centre[0] + direction.y * centre[1] + direction.z * centre[2];
+            const Four reach = size.x * half_size[0] + size.y * half_size[1] + size.z * half_size[2];
+            all &= (at - reach <= all_of(high)) & (at + reach >= all_of(low));
         }
         return all;
     };
-    const FourBits first = in_box(0), second = in_box(half);
-    if (bits(first, second) == 0) return 0;
-    return bits(along_axes(0, first), along_axes(half, second));
+    FourBits first = in_box(0), second = in_box(half);
+    if (bits(first, FourBits{}) != 0) first = along_axes(0, first);
+    if (bits(FourBits{}, second) != 0) second = along_axes(half, second);
+    return bits(first, second);
 }
 
 } // namespace haptel::runtime
