@@ -6,6 +6,7 @@
 #include "tests/conformance/request.h"
 #include "tests/jit/codegen/batch.h"
 #include "tests/support/ball.h"
+#include "tests/support/tries.h"
 
 using namespace haptel;
 using namespace haptel::lang::test;
@@ -86,10 +87,12 @@ TEST_CASE("conformance: every form of code gives the values of every file, to it
 {
     using jit::Effort, jit::Precision;
     size_t bits = 0, rounded = 0, undecided = 0;
+    std::size_t number = 0;
     for (const CaseFile& file : case_files()) {
         INFO(file.name);
         const Case wanted = read_case(file.text);
         if (wanted.evaluations.empty()) continue;
+        if (test::is_sanitized && ++number % 4 != 0) continue; // what compiles them is slow then
         const Program exact(wanted, Precision::f64, false, Effort::draft),
             full(wanted, Precision::f64, false, Effort::full), mixed(wanted, Precision::mixed, false, Effort::quick),
             single(wanted, Precision::f32, false, Effort::quick), lanes(wanted, Precision::mixed, true, Effort::quick);
@@ -116,7 +119,7 @@ TEST_CASE("conformance: every form of code gives the values of every file, to it
             sample(lanes.bind(at), at.point);
         }
     }
-    CHECK(bits >= 200);
+    CHECK(bits >= test::tries(200u));
     INFO(rounded << " held to rounding, " << undecided << " decided by it");
     CHECK(rounded > undecided);
 }

@@ -130,7 +130,9 @@ TEST_CASE("on every shape each map's gradient is that of its height along the su
 {
     const auto program = compiled(source);
     std::mt19937_64 random(12);
+    int number = 0;
     for (const std::string_view shape : shape_names) {
+        if (is_sanitized && ++number % 3 != 0) continue;
         Mesh mesh = *make_shape(shape);
         scale_to_size(mesh, 0.1);
         const auto surface = build_surface(mesh).surface;
@@ -210,6 +212,7 @@ TEST_CASE("bounds of a texture that reads the normal hold on the mesh that it is
         // Without that knowledge there is no bound.
         TextureRequest unknown = request_over(0.1);
         CHECK(std::isinf(jit::make_binding(program, "in_three_planes", unknown).binding->facts.slope_max));
+        if (is_sanitized) break; // which takes long to bind them
     }
 }
 

@@ -11,7 +11,7 @@ using test::sample_at;
 TEST_CASE("a texture too slow for the servo of its request is refused with the figure, from its first binding on")
 {
     const test::Folder folder;
-    folder.write("slow.haptel", "texture slow() { float h = 0.0; for (int i = 0; i < 2000; ++i)"
+    folder.write("slow.haptel", "texture slow() { float h = 0.0; for (int i = 0; i < 500; ++i)"
                                 " h += sin(p.x / 1mm + float(i)); return clamp(1um * h, -1mm, 1mm); }");
     const TextureResolver resolve = jit::make_resolver(std::make_shared<jit::ProgramCache>());
     TextureRequest request = request_over(0.05);
@@ -19,7 +19,7 @@ TEST_CASE("a texture too slow for the servo of its request is refused with the f
     CHECK(resolve(request).binding); // no servo waits
     request.servo_period_s = 1;
     CHECK(resolve(request).binding);
-    request.servo_period_s = 1e-6; // 2000 sines and cosines in 0.2 us
+    request.servo_period_s = 1e-6; // 500 sines and cosines in 0.2 us
     const TextureResult refused = resolve(request);
     CHECK_FALSE(refused.binding);
     INFO(refused.diagnostics);

@@ -262,7 +262,7 @@ TEST_CASE("joined: no hand gets inside, however it wanders and jumps, and from w
                 dvec3 hand(0.5, 0.5, 2.5);
                 contact.update(turn * hand);
                 double deepest = 0;
-                for (int tick = 0; tick < 10000; ++tick) {
+                for (int tick = 0; tick < tries(10000); ++tick) {
                     const dvec3 goal = {0.6 + 0.9 * std::cos(0.0007 * tick), 0.5 + 0.9 * std::cos(0.0011 * tick + 1),
                                         0.4 * std::cos(0.0005 * tick)};
                     const bool jumps = manner == Hand::jumps;
@@ -284,5 +284,5 @@ TEST_CASE("joined: no hand gets inside, however it wanders and jumps, and from w
                 CAPTURE(seed, int(manner), boxes.size());
                 CHECK(deepest < 5e-7);
             }
-    CHECK(touching > 80000);
+    CHECK(touching > tries(80000));
 }

@@ -137,7 +137,7 @@ TEST_CASE("an object that goes nobody knows where is left alone while it is far 
 TEST_CASE("objects that move and are left alone change no bit of what is felt")
 {
     for (const ProbeKind kind : {ProbeKind::point, ProbeKind::sphere, ProbeKind::stylus, ProbeKind::gripper})
-        for (const unsigned seed : {1u, 2u}) {
+        for (unsigned seed = 1; seed <= (test::is_sanitized ? 1 : 2); ++seed) {
             CAPTURE(int(kind), seed);
             Scene scene = moving_field(seed);
             scene.probe = {kind, kind == ProbeKind::gripper ? 0.03 : 0.1, kind == ProbeKind::sphere ? 3e-3 : 0.0};

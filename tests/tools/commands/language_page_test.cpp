@@ -2,6 +2,7 @@
 // that stand in it.
 #include "tests/conformance/case.h"
 #include "tests/support/catch.h"
+#include "tests/support/tries.h"
 #include "tests/tools/commands/run_command.h"
 #include "tools/output/json.h"
 
@@ -94,11 +95,12 @@ TEST_CASE("language page: every example does what it says")
         CHECK(found == wanted);
         const Case parsed = haptel::lang::test::read_case(fence.text);
         CHECK(parsed.malformed == "");
+        if (is_sanitized && examples % 4 != 0) continue; // a command for each value takes long then
         for (const Evaluation& evaluation : parsed.evaluations) {
             check_value(file, evaluation);
             ++values;
         }
     }
     CHECK(examples > 35);
-    CHECK(values > 10);
+    CHECK(values > tries(10u));
 }
