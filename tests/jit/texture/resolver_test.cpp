@@ -11,7 +11,7 @@ using test::sample_at;
 TEST_CASE("a texture too slow for the servo of its request is refused with the figure, from its first binding on")
 {
     const test::Folder folder;
-    folder.write("slow.haptel", "texture slow() { float h = 0.0; for (int i = 0; i < 500; ++i)"
+    folder.write("slow.haptel", "texture slow() { float h = 0.0; for (int i = 0; i < 100; ++i)"
                                 " h += sin(p.x / 1mm + float(i)); return clamp(1um * h, -1mm, 1mm); }");
     const TextureResolver resolve = jit::make_resolver(std::make_shared<jit::ProgramCache>());
     TextureRequest request = request_over(0.05);
@@ -19,12 +19,12 @@ TEST_CASE("a texture too slow for the servo of its request is refused with the f
     CHECK(resolve(request).binding); // no servo waits
     request.servo_period_s = 1;
     CHECK(resolve(request).binding);
-    request.servo_period_s = 1e-6; // 500 sines and cosines in 0.2 us
+    request.servo_period_s = 1e-7; // 100 sines and cosines in 0.02 us
     const TextureResult refused = resolve(request);
     CHECK_FALSE(refused.binding);
     INFO(refused.diagnostics);
     CHECK(contains(refused.diagnostics, "slow.haptel: error: texture 'slow' takes "));
-    CHECK(contains(refused.diagnostics, "per call (median), more than the 0.2 us that a servo period of 1 us"));
+    CHECK(contains(refused.diagnostics, "per call (median), more than the 0.02 us that a servo period of 0.1 us"));
 }
 
 TEST_CASE("the resolver finds textures by reference, and explains what it does not find")

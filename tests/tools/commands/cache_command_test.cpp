@@ -1,5 +1,6 @@
 // Code on disk through the command: whatever becomes of the folder, the answers are the same.
 #include "tests/support/catch.h"
+#include "tests/support/tries.h"
 #include "tests/tools/commands/run_command.h"
 #include "tools/output/json.h"
 
@@ -32,6 +33,7 @@ Json status_of(const std::string& cache)
 
 TEST_CASE("cache: shows, primes and empties; switched off or not to be used it says so")
 {
+    if (is_sanitized) return; // which takes long to compile all of the library
     const Folder folder;
     const std::string cache = folder.file("cache"), use = "HAPTEL_CACHE='" + cache + "'";
     CHECK(status_of(cache)["objects"] == 0);
