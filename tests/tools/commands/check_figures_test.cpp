@@ -150,7 +150,7 @@ TEST_CASE("check: octaves that fade along a surface leave no jump, and a choice 
     CHECK(textures[0]["continuity"] == "C1");
     CHECK(textures[1]["continuity"] == "C1");
     CHECK(textures[2]["continuity"] == "jump");
-    if (!is_sanitized) // which takes long to measure
+    if (!is_sanitized)                                                       // which takes long to measure
         CHECK(run_command("test --footprint 3mm '" + file + "'").code == 0); // nothing rougher than that is measured
 }
 
