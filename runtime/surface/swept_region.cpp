@@ -13,9 +13,6 @@ namespace {
 // object lies within 1, the corner off by 2^-22; the region within 7, its end off by 2^-22, its axis by 2^-24.
 constexpr float rounding = 0x1p-20f;
 
-// The sine of the angle between the shaft and an axis of space, squared, below which both have no right angle.
-constexpr double least_across = 1e-6;
-
 } // namespace
 
 SweptRegion::SweptRegion(const glm::dvec3& tip0, const glm::dvec3& tail0, const glm::dvec3& tip1,
@@ -40,11 +37,12 @@ SweptRegion::SweptRegion(const glm::dvec3& tip0, const glm::dvec3& tail0, const 
     const glm::dvec3 along = shaft / length;
     const glm::dvec3 turned = glm::cross(along, 0.5 * (ends[2] + ends[3] - ends[0] - ends[1]));
     if (const double square = glm::dot(turned, turned); square > 0) add(turned, square);
-    // Two of the three span what is across; each is the best against some boxes.
+    // And to an axis of space, each of the two to which it is turned least.
+    const glm::dvec3 size = glm::abs(along);
+    const int most = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
     const glm::dvec3 across[] = {{0, along.z, -along.y}, {-along.z, 0, along.x}, {along.y, -along.x, 0}};
     for (int k = 0; k < 3; ++k)
-        if (const double square = 1 - along[k] * along[k]; square > least_across) add(across[k], square);
-    add(along, 1);
+        if (k != most) add(across[k], 1 - along[k] * along[k]);
 }
 
 bool SweptRegion::meets(const Surface& surface, uint32_t face) const noexcept

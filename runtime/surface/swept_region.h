@@ -33,7 +33,7 @@ private:
 
     // In the tree's own numbers.
     glm::vec3 low_, high_;
-    std::array<Axis, 5> axes_; // at right angles to the plane that it sweeps and to the shaft, and along that
+    std::array<Axis, 3> axes_; // at right angles to the shaft, the first also to the plane that it sweeps
     uint32_t axis_count_ = 0;
 };
 
