@@ -44,6 +44,10 @@ bool take_in(haptel_point& point, const SurfacePoint& at, uint32_t reads)
 void distrust(haptel_sample& sample)
 {
     glm::dvec3 gradient(sample.gradient[0], sample.gradient[1], sample.gradient[2]);
+    const double sum = sample.height_m + gradient.x + gradient.y + gradient.z; // finite if they are not too large
+    if (std::isfinite(sum + sample.stiffness_scale + sample.friction_scale) && sample.stiffness_scale >= 0 &&
+        sample.friction_scale >= 0)
+        return;
     const bool height_ok = std::isfinite(sample.height_m);
     if (!height_ok) {
         sample.height_m = 0;
