@@ -224,7 +224,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
     bool settled = false, blind = false;
     Shaft to = shaft_;
     uint32_t round = 0;
-    for (; round < rounds_max && sweeps_left_ > 0; ++round) {
+    for (; sweeps_left_ > 0; ++round) {
         stride = std::max({stride, 64.0, least_reach * farther(extended(shaft_), hand_)});
         blind = !look(stride, ends, round == 0);
         if (blind) break;
