@@ -21,7 +21,7 @@ bool may_be_on_crease(const Surface& surface, const Contact& contact)
 
 } // namespace
 
-std::span<const Contact> CreaseRows::of(const Surface& surface, std::span<const Contact> contacts) noexcept
+std::span<const Contact> CreaseRows::parted(const Surface& surface, std::span<const Contact> contacts) noexcept
 {
     const auto is_one = [&](const Contact& contact) { return may_be_on_crease(surface, contact); };
     if (std::none_of(contacts.begin(), contacts.end(), is_one)) return contacts;

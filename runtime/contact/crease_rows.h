@@ -6,6 +6,7 @@
 
 #include "runtime/contact/contact.h"
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -18,11 +19,16 @@ class CreaseRows {
 public:
     static constexpr std::size_t rows_most = 24; // of 16 contacts, four of them on creases
 
-    std::span<const Contact> of(const Surface& surface, std::span<const Contact> contacts) noexcept;
+    std::span<const Contact> of(const Surface& surface, std::span<const Contact> contacts) noexcept
+    {
+        const auto on_facet = [](const Contact& contact) { return contact.normal == contact.facet_normal; };
+        return std::all_of(contacts.begin(), contacts.end(), on_facet) ? contacts : parted(surface, contacts);
+    }
 
 private:
     static constexpr std::size_t facets_most = 32;
 
+    std::span<const Contact> parted(const Surface& surface, std::span<const Contact> contacts) noexcept;
     void add(const Surface& surface, const Contact& contact, std::size_t room) noexcept;
 
     std::array<Contact, rows_most> rows_;

@@ -15,7 +15,7 @@ constexpr double margin_of_point = 1.0 / 16, margin_of_ball = 1.0 / 8, margin_le
 constexpr double look_again = 0.25;
 
 // Where there are fewer faces it looks farther around, where there are more less far.
-constexpr std::size_t few_faces = 16, many_faces = 64;
+constexpr std::size_t few_faces = 8, many_faces = 24;
 
 // A point looks farther around than margin_of_point only for so many faces. Where there are too many for a point or a
 // ball it looks less far by this, so often below its margin.
@@ -62,7 +62,9 @@ bool SphereContact::look_as_far_as(double way) noexcept
 {
     const double enough = is_point_ ? look_again * margin_ : margin_least * radius_;
     if (around_.room(proxy_.at) >= std::min(way, enough) && !faces_.is_crowded()) return true;
-    return find_around(std::clamp(2 * way, margin_least * radius_, std::max(margin_, margin_of_point * radius_)));
+    // A quarter of its rounds have to do for the straight way.
+    const double farthest = std::max({margin_, margin_of_point * radius_, 4 * way / rounds_max});
+    return find_around(std::clamp(2 * way, margin_least * radius_, farthest));
 }
 
 // A point meets few faces, and what lies behind others does not hold it at every edge. A ball meets hundreds: its
