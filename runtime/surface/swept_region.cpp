@@ -9,8 +9,8 @@ namespace haptel::runtime {
 
 namespace {
 
-// What rounding to single precision may make of a corner's place along an axis, and of where the region ends there. The
-// object lies within 1, the corner off by 2^-22; the region within 7, its end off by 2^-22, its axis by 2^-24.
+// What rounding to single precision may make of a box's place along an axis, and of where the region ends there. The
+// object lies within 1, so that the place is off by 9 * 2^-24; the region within 7, its end off by 4, its axis by 2.
 constexpr float rounding = 0x1p-20f;
 
 } // namespace
