@@ -20,7 +20,7 @@ public:
     static constexpr std::size_t rows_most = 24; // of 16 contacts, four of them on creases
 
     std::span<const Contact> of(const Surface& surface, std::span<const Contact> contacts) noexcept
-    {
+    { // most are on facets: a tick asks nothing more of them
         const auto on_facet = [](const Contact& contact) { return contact.normal == contact.facet_normal; };
         return std::all_of(contacts.begin(), contacts.end(), on_facet) ? contacts : parted(surface, contacts);
     }

@@ -14,7 +14,8 @@ constexpr double margin_of_point = 1.0 / 16, margin_of_ball = 1.0 / 8, margin_le
 // A point looks anew where it knows less far than this share of what a look may tell.
 constexpr double look_again = 0.25;
 
-// Where there are fewer faces it looks farther around, where there are more less far.
+// Where there are fewer faces it looks farther around, where there are more less far: a look costs by the face, and
+// each tick goes through all that are known.
 constexpr std::size_t few_faces = 8, many_faces = 24;
 
 // A point looks farther around than margin_of_point only for so many faces. Where there are too many for a point or a

@@ -98,10 +98,6 @@ bool lies_beyond(const Body& body, const ProbePose& probe, double away_m) noexce
 void MeanFriction::add(const Friction& friction, double push_n) noexcept
 {
     if (!(push_n > 0)) return;
-    if (pushing_n == 0) { // most ends touch one thing, and need no division
-        *this = {friction, push_n};
-        return;
-    }
     pushing_n += push_n;
     const double share = push_n / pushing_n;
     mean.static_coefficient += share * (friction.static_coefficient - mean.static_coefficient);

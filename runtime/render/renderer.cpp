@@ -25,7 +25,7 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
     : refused_(validate(scene.get(), hand))
     , scene_(refused_.empty() ? std::move(scene) : std::make_shared<const Scene>())
     , hand_(refused_.empty() ? hand : HandSettings())
-    , in_workspace_(hand_.workspace.moves())
+    , workspace_moves_(hand_.workspace.moves())
     , probe_(hand_.probe.value_or(scene_->probe))
     , period_s_(1 / scene_->servo.rate_hz)
     , force_limit_n_(hand_.force_max_n > 0 ? std::min(hand_.force_max_n, scene_->servo.force_limit_n)
@@ -65,7 +65,7 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
 {
     if (!refused_.empty()) return {.faults = fault_scene_refused};
     const Workspace& workspace = hand_.workspace;
-    if (!in_workspace_) return tick_in_scene(pose);
+    if (!workspace_moves_) return tick_in_scene(pose);
     TickResult result = tick_in_scene(workspace.to_scene(pose));
     result.force_n = workspace.direction_to_hand(result.force_n);
     result.unlimited_force_n = workspace.direction_to_hand(result.unlimited_force_n);

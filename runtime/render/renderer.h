@@ -177,7 +177,7 @@ private:
     std::string refused_;
     std::shared_ptr<const Scene> scene_; // if it is refused, one with nothing in it
     HandSettings hand_;
-    bool in_workspace_; // of its own
+    bool workspace_moves_; // which is twelve comparisons
     ProbeSettings probe_;
     double period_s_;
     double force_limit_n_;

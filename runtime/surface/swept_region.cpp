@@ -37,7 +37,7 @@ SweptRegion::SweptRegion(const glm::dvec3& tip0, const glm::dvec3& tail0, const 
     const glm::dvec3 along = shaft / length;
     const glm::dvec3 turned = glm::cross(along, 0.5 * (ends[2] + ends[3] - ends[0] - ends[1]));
     if (const double square = glm::dot(turned, turned); square > 0) add(turned, square);
-    // And to an axis of space, each of the two to which it is turned least.
+    // Two across the shaft: at right angles to the axes of space along which it lies least.
     const glm::dvec3 size = glm::abs(along);
     const int most = size.x > size.y ? (size.x > size.z ? 0 : 2) : (size.y > size.z ? 1 : 2);
     const glm::dvec3 across[] = {{0, along.z, -along.y}, {-along.z, 0, along.x}, {along.y, -along.x, 0}};
