@@ -13,6 +13,8 @@ namespace haptel::runtime {
 // Coulomb friction coefficients, no unit; negative or not finite counts as 0, dynamic is held at most static.
 struct Friction {
     double static_coefficient = 0, dynamic_coefficient = 0;
+
+    bool operator==(const Friction&) const = default;
 };
 WalkFriction checked(const Friction& friction) noexcept;
 
@@ -31,6 +33,7 @@ struct EndsFriction {
     EndsFriction() = default;
     EndsFriction(const Friction& both) : tip(both), tail(both) {}
     EndsFriction(const Friction& of_tip, const Friction& of_tail) : tip(of_tip), tail(of_tail) {}
+    bool operator==(const EndsFriction&) const = default;
 };
 
 // Where and how the probe touches after a tick. If !touching, proxy_m is the hand and the rest is meaningless.
@@ -66,17 +69,19 @@ struct Contact {
 // rate. Without dynamic friction it never does: what slid sticks again where it comes down anew.
 bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const WalkFriction& friction) noexcept;
 
-// Since construction or reset().
-struct ContactCounters {
-    uint64_t ticks = 0, touching_ticks = 0;
-    uint64_t skipped = 0;                        // free ticks that a known clearance spared a query
-    uint64_t sweeps = 0;                         // segments tested against the object
-    uint64_t object_boxes_missed = 0;            // of those, ended by the first stage: the object's box
-    uint64_t triangles_tested = 0;               // by the last stage: triangles whose box the tree delivered
-    uint64_t walk_steps = 0, walk_steps_max = 0; // over all ticks; in one tick
+// Since construction or reset(). Queries of a ball count among the sweeps, boxes that it was handed among the
+// triangles.
+struct ContactCounters : CollisionCount {
+    uint64_t walk_steps = 0; // features that a walk came over, rounds of a ball or a stylus
     uint64_t walks_cut = 0;  // ticks that reached a limit; the proxy is valid, or not yet put down, and goes on
-    uint64_t hands_held = 0; // poses that were not finite
 };
+
+inline ContactCounters operator+(const ContactCounters& a, const ContactCounters& b) noexcept
+{
+    return {{a.sweeps + b.sweeps, a.triangles_tested + b.triangles_tested},
+            a.walk_steps + b.walk_steps,
+            a.walks_cut + b.walks_cut};
+}
 
 // Torque (N m) about the grip of a force (N) that acts at a point.
 inline glm::dvec3 torque_about(const glm::dvec3& grip_m, const glm::dvec3& point_m, const glm::dvec3& force_n)

@@ -49,10 +49,13 @@ public:
     virtual std::span<const Contact> contacts() const noexcept = 0;
     // The first of them; if it touches nothing, where the hand is.
     virtual const Contact& contact() const noexcept = 0;
-    virtual const ContactCounters& counters() const noexcept = 0;
+    const ContactCounters& counters() const noexcept { return counters_; }
     virtual const Surface& surface() const noexcept = 0;
 
     virtual const Proxy& proxy() const noexcept = 0; // lattice units
+
+protected:
+    ContactCounters counters_;
 };
 
 // For a point on this surface.

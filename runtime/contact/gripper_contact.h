@@ -27,18 +27,14 @@ public:
     double gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept;
 
     std::span<const Contact> contacts() const noexcept { return {contacts_, count_}; }
-    // Of both fingers; a tick is skipped if both are spared a query.
-    const ContactCounters& counters() const noexcept { return counters_; }
+    // Of both fingers.
+    ContactCounters counters() const noexcept { return tip_->counters() + tail_->counters(); }
     const Surface& surface() const noexcept { return tip_->surface(); }
 
 private:
-    void count() noexcept;
-
     std::unique_ptr<EndContact> tip_, tail_;
     Contact contacts_[6]; // of each finger three
     std::size_t count_ = 0;
-    ContactCounters counters_;
-    uint64_t skipped_before_ = 0; // by the two together
 };
 
 } // namespace haptel::runtime

@@ -46,17 +46,23 @@ ProbeContact::ProbeContact(const ProbeSettings& probe, const std::shared_ptr<con
 
 std::span<const Contact> ProbeContact::update(const ProbePose& pose, const EndsFriction& friction) noexcept
 {
+    if (settled_ && pose == pose_ && friction == friction_) return contacts();
+    const uint64_t cut = counters().walks_cut;
+    pose_ = pose;
+    friction_ = friction;
     if (auto* end = std::get_if<End>(&contact_))
         (*end)->tick(pose.tip_m, friction.tip);
     else if (auto* gripper = std::get_if<GripperContact>(&contact_))
         gripper->update(pose.tip_m, pose.tail_m, friction);
     else
         std::get_if<StylusContact>(&contact_)->update(pose.tip_m, pose.tail_m, friction);
+    settled_ = counters().walks_cut == cut;
     return contacts();
 }
 
 void ProbeContact::follow(const ProbePose& pose) noexcept
 {
+    settled_ = false;
     if (auto* end = std::get_if<End>(&contact_)) return (*end)->follow(pose.tip_m);
     if (auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->follow(pose.tip_m, pose.tail_m);
     std::get_if<StylusContact>(&contact_)->follow(pose.tip_m, pose.tail_m);
@@ -64,6 +70,7 @@ void ProbeContact::follow(const ProbePose& pose) noexcept
 
 void ProbeContact::reset() noexcept
 {
+    settled_ = false;
     if (auto* end = std::get_if<End>(&contact_)) return (*end)->reset();
     if (auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->reset();
     std::get_if<StylusContact>(&contact_)->reset();
@@ -72,7 +79,9 @@ void ProbeContact::reset() noexcept
 bool ProbeContact::move_out(double most_m) noexcept
 {
     auto* end = std::get_if<End>(&contact_);
-    return end && (*end)->move_out(most_m);
+    const bool moved = end && (*end)->move_out(most_m);
+    if (moved) settled_ = false;
+    return moved;
 }
 
 std::span<const Contact> ProbeContact::contacts() const noexcept
@@ -128,7 +137,7 @@ double ProbeContact::gap_m(const ProbePose& pose) const noexcept
     return std::get_if<StylusContact>(&contact_)->gap_m(pose.tip_m, pose.tail_m);
 }
 
-const ContactCounters& ProbeContact::counters() const noexcept
+ContactCounters ProbeContact::counters() const noexcept
 {
     if (const auto* end = std::get_if<End>(&contact_)) return (*end)->counters();
     if (const auto* gripper = std::get_if<GripperContact>(&contact_)) return gripper->counters();

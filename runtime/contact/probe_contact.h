@@ -19,7 +19,8 @@ public:
     ProbeContact(const ProbeSettings& probe, const std::shared_ptr<const Surface>& surface,
                  bool skips_free_space = true, double rate_hz = 1000);
 
-    // One tick: the contacts, none if the probe is free. On a joined surface each belongs to one object.
+    // One tick: the contacts, none if the probe is free. On a joined surface each belongs to one object. Where neither
+    // the pose nor the friction has changed, as between two counts of an encoder, all is as it was.
     std::span<const Contact> update(const ProbePose& pose, const EndsFriction& friction) noexcept;
     // One tick of a probe that is free and known to have met nothing on its way.
     void follow(const ProbePose& pose) noexcept;
@@ -41,8 +42,10 @@ public:
 
     // A lower bound, in metres, of the distance from the probe in this pose to the nearest triangle; 0: not known.
     double gap_m(const ProbePose& pose) const noexcept;
+    // False: update() reached a limit, and the next one goes on.
+    bool settled() const noexcept { return settled_; }
     bool touches() const noexcept { return !contacts().empty(); }
-    const ContactCounters& counters() const noexcept;
+    ContactCounters counters() const noexcept;
 
 private:
     using End = std::unique_ptr<EndContact>; // of a point, or a ball
@@ -52,6 +55,9 @@ private:
     const Surface* surface_;
     bool by_planes_; // contacts know the normal of what holds them: of a ball, whatever it touches
     std::variant<End, StylusContact, GripperContact> contact_;
+    ProbePose pose_; // of the last tick
+    EndsFriction friction_;
+    bool settled_ = false;
 };
 
 } // namespace haptel::runtime

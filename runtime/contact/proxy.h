@@ -8,6 +8,8 @@
 
 namespace haptel::runtime {
 
+struct ContactCounters;
+
 struct Proxy {
     enum class On : uint8_t { nothing, face, edge, vertex };
 
@@ -19,12 +21,6 @@ struct Proxy {
     glm::dvec3 at{0};            // on nothing: the hand, a lattice point; else within rounding of the feature
 
     bool touches() const { return on != On::nothing; }
-};
-
-struct WalkCount {
-    CollisionCount collision;
-    uint32_t steps = 0; // in this walk
-    bool cut = false;   // ended by the step limit
 };
 
 // Coulomb coefficients, checked: 0 <= dynamic <= static, finite.
@@ -42,8 +38,8 @@ inline constexpr uint32_t walk_steps_max = 4096;
 // At each feature it asks for the nearest point, to the hand, of the surface around (a face, the two faces of an edge,
 // the fan of a vertex). There the sign of the hand's height says whether the hand is on the free side: if so the proxy
 // leaves, if not it slides there.
-void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count,
-          uint32_t step_limit = walk_steps_max) noexcept;
+void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction,
+          ContactCounters& count, uint32_t step_limit = walk_steps_max) noexcept;
 
 // Puts a free proxy on the face that its way crosses.
 void land(const Surface& surface, Proxy& proxy, const Crossing& crossing, const glm::dvec3& from,

@@ -56,9 +56,7 @@ void SphereContact::reset() noexcept
 
 void SphereContact::tick(const glm::dvec3& hand_m, const Friction& friction, const glm::dvec3* tail) noexcept
 {
-    ++counters_.ticks;
     if (!finite(hand_m)) {
-        ++counters_.hands_held;
         for (Contact& contact : contacts_) contact.hand_held = true;
         return;
     }
@@ -66,19 +64,15 @@ void SphereContact::tick(const glm::dvec3& hand_m, const Friction& friction, con
     slide_on(surface_->lattice.metres(hand_) - contacts_[0].hand_m, friction);
     if (!placed_) {
         Crossing crossing;
-        CollisionCount count;
-        const bool enters =
-            tail && first_crossing(*surface_, *tail, hand_, StartsOn::nothing(), crossing, count) && crossing.side == 0;
+        const bool enters = tail && first_crossing(*surface_, *tail, hand_, StartsOn::nothing(), crossing, counters_) &&
+                            crossing.side == 0;
         place(enters ? *tail : hand_);
     }
     (void)move(friction);
-    counters_.touching_ticks += contact_count_ > 0;
 }
 
 void SphereContact::follow(const glm::dvec3& hand_m) noexcept
 {
-    ++counters_.ticks;
-    ++counters_.skipped;
     if (!finite(hand_m)) return;
     aim(surface_->lattice.units(hand_m));
     proxy_.at = hand_;
@@ -281,7 +275,6 @@ bool SphereContact::move(const Friction& friction) noexcept
     const bool in_air = !proxy_.touches();
     if (in_air && grown_ == radius_ && faces_.count() == 0 &&
         around_.room(proxy_.at) >= glm::distance(hand_, proxy_.at)) { // nothing is near
-        ++counters_.skipped;
         proxy_.at = hand_;
         lag_ = 0;
         tell_free();
@@ -304,9 +297,7 @@ bool SphereContact::move(const Friction& friction) noexcept
     auto& [held, round, cut, on_the_way, blind] = way;
     if (in_air && held.count == 0 && glm::distance(proxy_.at, hand_) <= distance_rounding) proxy_.at = hand_;
     counters_.walk_steps += round;
-    counters_.walk_steps_max = std::max<uint64_t>(counters_.walk_steps_max, round);
     counters_.walks_cut += cut;
-    counters_.skipped += round == 0;
     if (grown_ < radius_) grown_ = std::max(grown_, faces_.distance(proxy_.at, radius_) - distance_rounding);
     if (cut && (on_the_way || in_air_)) {
         keep_told();

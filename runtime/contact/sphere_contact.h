@@ -48,7 +48,6 @@ public:
     double gap_m(const glm::dvec3& hand_m) const noexcept override;
     std::span<const Contact> contacts() const noexcept override { return {contacts_, contact_count_}; }
     const Contact& contact() const noexcept override { return contacts_[0]; }
-    const ContactCounters& counters() const noexcept override { return counters_; }
     const Surface& surface() const noexcept override { return *surface_; }
     glm::dvec3 proxy_m() const noexcept { return surface_->lattice.metres(proxy_.at); }
 
@@ -60,7 +59,6 @@ public:
     // For a stylus, which holds both its ends and its shaft by one projection. Lattice units.
     bool is_placed() const noexcept { return placed_; }
     void restart(const glm::dvec3& at) noexcept; // anew, at a free place
-    void count_tick() noexcept { ++counters_.ticks; }
     void set_sliding(bool sliding) noexcept { proxy_.sliding = sliding; }
     // As a point of its own, to a lattice point; what it touches is told. False: it has not come to rest, and does not
     // know what it touches.
@@ -176,7 +174,6 @@ private:
     static constinit thread_local uint32_t path_length_;
     Contact contacts_[3];
     std::size_t contact_count_ = 0;
-    ContactCounters counters_;
 };
 
 } // namespace haptel::runtime

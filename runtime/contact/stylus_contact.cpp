@@ -44,14 +44,12 @@ void StylusContact::reset() noexcept
 {
     tip_->reset();
     tail_->reset();
-    has_tail_ = tracked_ = false;
+    has_shaft_ = tracked_ = false;
     side_count_ = contact_count_ = 0;
     clear_ = {};
     reached_ = {};
     stuck_ticks_ = 0;
     unspared_ = -1;
-    collision_ = {};
-    rounds_ = rounds_most_ = 0;
     counters_ = {};
 }
 
@@ -66,13 +64,11 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
     if (!finite(tip_m)) { // what touches goes on touching
         tip_->tick(tip_m, friction.tip);
         for (Contact& contact : contacts_) contact.hand_held = true;
-        count();
         return tip_->contact();
     }
     unspared_ = -1;
     left_ = {};
     const bool had_tip = begin_ == 0, had_tail = end_ == 1;
-    const uint64_t sweeps = counters_.sweeps;
     has_shaft_ = take(tip_m, tail_m);
     const uint64_t cut = tip_->counters().walks_cut;
     if (!has_shaft_) {
@@ -85,19 +81,14 @@ const Contact& StylusContact::update(const glm::dvec3& tip_m, const glm::dvec3& 
     } else if (!pass_freely(tip_m, tail_m)) {
         if (!had_tip || begin_ > 0) tip_->restart(begin_ > 0 ? Lattice::snap_units(hand_.tip) : shaft_.tip);
         if (!had_tail || end_ < 1) tail_->restart(end_ < 1 ? Lattice::snap_units(hand_.tail) : shaft_.tail);
-        tip_->count_tick();
         resolve(friction);
     }
     report();
-    count();
-    counters_.skipped += contact_count_ == 0 && counters_.sweeps == sweeps;
-    counters_.touching_ticks += contact_count_ > 0;
     return tip_->contact();
 }
 
 void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
 {
-    ++counters_.skipped;
     tip_->follow(tip_m);
     tracked_ = has_shaft_ = finite(tip_m) && take(tip_m, tail_m);
     side_count_ = 0;
@@ -108,15 +99,13 @@ void StylusContact::follow(const glm::dvec3& tip_m, const glm::dvec3& tail_m) no
         tail_->follow(tail_m);
     }
     contact_count_ = 0;
-    count();
 }
 
 // Takes the pose; false if there is no shaft in the workspace.
 bool StylusContact::take(const glm::dvec3& tip_m, const glm::dvec3& tail_m) noexcept
 {
     const Lattice& lattice = surface().lattice;
-    has_tail_ = finite(tail_m);
-    if (!has_tail_) return false;
+    if (!finite(tail_m)) return false;
     const Shaft hand{lattice.units(tip_m), lattice.units(tail_m)};
     if (!std::isfinite(glm::length(hand.tail - hand.tip))) return false; // too far out to have a direction
     hand_ = hand;
@@ -163,7 +152,7 @@ void StylusContact::start(const glm::dvec3& tip_m, const Friction& friction) noe
     clear_.radius = 0;
     const bool first = !tip_->is_placed();
     const bool crosses =
-        first && first_crossing(surface(), whole.tail, whole.tip, StartsOn::nothing(), crossing, collision_);
+        first && first_crossing(surface(), whole.tail, whole.tip, StartsOn::nothing(), crossing, counters_);
     tip_->tick(tip_m, friction, crosses ? &whole.tail : nullptr);
     tail_->restart(whole.tail);
     reached_ = hand_;
@@ -173,7 +162,7 @@ void StylusContact::start(const glm::dvec3& tip_m, const Friction& friction) noe
     if (begin_ == 0) shaft_.tip = glm::round(tip_->proxy().at);
     tracked_ = first && !crosses;
     if (!tracked_)
-        tracked_ = !first_crossing(surface(), shaft_.tip, shaft_.tail, StartsOn::nothing(), crossing, collision_);
+        tracked_ = !first_crossing(surface(), shaft_.tip, shaft_.tail, StartsOn::nothing(), crossing, counters_);
 }
 
 // Where nothing is near nothing is touched: to the hand, if so.
@@ -182,7 +171,7 @@ bool StylusContact::pass_freely(const glm::dvec3& tip_m, const glm::dvec3& tail_
     if (side_count_ > 0 || tip_->proxy().touches() || tail_->proxy().touches()) return false;
     const Shaft to = within(hand_.tip, hand_.tail);
     if (!(farther(clear_.at, to) < clear_.radius)) {
-        ++collision_.sweeps;
+        ++counters_.sweeps;
         clear_.radius = 0;
         if (!swept_to(to).is_empty(*surface().tree)) return false;
         if (skips_free_space_) unspared_ = farther(shaft_, to);
@@ -285,16 +274,11 @@ uint32_t StylusContact::nearest_face(const SphereContact& end, double along) con
     return nearest ? nearest->face : met_.face;
 }
 
-void StylusContact::count() noexcept
+ContactCounters StylusContact::counters() const noexcept
 {
-    const ContactCounters &tip = tip_->counters(), &tail = tail_->counters();
-    counters_.ticks = tip.ticks;
-    counters_.hands_held = tip.hands_held;
-    counters_.sweeps = tip.sweeps + tail.sweeps + collision_.sweeps;
-    counters_.object_boxes_missed = tip.object_boxes_missed + tail.object_boxes_missed + collision_.object_boxes_missed;
-    counters_.triangles_tested = tip.triangles_tested + tail.triangles_tested + collision_.triangles_tested;
-    counters_.walk_steps = tip.walk_steps + tail.walk_steps + rounds_;
-    counters_.walk_steps_max = std::max({tip.walk_steps_max, tail.walk_steps_max, rounds_most_});
+    ContactCounters all = tip_->counters() + tail_->counters() + counters_;
+    all.walks_cut = counters_.walks_cut; // where an end alone finds no rest, both look for it together
+    return all;
 }
 
 double StylusContact::gap_m(const glm::dvec3& tip_m, const glm::dvec3& tail_m) const noexcept

@@ -74,7 +74,7 @@ public:
     // asks.
     bool shaft_crosses() const noexcept;
 
-    const ContactCounters& counters() const noexcept { return counters_; }
+    ContactCounters counters() const noexcept;
     const Surface& surface() const noexcept { return tip_->surface(); }
 
     // For so long a shaft may fall behind its ends, whatever the rate.
@@ -84,8 +84,9 @@ private:
     static constexpr uint32_t sides_max = 4;
     static constexpr std::size_t planes_max = 96; // of an end
     static constexpr double push_settled = 1e-3;  // lattice units: what a push may leave violated
-    // In a tick, one a round at least. Slow strokes need up to 12, a tail that goes 6 m/s past 327 680 triangles 24.
-    static constexpr uint32_t sweeps_max = 24;
+    // In a tick, one a round at least. Slow strokes need up to 12, a tail that goes 6 m/s past 327 680 triangles 24;
+    // with fewer a shaft that lies on those falls behind where it goes 2 m/s.
+    static constexpr uint32_t sweeps_max = 32;
     // So many boxes of triangles are looked at on one straight way: what a shaft meets that lies on a plate of 256 by
     // 256 cells. A longer way is tried in part.
     static constexpr std::size_t triangles_per_move = 1024;
@@ -161,16 +162,15 @@ private:
     void tell(double along, uint32_t face, const glm::dvec3& point, const glm::dvec3& normal, double push) noexcept;
     void tell_what_is_left() noexcept;
     uint32_t nearest_face(const SphereContact& end, double along) const noexcept;
-    void count() noexcept;
 
     std::unique_ptr<SphereContact> tip_, tail_;
     bool skips_free_space_;
-    Shaft hand_;                                // lattice units, neither rounded nor clamped
-    double begin_ = 0, end_ = 1;                // shares of the stylus that lie in the workspace
-    Shaft reached_;                             // the hand for which the shaft was held last
-    Shaft shaft_;                               // lattice points
-    bool has_tail_ = false, has_shaft_ = false; // of the last tick
-    bool tracked_ = false;                      // the shaft crosses nothing
+    Shaft hand_;                 // lattice units, neither rounded nor clamped
+    double begin_ = 0, end_ = 1; // shares of the stylus that lie in the workspace
+    Shaft reached_;              // the hand for which the shaft was held last
+    Shaft shaft_;                // lattice points
+    bool has_shaft_ = false;     // of the last tick
+    bool tracked_ = false;       // the shaft crosses nothing
     Obstacle close_;
     Obstacle met_; // by the last move
     std::array<Side, sides_max> sides_;
@@ -185,12 +185,10 @@ private:
     uint32_t contact_count_ = 0;
     std::array<uint32_t, triangles_per_move> near_; // triangles, of the way that was looked at last
     std::size_t near_count_ = 0;
-    uint32_t sweeps_left_ = 0;              // in this tick
-    uint32_t stuck_ticks_ = 0;              // in a row
-    uint32_t patience_ticks_;               // patience_s
-    CollisionCount collision_;              // of the shaft
-    uint64_t rounds_ = 0, rounds_most_ = 0; // of both ends and the shaft together, in all and in one tick
-    ContactCounters counters_;
+    uint32_t sweeps_left_ = 0; // in this tick
+    uint32_t stuck_ticks_ = 0; // in a row
+    uint32_t patience_ticks_;  // patience_s
+    ContactCounters counters_; // of the shaft, and of rounds of both ends with it
 };
 
 } // namespace haptel::runtime

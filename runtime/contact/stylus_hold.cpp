@@ -17,7 +17,7 @@ namespace {
 
 // A step is none that is below so many lattice units, and this share of what the springs are drawn by: an end that is
 // off by a unit sees its planes turned by that over its radius, and the hand is held elsewhere by as much.
-constexpr double step_settled = 4, turned_settled = 4 / rest_gap;
+constexpr double step_settled = 4, turned_settled = step_settled / rest_gap;
 
 // Of its limit. Where both ends drag none is free to make way for an edge: they have to be right within the gap.
 constexpr double friction_settled = 1e-6, both_settled = 1e-9;
@@ -255,8 +255,7 @@ void StylusContact::resolve(const EndsFriction& friction) noexcept
         ends.tip.lag = ends.tail.lag = glm::dvec3(0);
         settled = false;
     }
-    rounds_ += round;
-    rounds_most_ = std::max<uint64_t>(rounds_most_, round);
+    counters_.walk_steps += round;
     counters_.walks_cut += !settled;
     const bool behind = !settled && (blind || farther(shaft_, to) > far_behind);
     stuck_ticks_ = behind && away_first - away(shaft_) < far_behind ? stuck_ticks_ + 1 : 0;

@@ -56,7 +56,7 @@ double StylusContact::known_share(const Shaft& to, double stride, const Projecti
             share = std::min(share, farthest);
             if ((lands || farthest * length > reach) &&
                 first_crossing(surface(), from, glm::round(from + farthest * way), StartsOn::nothing(), crossing,
-                               collision_))
+                               counters_))
                 share = std::min(share, std::max(lands ? 0.0 : reach / length,
                                                  farthest * crossing.fraction() - 2 * rest_gap / length));
         }
@@ -132,7 +132,7 @@ bool StylusContact::go_apart(const EndsFriction& friction) noexcept
     });
     Crossing crossing;
     const bool is_free =
-        is_straight || !first_crossing(surface(), from.tip, to.tip, StartsOn::nothing(), crossing, collision_);
+        is_straight || !first_crossing(surface(), from.tip, to.tip, StartsOn::nothing(), crossing, counters_);
     if (!(is_free && goes(to))) { // on it the tip would get below an edge: along the way that it has gone
         const double way = glm::distance(to.tip, from.tip);
         if (way == 0) return gives_up();
@@ -219,8 +219,8 @@ bool StylusContact::find_near(const SweptRegion& swept) noexcept
         near_[near_count_++] = face;
         return true;
     });
-    ++collision_.sweeps;
-    collision_.triangles_tested += near_count_;
+    ++counters_.sweeps;
+    counters_.triangles_tested += near_count_;
     sweeps_left_ -= static_cast<uint32_t>(std::min<std::size_t>(1 + near_count_ / per_sweep, sweeps_left_));
     return all;
 }

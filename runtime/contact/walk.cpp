@@ -1,3 +1,4 @@
+#include "runtime/contact/contact.h"
 #include "runtime/contact/proxy.h"
 #include "runtime/surface/corner.h"
 
@@ -21,7 +22,8 @@ constexpr double sharp = 1.0 / 16;
 
 class Walk {
 public:
-    Walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count)
+    Walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction,
+         ContactCounters& count)
         : surface_(surface), proxy_(proxy), hand_(hand), friction_(friction), count_(count)
     {
     }
@@ -63,14 +65,14 @@ private:
     Proxy& proxy_;
     const glm::dvec3& hand_;
     const WalkFriction& friction_;
-    WalkCount& count_;
+    ContactCounters& count_;
     bool moved_ = false;
 };
 
 void Walk::run(uint32_t step_limit)
 {
     Step step = Step::again;
-    for (count_.steps = 0; step == Step::again && count_.steps < step_limit; ++count_.steps) {
+    for (uint32_t steps = 0; step == Step::again && steps < step_limit; ++steps, ++count_.walk_steps) {
         settle();
         switch (proxy_.on) {
         case Proxy::On::face: step = from_face(); break;
@@ -79,7 +81,7 @@ void Walk::run(uint32_t step_limit)
         case Proxy::On::nothing: step = Step::stop; break;
         }
     }
-    count_.cut = step == Step::again;
+    count_.walks_cut += step == Step::again;
     proxy_.sliding = proxy_.sliding || moved_;
 }
 
@@ -253,7 +255,7 @@ Walk::Step Walk::leave(const StartsOn& start, const glm::dvec3& offset)
 {
     const glm::dvec3 from = glm::round(proxy_.at + offset);
     Crossing crossing;
-    if (first_crossing(surface_, from, hand_, start, crossing, count_.collision)) {
+    if (first_crossing(surface_, from, hand_, start, crossing, count_)) {
         land(surface_, proxy_, crossing, from, hand_);
         return Step::again;
     }
@@ -349,8 +351,8 @@ Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
 
 } // namespace
 
-void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction, WalkCount& count,
-          uint32_t step_limit) noexcept
+void walk(const Surface& surface, Proxy& proxy, const glm::dvec3& hand, const WalkFriction& friction,
+          ContactCounters& count, uint32_t step_limit) noexcept
 {
     Walk(surface, proxy, hand, friction, count).run(step_limit);
 }

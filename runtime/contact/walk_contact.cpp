@@ -41,18 +41,8 @@ void WalkContact::tick(const glm::dvec3& hand_m, const Friction& friction) noexc
         placed_ = true;
         proxy_.at = hand_;
     }
-    if (proxy_.touches()) {
-        WalkCount count;
-        walk(*surface_, proxy_, hand_, checked(friction), count);
-        counters_.walk_steps += count.steps;
-        counters_.walk_steps_max = std::max<uint64_t>(counters_.walk_steps_max, count.steps);
-        counters_.walks_cut += count.cut;
-        counters_.sweeps += count.collision.sweeps;
-        counters_.object_boxes_missed += count.collision.object_boxes_missed;
-        counters_.triangles_tested += count.collision.triangles_tested;
-    }
+    if (proxy_.touches()) walk(*surface_, proxy_, hand_, checked(friction), counters_);
     describe();
-    counters_.touching_ticks += contact_.touching;
 }
 
 void WalkContact::slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept
@@ -63,7 +53,6 @@ void WalkContact::slide_on(const glm::dvec3& way_m, const Friction& friction) no
 void WalkContact::follow(const glm::dvec3& hand_m) noexcept
 {
     if (!take(hand_m)) return;
-    ++counters_.skipped;
     placed_ = true;
     proxy_.at = hand_;
     describe();
@@ -78,12 +67,8 @@ double WalkContact::gap_m(const glm::dvec3& hand_m) const noexcept
 // Takes the pose; false if there has never been a good one.
 bool WalkContact::take(const glm::dvec3& hand_m) noexcept
 {
-    ++counters_.ticks;
     contact_.hand_held = !finite(hand_m);
-    if (contact_.hand_held) {
-        ++counters_.hands_held;
-        return placed_;
-    }
+    if (contact_.hand_held) return placed_;
     before_ = std::exchange(true_hand_, surface_->lattice.units(hand_m));
     hand_ = Lattice::snap_units(true_hand_);
     contact_.hand_clamped = Lattice::beyond(hand_ - true_hand_, Lattice::vertex_spacing);
@@ -94,7 +79,6 @@ void WalkContact::move_freely(const glm::dvec3& hand) noexcept
 {
     const double step = glm::distance(hand, proxy_.at);
     if ((step == 0 && skips_free_space_) || glm::distance(hand, clear_.centre) < clear_.radius) {
-        ++counters_.skipped;
         proxy_.at = hand;
         return;
     }
@@ -103,7 +87,8 @@ void WalkContact::move_freely(const glm::dvec3& hand) noexcept
     const bool outside = Lattice::beyond_workspace(true_hand_) || Lattice::beyond_workspace(before_);
     if (outside) from = before_, to = true_hand_;
     Crossing crossing;
-    if ((!outside || Lattice::clip_to_workspace(from, to)) && sweep(from, to, crossing)) {
+    if ((!outside || Lattice::clip_to_workspace(from, to)) &&
+        first_crossing(*surface_, from, to, StartsOn::nothing(), crossing, counters_)) {
         land(*surface_, proxy_, crossing, from, to);
         proxy_.sliding = false; // static friction holds what comes down
         clear_.radius = 0;
@@ -111,16 +96,6 @@ void WalkContact::move_freely(const glm::dvec3& hand) noexcept
     }
     proxy_.at = hand;
     if (skips_free_space_) unspared_ = step;
-}
-
-bool WalkContact::sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept
-{
-    CollisionCount count;
-    const bool hit = first_crossing(*surface_, from, to, StartsOn::nothing(), crossing, count);
-    counters_.sweeps += count.sweeps;
-    counters_.object_boxes_missed += count.object_boxes_missed;
-    counters_.triangles_tested += count.triangles_tested;
-    return hit;
 }
 
 // Looks somewhat farther than the last ball was large, and not at all where the hand would leave a ball at once.

@@ -36,7 +36,6 @@ public:
     double gap_m(const glm::dvec3& hand_m) const noexcept override;
     std::span<const Contact> contacts() const noexcept override { return {&contact_, contact_.touching ? 1u : 0u}; }
     const Contact& contact() const noexcept override { return contact_; }
-    const ContactCounters& counters() const noexcept override { return counters_; }
     const Surface& surface() const noexcept override { return *surface_; }
 
     const Proxy& proxy() const noexcept override { return proxy_; }
@@ -44,14 +43,12 @@ public:
 private:
     bool take(const glm::dvec3& hand_m) noexcept;
     void move_freely(const glm::dvec3& hand) noexcept;
-    bool sweep(const glm::dvec3& from, const glm::dvec3& to, Crossing& crossing) noexcept;
     void slide_on(const glm::dvec3& way_m, const Friction& friction) noexcept;
     void describe() noexcept;
 
     std::shared_ptr<const Surface> surface_;
     bool skips_free_space_;
     Contact contact_;
-    ContactCounters counters_;
     Proxy proxy_;
     glm::dvec3 hand_{0};                  // lattice units, and below: a lattice point of the workspace
     glm::dvec3 true_hand_{0}, before_{0}; // neither rounded nor clamped: the hand in this tick and in the last

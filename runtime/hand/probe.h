@@ -27,6 +27,8 @@ struct ProbeSettings {
 // Where the hand holds it: the centre of a sphere is its tip; a stylus has a tail, and a gripper's is its other finger.
 struct ProbePose {
     glm::dvec3 tip_m{0}, tail_m{0};
+
+    bool operator==(const ProbePose&) const = default;
 };
 
 } // namespace haptel::runtime

@@ -129,6 +129,7 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
     if (turned_rad() > turn_max_rad) sleep_queue_.wake_who_turns();
     sleep_queue_.go(way, pose.tip_m, pose.tail_m, near_m_);
     Skipped skipped;
+    skipped.query = scene_->servo.skips.free_space;
     skipped_.objects += objects_.size();
     for (std::size_t i = 0; i < sleep_queue_.awake().size(); ++i) {
         const uint32_t number = sleep_queue_.awake()[i];
@@ -136,16 +137,15 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
         if (!take_pose(body, pose, periods)) continue;
         skipped_.objects -= body.objects.numbers().size();
         work_.objects += body.objects.numbers().size();
-        const ContactCounters& counters = body.contact.counters();
-        const uint64_t spared = counters.skipped, cut = counters.walks_cut;
         ProbePose probe = body.pose_of(pose);
         if (effects_act && body.objects.joined) probe.tip_m += shares_.effects * body.aim_m;
+        const uint64_t queries = work_.queries;
         std::span<const Contact> contacts =
             update_contact(body, probe, {body.tip_friction.mean, body.tail_friction.mean});
+        skipped.query = skipped.query && contacts.empty() && work_.queries == queries;
+        if (!body.contact.settled()) result.faults |= fault_contact_unfinished;
         contacts = crease_rows_.of(*body.objects.surface(*scene_), contacts);
         if (body.bounded) track_velocity(number, pose, periods, !contacts.empty());
-        skipped.query = skipped.query && counters.skipped > spared;
-        if (counters.walks_cut > cut) result.faults |= fault_contact_unfinished;
         const PartContacts alone{0, contacts};
         const std::span<const PartContacts> parts =
             body.objects.joined ? by_part_.of(*scene_, *body.objects.joined, contacts) : std::span(&alone, 1);
@@ -181,12 +181,12 @@ TickResult Renderer::tick_in_scene(DevicePose pose) noexcept
 std::span<const Contact> Renderer::update_contact(Body& body, const ProbePose& pose,
                                                   const EndsFriction& friction) noexcept
 {
-    const ContactCounters& counters = body.contact.counters();
-    const uint64_t queries = counters.sweeps, triangles = counters.triangles_tested, steps = counters.walk_steps;
+    const ContactCounters before = body.contact.counters();
     const std::span<const Contact> contacts = body.contact.update(pose, friction);
-    work_.queries += counters.sweeps - queries;
-    work_.triangles += counters.triangles_tested - triangles;
-    work_.steps += counters.walk_steps - steps;
+    const ContactCounters now = body.contact.counters();
+    work_.queries += now.sweeps - before.sweeps;
+    work_.triangles += now.triangles_tested - before.triangles_tested;
+    work_.steps += now.walk_steps - before.walk_steps;
     return contacts;
 }
 

@@ -177,7 +177,7 @@ private:
     std::string refused_;
     std::shared_ptr<const Scene> scene_; // if it is refused, one with nothing in it
     HandSettings hand_;
-    bool workspace_moves_; // which is twelve comparisons
+    bool workspace_moves_; // hand_.workspace.moves(), asked in each tick
     ProbeSettings probe_;
     double period_s_;
     double force_limit_n_;

@@ -132,10 +132,7 @@ bool first_crossing(const Surface& surface, const glm::dvec3& from, const glm::d
                     Crossing& crossing, CollisionCount& count) noexcept
 {
     ++count.sweeps;
-    if (!may_meet(from, to, surface.box_minimum, surface.box_maximum)) {
-        ++count.object_boxes_missed;
-        return false;
-    }
+    if (!may_meet(from, to, surface.box_minimum, surface.box_maximum)) return false;
     FirstCrossing first(surface, from, to, start, crossing, count);
     surface.tree->segment(from, to, first);
     return first.found;

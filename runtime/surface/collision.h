@@ -11,7 +11,8 @@ namespace haptel::runtime {
 
 // Work done, added up by whoever passes it.
 struct CollisionCount {
-    uint64_t sweeps = 0, object_boxes_missed = 0, triangles_tested = 0;
+    uint64_t sweeps = 0;           // segments tested against the object
+    uint64_t triangles_tested = 0; // by the last stage: triangles whose box the tree delivered
 };
 
 // Faces that a segment is allowed to start on: one face, all faces at an edge, or all faces at a vertex. A straight

@@ -40,7 +40,8 @@ public:
     {
         proxy_.sliding = proxy_.sliding && slides;
         const dvec3 hand = surface_.lattice.snap(hand_m);
-        WalkCount count;
+        ContactCounters count;
+        uint64_t cut = 0;
         dvec3 from = before_, to = before_ = surface_.lattice.units(hand_m);
         if (proxy_.on == Proxy::On::nothing) {
             // Outside of the workspace nothing is in the way, but the straight way within it counts.
@@ -48,7 +49,7 @@ public:
             for (const dvec3& at : {from, to, hand}) {
                 if (inside && at == to) {
                     Crossing crossing;
-                    if (first_crossing(surface_, from, to, StartsOn::nothing(), crossing, count.collision)) {
+                    if (first_crossing(surface_, from, to, StartsOn::nothing(), crossing, count)) {
                         land(surface_, proxy_, crossing, from, to);
                         proxy_.sliding = false;
                         if (!followed(proxy_)) return false;
@@ -64,7 +65,7 @@ public:
         do {
             walk(surface_, proxy_, hand, friction, count, 1);
             if (!followed(proxy_)) return false;
-        } while (count.cut);
+        } while (count.walks_cut > std::exchange(cut, count.walks_cut));
         return true;
     }
 

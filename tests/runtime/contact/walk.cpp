@@ -259,7 +259,7 @@ TEST_CASE("a pose that is not a number holds the last good one, and contact goes
     WalkContact contact(surface_of(make_plane()));
     CHECK_FALSE(contact.update({NAN, 0, 0}).touching);
     CHECK(contact.contact().hand_held);
-    contact.update({0, 0, 0.1});
+    CHECK_FALSE(contact.update({0, 0, 0.1}).hand_held);
     const dvec3 before = contact.update({0.01, 0.02, -0.01}).proxy_m;
     for (const dvec3& broken : {dvec3(NAN, 0, 0), dvec3(0, INFINITY, 0), dvec3(0, 0, -INFINITY)}) {
         const Contact& touch = contact.update(broken);
@@ -268,7 +268,6 @@ TEST_CASE("a pose that is not a number holds the last good one, and contact goes
         CHECK(touch.proxy_m == before);
         CHECK(std::abs(touch.depth_m - 0.01) < 1e-11);
     }
-    CHECK(contact.counters().hands_held == 4);
     CHECK_FALSE(contact.update({0.01, 0.02, -0.011}).hand_held);
     // A pose that is finite but absurd is clamped, and the plane still holds.
     const Contact& far = contact.update({1e300, -1e300, -1e300});
@@ -284,6 +283,7 @@ TEST_CASE("equal poses give equal bits")
     std::mt19937_64 random(4);
     std::normal_distribution<double> normal;
     dvec3 hand(0, 0, 1.2);
+    int touching = 0;
     for (int i = 0; i < 5000; ++i) {
         hand = 0.999 * hand + 0.02 * dvec3(normal(random), normal(random), normal(random));
         const Contact& a = one.update(hand, {0.3, 0.2});
@@ -294,10 +294,11 @@ TEST_CASE("equal poses give equal bits")
         REQUIRE(a.normal == b.normal);
         REQUIRE(a.depth_m == b.depth_m);
         REQUIRE(a.face == b.face);
+        touching += a.touching;
     }
-    CHECK(one.counters().touching_ticks > 500);
-    CHECK(one.counters().touching_ticks < 4500);
-    CHECK(one.counters().skipped > 100);
+    CHECK(touching > 500);
+    CHECK(touching < 4500);
+    CHECK(one.counters().sweeps < two.counters().sweeps - 100); // two does not look around
 }
 
 TEST_CASE("a known clearance spares queries and never hides the surface")
@@ -314,7 +315,7 @@ TEST_CASE("a known clearance spares queries and never hides the surface")
     contact.update({0.01, 0.02, 0.49});
     CHECK(contact.contact().touching);
     CHECK(std::abs(last_free - 0.5) < 1e-3);
-    CHECK(contact.counters().skipped > 1500);
+    CHECK(contact.counters().sweeps < 500); // of 2 000 ticks
 }
 
 TEST_CASE("a stylus put down with its tip inside touches where it entered, and gives torque about its grip")
@@ -327,7 +328,6 @@ TEST_CASE("a stylus put down with its tip inside touches where it entered, and g
     const dvec3 force = 500 * touch.depth_m * touch.normal; // 10 N up
     const dvec3 torque = torque_about({0.0, 0.05, 0.13}, touch.proxy_m, force);
     CHECK(glm::length(torque - dvec3(0, -1, 0)) < 1e-8); // r = (0.1, 0, -0.13), r x F = (0, -0.1 * 10, 0)
-    CHECK(stylus.counters().ticks == 1);
 }
 
 TEST_CASE("a stylus whose tail is inside, or whose shaft crosses the surface, is safe and says so")
@@ -361,10 +361,7 @@ TEST_CASE("a stylus far from the surface is spared the query, its shaft included
         stylus.update({0, 0, 2 + i * 1e-5}, {0, 0, 2.2 + i * 1e-5});
         stylus.look_around();
     }
-    const ContactCounters& counters = stylus.counters();
-    CHECK(counters.skipped > 950);
-    // A tick queries or is spared it, not both; the first looks at where its ends are put down.
-    CHECK(counters.sweeps + counters.skipped <= counters.ticks + 2);
+    CHECK(stylus.counters().sweeps < 50); // of 1 000 ticks
 }
 
 TEST_CASE("what comes down anew is held by static friction, however it slid before it left")

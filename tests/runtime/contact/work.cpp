@@ -1,4 +1,5 @@
 // What a tick looks at does not grow with the mesh or the scene: counted, not timed.
+#include "runtime/contact/probe_contact.h"
 #include "runtime/contact/sphere_contact.h"
 #include "runtime/render/renderer.h"
 #include "tests/runtime/surface/meshes.h"
@@ -140,4 +141,53 @@ TEST_CASE("what a ball looks at in a tick does not grow with the mesh that it li
     const double coarse = seen_by_ball(5), fine = seen_by_ball(7);
     CAPTURE(coarse, fine);
     CHECK(fine < 4 * coarse); // 16 times as many triangles
+}
+
+TEST_CASE("a hand that rests is felt for nothing")
+{
+    const auto surface = test::surface_of(test::make_bumpy_sphere(4));
+    for (const ProbeSettings& probe : {ProbeSettings{ProbeKind::point}, ProbeSettings{ProbeKind::sphere, 0, 0.1},
+                                       ProbeSettings{ProbeKind::stylus, 0.5}, ProbeSettings{ProbeKind::gripper}}) {
+        ProbeContact contact(probe, surface);
+        const Friction friction{0.3, 0.2};
+        std::vector<Contact> held;
+        ProbePose hand;
+        for (int i = 0; i < 40; ++i) {
+            const double angle = 2e-3 * i;
+            const glm::dvec3 d(std::cos(angle), std::sin(angle), 0);
+            hand = {d * (i < 20 ? 1.5 : 0.99), d * (i < 20 ? 1.9 : 1.4)};
+            const auto contacts = contact.update(hand, friction);
+            held.assign(contacts.begin(), contacts.end());
+        }
+        REQUIRE(!held.empty());
+        const ContactCounters before = contact.counters();
+        for (int i = 0; i < 50; ++i) {
+            const auto contacts = contact.update(hand, friction);
+            REQUIRE(contacts.size() == held.size());
+            for (std::size_t k = 0; k < held.size(); ++k) {
+                CHECK(contacts[k].proxy_m == held[k].proxy_m);
+                CHECK(contacts[k].depth_m == held[k].depth_m);
+                CHECK(contacts[k].lag_m == held[k].lag_m);
+            }
+        }
+        CAPTURE(int(probe.kind));
+        CHECK(contact.counters().walk_steps == before.walk_steps);
+        CHECK(contact.counters().triangles_tested == before.triangles_tested);
+        hand.tip_m.z += 0.01; // which is felt
+        CHECK(contact.update(hand, friction)[0].hand_m != held[0].hand_m);
+    }
+}
+
+TEST_CASE("a shaft that lies on a fine mesh follows a hand of two metres a second")
+{
+    // On a ball of 5 cm 2 mm a tick, 1 mm deep; the axis about which it rolls over the ball turns.
+    StylusContact stylus(test::surface_of(make_icosphere(7)));
+    for (int i = 0; i < 800; ++i) {
+        const double a = 0.04 * i, b = 0.3 * a;
+        const glm::dvec3 d(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
+        const glm::dvec3 along = glm::normalize(glm::cross(d, glm::dvec3(0.1, 0.2, 1)));
+        const glm::dvec3 at = (i == 0 ? 0.51 : 0.49) * d;
+        stylus.update(at - 0.7 * along, at + 0.8 * along);
+    }
+    CHECK(stylus.counters().walks_cut < 5);
 }
