@@ -206,7 +206,8 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
     auto& [held, round, cut, on_the_way, blind] = done;
     Stride last;
     uint32_t raised = 0; // by rounding
-    double stride = first_reach * (glm::distance(hand_, hand_before_) + lag_);
+    const double slides = glm::distance(hand_, hand_before_) + lag_; // about so far, where it touches
+    double stride = first_reach * slides;
     // A point meets few faces: what it slides by is looked at once.
     const double stride_first = stride;
     uint64_t seen = counters_.triangles_tested;
@@ -219,7 +220,7 @@ SphereContact::Way SphereContact::travel(bool until_it_touches) noexcept
             cut = on_the_way = true;
             break;
         }
-        if (!look_as_far_as(want)) {
+        if (!look_as_far_as(want, is_point_ && !in_air_ ? std::min(want, slides) : want)) {
             blind = true;
             return done;
         }

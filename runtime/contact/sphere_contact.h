@@ -130,7 +130,7 @@ private:
     void aim(const glm::dvec3& hand) noexcept;
     void place(const glm::dvec3& at) noexcept;
     bool find_around(double margin) noexcept;
-    bool look_as_far_as(double way) noexcept;
+    bool look_as_far_as(double way, double goes) noexcept;
     void fly(double step_max) noexcept;
     Held slide(double step_max, Stride& last, bool is_last) noexcept;
     glm::dvec3 further(const Held& held, const glm::dvec3& way, Stride& last) noexcept;

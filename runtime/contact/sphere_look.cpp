@@ -58,13 +58,13 @@ bool SphereContact::find_around(double margin) noexcept
 }
 
 // Looks anew where less is known around than it may need, or where many groups were looked into that it has left.
-// False: it cannot.
-bool SphereContact::look_as_far_as(double way) noexcept
+// `goes` of the way at most this tick; as much as a quarter of its rounds have to do for is seen at once. False: it
+// cannot.
+bool SphereContact::look_as_far_as(double way, double goes) noexcept
 {
     const double enough = is_point_ ? look_again * margin_ : margin_least * radius_;
     if (around_.room(proxy_.at) >= std::min(way, enough) && !faces_.is_crowded()) return true;
-    // A quarter of its rounds have to do for the straight way.
-    const double farthest = std::max({margin_, margin_of_point * radius_, 4 * way / rounds_max});
+    const double farthest = std::max({margin_, margin_of_point * radius_, 4 * goes / rounds_max});
     return find_around(std::clamp(2 * way, margin_least * radius_, farthest));
 }
 
@@ -88,7 +88,7 @@ SphereContact::Laid SphereContact::lays(bool in_air, bool is_first) const noexce
 double SphereContact::look_from(const glm::dvec3& at, double reach, std::size_t most, bool is_first) noexcept
 {
     proxy_.at = at;
-    if (!look_as_far_as(reach)) return 0;
+    if (!look_as_far_as(reach, reach)) return 0;
     if (grown_ < radius_) {
         grown_ = std::max(grown_, faces_.distance(at, radius_) - distance_rounding);
         close_ = {}; // that was of a smaller one

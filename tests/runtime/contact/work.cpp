@@ -191,3 +191,23 @@ TEST_CASE("a shaft that lies on a fine mesh follows a hand of two metres a secon
     }
     CHECK(stylus.counters().walks_cut < 5);
 }
+
+TEST_CASE("how deep the hand of a point is does not widen what it looks at")
+{
+    const auto surface = test::surface_of(make_icosphere(7));
+    const auto seen_by_point = [&](double depth) { // 1 cm a tick on a ball of 50 cm
+        SphereContact point(surface, Lattice::point_radius * surface->lattice.unit_m, SphereContact::Felt::as_point);
+        for (int i = 0; i < 1200; ++i) {
+            const double a = 0.02 * i, b = 0.3 * a;
+            const glm::dvec3 d(std::cos(a) * std::cos(b), std::sin(a) * std::cos(b), std::sin(b));
+            point.update((i == 0 ? 0.51 : 0.5 - depth) * d);
+        }
+        CHECK(point.counters().walks_cut < 5);
+        return static_cast<double>(point.counters().triangles_tested) / 1200;
+    };
+    const double in_the_skin = seen_by_point(0.01);
+    for (const double depth : {0.2, 0.49}) {
+        CAPTURE(depth, in_the_skin);
+        CHECK(seen_by_point(depth) < 1.1 * in_the_skin);
+    }
+}
