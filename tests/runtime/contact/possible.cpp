@@ -129,8 +129,11 @@ Verdict judge_ball(const std::shared_ptr<const Surface>& shared, uint64_t ticks,
         for (std::size_t k = 0; k < path.size() && possible; at = path[k++]) {
             ++verdict.steps;
             const auto odd = [&] { return 2.0 * double(random() % 1024) - 1023; };
-            const dvec3 beside(odd(), odd(), odd());
-            possible = exact.open(at + beside, path[k] + beside);
+            const auto open_beside = [&] {
+                const dvec3 beside(odd(), odd(), odd());
+                return exact.open(at + beside, path[k] + beside);
+            };
+            possible = open_beside() || open_beside(); // one of them may be in the plane of a triangle
         }
         const Contact& touch = contact->contact();
         const double grown = contact->radius();
