@@ -150,6 +150,7 @@ private:
     NearestPoint nearest_on(uint32_t face, const glm::dvec3& centre) const noexcept;
     std::pair<uint32_t, NearestPoint> touching_face(uint32_t face, const glm::dvec3& normal,
                                                     const glm::dvec3& centre) noexcept;
+    uint32_t side_of(uint32_t face, const glm::dvec3& normal) const noexcept;
     void tell(const Held& held, const glm::dvec3& nearest) noexcept;
     void tell_free() noexcept;
     void tell_nothing() noexcept;

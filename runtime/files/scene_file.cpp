@@ -61,6 +61,8 @@ ServoSettings read_servo(const toml::table& root, FileMessages& messages)
     servo_fields(servo, table.fields());
     if (const auto model = table.word("force_model", {force_model_names.begin(), force_model_names.end()}))
         servo.force.model = static_cast<ForceModel>(*model);
+    if (const auto shading = table.word("shading", {force_shading_names.begin(), force_shading_names.end()}))
+        servo.force.shading = static_cast<ForceShading>(*shading);
     if (table.has("lateral_depth_m") && servo.force.model != ForceModel::lateral)
         messages.error(table.where("lateral_depth_m"),
                        "`lateral_depth_m` is for `force_model = \"lateral\"` alone: write that, or leave it out");

@@ -6,20 +6,21 @@
 
 namespace haptel::runtime {
 
-ModelForce model_force(const ForceRule& rule, const TouchedSurface& surface, const TextureSample& texture) noexcept
+ModelForce model_force(const ForceRule& rule, const Foot& foot, double stiffness_n_per_m,
+                       const TextureSample& texture) noexcept
 {
-    const double stiffness = surface.stiffness_n_per_m * texture.stiffness_scale;
-    const glm::dvec3& normal = surface.normal;
-    const glm::dvec3& gradient = texture.surface_gradient;
-    // (AP . N): of the way from the tip to the contact along the shaded normal.
-    const double pressed = std::max(0.0, surface.depth_m * glm::dot(surface.contact_normal, normal));
-    switch (rule.model) {
-    case ForceModel::displaced: {
-        const double depth = std::max(0.0, surface.depth_m + texture.envelope_m);
-        if (depth == 0) break;
-        const double below_m = surface.depth_m - surface.held_above_m;
-        return {stiffness * depth * (normal - gradient_at_depth(gradient, surface.normal_dp, below_m)), depth};
+    const double stiffness = stiffness_n_per_m * texture.stiffness_scale;
+    if (rule.model == ForceModel::displaced) {
+        const double depth = std::max(0.0, foot.depth_m + texture.envelope_m);
+        if (depth == 0) return {};
+        return {stiffness * depth * (foot.push - texture.gradient * foot.at_dp), depth};
     }
+    const glm::dvec3& normal = foot.normal;
+    const glm::dvec3 gradient = tangential(texture.gradient, normal);
+    // (AP . N): of the way from the tip to the contact along the normal.
+    const double pressed = std::max(0.0, foot.depth_m * glm::dot(foot.way, normal));
+    switch (rule.model) {
+    case ForceModel::displaced: break;
     case ForceModel::paper: return {stiffness * pressed * (normal - gradient), pressed};
     case ForceModel::paper_unit: return {stiffness * pressed * glm::normalize(normal - gradient), pressed};
     case ForceModel::ho99:
@@ -28,21 +29,6 @@ ModelForce model_force(const ForceRule& rule, const TouchedSurface& surface, con
         return {stiffness * (pressed * normal - std::min(pressed, rule.lateral_depth_m) * gradient), pressed};
     }
     return {};
-}
-
-glm::dvec3 gradient_at_depth(const glm::dvec3& gradient, const glm::dmat3& normal_dp, double depth_m) noexcept
-{
-    constexpr double turn_max = 0.5;
-    glm::dmat3 turn = depth_m * normal_dp;
-    // It has no part across the surface: two eigenvalues from trace and principal minors, the third is 0.
-    const double half_trace = 0.5 * (turn[0][0] + turn[1][1] + turn[2][2]);
-    const auto minor = [&](int i, int j) { return turn[i][i] * turn[j][j] - turn[i][j] * turn[j][i]; };
-    const double minors = minor(0, 1) + minor(0, 2) + minor(1, 2);
-    const double largest = half_trace + std::sqrt(std::max(0.0, half_trace * half_trace - minors));
-    if (turn == glm::dmat3(0) || !std::isfinite(largest)) return gradient;
-    if (largest > turn_max) turn *= turn_max / largest;
-    const glm::dvec3 felt = glm::inverse(glm::transpose(glm::dmat3(1) - turn)) * gradient;
-    return std::isfinite(felt.x + felt.y + felt.z) ? felt : gradient;
 }
 
 glm::dvec3 limited(const glm::dvec3& force_n, double limit_n) noexcept

@@ -1,11 +1,11 @@
 // From contact and texture to force: the published rules and the corrected one.
 //
-// K is the stiffness, d the depth of the tip below the base surface, N its unit normal, h the height of the texture
-// with the lower or upper bound h_min, h_max that is proven for it, g the part of its gradient along the surface, and
-// M = N - g the perturbed normal (equation 2; its length is meant).
+// K is the stiffness, d the depth of the tip below the base surface, N its unit normal, h the height of the texture at
+// the foot with the lower or upper bound h_min, h_max that is proven for it, g the part of its gradient along the
+// surface, and M = N - g the perturbed normal (equation 2; its length is meant).
 //
-//   displaced   K max(d + h - h_max, 0) (N - (I - d W)^-1 g), W = dN/dp. Minus the gradient of K/2 (d + h - h_max)^2,
-//               h where the tip projects to: conservative, no closed path of the hand gains energy. The default.
+//   displaced   K D (G - J^T grad h), D = max(d + h - h_max, 0), G = Foot::push, J = Foot::at_dp. Minus the gradient of
+//               K/2 D^2: conservative, no closed path of the hand gains energy. The default.
 //   paper       K (AP . N) M: Basdogan, Ho and Srinivasan, 1997, sec. 2.2 and 2.3, AP from the tip to the
 //               contact. Not conservative: going round a loop gains K times change of depth times change of height.
 //   paper_unit  K (AP . N) M / |M|, the same with a unit normal, as widely implemented: slopes add no force, only turn
@@ -19,10 +19,12 @@
 //               choice below which the force begins without a step. Conservative where d >= l on a flat base, with
 //               K/2 d^2 + K l h; shallower it is `paper`.
 //
-// What is conservative is so on a smooth base, in a static scene, for a texture without time and without
-// stiffness_scale: stiffness that changes from point to point does work, up to its change times (d + h - h_max)^2 / 2.
+// What is conservative is so in a static scene, for a texture without time and without stiffness_scale (with equation
+// (1) for shading on flat facets alone): stiffness that changes from point to point does work, up to its change times
+// (d + h - h_max)^2 / 2.
 #pragma once
 
+#include "runtime/force/foot.h"
 #include "runtime/scene/force_rule.h"
 #include "runtime/texture/surface_texture.h"
 
@@ -30,29 +32,14 @@
 
 namespace haptel::runtime {
 
-// The contact as a force model sees it. Any frame, as long as it is one.
-struct TouchedSurface {
-    double depth_m = 0;                 // of the tip below the proxy along contact_normal, >= 0
-    glm::dvec3 contact_normal{0, 0, 1}; // unit: the geometry's
-    glm::dvec3 normal{0, 0, 1};         // unit, shaded: the direction of the force on a smooth surface
-    glm::dmat3 normal_dp{0};            // 1/m: how the shaded normal turns (W); 0: flat, or not asked for
-    double stiffness_n_per_m = 0;
-    double held_above_m = 0; // where the hand holds the probe, above the point that touches: the radius of a ball
-};
-
 struct ModelForce {
     glm::dvec3 force_n{0};
     double depth_m = 0; // below the surface that is felt; 0: no force. Friction and damping scale with it.
 };
 
 // Static force of the surface with its texture, before friction, damping and limits.
-ModelForce model_force(const ForceRule& rule, const TouchedSurface& surface, const TextureSample& texture) noexcept;
-
-// (I - d W)^-T g: the gradient that a hand at the depth d below the base (negative: above it, as the centre of a ball
-// that touches) feels of heights on it, where going round it sweeps the surface faster or slower than the hand (on a
-// ball of radius R: R / (R - d) times). Where the hand comes nearer to a centre of curvature than half of the radius,
-// it counts as half.
-glm::dvec3 gradient_at_depth(const glm::dvec3& gradient, const glm::dmat3& normal_dp, double depth_m) noexcept;
+ModelForce model_force(const ForceRule& rule, const Foot& foot, double stiffness_n_per_m,
+                       const TextureSample& texture) noexcept;
 
 // `force` no longer than limit_n, direction kept.
 glm::dvec3 limited(const glm::dvec3& force_n, double limit_n) noexcept;

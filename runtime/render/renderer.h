@@ -7,6 +7,7 @@
 #pragma once
 
 #include "runtime/force/effects.h"
+#include "runtime/force/foot.h"
 #include "runtime/hand/hand.h"
 #include "runtime/hand/hand_history.h"
 #include "runtime/hand/hand_velocity.h"
@@ -122,10 +123,12 @@ private:
         // What the texture leaves of the friction coefficients: its own scale, times the share of the depth below the
         // base surface that is also below the texture.
         double friction_share = 0;
-        double held_j = 0; // in the springs of the surface and of friction
+        double surface_j = 0, held_j = 0; // in the spring of the surface, and with that of friction
         uint32_t faults = 0;
         bool textured = false, band_limited = false; // a texture was evaluated, with less detail than it has
         bool unmapped = false;                       // coordinates or the turning of normals were left out
+
+        void mix_in(const ObjectForce& other, double share, const glm::dvec3& share_dp) noexcept;
     };
     struct Skipped { // in this tick
         bool query = true, texture = true, octaves = false, mapping = false;
@@ -166,6 +169,10 @@ private:
     void update_effects(Body& body, std::span<const Contact> contacts, std::span<const PartContacts> parts) noexcept;
     bool feels_in_air(const Body& body, const DevicePose& pose) noexcept;
     ObjectForce force_of(const Body& body, Touched& touched, const Placement& placement,
+                         const Contact& contact) noexcept;
+    ObjectForce force_by_shaft(const Body& body, const Material& material, const Placement& placement,
+                               const Contact& contact) const noexcept;
+    ObjectForce force_at(const Foot& foot, const Body& body, Touched& touched, const Placement& placement,
                          const Contact& contact) noexcept;
     double damping_n(const Body& body, const Material& material, const Placement& placement, const Contact& contact,
                      const glm::dvec3& normal, double depth_m, double stiffness_n_per_m) const noexcept;

@@ -125,34 +125,68 @@ double Renderer::damping_n(const Body& body, const Material& material, const Pla
     return std::max(damping, -stiffness_n_per_m * depth_m);
 }
 
+// Of the bare facets.
+Renderer::ObjectForce Renderer::force_by_shaft(const Body& body, const Material& material, const Placement& placement,
+                                               const Contact& contact) const noexcept
+{
+    ObjectForce result;
+    const double stiffness = material.stiffness_n_per_m / hand_.workspace.scale;
+    const double damping = damping_n(body, material, placement, contact, contact.normal, contact.depth_m, stiffness);
+    result.force_n = placement.direction_to_world((stiffness * contact.depth_m + damping) * contact.normal);
+    result.held_j = stiffness * contact.depth_m * contact.depth_m / 2;
+    return result;
+}
+
 Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, const Placement& placement,
                                          const Contact& contact) noexcept
+{
+    const Surface& surface = *touched.object->surface;
+    if (contact.depth_m == 0 && scene_->servo.skips.texture)
+        return {}; // the highest texture reaches up to the base and no further
+    if (contact.by_shaft) return force_by_shaft(body, touched.object->material, placement, contact);
+    // Of flat facets, and where contact tells a direction of its own, there is one foot.
+    const bool curved = surface.normal_turn_max_per_m > 0 && !contact.on_crease && !contact.unsettled;
+    if (!curved) return force_at(flat_foot(contact), body, touched, placement, contact);
+    if (scene_->servo.force.shading == ForceShading::paper)
+        return force_at(paper_foot(surface, contact), body, touched, placement, contact);
+    const Foot smooth = smooth_foot(surface, contact, probe_.radius_m);
+    if (smooth.share == 1) return force_at(smooth, body, touched, placement, contact);
+    ObjectForce force = force_at(flat_foot(contact), body, touched, placement, contact);
+    if (smooth.share > 0)
+        force.mix_in(force_at(smooth, body, touched, placement, contact), smooth.share,
+                     placement.direction_to_world(smooth.share_dp));
+    return force;
+}
+
+// Of the springs, minus the gradient of what is held by both in these shares.
+void Renderer::ObjectForce::mix_in(const ObjectForce& other, double share, const glm::dvec3& share_dp) noexcept
+{
+    force_n = glm::mix(force_n, other.force_n, share) - (other.surface_j - surface_j) * share_dp;
+    surface_j = std::lerp(surface_j, other.surface_j, share);
+    held_j = std::lerp(held_j, other.held_j, share);
+    height_m = std::lerp(height_m, other.height_m, share);
+    friction_share = std::lerp(friction_share, other.friction_share, share);
+    faults |= other.faults;
+    textured |= other.textured;
+    band_limited |= other.band_limited;
+    unmapped |= other.unmapped;
+}
+
+Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Touched& touched,
+                                         const Placement& placement, const Contact& contact) noexcept
 {
     const SceneObject& object = *touched.object;
     const Surface& surface = *object.surface;
     const double scale = hand_.workspace.scale;
-    const Skips& skips = scene_->servo.skips;
     ObjectForce result;
-    if (contact.depth_m == 0 && skips.texture)
-        return result; // the highest texture reaches up to the base and no further
-    if (contact.by_shaft) {
-        const double stiffness = object.material.stiffness_n_per_m / scale;
-        const glm::dvec3 force = (stiffness * contact.depth_m + damping_n(body, object.material, placement, contact,
-                                                                          contact.normal, contact.depth_m, stiffness)) *
-                                 contact.normal;
-        result.force_n = placement.direction_to_world(force);
-        result.held_j = stiffness * contact.depth_m * contact.depth_m / 2;
-        return result;
-    }
-
     const bool textured = touched.texture.textured() && shares_.textures > 0;
     const uint32_t reads = textured ? texture_reads(touched.texture) : 0;
-    const bool curved = surface.normal_turn_max_per_m > 0, drawn = !surface.uv.empty();
-    const bool turns = scene_->servo.force.model == ForceModel::displaced && textured && curved;
-    const Shaded read{!skips.mapping || turns || (reads & HAPTEL_READS_NORMAL),
-                      !skips.mapping || (reads & HAPTEL_READS_UV)};
-    result.unmapped = (curved && !read.normal_dp) || (drawn && !read.uv);
-    SurfacePoint at{contact.proxy_m, shade(surface, contact.face, contact.side, contact.barycentric, read), time_s()};
+    const bool all = !scene_->servo.skips.mapping, drawn = !surface.uv.empty(),
+               turns = surface.normal_turn_max_per_m > 0;
+    const Shaded read{all || (reads & HAPTEL_READS_NORMAL), all || (reads & HAPTEL_READS_UV)};
+    result.unmapped = (turns && !read.normal_dp) || (drawn && !read.uv);
+    SurfacePoint at{foot.at_m, {}, time_s()};
+    if (read.normal_dp || read.uv) at.shading = shade(surface, foot.face, foot.side, foot.barycentric, read);
     if (contact.on_crease) {
         at.shading.normal = contact.normal;
         at.shading.normal_dp = glm::dmat3(0);
@@ -163,14 +197,9 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, con
     result.textured = textured;
     result.band_limited =
         textured && (touched.texture.from().binding.band_limited || touched.texture.to().binding.band_limited);
-    const TouchedSurface felt{contact.depth_m,
-                              contact.normal,
-                              at.shading.normal,
-                              at.shading.normal_dp,
-                              object.material.stiffness_n_per_m / scale,
-                              probe_.radius_m};
-    const ModelForce elastic = model_force(scene_->servo.force, felt, texture);
-    const double stiffness = felt.stiffness_n_per_m * texture.stiffness_scale;
+    const double stiffness = object.material.stiffness_n_per_m / scale;
+    const ModelForce elastic = model_force(scene_->servo.force, foot, stiffness, texture);
+    const double felt_stiffness = stiffness * texture.stiffness_scale;
 
     result.height_m = texture.height_m;
     result.faults = texture.faults;
@@ -178,11 +207,12 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, con
         contact.depth_m > 0 ? texture.friction_scale * std::min(1.0, elastic.depth_m / contact.depth_m) : 0.0;
     if (elastic.depth_m == 0) return result; // below the base surface, but not yet below the texture
 
+    result.surface_j = felt_stiffness * elastic.depth_m * elastic.depth_m / 2;
+    result.held_j = result.surface_j + felt_stiffness * glm::dot(foot.lag_m, foot.lag_m) / 2;
     const double damping =
-        damping_n(body, object.material, placement, contact, at.shading.normal, elastic.depth_m, stiffness);
-    const glm::dvec3 force = elastic.force_n + stiffness * contact.lag_m + damping * at.shading.normal;
-    result.force_n = placement.direction_to_world(force);
-    result.held_j = stiffness * (elastic.depth_m * elastic.depth_m + glm::dot(contact.lag_m, contact.lag_m)) / 2;
+        damping_n(body, object.material, placement, contact, foot.normal, elastic.depth_m, felt_stiffness);
+    result.force_n =
+        placement.direction_to_world(elastic.force_n + felt_stiffness * foot.lag_m + damping * foot.normal);
     return result;
 }
 

@@ -1,4 +1,4 @@
-// Which force model a scene asks for; force_model.h has their equations.
+// Which force model and which shading a scene asks for; force_model.h and foot.h have their equations.
 #pragma once
 
 #include <array>
@@ -20,10 +20,22 @@ inline std::string_view name_of(ForceModel model)
 }
 std::optional<ForceModel> force_model_named(std::string_view name);
 
+// How facets become round (runtime/force/foot.h): `smooth` has a potential, `paper` is equation (1) as published.
+enum class ForceShading : uint8_t { smooth, paper };
+
+// In the order of ForceShading.
+inline constexpr std::array<std::string_view, 2> force_shading_names = {"smooth", "paper"};
+
+inline std::string_view name_of(ForceShading shading)
+{
+    return force_shading_names[static_cast<std::size_t>(shading)];
+}
+
 // What a scene says about it.
 struct ForceRule {
     ForceModel model = ForceModel::displaced;
     double lateral_depth_m = 1e-3; // l of `lateral`, > 0
+    ForceShading shading = ForceShading::smooth;
 };
 
 } // namespace haptel::runtime

@@ -257,6 +257,7 @@ std::string validate(const Scene* scene, const HandSettings& hand)
     findings.part("servo");
     servo_fields(scene->servo, findings.ranges());
     if (!one_of(scene->servo.force.model, ForceModel::lateral)) findings.add("unknown `force_model`");
+    if (!one_of(scene->servo.force.shading, ForceShading::paper)) findings.add("unknown `shading`");
     if (findings.count() > 0) return findings.text(); // the rate is what other figures are compared with
 
     findings.part("hand");

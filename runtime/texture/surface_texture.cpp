@@ -71,19 +71,18 @@ haptel_sample evaluate(const TextureBinding& binding, const haptel_point& point)
     return sample;
 }
 
-TextureSample felt(const TextureBinding& binding, const haptel_sample& sample, const glm::dvec3& normal)
+TextureSample felt(const TextureBinding& binding, const haptel_sample& sample)
 {
     TextureSample result;
     result.height_m = sample.height_m;
     result.envelope_m = std::min(0.0, sample.height_m - binding.facts.height_max_m);
     result.raised_m = std::max(0.0, sample.height_m - std::min(0.0, binding.facts.height_min_m));
-    result.surface_gradient =
-        tangential(glm::dvec3(sample.gradient[0], sample.gradient[1], sample.gradient[2]), normal);
+    result.gradient = {sample.gradient[0], sample.gradient[1], sample.gradient[2]};
     result.stiffness_scale = sample.stiffness_scale;
     result.friction_scale = sample.friction_scale;
     result.faults = sample.faults;
     if (sample.height_m - binding.facts.height_max_m > bound_slack_m) {
-        result.surface_gradient = glm::dvec3(0);
+        result.gradient = glm::dvec3(0);
         result.faults |= fault_height_above_bound;
     }
     return result;
@@ -96,7 +95,7 @@ TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& 
     if (!binding.texture) return {};
     haptel_point point = {};
     take_in(point, at, binding.texture->reads);
-    return felt(binding, evaluate(binding, point), at.shading.normal);
+    return felt(binding, evaluate(binding, point));
 }
 
 TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at, LastSample& last) noexcept
@@ -107,7 +106,7 @@ TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at
         const bool is_new = last.serial != serial;
         if (is_new) last = {.serial = serial};
         if (take_in(last.point, at, binding.texture->reads) || is_new) last.sample = evaluate(binding, last.point);
-        to = felt(binding, last.sample, at.shading.normal);
+        to = felt(binding, last.sample);
     }
     return reader.fading() ? mixed(sample_texture(reader.from().binding, at), to, reader.weight()) : to;
 }
@@ -118,7 +117,7 @@ TextureSample mixed(const TextureSample& from, const TextureSample& to, double s
     return {.height_m = mix(from.height_m, to.height_m),
             .envelope_m = mix(from.envelope_m, to.envelope_m),
             .raised_m = mix(from.raised_m, to.raised_m),
-            .surface_gradient = mix(from.surface_gradient, to.surface_gradient),
+            .gradient = mix(from.gradient, to.gradient),
             .stiffness_scale = mix(from.stiffness_scale, to.stiffness_scale),
             .friction_scale = mix(from.friction_scale, to.friction_scale),
             .faults = from.faults | to.faults};

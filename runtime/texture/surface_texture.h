@@ -1,4 +1,4 @@
-// Texture stage: from a point on the surface to the height and the surface gradient that are felt there.
+// Texture stage: from a point on the surface to the height and the gradient that are felt there.
 //
 // Heights reach the contact shifted to the envelope h - h_max <= 0, with h_max the proven upper bound of the binding:
 // touching the base mesh is then necessary for touching the texture, and force starts at 0.
@@ -31,7 +31,7 @@ struct TextureSample {
     double height_m = 0;            // as the texture says
     double envelope_m = 0;          // height - h_max, <= 0
     double raised_m = 0;            // height - min(h_min, 0), >= 0: as published where that is never below 0
-    glm::dvec3 surface_gradient{0}; // tangential part of dh/dp, metres per metre
+    glm::dvec3 gradient{0};         // dh/dp, metres per metre: what of it is along the surface counts
     double stiffness_scale = 1, friction_scale = 1;
     uint32_t faults = 0; // HAPTEL_FAULT_* and the bits above
 };

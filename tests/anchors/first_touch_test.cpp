@@ -118,13 +118,16 @@ TEST_CASE("anchors row 4: a frictionless plane gives no tangential force at any 
 TEST_CASE("anchors row 5: the first contact is below 1.001 mN at 1 um approach, and no later micrometre adds more")
 {
     constexpr double approach_m = 1e-6;
+    // Of facets that stand for a smooth surface above them: down to four times as deep the depth grows faster than the
+    // way, at most by 1.5 / 4 (runtime/force/foot.h).
+    constexpr double rises = 1 + 1.5 / 4;
     Mesh bumpy = BumpySphere::mesh(19), box = make_box({0.04, 0.06, 0.08});
     scale_to_size(bumpy, 0.1);
     struct Case {
         std::string name;
         Mesh mesh;
         dvec3 above, toward; // from where, and the unit way
-        bool textured = false;
+        bool textured = false, smooth = false;
     };
     const dvec3 corner(0.02, 0.03, 0.04);
     const Case cases[] = {
@@ -134,7 +137,7 @@ TEST_CASE("anchors row 5: the first contact is below 1.001 mN at 1 um approach, 
         {"plane, textured", plane_mesh(0.1, 9), {0.00025, 0.0071, 0}, {0, 0, -1}, true},
         {"edge of a box", box, {0.02, 0.001, 0.04}, -glm::normalize(dvec3(1, 0, 1))},
         {"corner of a box", box, corner, -glm::normalize(corner)},
-        {"bumpy sphere", bumpy, 0.05 * glm::normalize(dvec3(1, 2, 3)), -glm::normalize(dvec3(1, 2, 3))}};
+        {"bumpy sphere", bumpy, 0.05 * glm::normalize(dvec3(1, 2, 3)), -glm::normalize(dvec3(1, 2, 3)), false, true}};
     for (const Probe& probe : probes)
         for (const Case& c : cases)
             for (const double phase : {0.01, 0.5, 0.99}) { // where between two ticks the surface is
@@ -153,7 +156,7 @@ TEST_CASE("anchors row 5: the first contact is below 1.001 mN at 1 um approach, 
                     const double force_n = glm::length(renderer.tick({tip, tip - 0.1 * c.toward}).force_n);
                     // The way, and damping: 1 N s/m at 1 mm/s, which sets in over the first millimetre. Later the
                     // shaded normal is not quite at a right angle to what friction holds.
-                    REQUIRE(force_n - before_n <= (touched ? 1.01e-3 : 1.001e-3));
+                    REQUIRE(force_n - before_n <= (touched ? 1.01e-3 * (c.smooth ? rises : 1) : 1.001e-3));
                     touched = force_n > 0;
                     before_n = force_n;
                 }

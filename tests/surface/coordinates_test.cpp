@@ -67,7 +67,7 @@ SurfacePoint point_on(const Surface& surface, uint32_t face, uint32_t side, cons
 
 double slope_of(const TextureBinding& binding, const SurfacePoint& point)
 {
-    return glm::length(sample_texture(binding, point).surface_gradient);
+    return glm::length(tangential(sample_texture(binding, point).gradient, point.shading.normal));
 }
 
 } // namespace

@@ -32,7 +32,8 @@ NormalBelow textured_normal_below(const std::shared_ptr<const Scene>& scene, con
         if (!hit) return std::nullopt;
         const SurfacePoint at{hit->point_m, shade(*seen.surface, hit->face, hit->side, hit->barycentric), 0};
         const glm::dvec3 bent =
-            at.shading.normal - exaggeration * sample_texture(reader->to().binding, at).surface_gradient;
+            at.shading.normal -
+            exaggeration * tangential(sample_texture(reader->to().binding, at).gradient, at.shading.normal);
         return glm::normalize(workspace.direction_to_hand(seen.placement.direction_to_world(bent)));
     };
 }

@@ -29,7 +29,7 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
          "scene.toml:2:1: error: unknown key `rate` in [servo]: did you mean `rate_hz`?\n"
          "scene.toml:3:1: error: unknown key `qqqqqqqq` in [servo]: it may hold rate_hz, lateral_depth_m, "
          "force_limit_n, v_max_m_per_s, force_rise_s, wait_for_small_force_n, "
-         "force_model\n"},
+         "force_model, shading\n"},
         {"[[objects]]\nshape = \"plane\"\n",
          "scene.toml:1:1: error: a scene needs something to touch: add an `[[object]]` with a `mesh` or a `shape`\n"
          "scene.toml:1:3: error: unknown key `objects`: did you mean `object`?\n"},

@@ -50,6 +50,7 @@ radius_m = 0.0
 [servo]
 rate_hz = "2kHz"
 force_model = "paper"
+shading = "paper"
 force_limit_n = 5
 v_max_m_per_s = 0.5
 [device]
@@ -81,7 +82,7 @@ shape = "icosphere"
             return open_scripted(request);
         });
     CHECK(loaded.diagnostics == (folder.path / "scene.toml").string() +
-                                    ":18:8: note: mesh `triangle.obj`: open mesh: 3 border edges, past which a hand "
+                                    ":19:8: note: mesh `triangle.obj`: open mesh: 3 border edges, past which a hand "
                                     "gets behind the surface\nrock.haptel:1:1: warning: harmless\n");
 
     const Scene& scene = *loaded.scene;

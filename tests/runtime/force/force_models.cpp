@@ -63,22 +63,31 @@ double refined_loop_work_j(const ForceRule& rule, double shallow_m, double deep_
 struct Solid {
     std::function<dvec3(const dvec3&)> foot;   // nearest point of the surface
     std::function<dvec3(const dvec3&)> normal; // outward unit normal at the foot
-    double turn_step_m = 1e-5;
+    double step_m = 1e-6;
 
     double depth(const dvec3& p) const { return glm::dot(foot(p) - p, normal(p)); }
-    // Shape operator at the foot, by differences of the normal along the surface.
-    glm::dmat3 normal_dp(const dvec3& p) const
+    // How the foot moves with the hand, by differences.
+    glm::dmat3 foot_dp(const dvec3& p) const
     {
-        const dvec3 at = foot(p);
         glm::dmat3 result(0);
         for (int j = 0; j < 3; ++j) {
             dvec3 step(0);
-            step[j] = turn_step_m;
-            result[j] = (normal(at + step) - normal(at - step)) / (2 * turn_step_m);
+            step[j] = step_m;
+            result[j] = (foot(p + step) - foot(p - step)) / (2 * step_m);
         }
         return result;
     }
 };
+
+Foot foot_at(double depth_m, const dvec3& way, const dvec3& normal)
+{
+    Foot foot;
+    foot.depth_m = depth_m;
+    foot.way = way;
+    foot.normal = foot.push = normal;
+    foot.at_dp = glm::dmat3(1) - glm::outerProduct(normal, normal);
+    return foot;
+}
 
 Solid ball(double radius_m)
 {
@@ -112,55 +121,10 @@ dvec3 force_on(const Solid& solid, const dvec3& p, const ForceRule& rule, bool c
     TextureSample texture;
     texture.height_m = solid_height(foot);
     texture.envelope_m = texture.height_m - amplitude_m;
-    texture.surface_gradient = tangential(solid_gradient(foot), normal);
-    const glm::dmat3 turn = curved ? solid.normal_dp(p) : glm::dmat3(0);
-    return model_force(rule, {solid.depth(p), normal, normal, turn, stiffness}, texture).force_n;
-}
-
-TextureBinding solid_texture()
-{
-    return lambda_texture(
-        [](const haptel_point& at, dvec3& gradient) {
-            const dvec3 p(at.p[0], at.p[1], at.p[2]);
-            gradient = solid_gradient(p);
-            return solid_height(p);
-        },
-        -amplitude_m, amplitude_m, HAPTEL_READS_POINT);
-}
-
-// Work on a hand that presses into a ball, slides along an arc, rises a little and slides back (J); the trapezoidal
-// rule, since what is felt may jump.
-double arc_loop_work_j(double radius_m, int number, int steps, const std::function<dvec3(const dvec3&)>& force)
-{
-    const dvec3 across = glm::normalize(dvec3(1, 0.3, 0.2 + 0.01 * number));
-    const dvec3 along = glm::normalize(glm::cross(across, dvec3(0.2, 0.4, 1)));
-    const double from = 0.1 * number, to = from + (0.5 + 0.013 * number) * 3e-3 / radius_m;
-    const std::array<glm::dvec2, 5> corners{
-        {{from, 0.3e-3}, {from, 0.8e-3}, {to, 0.8e-3}, {to, 0.3e-3}, {from, 0.3e-3}}};
-    double work = 0;
-    dvec3 last_p(0), last_force(0);
-    for (std::size_t edge = 0; edge + 1 < corners.size(); ++edge)
-        for (int i = edge == 0 ? 0 : 1; i <= steps; ++i) {
-            const glm::dvec2 c = glm::mix(corners[edge], corners[edge + 1], static_cast<double>(i) / steps);
-            const dvec3 p = (radius_m - c.y) * (std::cos(c.x) * across + std::sin(c.x) * along);
-            const dvec3 here = force(p);
-            if (edge > 0 || i > 0) work += glm::dot(0.5 * (here + last_force), p - last_p);
-            last_p = p;
-            last_force = here;
-        }
-    return work;
-}
-
-template <class Work>
-double rms_of_loops(Work&& work)
-{
-    constexpr int loops = 20;
-    double sum = 0;
-    for (int i = 0; i < loops; ++i) {
-        const double one = work(i);
-        sum += one * one;
-    }
-    return std::sqrt(sum / loops);
+    texture.gradient = solid_gradient(foot);
+    Foot felt = foot_at(solid.depth(p), normal, normal);
+    if (curved) felt.at_dp = solid.foot_dp(p);
+    return model_force(rule, felt, stiffness, texture).force_n;
 }
 
 } // namespace
@@ -186,11 +150,12 @@ TEST_CASE("force models are the published formulae")
         TextureSample texture;
         texture.height_m = texture.raised_m = h;
         texture.envelope_m = h - h_max;
-        texture.surface_gradient = tangential(dh, n);
+        texture.gradient = dh;
         texture.stiffness_scale = 0.5 + positive(random);
         const double k = stiffness * texture.stiffness_scale;
-        const TouchedSurface surface{d, facet, n, glm::dmat3(0), stiffness};
-        const auto force = [&](ForceModel model) { return model_force({model, 0.4e-3}, surface, texture).force_n; };
+        const auto force = [&](ForceModel model) {
+            return model_force({model, 0.4e-3}, foot_at(d, facet, n), stiffness, texture).force_n;
+        };
         const auto near = [](const dvec3& a, const dvec3& b) { return glm::length(a - b) < 1e-12; };
 
         const dvec3 ap = d * facet; // from the tip A to the contact P
@@ -273,70 +238,4 @@ TEST_CASE("on a curved base displaced is minus the gradient of its potential")
         }
         CHECK(largest_without > 1e-2); // N: what the factor is for
     }
-}
-
-TEST_CASE("on a textured ball made of triangles displaced gives away the less the finer they are")
-{
-    constexpr double radius_m = 0.02;
-    const double without_j = rms_of_loops([&](int i) {
-        return arc_loop_work_j(radius_m, i, 500,
-                               [&](const dvec3& p) { return force_on(ball(radius_m), p, {}, false); });
-    });
-    const auto on_mesh_j = [&](uint32_t subdivisions, ForceModel model, double probe_radius_m = 0) {
-        Mesh mesh = make_icosphere(subdivisions);
-        scale_to_size(mesh, 2 * radius_m);
-        Scene scene = bare_scene(mesh, solid_texture());
-        scene.servo.force.model = model;
-        if (probe_radius_m > 0) scene.probe = {ProbeKind::sphere, 0.15, probe_radius_m};
-        const auto touched = shared(std::move(scene));
-        return rms_of_loops([&](int i) {
-            Renderer renderer(touched);
-            bool placed = false;
-            return arc_loop_work_j(radius_m + probe_radius_m, i, probe_radius_m > 0 ? 1000 : 4000, [&](const dvec3& p) {
-                if (!std::exchange(placed, true)) renderer.tick({1.1 * p, 1.1 * p});
-                return renderer.tick({p, p}).force_n;
-            });
-        });
-    };
-    const double coarse_j = on_mesh_j(4, ForceModel::displaced), middle_j = on_mesh_j(5, ForceModel::displaced),
-                 fine_j = on_mesh_j(6, ForceModel::displaced), paper_j = on_mesh_j(6, ForceModel::paper);
-    CAPTURE(coarse_j, middle_j, fine_j, without_j, paper_j);
-    // With the square of the edges, which halve each time: nearer to a quarter than to a half.
-    CHECK(middle_j < std::pow(2, -1.5) * coarse_j);
-    CHECK(fine_j < std::pow(2, -1.5) * middle_j);
-    // So extrapolated to facets without size, they give away nothing, and not what the rule without its factor does.
-    CHECK(std::abs(4 * fine_j - middle_j) / 3 < 0.5 * without_j);
-    CHECK(fine_j < 0.02 * paper_j);
-    // A ball as probe is held by its centre, above the surface.
-    constexpr double probe_m = 0.01;
-    const double ball_without_j = rms_of_loops([&](int i) {
-        return arc_loop_work_j(radius_m + probe_m, i, 500, [&](const dvec3& p) {
-            const dvec3 n = glm::normalize(p), foot = radius_m * n;
-            TextureSample texture;
-            texture.envelope_m = solid_height(foot) - amplitude_m;
-            texture.surface_gradient = tangential(solid_gradient(foot), n);
-            return model_force({}, {radius_m + probe_m - glm::length(p), n, n, glm::dmat3(0), stiffness}, texture)
-                .force_n;
-        });
-    });
-    const double by_ball_j = on_mesh_j(6, ForceModel::displaced, probe_m);
-    CAPTURE(by_ball_j, ball_without_j);
-    CHECK(by_ball_j < 0.3 * ball_without_j);
-}
-
-TEST_CASE("the gradient at depth is bounded, however deep and however curved")
-{
-    const dvec3 g(0.3, 0.4, 0);
-    glm::dmat3 turn(0);
-    turn[0][0] = turn[1][1] = 1 / 0.02; // a ball's, 20 mm
-    CHECK(glm::length(gradient_at_depth(g, turn, 1e-3) - g * 20.0 / 19.0) < 1e-15);
-    CHECK(glm::length(gradient_at_depth(g, -turn, 1e-3) - g * 20.0 / 21.0) < 1e-15);
-    CHECK(glm::length(gradient_at_depth(g, turn, -0.06) - g / 4.0) < 1e-15); // a ball of three times the radius
-    CHECK(gradient_at_depth(g, turn, 0) == g);
-    CHECK(gradient_at_depth(g, glm::dmat3(0), 1e-3) == g);
-    for (const double depth_m : {0.019, 0.02, 0.021, 1.0, 1e300})
-        for (const double sign : {-1.0, 1.0})
-            CHECK(glm::length(gradient_at_depth(g, sign * turn, depth_m)) <= 2 * glm::length(g));
-    for (const double wrong : {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::quiet_NaN()})
-        CHECK(gradient_at_depth(g, turn, wrong) == g);
 }
