@@ -29,7 +29,7 @@ glm::dvec3 way_out(const Surface& surface, const Contact& contact)
     const Face& face = surface.faces[contact.face];
     const auto [on, i] = feature_at(contact.barycentric);
     if (on == Feature::On::face) return contact.normal;
-    if (on == Feature::On::vertex) return unit(surface.fans[surface.fan_of(contact.face, i, contact.side)].normal);
+    if (on == Feature::On::vertex) return unit(FanOutward(surface, {contact.face, i, contact.side}).normal);
     const SideEdge link = face.link[i][contact.side];
     return unit(contact.facet_normal + surface.facet_normal(link.face(), link.side()));
 }

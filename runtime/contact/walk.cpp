@@ -223,22 +223,29 @@ Walk::Step Walk::from_vertex()
 {
     const glm::dvec3 to_hand = hand_ - proxy_.at;
     NearestInFan nearest;
-    bool free_of_vertex = true;
     const uint32_t own = surface_.fan_of(proxy_.face, proxy_.index, proxy_.side);
-    uint32_t fan = own;
-    do { // the fan walked on, and others that it meets in this vertex
-        const Fan& data = surface_.fans[fan];
-        const Sector start = fan == own ? Sector{proxy_.face, proxy_.index, proxy_.side}
-                                        : Sector{data.start.face(), data.start.edge(), data.start.side()};
-        const bool closed = nearest.consider(surface_, start, to_hand);
-        free_of_vertex = free_of_vertex && (!closed || glm::dot(data.normal, to_hand) > 0);
-        fan = data.next;
-    } while (fan != own);
+    const auto each_fan = [&](auto&& visit) { // the fan walked on, and others that it meets in this vertex
+        uint32_t fan = own;
+        do {
+            const Fan& data = surface_.fans[fan];
+            visit(fan == own ? Sector{proxy_.face, proxy_.index, proxy_.side}
+                             : Sector{data.start.face(), data.start.edge(), data.start.side()});
+            fan = data.next;
+        } while (fan != own);
+    };
+    each_fan([&](const Sector& start) { nearest.consider(surface_, start, to_hand); });
 
     const auto [face, corner, side] = nearest.sector;
     const StartsOn here = StartsOn::on_vertex(surface_.faces[proxy_.face].vertex[proxy_.index]);
-    if (nearest.way == 0)
-        return free_of_vertex && glm::length(to_hand) >= lift_off ? leave(here, glm::dvec3(0)) : Step::stop;
+    if (nearest.way == 0) {
+        bool free_of_vertex = glm::length(to_hand) >= lift_off;
+        each_fan([&](const Sector& start) {
+            if (!free_of_vertex) return;
+            const FanOutward outward(surface_, start);
+            free_of_vertex = !outward.closed || glm::dot(outward.normal, to_hand) > 0;
+        });
+        return free_of_vertex ? leave(here, glm::dvec3(0)) : Step::stop;
+    }
     if (nearest.edge == NearestInFan::into_sector) {
         if (glm::dot(to_hand, surface_.facet_normal(face, side)) >= lift_off) return leave(here, glm::dvec3(0));
         return nearest.way > departure ? slide(face, side, corner, previous(corner)) : Step::stop;

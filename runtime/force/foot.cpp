@@ -11,7 +11,6 @@ namespace haptel::runtime {
 namespace {
 
 using glm::cross;
-using glm::dmat3;
 using glm::dot;
 using glm::dvec3;
 
@@ -22,16 +21,16 @@ constexpr double narrow = 0.4, narrowest = 0.1;
 // Beyond a border or a crease the lines are those of the facet before it, up to so many times its height.
 constexpr double beyond_most = 0.5;
 
-// Down to so many times s the depth grows from that below the facet to that below the smooth surface. No spring is
-// harder by more than 1.5 / 4.
-constexpr double raised_within = 4;
+// Down to so many times s the depth grows from that below the facet to that below the smooth surface. There the spring
+// is harder, at most 1.63 times; within 4 times s it would be twice.
+constexpr double raised_within = 6;
 
 // At less than the focal depth the foot is nearer to the flat one than half an edge.
 constexpr int facets_most = 8;
 
-// Newton's steps double the digits; that below which the next is lost in rounding.
+// Newton's steps double the digits: after one below this the next is less than 1e-12.
 constexpr int steps_most = 8;
-constexpr double step_settled = 1e-8, on_edge = 1e-10;
+constexpr double step_settled = 1e-6, on_edge = 1e-10;
 
 // Rises from 0 to 1 over 0 .. 1, and its derivative.
 struct Rise {
@@ -44,49 +43,34 @@ struct Rise {
     }
 };
 
-// A facet and the lines through it. Derivatives are by the weights of the second and the third corner.
-struct Lines {
-    dvec3 p[3], n[3]; // of the corners, n[0] toward the side that is seen; p[1], p[2], n[1], n[2] from the first one
-
-    Lines(const Surface& surface, uint32_t face, uint32_t side)
-    {
-        const auto& of_corner = surface.faces[face].fan_or_part;
-        for (uint32_t i = 0; i < 3; ++i) {
-            p[i] = surface.vertex_m(face, i);
-            n[i] = surface.shading_normal(of_corner[i][side]);
-        }
-        for (uint32_t i : {1u, 2u}) p[i] -= p[0], n[i] -= n[0];
-    }
-    dvec3 point(const glm::dvec2& b) const { return p[0] + b.x * p[1] + b.y * p[2]; }
-    dvec3 normal(const glm::dvec2& b) const { return n[0] + b.x * n[1] + b.y * n[2]; } // not of unit length
-};
-
-// The line of the hand, and how many lengths of the normal it is below its point there.
+// The line through the hand, t lengths of its normal below its point; and what moves the hand there: by b, and against
+// the normal by t.
 struct OnLine {
     glm::dvec2 b{0};
     double t = 0;
+    dvec3 normal{0}, u{0}, v{0}, across{0}; // across: u x v
+    double per = 0;                         // 1 / (across . normal)
     bool found = false;
 };
 
-OnLine line_through(const Lines& lines, const dvec3& hand, OnLine at) noexcept
+// By Newton's steps from b and t.
+void find_line(const FacetLines& lines, const dvec3& hand, OnLine& at) noexcept
 {
     at.found = false;
     for (int step = 0; step < steps_most; ++step) {
-        const dvec3 n = lines.normal(at.b), off = hand - lines.point(at.b) + at.t * n;
-        const dvec3 u = lines.p[1] - at.t * lines.n[1], v = lines.p[2] - at.t * lines.n[2];
-        const dvec3 across = cross(u, v), by_n = cross(off, n);
-        const double per = 1 / dot(across, n);
-        const glm::dvec2 more(-per * dot(v, by_n), per * dot(u, by_n));
+        at.normal = lines.normal(at.b);
+        at.u = lines.p[1] - at.t * lines.n[1];
+        at.v = lines.p[2] - at.t * lines.n[2];
+        at.across = cross(at.u, at.v);
+        at.per = 1 / dot(at.across, at.normal);
+        const dvec3 off = hand - lines.point(at.b) + at.t * at.normal, by_normal = cross(off, at.normal);
+        const glm::dvec2 more(-at.per * dot(at.v, by_normal), at.per * dot(at.u, by_normal));
         at.b += more;
-        at.t -= per * dot(across, off);
+        at.t -= at.per * dot(at.across, off);
         const double size = std::fabs(more.x) + std::fabs(more.y);
-        if (size < step_settled) {
-            at.found = true;
-            break;
-        }
-        if (!(size < facets_most)) break; // or not finite
+        at.found = size < step_settled;
+        if (at.found || !(size < facets_most)) return; // or not finite
     }
-    return at;
 }
 
 struct Height {
@@ -95,24 +79,19 @@ struct Height {
 };
 
 // s: of the smooth surface above the facet.
-Height raised(const Lines& lines, const dvec3& b) noexcept
+Height raised(const FacetLines& lines, const dvec3& b) noexcept
 {
     Height s;
-    double db[3] = {}, bubble = 0;
+    double db[3] = {};
     for (uint32_t i = 0; i < 3; ++i) {
         const uint32_t j = next(i);
-        const dvec3 edge = (j ? lines.p[j] : dvec3(0)) - (i ? lines.p[i] : dvec3(0));
-        const dvec3 from = i ? lines.n[0] + lines.n[i] : lines.n[0], to = j ? lines.n[0] + lines.n[j] : lines.n[0];
-        const double rise = -dot(from, edge), back = dot(to, edge); // slopes at both ends, each away from its corner
-        const double mean = b[i] * rise + b[j] * back;
+        const double mean = b[i] * lines.rise[i] + b[j] * lines.back[i];
         s.m += b[i] * b[j] * mean;
-        db[i] += b[j] * (mean + b[i] * rise);
-        db[j] += b[i] * (mean + b[j] * back);
-        bubble += 0.5 * (rise + back);
+        db[i] += b[j] * (mean + b[i] * lines.rise[i]);
+        db[j] += b[i] * (mean + b[j] * lines.back[i]);
     }
-    // So that what is quadratic is met.
-    s.m += bubble * b[0] * b[1] * b[2];
-    for (uint32_t i = 0; i < 3; ++i) db[i] += bubble * b[next(i)] * b[previous(i)];
+    s.m += lines.bubble * b[0] * b[1] * b[2];
+    for (uint32_t i = 0; i < 3; ++i) db[i] += lines.bubble * b[next(i)] * b[previous(i)];
     s.db = {db[1] - db[0], db[2] - db[0]};
     return s;
 }
@@ -155,6 +134,24 @@ bool go_on(const Surface& surface, uint32_t least, uint32_t& face, uint32_t& sid
 
 } // namespace
 
+FacetLines::FacetLines(const Surface& surface, uint32_t of_face, uint32_t of_side) noexcept
+    : face(of_face), side(of_side), bubble(0)
+{
+    const auto& of_corner = surface.faces[face].fan_or_part;
+    for (uint32_t i = 0; i < 3; ++i) {
+        p[i] = surface.vertex_m(face, i);
+        n[i] = surface.shading_normal(of_corner[i][side]);
+    }
+    for (uint32_t i = 0; i < 3; ++i) {
+        const dvec3 edge = p[next(i)] - p[i];
+        rise[i] = -dot(n[i], edge);
+        back[i] = dot(n[next(i)], edge);
+        bubble += 0.5 * (rise[i] + back[i]); // so that what is quadratic is met
+    }
+    for (uint32_t i : {1u, 2u}) p[i] -= p[0], n[i] -= n[0];
+    area = cross(p[1], p[2]);
+}
+
 Foot flat_foot(const Contact& contact) noexcept
 {
     Foot foot;
@@ -165,7 +162,8 @@ Foot flat_foot(const Contact& contact) noexcept
     foot.depth_m = contact.depth_m;
     foot.way = foot.normal = foot.push = contact.normal;
     foot.lag_m = contact.lag_m;
-    foot.at_dp = dmat3(1) - glm::outerProduct(contact.normal, contact.normal);
+    foot.edge_m[0] = dvec3(0);
+    foot.share = 1;
     return foot;
 }
 
@@ -173,47 +171,43 @@ Foot paper_foot(const Surface& surface, const Contact& contact) noexcept
 {
     Foot foot = flat_foot(contact);
     foot.normal = foot.push = shading_normal(surface, contact.face, contact.side, contact.barycentric);
-    foot.at_dp = dmat3(1) - glm::outerProduct(foot.normal, foot.normal);
     return foot;
 }
 
-Foot smooth_foot(const Surface& surface, const Contact& contact, double held_above_m) noexcept
+Foot smooth_foot(const Surface& surface, const Contact& contact, double held_above_m, FacetLines& last) noexcept
 {
     Foot foot;
     foot.share = 0;
     const dvec3 hand = contact.proxy_m + (held_above_m - contact.depth_m) * contact.normal;
     uint32_t face = contact.face, side = contact.side;
     dvec3 b = contact.barycentric;
-    double t = contact.depth_m - held_above_m;
+    OnLine at;
+    at.t = contact.depth_m - held_above_m;
     for (int facet = 0; facet < facets_most; ++facet) {
-        const Lines lines(surface, face, side);
-        const OnLine at = line_through(lines, hand, {{b.y, b.z}, t});
+        if (face != last.face || side != last.side) last = FacetLines(surface, face, side);
+        const FacetLines& lines = last;
+        at.b = {b.y, b.z};
+        find_line(lines, hand, at);
         if (!at.found) return foot;
         b = weights(at.b);
-        t = at.t;
         const uint32_t least = b.x < b.y ? (b.x < b.z ? 0 : 2) : (b.y < b.z ? 1 : 2);
         const bool beyond = b[least] < -on_edge;
         if (beyond && go_on(surface, least, face, side, b)) continue;
         if (!(b[least] > -beyond_most)) return foot;
 
-        const dvec3 sum = lines.normal(at.b);
-        const double length = glm::length(sum);
-        const dvec3 of_facet = cross(lines.p[1], lines.p[2]);
-        const double open = dot(of_facet, sum);
+        const double length = glm::length(at.normal);
+        const double open = dot(lines.area, at.normal);
         if (!(length > Surface::least_normal) || !((side ? -open : open) > 0)) return foot;
-        const dvec3 n = sum / length;
 
-        // How b and the way along n change with the hand, in a base of the offset facet's edges and n.
-        const double below = t * length;
-        const auto turn = [&](const dvec3& change) { return (change - dot(change, n) * n) / length; };
-        const dvec3 u = lines.p[1] - below * turn(lines.n[1]), v = lines.p[2] - below * turn(lines.n[2]);
-        const dvec3 across = cross(u, v);
-        const double per = 1 / dot(across, n);
-        const dvec3 second_dp = per * cross(v, n), third_dp = per * cross(n, u), below_dp = -per * across;
+        const dvec3 second_dp = at.per * cross(at.v, at.normal), third_dp = at.per * cross(at.normal, at.u),
+                    t_dp = -at.per * at.across;
         const dvec3 b_dp[] = {-second_dp - third_dp, second_dp, third_dp};
-
+        // The normal's length changes, too.
+        const double longer = at.t / length;
+        const dvec3 below_dp = length * t_dp + longer * dot(at.normal, lines.n[1]) * second_dp +
+                               longer * dot(at.normal, lines.n[2]) * third_dp;
         const Height s = raised(lines, b);
-        const double depth = below + held_above_m;
+        const double depth = at.t * length + held_above_m;
         double by_s = 1, by_depth = 1;
         foot.depth_m = depth + s.m;
         if (s.m > 0 && depth < raised_within * s.m) {
@@ -223,18 +217,18 @@ Foot smooth_foot(const Surface& surface, const Contact& contact, double held_abo
             by_s = depth > 0 ? rise.value - rise.slope * depth / (raised_within * s.m) : 0;
         }
         foot.push = -by_depth * below_dp - by_s * (s.db.x * second_dp + s.db.y * third_dp);
-        foot.way = foot.normal = glm::normalize(foot.push);
+        foot.way = foot.normal = at.normal / length;
         foot.lag_m = contact.lag_m - dot(contact.lag_m, foot.normal) * foot.normal;
 
-        // How near the lines have come to each other, as a polynomial of b and t.
-        const dvec3 j = lines.p[1] - t * lines.n[1], k = lines.p[2] - t * lines.n[2], area = cross(j, k);
-        const double left = dot(area, sum) / open;
+        // How near the lines have come to each other: what is left of the facet's area, as a polynomial of b and t.
+        const double left = 1 / (at.per * open);
         const Rise apart((left - narrowest) / (narrow - narrowest)), near(1 + std::min(0.0, b[least]) / beyond_most);
         foot.share = apart.value * near.value;
         if (foot.share < 1) {
-            const auto left_db = [&](const dvec3& dn) { return (dot(area, dn) - left * dot(of_facet, dn)) / open; };
-            const double left_dt = -dot(cross(lines.n[1], k) + cross(j, lines.n[2]), sum) / open;
-            const dvec3 t_dp = -area / dot(area, sum);
+            const auto left_db = [&](const dvec3& dn) {
+                return (dot(at.across, dn) - left * dot(lines.area, dn)) / open;
+            };
+            const double left_dt = -dot(cross(lines.n[1], at.v) + cross(at.u, lines.n[2]), at.normal) / open;
             const dvec3 left_dp = left_db(lines.n[1]) * second_dp + left_db(lines.n[2]) * third_dp + left_dt * t_dp;
             foot.share_dp = near.value * apart.slope / (narrow - narrowest) * left_dp;
             if (b[least] < 0) foot.share_dp += apart.value * near.slope / beyond_most * b_dp[least];
@@ -243,17 +237,19 @@ Foot smooth_foot(const Surface& surface, const Contact& contact, double held_abo
         foot.face = face;
         foot.side = side;
         foot.barycentric = b;
-        dvec3 at_dp[] = {b_dp[0], b_dp[1], b_dp[2]};
+        foot.edge_m[0] = lines.p[1];
+        foot.edge_m[1] = lines.p[2];
+        foot.weight_dp[0] = second_dp;
+        foot.weight_dp[1] = third_dp;
         if (beyond) { // the texture is that of the border
             foot.barycentric = glm::max(b, 0.0);
             const double all = foot.barycentric.x + foot.barycentric.y + foot.barycentric.z;
             foot.barycentric /= all;
-            dvec3 all_dp(0);
-            for (uint32_t i = 0; i < 3; ++i) all_dp += at_dp[i] = b[i] > 0 ? b_dp[i] : dvec3(0);
-            for (uint32_t i = 0; i < 3; ++i) at_dp[i] = (at_dp[i] - foot.barycentric[i] * all_dp) / all;
+            dvec3 kept_dp[3], all_dp(0);
+            for (uint32_t i = 0; i < 3; ++i) all_dp += kept_dp[i] = b[i] > 0 ? b_dp[i] : dvec3(0);
+            for (uint32_t i : {0u, 1u}) foot.weight_dp[i] = (kept_dp[i + 1] - foot.barycentric[i + 1] * all_dp) / all;
         }
         foot.at_m = lines.point({foot.barycentric.y, foot.barycentric.z});
-        foot.at_dp = glm::outerProduct(lines.p[1], at_dp[1]) + glm::outerProduct(lines.p[2], at_dp[2]);
         return foot;
     }
     return foot;

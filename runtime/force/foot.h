@@ -12,7 +12,7 @@
 //
 //   D(A) = t |N| + s(b),
 //
-// but shallower than some times s, where it becomes 0 on the facets that contact knows. It is one continuous function
+// but shallower than 6 s, where it becomes 0 on the facets that contact knows. It is one continuous function
 // of the hand's place, and `push` minus its exact gradient: K D push is the force of the potential K D^2 / 2, whatever
 // the mesh. Force shading, equation (1) of the paper, turns the force of the flat foot instead.
 //
@@ -29,19 +29,41 @@
 
 namespace haptel::runtime {
 
-// In the space of the object.
+// A facet and the lines through it. Weights are those of the second and the third corner.
+struct FacetLines {
+    uint32_t face = ~0u, side = 0;
+    glm::dvec3 p[3], n[3]; // of the corners, the normals toward the side; of the second and third: from the first one
+    glm::dvec3 area;       // p[1] x p[2]
+    double rise[3], back[3], bubble; // of the smooth surface above it: at both ends of each edge, and in its middle
+
+    FacetLines() = default;
+    FacetLines(const Surface& surface, uint32_t of_face, uint32_t of_side) noexcept;
+    glm::dvec3 point(const glm::dvec2& b) const { return p[0] + b.x * p[1] + b.y * p[2]; }
+    glm::dvec3 normal(const glm::dvec2& b) const { return n[0] + b.x * n[1] + b.y * n[2]; } // not of unit length
+};
+
+// In the space of the object. Made by the functions below, which fill it: it is made in each tick.
 struct Foot {
-    uint32_t face = 0, side = 0;
-    glm::dvec3 barycentric{1, 0, 0}; // each >= 0 but for rounding, sum 1
-    glm::dvec3 at_m{0};              // on that facet: where the texture is felt
-    double depth_m = 0;              // of the hand below what is felt there without a texture; less than 0: above it
-    glm::dvec3 way{0, 0, 1};         // unit: along which that depth is measured
-    glm::dvec3 normal{0, 0, 1};      // unit: of what is felt there, across which friction holds
-    glm::dvec3 push{0, 0, 1};        // of a spring of depth_m: of a smooth foot minus its gradient, else `normal`
-    glm::dvec3 lag_m{0};             // Contact::lag_m, across `normal` on a smooth foot
-    glm::dmat3 at_dp{0};             // how at_m moves with the hand: column j by its j-th coordinate
-    double share = 1;                // 0 .. 1, of this foot in what is felt
-    glm::dvec3 share_dp{0};          // 1/m: its gradient
+    uint32_t face, side;
+    glm::dvec3 barycentric; // each >= 0 but for rounding, sum 1
+    glm::dvec3 at_m;        // on that facet: where the texture is felt
+    double depth_m;         // of the hand below what is felt there without a texture; less than 0: above it
+    glm::dvec3 way;         // unit: along which that depth is measured
+    glm::dvec3 normal;      // unit: of what is felt there, across which friction holds
+    glm::dvec3 push;        // of a spring of depth_m: of a smooth foot minus its gradient, else `normal`
+    glm::dvec3 lag_m;       // Contact::lag_m, across `normal` on a smooth foot
+    // How at_m moves with the hand: along edges of the facet, each by a weight with this gradient. Of a flat foot it
+    // moves as the hand does, across `normal`, and edge[0] is 0.
+    glm::dvec3 edge_m[2], weight_dp[2];
+    double share;        // 0 .. 1, of this foot in what is felt; if it is 0 the rest of a smooth foot is not filled
+    glm::dvec3 share_dp; // 1/m: its gradient
+
+    // What the hand feels of a gradient by at_m.
+    glm::dvec3 felt(const glm::dvec3& gradient) const
+    {
+        if (edge_m[0] == glm::dvec3(0)) return gradient - glm::dot(gradient, normal) * normal;
+        return glm::dot(gradient, edge_m[0]) * weight_dp[0] + glm::dot(gradient, edge_m[1]) * weight_dp[1];
+    }
 };
 
 // As contact found it: the facets', along the normal of the contact.
@@ -51,7 +73,8 @@ Foot flat_foot(const Contact& contact) noexcept;
 Foot paper_foot(const Surface& surface, const Contact& contact) noexcept;
 
 // On the smooth surface. `held_above_m`: where the hand holds the probe, above the point that touches: the radius of a
-// ball. Nothing of it is felt (share 0) where there is none.
-Foot smooth_foot(const Surface& surface, const Contact& contact, double held_above_m) noexcept;
+// ball. `last`: the facet of the tick before on the
+// same surface, which is mostly that of this one. Nothing of it is felt (share 0) where there is none.
+Foot smooth_foot(const Surface& surface, const Contact& contact, double held_above_m, FacetLines& last) noexcept;
 
 } // namespace haptel::runtime

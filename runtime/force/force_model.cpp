@@ -13,7 +13,7 @@ ModelForce model_force(const ForceRule& rule, const Foot& foot, double stiffness
     if (rule.model == ForceModel::displaced) {
         const double depth = std::max(0.0, foot.depth_m + texture.envelope_m);
         if (depth == 0) return {};
-        return {stiffness * depth * (foot.push - texture.gradient * foot.at_dp), depth};
+        return {stiffness * depth * (foot.push - foot.felt(texture.gradient)), depth};
     }
     const glm::dvec3& normal = foot.normal;
     const glm::dvec3 gradient = tangential(texture.gradient, normal);

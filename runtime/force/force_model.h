@@ -4,8 +4,8 @@
 // the foot with the lower or upper bound h_min, h_max that is proven for it, g the part of its gradient along the
 // surface, and M = N - g the perturbed normal (equation 2; its length is meant).
 //
-//   displaced   K D (G - J^T grad h), D = max(d + h - h_max, 0), G = Foot::push, J = Foot::at_dp. Minus the gradient of
-//               K/2 D^2: conservative, no closed path of the hand gains energy. The default.
+//   displaced   K D (G - J^T grad h), D = max(d + h - h_max, 0), G = Foot::push, J^T by Foot::felt. Minus the gradient
+//               of K/2 D^2: conservative, no closed path of the hand gains energy. The default.
 //   paper       K (AP . N) M: Basdogan, Ho and Srinivasan, 1997, sec. 2.2 and 2.3, AP from the tip to the
 //               contact. Not conservative: going round a loop gains K times change of depth times change of height.
 //   paper_unit  K (AP . N) M / |M|, the same with a unit normal, as widely implemented: slopes add no force, only turn

@@ -110,6 +110,7 @@ private:
         const SceneObject* object;
         TextureReader texture;
         LastSample sample = {};
+        FacetLines lines = {};
         uint64_t texture_period = 0; // up to which its texture has faded
     };
     struct HeldBodies { // that hold the probe, the first so many

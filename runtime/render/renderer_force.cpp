@@ -146,15 +146,16 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, con
     if (contact.by_shaft) return force_by_shaft(body, touched.object->material, placement, contact);
     // Of flat facets, and where contact tells a direction of its own, there is one foot.
     const bool curved = surface.normal_turn_max_per_m > 0 && !contact.on_crease && !contact.unsettled;
-    if (!curved) return force_at(flat_foot(contact), body, touched, placement, contact);
-    if (scene_->servo.force.shading == ForceShading::paper)
-        return force_at(paper_foot(surface, contact), body, touched, placement, contact);
-    const Foot smooth = smooth_foot(surface, contact, probe_.radius_m);
-    if (smooth.share == 1) return force_at(smooth, body, touched, placement, contact);
-    ObjectForce force = force_at(flat_foot(contact), body, touched, placement, contact);
-    if (smooth.share > 0)
-        force.mix_in(force_at(smooth, body, touched, placement, contact), smooth.share,
-                     placement.direction_to_world(smooth.share_dp));
+    const bool smooth = curved && scene_->servo.force.shading == ForceShading::smooth;
+    Foot foot = smooth   ? smooth_foot(surface, contact, probe_.radius_m, touched.lines)
+                : curved ? paper_foot(surface, contact)
+                         : flat_foot(contact);
+    if (foot.share == 0) foot = flat_foot(contact);
+    ObjectForce force = force_at(foot, body, touched, placement, contact);
+    if (foot.share < 1) {
+        const ObjectForce flat = force_at(flat_foot(contact), body, touched, placement, contact);
+        force.mix_in(flat, 1 - foot.share, -placement.direction_to_world(foot.share_dp));
+    }
     return force;
 }
 

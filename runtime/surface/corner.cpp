@@ -58,13 +58,16 @@ bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::
     return of_corner[i][side] != there[first][link.side()] || of_corner[next(i)][side] != there[second][link.side()];
 }
 
-glm::dvec3 weighted_normal(const Surface& surface, const Sector& sector) noexcept
+FanOutward::FanOutward(const Surface& surface, const Sector& start) noexcept
 {
-    const Face& face = surface.faces[sector.face];
-    const glm::dvec3& at = surface.vertices[face.vertex[sector.corner]];
-    const glm::dvec3 a = surface.vertices[face.vertex[next(sector.corner)]] - at;
-    const glm::dvec3 b = surface.vertices[face.vertex[previous(sector.corner)]] - at;
-    return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * surface.facet_normal(sector.face, sector.side);
+    closed = for_each_sector(surface, start, [&](const Sector& sector) {
+        const Face& face = surface.faces[sector.face];
+        const glm::dvec3& at = surface.vertices[face.vertex[sector.corner]];
+        const glm::dvec3 a = surface.vertices[face.vertex[next(sector.corner)]] - at;
+        const glm::dvec3 b = surface.vertices[face.vertex[previous(sector.corner)]] - at;
+        normal +=
+            std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b)) * surface.facet_normal(sector.face, sector.side);
+    });
 }
 
 } // namespace haptel::runtime

@@ -67,8 +67,14 @@ bool for_each_sector(const Surface& surface, const Sector& start, Visit&& visit)
 // border, off which a ball is held by its rim.
 bool on_crease(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept;
 
-// The facet's normal toward the side that is seen times the angle at the vertex.
-glm::dvec3 weighted_normal(const Surface& surface, const Sector& sector) noexcept;
+// Sum of the facets' normals of a fan times their angles at the vertex: who is outside of all that lies around a closed
+// one is in front of it (J. A. Baerentzen and H. Aanaes, 2005). Not of unit length.
+struct FanOutward {
+    glm::dvec3 normal{0};
+    bool closed = false;
+
+    FanOutward(const Surface& surface, const Sector& start) noexcept;
+};
 
 // The point of a fan, its sectors taken as endless, that is nearest to where a vector from the vertex leads.
 struct NearestInFan {

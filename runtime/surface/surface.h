@@ -62,7 +62,7 @@ struct Face {
 
 // The faces around a vertex that are linked with each other on one side.
 struct Fan {
-    glm::dvec3 normal; // mean of the facet normals weighted by angle, unit, toward that side; zero where they cancel
+    glm::dvec3 normal; // of force shading: mean of the facets' normals, unit, toward that side; zero where they cancel
     SideEdge start;    // one of its corners, by the edge that starts there
     // Fans of separate sheets that meet in this vertex only and bound the same free space, in a circle; itself if
     // alone.

@@ -1,5 +1,6 @@
 // The smooth surface for which facets stand: its force is that of one potential, and near that of the true shape.
 #include "runtime/force/foot.h"
+#include "runtime/contact/walk_contact.h"
 #include "runtime/render/renderer.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -119,7 +121,7 @@ Work work_once_round(const std::shared_ptr<const Scene>& scene, const Path& path
 double share_given(const std::shared_ptr<const Scene>& scene, const Path& path, double allowed)
 {
     double share = 0;
-    for (int steps = 1000; steps < 3'000'000; steps *= 2) {
+    for (int steps = 1000; steps < 8'000'000; steps *= 2) {
         const Work work = work_once_round(scene, path, steps);
         share = work.pressed_j > 0 ? std::fabs(work.given_j) / work.pressed_j : 0;
         if (share < allowed) break;
@@ -151,4 +153,168 @@ TEST_CASE("on balls of triangles closed paths give no energy")
                 }
             }
         }
+}
+
+namespace {
+
+// Held by contact off the facets, and the smooth foot of that; or none.
+class Stroke {
+public:
+    explicit Stroke(std::shared_ptr<const Surface> surface) : contact_(std::move(surface), false) {}
+
+    std::optional<Foot> foot(const dvec3& hand_m)
+    {
+        contact_.tick(hand_m, {});
+        const Contact& contact = contact_.contact();
+        if (!contact.touching || contact.depth_m == 0) return std::nullopt;
+        const Foot foot = smooth_foot(contact_.surface(), contact, 0, lines_);
+        return foot.share > 0 ? std::optional(foot) : std::nullopt;
+    }
+
+private:
+    WalkContact contact_;
+    FacetLines lines_;
+};
+
+Mesh bumpy_mesh(uint32_t subdivisions)
+{
+    Mesh mesh = make_bumpy_sphere(subdivisions);
+    scale_to_size(mesh, size_m);
+    return mesh;
+}
+
+} // namespace
+
+TEST_CASE("what a foot says of its changes is what differences say")
+{
+    // Coarse, so that lines meet within reach and `share` is between 0 and 1, too.
+    int compared = 0, shared_ones = 0;
+    for (const Mesh& mesh : {ball_of(1), bumpy_mesh(3), shape("torus", size_m)}) {
+        const auto surface = surface_of(mesh);
+        std::mt19937_64 random(3);
+        std::uniform_real_distribution<double> uniform(-1, 1);
+        for (int i = 0; i < tries(4000); ++i) {
+            const auto face = static_cast<uint32_t>(random() % surface->faces.size());
+            const dvec3 middle_m =
+                (surface->vertex_m(face, 0) + surface->vertex_m(face, 1) + surface->vertex_m(face, 2)) / 3.0;
+            const dvec3 normal = surface->facet_normal(face);
+            Stroke stroke(surface);
+            stroke.foot(middle_m + 1e-3 * normal);
+            const double deep_m = std::exp(uniform(random) * 2.3 - 5.3); // 0.5 to 50 mm
+            const dvec3 hand_m = middle_m - deep_m * normal + 0.3 * deep_m * dvec3(uniform(random), uniform(random), 0);
+            const auto here = stroke.foot(hand_m);
+            if (!here) continue;
+            constexpr double step_m = 1e-7;
+            dvec3 depth_dp, share_dp;
+            glm::dmat3 at_dp;
+            bool same = true; // contact clicks from one facet to another
+            for (int j = 0; j < 3 && same; ++j) {
+                dvec3 step(0);
+                step[j] = step_m;
+                const auto ahead = stroke.foot(hand_m + step), behind = stroke.foot(hand_m - step);
+                same = ahead && behind && ahead->face == here->face && behind->face == here->face &&
+                       std::fabs(ahead->depth_m - behind->depth_m) < 10 * step_m;
+                if (!same) break;
+                depth_dp[j] = (ahead->depth_m - behind->depth_m) / (2 * step_m);
+                share_dp[j] = (ahead->share - behind->share) / (2 * step_m);
+                at_dp[j] = (ahead->at_m - behind->at_m) / (2 * step_m);
+            }
+            if (!same) continue;
+            ++compared;
+            shared_ones += here->share < 1;
+            const double scale = 1 + glm::length(here->push);
+            CAPTURE(i, face, deep_m, here->share);
+            CHECK(glm::distance(here->push, -depth_dp) < 1e-4 * scale);
+            if (here->share < 1) CHECK(glm::distance(here->share_dp, share_dp) < 1e-4 * (1 + glm::length(share_dp)));
+            const dvec3 g(uniform(random), uniform(random), uniform(random)); // of a height
+            CHECK(glm::distance(here->felt(g), g * at_dp) < 1e-4 * (1 + glm::length(here->felt(g))));
+        }
+    }
+    CHECK(compared > tries(4000));
+    CHECK(shared_ones > tries(100));
+}
+
+TEST_CASE("on a ball of 5 120 triangles the force is that of the ball")
+{
+    Renderer renderer(shared(bare_scene(ball_of(4))));
+    renderer.tick(at(0, 0, 1.1 * ball_m));
+    for (const double deep_m : {0.5e-3, 1e-3, 2.5e-3, 5e-3}) {
+        CAPTURE(deep_m);
+        const double radius_m = ball_m - deep_m, tick_m = 1e-4, turn = tick_m / radius_m;
+        double most_degrees = 0, most_change = 0, most_off = 0;
+        dvec3 before_n(0);
+        for (int i = 0; i < 20'000; ++i) { // at 0.1 m/s, on a circle that turns from pole to pole
+            const double a = turn * i, b = 0.02 * a;
+            const dvec3 d(std::cos(a) * std::cos(b), std::cos(a) * std::sin(b), std::sin(a));
+            const dvec3 force_n = renderer.tick({radius_m * d, radius_m * d}).force_n;
+            most_degrees = std::max(most_degrees, degrees_between(force_n, d));
+            most_off = std::max(most_off, std::fabs(glm::length(force_n) / (stiffness * deep_m) - 1));
+            if (i > 0) most_change = std::max(most_change, glm::distance(force_n, before_n));
+            before_n = force_n;
+        }
+        CHECK(most_degrees < 0.3);
+        CHECK(most_off < 1e-3);
+        CHECK(most_change < 1.2 * stiffness * deep_m * turn);
+    }
+}
+
+TEST_CASE("a texture on a round surface is where the hand is, at any depth")
+{
+    // A grating by the angle about an axis that no edge follows.
+    constexpr int waves = 157;
+    const dvec3 axis = glm::normalize(dvec3(1, 2, 3)), east = glm::normalize(glm::cross(axis, dvec3(1, 0, 0))),
+                north = glm::cross(axis, east);
+    const TextureBinding grating = lambda_texture(
+        [=](const haptel_point& at, dvec3& gradient) {
+            const dvec3 p(at.p[0], at.p[1], at.p[2]);
+            const double x = glm::dot(p, east), y = glm::dot(p, north), a = waves * std::atan2(y, x);
+            gradient = 1e-5 * waves * std::cos(a) / (x * x + y * y) * (x * north - y * east);
+            return 1e-5 * std::sin(a);
+        },
+        -1e-5, 1e-5, HAPTEL_READS_POINT);
+    Renderer renderer(shared(bare_scene(ball_of(4), grating)));
+    for (const double deep_m : {0.1e-3, 0.5e-3, 2.5e-3, 5e-3}) {
+        CAPTURE(deep_m);
+        const auto hand = [&](double a) { return (ball_m - deep_m) * (std::cos(a) * east + std::sin(a) * north); };
+        renderer.tick({1.1 * hand(0), {}});
+        renderer.tick({hand(0), {}});
+        constexpr int ticks = 200'000;
+        double before_m = 0, crossed = -1, widest = 0, narrowest = 1e9;
+        for (int i = 1; i <= ticks; ++i) {
+            const double a = 2 * pi * i / ticks, height_m = renderer.tick({hand(a), {}}).height_m;
+            if (before_m < 0 && height_m >= 0) {
+                const double here = a - 2 * pi / ticks * height_m / (height_m - before_m);
+                if (crossed >= 0)
+                    widest = std::max(widest, here - crossed), narrowest = std::min(narrowest, here - crossed);
+                crossed = here;
+            }
+            before_m = height_m;
+        }
+        CHECK(widest * waves / (2 * pi) < 1.005);
+        CHECK(narrowest * waves / (2 * pi) > 0.995);
+    }
+}
+
+TEST_CASE("where a texture is felt moves as the hand does")
+{
+    for (const Mesh& mesh : {ball_of(4), shape("torus", size_m)}) {
+        const auto surface = surface_of(mesh);
+        std::mt19937_64 random(5);
+        std::uniform_real_distribution<double> uniform(-1, 1);
+        for (int i = 0; i < tries(100); ++i) {
+            const auto face = static_cast<uint32_t>(random() % surface->faces.size());
+            const dvec3 normal = surface->facet_normal(face), from_m = surface->vertex_m(face, 0);
+            const dvec3 along = glm::normalize(surface->vertex_m(face, 1) - surface->vertex_m(face, 2));
+            // To a twentieth of the least radius of curvature.
+            const double least_m = i % 2 ? 1e-4 : 5e-4, way_m = 1e-5;
+            Stroke stroke(surface);
+            stroke.foot(from_m + 1e-3 * normal);
+            std::optional<Foot> before;
+            for (int k = 0; k < 400; ++k) {
+                const auto foot = stroke.foot(from_m + k * way_m * along - least_m * normal);
+                if (foot && before) CHECK(glm::distance(foot->at_m, before->at_m) <= 1.5 * way_m);
+                before = foot;
+            }
+        }
+    }
 }

@@ -81,11 +81,10 @@ struct Solid {
 
 Foot foot_at(double depth_m, const dvec3& way, const dvec3& normal)
 {
-    Foot foot;
+    Foot foot = flat_foot({});
     foot.depth_m = depth_m;
     foot.way = way;
     foot.normal = foot.push = normal;
-    foot.at_dp = glm::dmat3(1) - glm::outerProduct(normal, normal);
     return foot;
 }
 
@@ -123,7 +122,13 @@ dvec3 force_on(const Solid& solid, const dvec3& p, const ForceRule& rule, bool c
     texture.envelope_m = texture.height_m - amplitude_m;
     texture.gradient = solid_gradient(foot);
     Foot felt = foot_at(solid.depth(p), normal, normal);
-    if (curved) felt.at_dp = solid.foot_dp(p);
+    if (curved) { // along two tangents, moved as the foot moves
+        const glm::dmat3 moves = glm::transpose(solid.foot_dp(p));
+        felt.edge_m[0] =
+            glm::normalize(glm::cross(normal, std::fabs(normal.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+        felt.edge_m[1] = glm::cross(normal, felt.edge_m[0]);
+        for (int i : {0, 1}) felt.weight_dp[i] = moves * felt.edge_m[i];
+    }
     return model_force(rule, felt, stiffness, texture).force_n;
 }
 
