@@ -174,11 +174,11 @@ Foot paper_foot(const Surface& surface, const Contact& contact) noexcept
     return foot;
 }
 
-Foot smooth_foot(const Surface& surface, const Contact& contact, double held_above_m, FacetLines& last) noexcept
+Foot smooth_foot(const Surface& surface, const Contact& contact, const dvec3& hand_m, double held_above_m,
+                 FacetLines& last) noexcept
 {
     Foot foot;
     foot.share = 0;
-    const dvec3 hand = contact.proxy_m + (held_above_m - contact.depth_m) * contact.normal;
     uint32_t face = contact.face, side = contact.side;
     dvec3 b = contact.barycentric;
     OnLine at;
@@ -187,7 +187,7 @@ Foot smooth_foot(const Surface& surface, const Contact& contact, double held_abo
         if (face != last.face || side != last.side) last = FacetLines(surface, face, side);
         const FacetLines& lines = last;
         at.b = {b.y, b.z};
-        find_line(lines, hand, at);
+        find_line(lines, hand_m, at);
         if (!at.found) return foot;
         b = weights(at.b);
         const uint32_t least = b.x < b.y ? (b.x < b.z ? 0 : 2) : (b.y < b.z ? 1 : 2);

@@ -72,9 +72,15 @@ Foot flat_foot(const Contact& contact) noexcept;
 // The same with equation (1) of the paper: the normal between the corners' is the direction of the force.
 Foot paper_foot(const Surface& surface, const Contact& contact) noexcept;
 
-// On the smooth surface. `held_above_m`: where the hand holds the probe, above the point that touches: the radius of a
-// ball. `last`: the facet of the tick before on the
-// same surface, which is mostly that of this one. Nothing of it is felt (share 0) where there is none.
-Foot smooth_foot(const Surface& surface, const Contact& contact, double held_above_m, FacetLines& last) noexcept;
+// Straight below a contact: where it holds the hand off the surface. `held_above_m`: by the radius of a ball.
+inline glm::dvec3 hand_below(const Contact& contact, double held_above_m)
+{
+    return contact.proxy_m + (held_above_m - contact.depth_m) * contact.normal;
+}
+
+// On the smooth surface, of a hand near `contact`. `last`: the facet of the tick before on the same surface, which is
+// mostly that of this one. Nothing of it is felt (share 0) where there is none.
+Foot smooth_foot(const Surface& surface, const Contact& contact, const glm::dvec3& hand_m, double held_above_m,
+                 FacetLines& last) noexcept;
 
 } // namespace haptel::runtime

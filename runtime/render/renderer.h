@@ -15,6 +15,7 @@
 #include "runtime/render/body.h"
 #include "runtime/render/skipped_stages.h"
 #include "runtime/render/sleep_queue.h"
+#include "runtime/render/smooth_rows.h"
 #include "runtime/scene/scene.h"
 #include "runtime/texture/surface_texture.h"
 #include "runtime/texture/texture_slot.h"
@@ -169,6 +170,7 @@ private:
     void track_velocity(uint32_t body, const DevicePose& pose, uint64_t periods, bool touching) noexcept;
     void update_effects(Body& body, std::span<const Contact> contacts, std::span<const PartContacts> parts) noexcept;
     bool feels_in_air(const Body& body, const DevicePose& pose) noexcept;
+    bool is_smooth(const Surface& surface) const noexcept;
     ObjectForce force_of(const Body& body, Touched& touched, const Placement& placement,
                          const Contact& contact) noexcept;
     ObjectForce force_by_shaft(const Body& body, const Material& material, const Placement& placement,
@@ -222,6 +224,7 @@ private:
     double left_work_max_j_ = 0; // and the most of that
 
     CreaseRows crease_rows_;
+    SmoothRows smooth_rows_;
     ContactsByPart by_part_;
 };
 

@@ -17,16 +17,15 @@ double along_fingers(const DevicePose& pose, const glm::dvec3& force_n)
     return along == glm::dvec3(0) ? 0.0 : glm::dot(force_n, glm::normalize(along));
 }
 
-// Of the end of the probe that a contact is at, from the hand to the proxy by all that holds it there, in the body's
-// space. Zero where nothing else does.
-glm::dvec3 shared_way_m(const Contact& contact, std::span<const Contact> contacts)
+// From the hand to the proxy by all that holds one end of the probe, in the body's space. Zero where one thing does.
+glm::dvec3 shared_way_m(int end, std::span<const Contact> contacts)
 {
     glm::dvec3 way_m(0);
-    if (contact.by_shaft || contacts.size() == 1) return way_m;
+    if (contacts.size() == 1) return way_m;
     int holding = 0;
-    for (const Contact& other : contacts) {
-        if (other.along != contact.along || other.by_shaft) continue;
-        way_m += other.depth_m * other.normal;
+    for (const Contact& contact : contacts) {
+        if ((contact.along > 0) != (end == 1) || contact.by_shaft) continue;
+        way_m += contact.depth_m * contact.normal;
         ++holding;
     }
     return holding > 1 ? way_m : glm::dvec3(0);
@@ -54,6 +53,12 @@ void Renderer::add_force(TickResult& result, const DevicePose& pose, double alon
     if (probe_.kind == ProbeKind::gripper) result.grip_force_n += (along - 0.5) * along_fingers(pose, force_n);
 }
 
+// Felt as the smooth surface for which its facets stand.
+bool Renderer::is_smooth(const Surface& surface) const noexcept
+{
+    return surface.normal_turn_max_per_m > 0 && scene_->servo.force.shading == ForceShading::smooth;
+}
+
 // One object, of all `contacts` of its body those with it.
 void Renderer::render_object(Body& body, std::span<const Contact> contacts, const PartContacts& part,
                              const DevicePose& pose, TickResult& result, Skipped& skipped) noexcept
@@ -61,9 +66,16 @@ void Renderer::render_object(Body& body, std::span<const Contact> contacts, cons
     Touched& touched = objects_[body.objects.number(part.part)];
     const Placement& placement = body.placement_of(*touched.object);
     ++result.contacts;
-    for (const Contact& contact : part.contacts) { // what presses most first, of a stylus its tip
-        const glm::dvec3 way_m = shared_way_m(contact, contacts);
-        const double share = share_of(contact, body.objects.joined ? placement.direction_to_object(way_m) : way_m);
+    std::array<glm::dvec3, 2> way_m{}; // of the tip and the tail, in the object's space
+    for (const int end : {0, 1}) {
+        way_m[end] = shared_way_m(end, contacts);
+        if (body.objects.joined) way_m[end] = placement.direction_to_object(way_m[end]);
+    }
+    std::span<const Contact> rows = part.contacts;
+    if (rows.size() > 1 && is_smooth(*touched.object->surface))
+        rows = smooth_rows_.of(*touched.object->surface, rows, way_m, probe_.radius_m, touched.lines);
+    for (const Contact& contact : rows) { // what presses most first, of a stylus its tip
+        const double share = contact.by_shaft ? 1 : share_of(contact, way_m[contact.along > 0]);
         ObjectForce force;
         if (share < 1) {
             Contact whole = contact; // as if it held all of it
@@ -87,7 +99,7 @@ void Renderer::render_object(Body& body, std::span<const Contact> contacts, cons
             end.add({material.static_friction * force.friction_share, material.dynamic_friction * force.friction_share},
                     material.stiffness_n_per_m * contact.depth_m);
         }
-        if (&contact != part.contacts.data()) continue;
+        if (&contact != rows.data()) continue;
         if (result.contacts > 1 && contact.depth_m <= result.depth_m) continue;
         result.depth_m = contact.depth_m;
         result.height_m = force.height_m;
@@ -146,10 +158,11 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, con
     if (contact.by_shaft) return force_by_shaft(body, touched.object->material, placement, contact);
     // Of flat facets, and where contact tells a direction of its own, there is one foot.
     const bool curved = surface.normal_turn_max_per_m > 0 && !contact.on_crease && !contact.unsettled;
-    const bool smooth = curved && scene_->servo.force.shading == ForceShading::smooth;
-    Foot foot = smooth   ? smooth_foot(surface, contact, probe_.radius_m, touched.lines)
-                : curved ? paper_foot(surface, contact)
-                         : flat_foot(contact);
+    const bool smooth = curved && is_smooth(surface);
+    Foot foot =
+        smooth   ? smooth_foot(surface, contact, hand_below(contact, probe_.radius_m), probe_.radius_m, touched.lines)
+        : curved ? paper_foot(surface, contact)
+                 : flat_foot(contact);
     if (foot.share == 0) foot = flat_foot(contact);
     ObjectForce force = force_at(foot, body, touched, placement, contact);
     if (foot.share < 1) {

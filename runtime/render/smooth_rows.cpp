@@ -1,0 +1,62 @@
+#include "runtime/render/smooth_rows.h"
+
+#include <algorithm>
+
+namespace haptel::runtime {
+
+namespace {
+
+// Of an edge, and of a normal: feet that are nearer to each other are one, found from two sides. At one place of a
+// crease the normals differ.
+constexpr double same_foot = 1e-6;
+
+bool are_one(const Foot& a, const Foot& b)
+{
+    return a.share > 0 && b.share > 0 && glm::distance(a.normal, b.normal) < same_foot &&
+           glm::distance(a.at_m, b.at_m) < same_foot * glm::length(a.edge_m[0]);
+}
+
+// The sum of both, held off the same place.
+void add(Contact& row, const Contact& contact, double held_above_m)
+{
+    const glm::dvec3 centre_m = row.proxy_m + held_above_m * row.normal;
+    const glm::dvec3 way_m = row.depth_m * row.normal + contact.depth_m * contact.normal;
+    const double depth_m = glm::length(way_m);
+    if (!(depth_m > 0)) return;
+    row.normal = way_m / depth_m;
+    row.depth_m = depth_m;
+    row.pressed_m += contact.pressed_m;
+    row.lag_m += contact.lag_m;
+    row.proxy_m = centre_m - held_above_m * row.normal;
+}
+
+} // namespace
+
+std::span<const Contact> SmoothRows::of(const Surface& surface, std::span<const Contact> contacts,
+                                        const std::array<glm::dvec3, 2>& way_m, double held_above_m,
+                                        FacetLines& lines) noexcept
+{
+    std::array<Foot, CreaseRows::rows_most> feet;
+    std::array<const Contact*, 2>
+        first{}; // of an end: a point that is held as a ball touches all of them a little apart
+    std::size_t count = 0;
+    for (const Contact& contact : contacts.first(std::min(contacts.size(), rows_.size()))) {
+        Foot& foot = feet[count];
+        foot.share = 0;
+        if (!contact.by_shaft && !contact.unsettled && !contact.on_crease) {
+            const Contact*& end = first[contact.along > 0];
+            if (!end) end = &contact;
+            const glm::dvec3 centre_m = end->proxy_m + held_above_m * end->normal;
+            foot = smooth_foot(surface, contact, centre_m - way_m[contact.along > 0], held_above_m, lines);
+        }
+        std::size_t same = 0;
+        while (same < count && !(rows_[same].along == contact.along && are_one(feet[same], foot))) ++same;
+        if (same < count)
+            add(rows_[same], contact, held_above_m);
+        else
+            rows_[count++] = contact;
+    }
+    return {rows_.data(), count};
+}
+
+} // namespace haptel::runtime
