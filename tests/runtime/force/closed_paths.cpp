@@ -1,0 +1,265 @@
+// Closed paths of the hand: the force of round meshes gives no energy on them.
+#include "runtime/render/renderer.h"
+#include "tests/runtime/contact/long_run.h"
+#include "tests/support/catch.h"
+#include "tests/support/lambda_texture.h"
+#include "tests/support/touch_scenes.h"
+#include "tests/support/tries.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <string>
+#include <vector>
+
+using namespace haptel;
+using namespace haptel::runtime;
+using namespace haptel::test;
+using namespace haptel::tests;
+using glm::dvec3;
+
+namespace {
+
+constexpr double pi = 3.14159265358979323846;
+constexpr double stiffness = 1000; // N/m
+constexpr double size_m = 0.1;
+
+Mesh ball_of(uint32_t subdivisions)
+{
+    Mesh mesh = make_icosphere(subdivisions);
+    scale_to_size(mesh, size_m);
+    return mesh;
+}
+
+// Up to 2 `amplitude_m` high, of a wavelength of some 3 mm.
+TextureBinding solid_texture(double amplitude_m)
+{
+    return lambda_texture(
+        [=](const haptel_point& at, dvec3& gradient) {
+            const double a = 2000 * at.p[0] + 1300 * at.p[1], b = 1700 * at.p[2];
+            gradient = amplitude_m * dvec3(2000 * std::cos(a) * std::cos(b), 1300 * std::cos(a) * std::cos(b),
+                                           -1700 * std::sin(a) * std::sin(b));
+            return amplitude_m * std::sin(a) * std::cos(b);
+        },
+        -amplitude_m, amplitude_m, HAPTEL_READS_POINT);
+}
+
+// A closed path below one place of the surface.
+struct Path {
+    dvec3 from, normal, along, across;
+    double width_m, breadth_m, depth_m, swing_m;
+    int swings;
+
+    dvec3 at(double turns) const
+    {
+        const double a = 2 * pi * turns;
+        return from + width_m * std::cos(a) * along + breadth_m * std::sin(a) * across -
+               (depth_m + swing_m * std::sin(swings * a + 1)) * normal;
+    }
+};
+
+// Random ones, to a tenth of the size deep, from a tenth of an edge to thirty wide.
+Path random_path(const Surface& surface, double edge_m, std::mt19937_64& random)
+{
+    const auto uniform = [&](double from, double to) {
+        return std::uniform_real_distribution<double>(from, to)(random);
+    };
+    const auto between = [&](double from, double to) { return std::exp(uniform(std::log(from), std::log(to))); };
+    const auto face = static_cast<uint32_t>(uniform(0, static_cast<double>(surface.faces.size())));
+    Path path;
+    path.from = (surface.vertex_m(face, 0) + surface.vertex_m(face, 1) + surface.vertex_m(face, 2)) / 3.0;
+    path.normal = surface.facet_normal(face);
+    path.along = glm::normalize(surface.vertex_m(face, 1) - surface.vertex_m(face, 0));
+    path.across = glm::cross(path.normal, path.along);
+    path.width_m = std::min(0.3 * size_m, edge_m * between(0.1, 30));
+    path.breadth_m = uniform(0.3, 1) * path.width_m;
+    path.depth_m = between(1e-3, 0.05) * size_m;
+    path.swing_m = uniform(0.2, 0.9) * path.depth_m;
+    path.swings = 1 + static_cast<int>(uniform(0, 3));
+    return path;
+}
+
+double edge_of(const Surface& surface)
+{
+    double sum = 0;
+    for (uint32_t face = 0; face < surface.faces.size(); ++face)
+        sum += glm::distance(surface.vertex_m(face, 0), surface.vertex_m(face, 1));
+    return sum / static_cast<double>(surface.faces.size());
+}
+
+struct Work {
+    double given_j = 0, pressed_j = 0;
+};
+
+// On the second time round: what contact remembers has settled.
+Work work_once_round(const std::shared_ptr<const Scene>& scene, const Path& path, int steps)
+{
+    Renderer renderer(scene);
+    const double above_m = scene->probe.radius_m + 0.05 * size_m;
+    const auto pose = [&](const dvec3& p) {
+        DevicePose held{p, p};
+        if (scene->probe.has_tail()) held.tail_m = p + 0.1 * path.normal;
+        return held;
+    };
+    renderer.tick(pose(path.from + above_m * path.normal));
+    Work work;
+    dvec3 before_m(0), before_n(0);
+    for (int i = 0; i <= 2 * steps; ++i) {
+        const dvec3 at_m = path.at(static_cast<double>(i) / steps) + scene->probe.radius_m * path.normal;
+        const TickResult tick = renderer.tick(pose(at_m));
+        if (i > steps) work.given_j += glm::dot(0.5 * (tick.force_n + before_n), at_m - before_m);
+        work.pressed_j = std::max(work.pressed_j, 0.5 * stiffness * tick.depth_m * tick.depth_m);
+        before_m = at_m;
+        before_n = tick.force_n;
+    }
+    return work;
+}
+
+// Over what was pressed in; of finer and finer steps the first that is below what is allowed, or the finest.
+double share_given(const std::shared_ptr<const Scene>& scene, const Path& path, double allowed)
+{
+    double share = 0;
+    for (int steps = 1000; steps < 8'000'000; steps *= 2) {
+        const Work work = work_once_round(scene, path, steps);
+        share = work.pressed_j > 0 ? std::fabs(work.given_j) / work.pressed_j : 0;
+        if (share < allowed) break;
+    }
+    return share;
+}
+
+} // namespace
+
+TEST_CASE("on balls of triangles closed paths give no energy")
+{
+    const ProbeSettings point, ball{ProbeKind::sphere, 0.15, 2.5e-3}, stylus{ProbeKind::stylus, 0.15, 0};
+    for (const ProbeSettings& probe : {point, ball, stylus})
+        for (const double texture_m : {0.0, 25e-6}) {
+            double allowed = 1e-1;
+            for (const uint32_t subdivisions : {2u, 3u, 4u, 5u}) {
+                allowed /= 10;
+                Scene scene =
+                    bare_scene(ball_of(subdivisions), texture_m > 0 ? solid_texture(texture_m) : TextureBinding());
+                scene.probe = probe;
+                const auto touched = shared(std::move(scene));
+                const Surface& surface = *touched->objects[0].surface;
+                const double edge_m = edge_of(surface);
+                std::mt19937_64 random(7);
+                for (int i = 0; i < tries(20); ++i) {
+                    const Path path = random_path(surface, edge_m, random);
+                    CAPTURE(int(probe.kind), texture_m, subdivisions, i, path.width_m, path.depth_m, path.swing_m);
+                    CHECK(share_given(touched, path, allowed) < allowed);
+                }
+            }
+        }
+}
+
+TEST_CASE("in hollow balls of triangles closed paths give no energy")
+{
+    // A ball rests on several facets there (runtime/render/smooth_rows.h).
+    for (const ProbeSettings& probe : {ProbeSettings{}, ProbeSettings{ProbeKind::sphere, 0.15, 5e-3}}) {
+        double allowed = 1e-2;
+        for (const uint32_t subdivisions : {3u, 4u}) {
+            allowed /= 10;
+            Scene scene = bare_scene(ball_of(subdivisions), solid_texture(25e-6));
+            scene.probe = probe;
+            const auto touched = shared(std::move(scene));
+            const Surface& surface = *touched->objects[0].surface;
+            const double edge_m = edge_of(surface);
+            std::mt19937_64 random(17);
+            for (int i = 0; i < tries(20); ++i) {
+                Path path = random_path(surface, edge_m, random);
+                path.normal = -path.normal;
+                CAPTURE(int(probe.kind), subdivisions, i, path.width_m, path.depth_m, path.swing_m);
+                CHECK(share_given(touched, path, allowed) < allowed);
+            }
+        }
+    }
+}
+
+namespace {
+
+struct Given {
+    std::vector<double> share; // of each path: of what was pressed in; less than 0: taken
+    std::vector<Path> path;
+
+    double quantile(double q, double sign) const
+    {
+        std::vector<double> sorted;
+        for (const double one : share) sorted.push_back(sign == 0 ? std::fabs(one) : sign * one);
+        std::sort(sorted.begin(), sorted.end());
+        return sorted[static_cast<std::size_t>(q * static_cast<double>(sorted.size() - 1))];
+    }
+};
+
+// Finer and finer, until it changes by less than a tenth or is less than `enough`.
+double share_settled(const std::shared_ptr<const Scene>& scene, const Path& path, double enough)
+{
+    double before = 0;
+    for (int steps = 1000;; steps *= 2) {
+        const Work work = work_once_round(scene, path, steps);
+        const double share = work.pressed_j > 0 ? work.given_j / work.pressed_j : 0;
+        if (std::fabs(share) < enough || steps > 250'000) return share;
+        if (steps > 1000 && std::fabs(share - before) < 0.1 * std::fabs(share)) return share;
+        before = share;
+    }
+}
+
+} // namespace
+
+// HAPTEL_TEST_MESHES: files, parted by colons. HAPTEL_TEST_PATHS: of each mesh, probe and texture [300].
+TEST_CASE("closed paths give no energy: long run", "[.long]")
+{
+    std::vector<NamedMesh> meshes;
+    for (const uint32_t subdivisions : {2u, 3u, 4u, 5u})
+        meshes.push_back({"ball of " + std::to_string(20u << 2 * subdivisions) + " triangles", ball_of(subdivisions)});
+    Mesh ellipsoid = make_icosphere(4);
+    for (dvec3& p : ellipsoid.positions_m) p *= dvec3(1, 0.7, 0.5);
+    meshes.push_back({"ellipsoid of 5120 triangles", ellipsoid});
+    meshes.push_back({"torus", shape("torus", size_m)});
+    const std::size_t round = meshes.size();
+    for (NamedMesh& mesh : meshes_of_environment())
+        if (mesh.name.find("far away") == std::string::npos) meshes.push_back(std::move(mesh));
+    const auto paths = static_cast<int>(number_of_environment("HAPTEL_TEST_PATHS", 300));
+
+    for (std::size_t m = 0; m < meshes.size(); ++m) {
+        scale_to_size(meshes[m].mesh, size_m);
+        for (const ProbeSettings& probe : {ProbeSettings{}, ProbeSettings{ProbeKind::sphere, 0.15, 2.5e-3},
+                                           ProbeSettings{ProbeKind::stylus, 0.15, 0}})
+            for (const double texture_m : {0.0, 5e-6, 100e-6})
+                for (const ForceShading shading : {ForceShading::smooth, ForceShading::paper}) {
+                    if (shading == ForceShading::paper && texture_m > 0) continue;
+                    Scene scene =
+                        bare_scene(meshes[m].mesh, texture_m > 0 ? solid_texture(texture_m / 2) : TextureBinding());
+                    scene.probe = probe;
+                    scene.servo.force.shading = shading;
+                    const auto touched = shared(std::move(scene));
+                    const Surface& surface = *touched->objects[0].surface;
+                    std::mt19937_64 random(7);
+                    Given given;
+                    while (static_cast<int>(given.share.size()) < paths) {
+                        given.path.push_back(random_path(surface, edge_of(surface), random));
+                        given.share.push_back(share_settled(touched, given.path.back(), 1e-5));
+                    }
+                    std::printf("%s, %s, texture of %.0f um, %s: |work| median %.0e p99 %.0e; given p90 %.0e p99 %.0e "
+                                "most %.0e; taken p99 %.0e\n",
+                                meshes[m].name.c_str(),
+                                probe.kind == ProbeKind::point    ? "point"
+                                : probe.kind == ProbeKind::sphere ? "ball"
+                                                                  : "stylus",
+                                1e6 * texture_m, std::string(name_of(shading)).c_str(), given.quantile(0.5, 0),
+                                given.quantile(0.99, 0), given.quantile(0.9, 1), given.quantile(0.99, 1),
+                                given.quantile(1, 1), given.quantile(0.99, -1));
+                    if (shading == ForceShading::paper) continue;
+                    for (std::size_t i = 0; i < given.share.size(); ++i)
+                        if (given.share[i] > 1e-3)
+                            std::printf(
+                                "    %.0e at (%.2f %.2f %.2f) mm, %.1f mm deep, %.1f mm wide\n", given.share[i],
+                                1e3 * given.path[i].from.x, 1e3 * given.path[i].from.y, 1e3 * given.path[i].from.z,
+                                1e3 * (given.path[i].depth_m + given.path[i].swing_m), 1e3 * given.path[i].width_m);
+                    std::fflush(stdout);
+                    if (m < round) CHECK(given.quantile(0.99, 1) < 1e-3);
+                }
+    }
+}
