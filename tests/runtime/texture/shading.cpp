@@ -25,7 +25,7 @@ dvec3 point_at(const Surface& s, uint32_t face, const dvec3& w)
 
 } // namespace
 
-TEST_CASE("the shading normal of an icosphere of 5120 triangles is the sphere's within a degree")
+TEST_CASE("the shading normal of an icosphere is the sphere's")
 {
     Mesh mesh = make_icosphere(4);
     for (dvec3& p : mesh.positions_m) p *= 2.0;
@@ -43,7 +43,7 @@ TEST_CASE("the shading normal of an icosphere of 5120 triangles is the sphere's 
         worst_facet = std::max(worst_facet, degrees_between(s->facet_normal(face), truth));
         CHECK(shading_normal(*s, face, 1, w) == -shading_normal(*s, face, 0, w));
     }
-    CHECK(worst < 1.0);
+    CHECK(worst < 1e-6); // by weights that are right on any ball
     CHECK(worst_facet > 1.0); // what shading is for
 }
 
@@ -77,7 +77,7 @@ TEST_CASE("the shading normal is continuous over edges and changes little along 
         if (i > 0) worst_change = std::max(worst_change, degrees_between(normal, before));
         before = normal;
     }
-    CHECK(worst < 1.0);
+    CHECK(worst < 1e-6); // by weights that are right on any ball
     CHECK(worst_change < 0.1);
 }
 
