@@ -19,7 +19,7 @@ namespace {
 using input::Checksum;
 using input::checksum;
 
-constexpr std::size_t arrays = 7, block_bytes = 1 << 20;
+constexpr std::size_t arrays = 8, block_bytes = 1 << 20;
 constexpr uint64_t text_max = 1 << 20, count_max = uint64_t{1} << 32;
 
 struct Head {
@@ -44,7 +44,8 @@ void for_each_array(SomeSurface& surface, Nodes& nodes, Visit&& visit)
     visit(3, surface.fan_parts);
     visit(4, surface.uv);
     visit(5, surface.uv_of);
-    visit(6, nodes);
+    visit(6, surface.roundness);
+    visit(7, nodes);
 }
 
 // Blocks of the arrays, each with its place in the file; summed up, and read before that, side by side.

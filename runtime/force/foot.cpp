@@ -14,18 +14,17 @@ using glm::cross;
 using glm::dot;
 using glm::dvec3;
 
-// Where the lines have come so much nearer to each other (by area) than at the surface, the flat foot begins to be
-// felt, and alone. On a ball that is at 0.37 and 0.68 of its radius, under a ridge at 0.6 and 0.9.
-constexpr double narrow = 0.4, narrowest = 0.1;
+// Below the surface, of the least radius of curvature around: from here on the flat foot begins to be felt, and alone.
+constexpr double near_centre = 0.5, at_centre = 0.8;
+
+// Down to so many times as deep as the smooth surface is sunk it rises to its own place. There the spring is harder, at
+// most 1.63 times; within 4 times it would be twice.
+constexpr double rises_within = 6;
 
 // Beyond a border or a crease the lines are those of the facet before it, up to so many times its height.
 constexpr double beyond_most = 0.5;
 
-// Down to so many times s the depth grows from that below the facet to that below the smooth surface. There the spring
-// is harder, at most 1.63 times; within 4 times s it would be twice.
-constexpr double raised_within = 6;
-
-// At less than the focal depth the foot is nearer to the flat one than half an edge.
+// Above the centres of curvature the foot is mostly nearer to the flat one than half an edge.
 constexpr int facets_most = 8;
 
 // Newton's steps double the digits: after one below this the next is less than 1e-12.
@@ -66,34 +65,12 @@ void find_line(const FacetLines& lines, const dvec3& hand, OnLine& at) noexcept
         const dvec3 off = hand - lines.point(at.b) + at.t * at.normal, by_normal = cross(off, at.normal);
         const glm::dvec2 more(-at.per * dot(at.v, by_normal), at.per * dot(at.u, by_normal));
         at.b += more;
-        at.t -= at.per * dot(at.across, off);
-        const double size = std::fabs(more.x) + std::fabs(more.y);
+        const double back = at.per * dot(at.across, off);
+        at.t -= back;
+        const double size = std::fabs(more.x) + std::fabs(more.y) + std::fabs(back) / lines.edge_m;
         at.found = size < step_settled;
         if (at.found || !(size < facets_most)) return; // or not finite
     }
-}
-
-struct Height {
-    double m = 0;
-    glm::dvec2 db{0};
-};
-
-// s: of the smooth surface above the facet.
-Height raised(const FacetLines& lines, const dvec3& b) noexcept
-{
-    Height s;
-    double db[3] = {};
-    for (uint32_t i = 0; i < 3; ++i) {
-        const uint32_t j = next(i);
-        const double mean = b[i] * lines.rise[i] + b[j] * lines.back[i];
-        s.m += b[i] * b[j] * mean;
-        db[i] += b[j] * (mean + b[i] * lines.rise[i]);
-        db[j] += b[i] * (mean + b[j] * lines.back[i]);
-    }
-    s.m += lines.bubble * b[0] * b[1] * b[2];
-    for (uint32_t i = 0; i < 3; ++i) db[i] += lines.bubble * b[next(i)] * b[previous(i)];
-    s.db = {db[1] - db[0], db[2] - db[0]};
-    return s;
 }
 
 dvec3 weights(const glm::dvec2& b)
@@ -134,24 +111,6 @@ bool go_on(const Surface& surface, uint32_t least, uint32_t& face, uint32_t& sid
 
 } // namespace
 
-FacetLines::FacetLines(const Surface& surface, uint32_t of_face, uint32_t of_side) noexcept
-    : face(of_face), side(of_side), bubble(0)
-{
-    const auto& of_corner = surface.faces[face].fan_or_part;
-    for (uint32_t i = 0; i < 3; ++i) {
-        p[i] = surface.vertex_m(face, i);
-        n[i] = surface.shading_normal(of_corner[i][side]);
-    }
-    for (uint32_t i = 0; i < 3; ++i) {
-        const dvec3 edge = p[next(i)] - p[i];
-        rise[i] = -dot(n[i], edge);
-        back[i] = dot(n[next(i)], edge);
-        bubble += 0.5 * (rise[i] + back[i]); // so that what is quadratic is met
-    }
-    for (uint32_t i : {1u, 2u}) p[i] -= p[0], n[i] -= n[0];
-    area = cross(p[1], p[2]);
-}
-
 Foot flat_foot(const Contact& contact) noexcept
 {
     Foot foot;
@@ -164,6 +123,7 @@ Foot flat_foot(const Contact& contact) noexcept
     foot.lag_m = contact.lag_m;
     foot.edge_m[0] = dvec3(0);
     foot.share = 1;
+    foot.share_dp = dvec3(0);
     return foot;
 }
 
@@ -177,7 +137,7 @@ Foot paper_foot(const Surface& surface, const Contact& contact) noexcept
 Foot smooth_foot(const Surface& surface, const Contact& contact, const dvec3& hand_m, double held_above_m,
                  FacetLines& last) noexcept
 {
-    Foot foot;
+    Foot foot = flat_foot(contact);
     foot.share = 0;
     uint32_t face = contact.face, side = contact.side;
     dvec3 b = contact.barycentric;
@@ -186,6 +146,10 @@ Foot smooth_foot(const Surface& surface, const Contact& contact, const dvec3& ha
     for (int facet = 0; facet < facets_most; ++facet) {
         if (face != last.face || side != last.side) last = FacetLines(surface, face, side);
         const FacetLines& lines = last;
+        if (lines.flat && facet == 0 && contact.normal == contact.facet_normal && lines.sunk_m == dvec3(0)) {
+            foot.share = 1;
+            return foot;
+        }
         at.b = {b.y, b.z};
         find_line(lines, hand_m, at);
         if (!at.found) return foot;
@@ -201,38 +165,45 @@ Foot smooth_foot(const Surface& surface, const Contact& contact, const dvec3& ha
 
         const dvec3 second_dp = at.per * cross(at.v, at.normal), third_dp = at.per * cross(at.normal, at.u),
                     t_dp = -at.per * at.across;
-        const dvec3 b_dp[] = {-second_dp - third_dp, second_dp, third_dp};
-        // The normal's length changes, too.
-        const double longer = at.t / length;
+        const auto by_hand = [&](const dvec3& of_corners) { // of what is linear between corners
+            return (of_corners.y - of_corners.x) * second_dp + (of_corners.z - of_corners.x) * third_dp;
+        };
+        const double below = at.t * length, longer = at.t / length; // the normal's length changes, too
         const dvec3 below_dp = length * t_dp + longer * dot(at.normal, lines.n[1]) * second_dp +
                                longer * dot(at.normal, lines.n[2]) * third_dp;
-        const Height s = raised(lines, b);
-        const double depth = at.t * length + held_above_m;
-        double by_s = 1, by_depth = 1;
-        foot.depth_m = depth + s.m;
-        if (s.m > 0 && depth < raised_within * s.m) {
-            const Rise rise(depth / (raised_within * s.m));
-            foot.depth_m = depth + rise.value * s.m;
-            by_depth = 1 + rise.slope / raised_within;
-            by_s = depth > 0 ? rise.value - rise.slope * depth / (raised_within * s.m) : 0;
-        }
-        foot.push = -by_depth * below_dp - by_s * (s.db.x * second_dp + s.db.y * third_dp);
-        foot.way = foot.normal = at.normal / length;
-        foot.lag_m = contact.lag_m - dot(contact.lag_m, foot.normal) * foot.normal;
 
-        // How near the lines have come to each other: what is left of the facet's area, as a polynomial of b and t.
-        const double left = 1 / (at.per * open);
-        const Rise apart((left - narrowest) / (narrow - narrowest)), near(1 + std::min(0.0, b[least]) / beyond_most);
-        foot.share = apart.value * near.value;
-        if (foot.share < 1) {
-            const auto left_db = [&](const dvec3& dn) {
-                return (dot(at.across, dn) - left * dot(lines.area, dn)) / open;
-            };
-            const double left_dt = -dot(cross(lines.n[1], at.v) + cross(at.u, lines.n[2]), at.normal) / open;
-            const dvec3 left_dp = left_db(lines.n[1]) * second_dp + left_db(lines.n[2]) * third_dp + left_dt * t_dp;
-            foot.share_dp = near.value * apart.slope / (narrow - narrowest) * left_dp;
-            if (b[least] < 0) foot.share_dp += apart.value * near.slope / beyond_most * b_dp[least];
+        // How near its centre of curvature the hand is, whether the lines stand upright, and how far it is beyond them.
+        const dvec3& bent_per_m = below > 0 ? lines.bent_in_per_m : lines.bent_out_per_m;
+        const double away = std::fabs(below), bent = dot(bent_per_m, b);
+        const Rise from_centre((at_centre - away * bent) / (at_centre - near_centre)),
+            upright(2 * dot(lines.upright, b) - 1), within(1 + std::min(0.0, b[least]) / beyond_most);
+        foot.share = from_centre.value * upright.value * within.value;
+        if (!(foot.share > 0)) {
+            foot.share = 0;
+            return foot;
         }
+        if (foot.share < 1) {
+            const dvec3 nearer_dp = (below > 0 ? bent : -bent) * below_dp + away * by_hand(bent_per_m);
+            foot.share_dp = -upright.value * within.value * from_centre.slope / (at_centre - near_centre) * nearer_dp +
+                            from_centre.value * within.value * upright.slope * 2.0 * by_hand(lines.upright);
+            dvec3 corner(0);
+            corner[least] = 1;
+            if (b[least] < 0)
+                foot.share_dp += from_centre.value * upright.value * within.slope / beyond_most * by_hand(corner);
+        }
+
+        const FacetLines::Height s = lines.raised(b);
+        const double depth = below + held_above_m, sunk = std::max(0.0, dot(lines.sunk_m, b));
+        double by_depth = 1, by_sunk = 0;
+        foot.depth_m = depth + s.m;
+        if (depth < rises_within * sunk) {
+            const Rise risen(depth / (rises_within * sunk));
+            foot.depth_m -= (1 - risen.value) * sunk;
+            by_depth += risen.slope / rises_within;
+            by_sunk = 1 - risen.value + risen.slope * std::max(0.0, depth) / (rises_within * sunk);
+        }
+        foot.push = by_sunk * by_hand(lines.sunk_m) - by_depth * below_dp - s.db.x * second_dp - s.db.y * third_dp;
+        foot.way = foot.normal = at.normal / length;
 
         foot.face = face;
         foot.side = side;
@@ -245,6 +216,7 @@ Foot smooth_foot(const Surface& surface, const Contact& contact, const dvec3& ha
             foot.barycentric = glm::max(b, 0.0);
             const double all = foot.barycentric.x + foot.barycentric.y + foot.barycentric.z;
             foot.barycentric /= all;
+            const dvec3 b_dp[] = {-second_dp - third_dp, second_dp, third_dp};
             dvec3 kept_dp[3], all_dp(0);
             for (uint32_t i = 0; i < 3; ++i) all_dp += kept_dp[i] = b[i] > 0 ? b_dp[i] : dvec3(0);
             for (uint32_t i : {0u, 1u}) foot.weight_dp[i] = (kept_dp[i + 1] - foot.barycentric[i + 1] * all_dp) / all;

@@ -1,46 +1,32 @@
 // Where on an object the hand's place belongs, how deep it is there, and how both change with it.
 //
-// Contact holds the probe off flat facets. Felt is the smooth surface for which they stand. Through each point P(b) of
-// a facet goes a straight line along the normal N(b) between the shading normals of its corners; the hand A lies on the
-// line of its foot:
+// Contact holds the probe off flat facets. Felt is the smooth surface for which they stand
+// (runtime/surface/facet_lines.h), sunk so far that it is nowhere above them, as textures are. Through each point P(b)
+// of a facet goes a line along the normal N(b) between those of the corners, and the hand A lies on the line of its
+// foot:
 //
 //   A = P(b) - t N(b)
 //
-// Facets that share an edge share the lines through it, so that the foot moves over edges without a jump, at any depth
-// above the centres of curvature. The smooth surface is the facet raised by s(b), the cubic that is 0 at the corners
-// and rises from each as the normal there says (as PN triangles do: Vlachos and others 2001). The depth is
+// Facets that share an edge share the lines through it, so that the foot moves over edges without a jump. The depth is
 //
-//   D(A) = t |N| + s(b),
+//   D(A) = t |N| + s(b) - sunk(b),
 //
-// but shallower than 6 s, where it becomes 0 on the facets that contact knows. It is one continuous function
-// of the hand's place, and `push` minus its exact gradient: K D push is the force of the potential K D^2 / 2, whatever
-// the mesh. Force shading, equation (1) of the paper, turns the force of the flat foot instead.
+// where the last fades as the hand gets deeper: one continuous function of the hand's place, and `push` minus its exact
+// gradient: K D push is the force of the potential K D^2 / 2, whatever the mesh. Force shading, equation (1) of the
+// paper, turns the force of the flat foot instead.
 //
-// Near the centres of curvature and beyond borders and creases the lines meet or end. There `share` falls to 0,
-// smoothly with the hand's place, and the flat foot has the rest.
+// Where the lines come close to each other, slant much, or end, `share` falls to 0, smoothly with the hand's place, and
+// the flat foot has the rest.
 #pragma once
 
 #include "runtime/contact/contact.h"
-#include "runtime/surface/surface.h"
+#include "runtime/surface/facet_lines.h"
 
 #include <glm/glm.hpp>
 
 #include <cstdint>
 
 namespace haptel::runtime {
-
-// A facet and the lines through it. Weights are those of the second and the third corner.
-struct FacetLines {
-    uint32_t face = ~0u, side = 0;
-    glm::dvec3 p[3], n[3]; // of the corners, the normals toward the side; of the second and third: from the first one
-    glm::dvec3 area;       // p[1] x p[2]
-    double rise[3], back[3], bubble; // of the smooth surface above it: at both ends of each edge, and in its middle
-
-    FacetLines() = default;
-    FacetLines(const Surface& surface, uint32_t of_face, uint32_t of_side) noexcept;
-    glm::dvec3 point(const glm::dvec2& b) const { return p[0] + b.x * p[1] + b.y * p[2]; }
-    glm::dvec3 normal(const glm::dvec2& b) const { return n[0] + b.x * n[1] + b.y * n[2]; } // not of unit length
-};
 
 // In the space of the object. Made by the functions below, which fill it: it is made in each tick.
 struct Foot {
@@ -55,7 +41,7 @@ struct Foot {
     // How at_m moves with the hand: along edges of the facet, each by a weight with this gradient. Of a flat foot it
     // moves as the hand does, across `normal`, and edge[0] is 0.
     glm::dvec3 edge_m[2], weight_dp[2];
-    double share;        // 0 .. 1, of this foot in what is felt; if it is 0 the rest of a smooth foot is not filled
+    double share;        // 0 .. 1, of this foot in what is felt
     glm::dvec3 share_dp; // 1/m: its gradient
 
     // What the hand feels of a gradient by at_m.

@@ -21,7 +21,6 @@ double along_fingers(const DevicePose& pose, const glm::dvec3& force_n)
 glm::dvec3 shared_way_m(int end, std::span<const Contact> contacts)
 {
     glm::dvec3 way_m(0);
-    if (contacts.size() == 1) return way_m;
     int holding = 0;
     for (const Contact& contact : contacts) {
         if ((contact.along > 0) != (end == 1) || contact.by_shaft) continue;
@@ -66,16 +65,19 @@ void Renderer::render_object(Body& body, std::span<const Contact> contacts, cons
     Touched& touched = objects_[body.objects.number(part.part)];
     const Placement& placement = body.placement_of(*touched.object);
     ++result.contacts;
-    std::array<glm::dvec3, 2> way_m{}; // of the tip and the tail, in the object's space
-    for (const int end : {0, 1}) {
-        way_m[end] = shared_way_m(end, contacts);
-        if (body.objects.joined) way_m[end] = placement.direction_to_object(way_m[end]);
-    }
+    const bool alone = contacts.size() == 1;
     std::span<const Contact> rows = part.contacts;
-    if (rows.size() > 1 && is_smooth(*touched.object->surface))
-        rows = smooth_rows_.of(*touched.object->surface, rows, way_m, probe_.radius_m, touched.lines);
+    std::array<glm::dvec3, 2> way_m; // of the tip and the tail, in the object's space
+    if (!alone) {
+        for (const int end : {0, 1}) {
+            way_m[end] = shared_way_m(end, contacts);
+            if (body.objects.joined) way_m[end] = placement.direction_to_object(way_m[end]);
+        }
+        if (rows.size() > 1 && is_smooth(*touched.object->surface))
+            rows = smooth_rows_.of(*touched.object->surface, rows, way_m, probe_.radius_m, touched.lines);
+    }
     for (const Contact& contact : rows) { // what presses most first, of a stylus its tip
-        const double share = contact.by_shaft ? 1 : share_of(contact, way_m[contact.along > 0]);
+        const double share = alone || contact.by_shaft ? 1 : share_of(contact, way_m[contact.along > 0]);
         ObjectForce force;
         if (share < 1) {
             Contact whole = contact; // as if it held all of it
@@ -163,7 +165,7 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, con
         smooth   ? smooth_foot(surface, contact, hand_below(contact, probe_.radius_m), probe_.radius_m, touched.lines)
         : curved ? paper_foot(surface, contact)
                  : flat_foot(contact);
-    if (foot.share == 0) foot = flat_foot(contact);
+    if (foot.share == 0) foot.share = 1; // the flat one
     ObjectForce force = force_at(foot, body, touched, placement, contact);
     if (foot.share < 1) {
         const ObjectForce flat = force_at(flat_foot(contact), body, touched, placement, contact);

@@ -25,7 +25,6 @@ void add(Contact& row, const Contact& contact, double held_above_m)
     if (!(depth_m > 0)) return;
     row.normal = way_m / depth_m;
     row.depth_m = depth_m;
-    row.pressed_m += contact.pressed_m;
     row.lag_m += contact.lag_m;
     row.proxy_m = centre_m - held_above_m * row.normal;
 }

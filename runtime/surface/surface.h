@@ -75,6 +75,15 @@ struct FanPart {
     uint32_t fan;
 };
 
+// How the facets around a corner stand for a smooth surface (facet_lines.h), of a fan or a part of one: the most of
+// each of its facets.
+struct Roundness {
+    float raised_m = 0; // of the smooth surface above a facet
+    float bent_in_per_m =
+        0; // by which lines come nearer to each other below the facet; infinite if one slants too much
+    float bent_out_per_m = 0; // and above it
+};
+
 struct SegmentHit {
     uint32_t face = 0;
     uint32_t side = 0;   // that faces the start of the segment
@@ -98,6 +107,7 @@ struct Surface {
     std::vector<uint32_t> smoothing_groups;
     bool cuts_itself = false; // faces cut or touch each other beside the edges and vertices that they share
     std::vector<FanPart> fan_parts;
+    std::vector<Roundness> roundness; // of the fans, then of their parts
     double normal_turn_max_per_m = 0; // no shading normal turns faster along its face (spectral norm); 0: flat facets
     std::unique_ptr<const BoxTree> tree;
     glm::dvec3 box_minimum{0}, box_maximum{0};     // of the vertices, lattice units
@@ -129,6 +139,14 @@ struct Surface {
     const glm::dvec3& shading_normal(uint32_t fan_or_part) const
     {
         return fan_or_part & is_part ? fan_parts[fan_or_part & ~is_part].normal : fans[fan_or_part].normal;
+    }
+    std::size_t number_of(uint32_t fan_or_part) const
+    {
+        return fan_or_part & is_part ? fans.size() + (fan_or_part & ~is_part) : fan_or_part;
+    }
+    Roundness roundness_of(uint32_t fan_or_part) const
+    {
+        return roundness.empty() ? Roundness() : roundness[number_of(fan_or_part)];
     }
     // One piece that does not cut itself: links lead everywhere that a point comes to.
     bool is_clean() const { return origins.empty() && !cuts_itself; }

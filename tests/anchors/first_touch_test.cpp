@@ -118,8 +118,7 @@ TEST_CASE("anchors row 4: a frictionless plane gives no tangential force at any 
 TEST_CASE("anchors row 5: the first contact is below 1.001 mN at 1 um approach, and no later micrometre adds more")
 {
     constexpr double approach_m = 1e-6;
-    // Facets that stand for a smooth surface above them are so much harder, down to six times as deep as that is high
-    // (runtime/force/foot.cpp).
+    // A smooth surface that rises while the hand gets deeper is so much harder (runtime/force/foot.cpp).
     constexpr double harder = 1.7;
     Mesh bumpy = BumpySphere::mesh(19), box = make_box({0.04, 0.06, 0.08});
     scale_to_size(bumpy, 0.1);

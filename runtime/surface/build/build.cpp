@@ -2,6 +2,7 @@
 
 #include "runtime/surface/box_tree.h"
 #include "runtime/surface/build/edges.h"
+#include "runtime/surface/facet_lines.h"
 
 #include <optional>
 
@@ -40,7 +41,10 @@ SurfaceResult build_surface(const Mesh& mesh, double crease_deg, const Loading* 
             surface->vertices, surface->faces, box_tree_of(surface->vertices, surface->faces, threads), threads);
         if (!is_joined) find_piercing(*surface, *edges, result.report, work);
     }
-    if (work.begin("how round it is")) find_normal_turn(*surface, threads);
+    if (work.begin("how round it is")) {
+        find_normal_turn(*surface, threads);
+        if (!is_joined && surface->normal_turn_max_per_m > 0) find_roundness(*surface, threads);
+    }
     surface->smoothing_groups = {};
     result.error = work.error();
     if (result.error.empty()) result.surface = std::move(surface);

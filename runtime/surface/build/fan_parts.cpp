@@ -2,14 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace haptel::runtime {
 
 namespace {
 
-// A mesh that follows one curvature has edges of about one length around a vertex. Where some are shorter than this
-// share of the longest, as at the foot of a fillet, they would turn the normal of a large flat side.
-constexpr double even_edges = 0.5;
+// A mesh that follows one curvature has edges of about one length around a vertex. Where one is longer than so many
+// others, as at the foot of a fillet, the facets around do not follow one.
+constexpr double even_edges = 2;
 
 glm::dvec3 normal_of(const Surface& surface, const Sector& sector)
 {
@@ -83,27 +84,27 @@ void FanMaker::tell(std::size_t begin, std::size_t end, uint32_t number)
         surface_.faces[sectors_[i].face].fan_or_part[sectors_[i].corner][sectors_[i].side] = number;
 }
 
-// Of the facets' normals times the sines of their angles at the vertex over the lengths of both edges there: right
-// where all vertices around lie on one ball (N. Max, Weights for Computing Vertex Normals from Facet Normals, 1999).
-glm::dvec3 FanMaker::mean(std::size_t begin, std::size_t end)
+// Where edges are even each facet counts by the sine of its angle at the vertex over the lengths of both edges there,
+// which is right where all vertices around lie on one ball (N. Max, Weights for Computing Vertex Normals from Facet
+// Normals, 1999); else by its angle.
+glm::dvec3 FanMaker::mean(std::size_t begin, std::size_t end) const
 {
     if (end - begin == 1) return normal_of(surface_, sectors_[begin]); // to the last bit
-    edges_.clear();
-    double longest = 0;
+    double longest = 0, shortest = std::numeric_limits<double>::infinity();
+    glm::dvec3 by_ball{0}, by_angle{0};
     for (std::size_t i = begin; i < end; ++i) {
         const auto& corners = surface_.faces[sectors_[i].face].vertex;
         const glm::dvec3& at = surface_.vertices[corners[sectors_[i].corner]];
-        const glm::dvec3 a = surface_.vertices[corners[next(sectors_[i].corner)]] - at;
-        const glm::dvec3 b = surface_.vertices[corners[previous(sectors_[i].corner)]] - at;
-        edges_.push_back({glm::length(a), glm::length(b), glm::length(glm::cross(a, b))});
-        longest = std::max({longest, edges_.back().a, edges_.back().b});
+        const glm::dvec3 a = surface_.vertices[corners[next(sectors_[i].corner)]] - at,
+                         b = surface_.vertices[corners[previous(sectors_[i].corner)]] - at;
+        const double of_a = glm::length(a), of_b = glm::length(b), area = glm::length(glm::cross(a, b));
+        longest = std::max({longest, of_a, of_b});
+        shortest = std::min({shortest, of_a, of_b});
+        const glm::dvec3 normal = normal_of(surface_, sectors_[i]);
+        by_ball += area / (of_a * of_a * of_b * of_b) * normal;
+        by_angle += std::atan2(area, glm::dot(a, b)) * normal;
     }
-    glm::dvec3 sum{0};
-    for (std::size_t i = begin; i < end; ++i) {
-        const auto [a, b, area] = edges_[i - begin];
-        const double even_a = std::max(a / longest, even_edges), even_b = std::max(b / longest, even_edges);
-        sum += area / (a * b) / (even_a * even_b) * normal_of(surface_, sectors_[i]);
-    }
+    const glm::dvec3 sum = longest <= even_edges * shortest ? longest * longest * by_ball : by_angle;
     const double length = glm::length(sum);
     return length > 1e-9 ? sum / length : glm::dvec3(0);
 }

@@ -32,18 +32,13 @@ private:
     void walk(const Sector& start);
     bool is_crease(const Sector& a, const Sector& b) const;
     void tell(std::size_t begin, std::size_t end, uint32_t number);
-    glm::dvec3 mean(std::size_t begin, std::size_t end);
+    glm::dvec3 mean(std::size_t begin, std::size_t end) const;
 
     Surface& surface_;
     double crease_rad_, crease_cosine_;
     SomeFans& to_;
     std::vector<Sector> sectors_; // in the order in which they lie around the vertex
     bool closed_ = false;
-
-    struct Edges {
-        double a, b, area; // of a sector: both lengths, and of what they span
-    };
-    std::vector<Edges> edges_;
 };
 
 } // namespace haptel::runtime

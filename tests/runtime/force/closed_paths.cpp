@@ -202,7 +202,7 @@ double share_settled(const std::shared_ptr<const Scene>& scene, const Path& path
         const Work work = work_once_round(scene, path, steps);
         const double share = work.pressed_j > 0 ? work.given_j / work.pressed_j : 0;
         settled = std::fabs(share - before) < 0.1 * std::fabs(share) ? settled + 1 : 0;
-        if (std::fabs(share) < enough || settled == 2 || steps > 500'000) return share;
+        if (std::fabs(share) < enough || (settled >= 2 && steps > 100'000) || steps > 500'000) return share;
         before = share;
     }
 }
