@@ -196,7 +196,7 @@ Foot smooth_foot(const Surface& surface, const Contact& contact, const dvec3& ha
         const double depth = below + held_above_m, sunk = std::max(0.0, dot(lines.sunk_m, b));
         double by_depth = 1, by_sunk = 0;
         foot.depth_m = depth + s.m;
-        if (depth < rises_within * sunk) {
+        if (sunk > 0 && depth < rises_within * sunk) {
             const Rise risen(depth / (rises_within * sunk));
             foot.depth_m -= (1 - risen.value) * sunk;
             by_depth += risen.slope / rises_within;
