@@ -11,12 +11,14 @@ namespace {
 
 // The only tolerances, in lattice units (below 2e-12 of the object): they cover the rounding of the proxy, which is
 // a double and no lattice point, and nothing else.
-constexpr double lift_off = 8;         // height of the hand at which the surface lets go
-constexpr double feature = 32;         // nearer to an edge or a vertex than this is on it
-constexpr double departure = 64;       // least way that is worth a turn: more than `feature`, else cycles
-constexpr double on_plane = 4;         // nearer to a neighbour's plane than this is on it
-constexpr double least_outward = 1e-9; // of a fan whose normals cancel rounding leaves less
-constexpr double clear_above = 2;      // height that rounding to the lattice cannot undo
+constexpr double lift_off = 8;    // height of the hand at which the surface lets go
+constexpr double feature = 32;    // nearer to an edge or a vertex than this is on it
+constexpr double departure = 64;  // least way that is worth a turn: more than `feature`, else cycles
+constexpr double on_plane = 4;    // nearer to a neighbour's plane than this is on it
+constexpr double clear_above = 2; // height that rounding to the lattice cannot undo
+
+// Of a fan whose normals cancel rounding leaves less.
+constexpr double least_outward = 1e-9;
 
 // Length of the sum of two unit normals below which the faces nearly fold onto each other.
 constexpr double sharp = 1.0 / 16;

@@ -120,7 +120,6 @@ Foot flat_foot(const Contact& contact) noexcept
     foot.at_m = contact.proxy_m;
     foot.depth_m = contact.depth_m;
     foot.way = foot.normal = foot.push = contact.normal;
-    foot.lag_m = contact.lag_m;
     foot.edge_m[0] = dvec3(0);
     foot.share = 1;
     foot.share_dp = dvec3(0);

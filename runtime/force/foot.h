@@ -35,9 +35,8 @@ struct Foot {
     glm::dvec3 at_m;        // on that facet: where the texture is felt
     double depth_m;         // of the hand below what is felt there without a texture; less than 0: above it
     glm::dvec3 way;         // unit: along which that depth is measured
-    glm::dvec3 normal;      // unit: of what is felt there, across which friction holds
+    glm::dvec3 normal;      // unit: of what is felt there
     glm::dvec3 push;        // of a spring of depth_m: of a smooth foot minus its gradient, else `normal`
-    glm::dvec3 lag_m;       // Contact::lag_m, across `normal` on a smooth foot
     // How at_m moves with the hand: along edges of the facet, each by a weight with this gradient. Of a flat foot it
     // moves as the hand does, across `normal`, and edge[0] is 0.
     glm::dvec3 edge_m[2], weight_dp[2];
@@ -58,7 +57,8 @@ Foot flat_foot(const Contact& contact) noexcept;
 // The same with equation (1) of the paper: the normal between the corners' is the direction of the force.
 Foot paper_foot(const Surface& surface, const Contact& contact) noexcept;
 
-// Straight below a contact: where it holds the hand off the surface. `held_above_m`: by the radius of a ball.
+// Straight below a contact, so deep as that says. `held_above_m`: of the hand above the probe's rim, the radius of a
+// ball.
 inline glm::dvec3 hand_below(const Contact& contact, double held_above_m)
 {
     return contact.proxy_m + (held_above_m - contact.depth_m) * contact.normal;

@@ -159,7 +159,8 @@ Renderer::ObjectForce Renderer::force_of(const Body& body, Touched& touched, con
         return {}; // the highest texture reaches up to the base and no further
     if (contact.by_shaft) return force_by_shaft(body, touched.object->material, placement, contact);
     // Of flat facets, and where contact tells a direction of its own, there is one foot.
-    const bool curved = surface.normal_turn_max_per_m > 0 && !contact.on_crease && !contact.unsettled;
+    const bool curved =
+        surface.normal_turn_max_per_m > 0 && contact.touching && !contact.on_crease && !contact.unsettled;
     const bool smooth = curved && is_smooth(surface);
     Foot foot =
         smooth   ? smooth_foot(surface, contact, hand_below(contact, probe_.radius_m), probe_.radius_m, touched.lines)
@@ -224,11 +225,11 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     if (elastic.depth_m == 0) return result; // below the base surface, but not yet below the texture
 
     result.surface_j = felt_stiffness * elastic.depth_m * elastic.depth_m / 2;
-    result.held_j = result.surface_j + felt_stiffness * glm::dot(foot.lag_m, foot.lag_m) / 2;
+    result.held_j = result.surface_j + felt_stiffness * glm::dot(contact.lag_m, contact.lag_m) / 2;
     const double damping =
         damping_n(body, object.material, placement, contact, foot.normal, elastic.depth_m, felt_stiffness);
     result.force_n =
-        placement.direction_to_world(elastic.force_n + felt_stiffness * foot.lag_m + damping * foot.normal);
+        placement.direction_to_world(elastic.force_n + felt_stiffness * contact.lag_m + damping * foot.normal);
     return result;
 }
 

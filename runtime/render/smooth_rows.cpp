@@ -36,8 +36,8 @@ std::span<const Contact> SmoothRows::of(const Surface& surface, std::span<const 
                                         FacetLines& lines) noexcept
 {
     std::array<Foot, CreaseRows::rows_most> feet;
-    std::array<const Contact*, 2>
-        first{}; // of an end: a point that is held as a ball touches all of them a little apart
+    // The first at each end: a point that is held as a ball touches all of them a little apart.
+    std::array<const Contact*, 2> first{};
     std::size_t count = 0;
     for (const Contact& contact : contacts.first(std::min(contacts.size(), rows_.size()))) {
         Foot& foot = feet[count];

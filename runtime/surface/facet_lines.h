@@ -2,12 +2,13 @@
 //
 // Through each point of the facet goes a straight line along the normal between the shading normals of its corners;
 // facets that share an edge share the lines through it. The smooth surface is the facet raised along these lines by s,
-// the cubic that is 0 at the corners and rises from each as the normal there says (as PN triangles do: Vlachos and
-// others 2001). Whoever must not be above the facets has it sunk by a height that is linear on each facet and at each
-// corner the most of s around it.
+// which is 0 at the corners: on an edge a cubic that has the slopes that the normals at both ends say (as PN triangles
+// have: Vlachos and others 2001), within what meets anything quadratic, and across the middle of each edge the slope
+// that the normal there says, so that facets meet nearly without a bend. Whoever must not be above the facets has it
+// sunk by a height that is linear on each facet and at each corner the most of s around it.
 #pragma once
 
-#include "runtime/surface/surface.h"
+#include "runtime/surface/corner.h"
 
 namespace haptel::runtime {
 
@@ -36,7 +37,26 @@ struct FacetLines {
     Height raised(const glm::dvec3& b) const noexcept;                                      // s, by all three weights
 };
 
-// Sets the roundness of all corners.
-void find_roundness(Surface& surface, unsigned threads);
+inline FacetLines::Height FacetLines::raised(const glm::dvec3& b) const noexcept
+{
+    Height s;
+    double db[3] = {};
+    for (uint32_t i = 0; i < 3; ++i) {
+        const uint32_t j = next(i);
+        const double mean = b[i] * rise[i] + b[j] * back[i];
+        s.m += b[i] * b[j] * mean;
+        db[i] += b[j] * (mean + b[i] * rise[i]);
+        db[j] += b[i] * (mean + b[j] * back[i]);
+    }
+    const double all = b[0] * b[1] * b[2];
+    double inside = bubble;
+    for (uint32_t i = 0; i < 3; ++i) inside += across[i] * b[i] * b[next(i)];
+    s.m += inside * all;
+    for (uint32_t i = 0; i < 3; ++i)
+        db[i] += inside * b[next(i)] * b[previous(i)] +
+                 all * (across[i] * b[next(i)] + across[previous(i)] * b[previous(i)]);
+    s.db = {db[1] - db[0], db[2] - db[0]};
+    return s;
+}
 
 } // namespace haptel::runtime

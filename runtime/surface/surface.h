@@ -79,9 +79,8 @@ struct FanPart {
 // each of its facets.
 struct Roundness {
     float raised_m = 0; // of the smooth surface above a facet
-    float bent_in_per_m =
-        0; // by which lines come nearer to each other below the facet; infinite if one slants too much
-    float bent_out_per_m = 0; // and above it
+    // By which lines come nearer to each other below the facet, infinite if one slants too much, and above it.
+    float bent_in_per_m = 0, bent_out_per_m = 0;
 };
 
 struct SegmentHit {

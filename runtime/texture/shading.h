@@ -9,8 +9,7 @@ namespace haptel::runtime {
 
 // Force shading, equation (1) of the paper: vertex normals weighted by the areas of the opposite sub-triangles, which
 // are the barycentric coordinates, normalised (equation (2) needs a unit normal). The vertex normals are averages of
-// the facet normals around, up to the next creases. Unit, toward `side`; the facet's normal
-// where they cancel.
+// the facet normals around, up to the next creases. Unit, toward `side`; the facet's normal where they cancel.
 glm::dvec3 shading_normal(const Surface& surface, uint32_t face, uint32_t side, const glm::dvec3& barycentric) noexcept;
 
 struct Shading {

@@ -37,6 +37,14 @@ inline runtime::Mesh shape(const char* name, double size_m)
     return mesh;
 }
 
+// 20 * 4^subdivisions triangles, of that diameter.
+inline runtime::Mesh ball_mesh(uint32_t subdivisions, double size_m)
+{
+    runtime::Mesh mesh = runtime::make_icosphere(subdivisions);
+    runtime::scale_to_size(mesh, size_m);
+    return mesh;
+}
+
 inline runtime::Scene magnet_scene(const runtime::Mesh& mesh, double force_n, double reach_m)
 {
     runtime::Scene scene = bare_scene(mesh);

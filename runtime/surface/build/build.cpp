@@ -2,7 +2,6 @@
 
 #include "runtime/surface/box_tree.h"
 #include "runtime/surface/build/edges.h"
-#include "runtime/surface/facet_lines.h"
 
 #include <optional>
 

@@ -31,7 +31,7 @@ void close_cracks(Surface& surface, MeshReport& report, BuildWork& work);
 // Texture coordinates of corners, each once for a vertex.
 void gather_uv(Surface& surface, const ByNumber& corners);
 
-// Fans with their angle-weighted normals, and which of them meet in a vertex. They are parted for force shading where
+// Fans with their mean normals, and which of them meet in a vertex. They are parted for force shading where
 // faces meet at more than crease_deg or are of different smoothing groups.
 void make_fans(Surface& surface, const ByNumber& corners, double crease_deg, BuildWork& work);
 
@@ -44,6 +44,9 @@ std::vector<BoxTree::Node> box_tree_of(const std::vector<glm::dvec3>& vertices, 
 
 // Sets how fast normals of force shading turn at most.
 void find_normal_turn(Surface& surface, unsigned threads);
+
+// Sets the roundness of all corners.
+void find_roundness(Surface& surface, unsigned threads);
 
 // Whether faces cut or touch each other without sharing a corner there, and how many. Needs the tree.
 void find_piercing(Surface& surface, const Edges& edges, MeshReport& report, BuildWork& work);

@@ -26,13 +26,6 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double stiffness = 1000; // N/m
 constexpr double size_m = 0.1;
 
-Mesh ball_of(uint32_t subdivisions)
-{
-    Mesh mesh = make_icosphere(subdivisions);
-    scale_to_size(mesh, size_m);
-    return mesh;
-}
-
 // Up to 2 `amplitude_m` high, of a wavelength of some 3 mm.
 TextureBinding solid_texture(double amplitude_m)
 {
@@ -139,8 +132,8 @@ TEST_CASE("on balls of triangles closed paths give no energy")
             double allowed = 1e-1;
             for (const uint32_t subdivisions : {2u, 3u, 4u, 5u}) {
                 allowed /= 10;
-                Scene scene =
-                    bare_scene(ball_of(subdivisions), texture_m > 0 ? solid_texture(texture_m) : TextureBinding());
+                Scene scene = bare_scene(ball_mesh(subdivisions, size_m),
+                                         texture_m > 0 ? solid_texture(texture_m) : TextureBinding());
                 scene.probe = probe;
                 const auto touched = shared(std::move(scene));
                 const Surface& surface = *touched->objects[0].surface;
@@ -162,7 +155,7 @@ TEST_CASE("in hollow balls of triangles closed paths give no energy")
         double allowed = 1e-2;
         for (const uint32_t subdivisions : {3u, 4u}) {
             allowed /= 10;
-            Scene scene = bare_scene(ball_of(subdivisions), solid_texture(25e-6));
+            Scene scene = bare_scene(ball_mesh(subdivisions, size_m), solid_texture(25e-6));
             scene.probe = probe;
             const auto touched = shared(std::move(scene));
             const Surface& surface = *touched->objects[0].surface;
@@ -214,7 +207,8 @@ TEST_CASE("closed paths give no energy: long run", "[.long]")
 {
     std::vector<NamedMesh> meshes;
     for (const uint32_t subdivisions : {2u, 3u, 4u, 5u})
-        meshes.push_back({"ball of " + std::to_string(20u << 2 * subdivisions) + " triangles", ball_of(subdivisions)});
+        meshes.push_back(
+            {"ball of " + std::to_string(20u << 2 * subdivisions) + " triangles", ball_mesh(subdivisions, size_m)});
     Mesh ellipsoid = make_icosphere(4);
     for (dvec3& p : ellipsoid.positions_m) p *= dvec3(1, 0.7, 0.5);
     meshes.push_back({"ellipsoid of 5120 triangles", ellipsoid});

@@ -26,13 +26,6 @@ constexpr double pi = 3.14159265358979323846;
 constexpr double stiffness = 1000; // N/m
 constexpr double size_m = 0.1, ball_m = size_m / 2;
 
-Mesh ball_of(uint32_t subdivisions)
-{
-    Mesh mesh = make_icosphere(subdivisions);
-    scale_to_size(mesh, size_m);
-    return mesh;
-}
-
 // Held by contact off the facets, and the smooth foot of that; or none.
 class Stroke {
 public:
@@ -65,7 +58,7 @@ TEST_CASE("what a foot says of its changes is what differences say")
 {
     // Coarse, so that lines meet within reach and `share` is between 0 and 1, too.
     int compared = 0, shared_ones = 0;
-    for (const Mesh& mesh : {ball_of(1), bumpy_mesh(3), shape("torus", size_m)}) {
+    for (const Mesh& mesh : {ball_mesh(1, size_m), bumpy_mesh(3), shape("torus", size_m)}) {
         const auto surface = surface_of(mesh);
         std::mt19937_64 random(3);
         std::uniform_real_distribution<double> uniform(-1, 1);
@@ -112,7 +105,7 @@ TEST_CASE("what a foot says of its changes is what differences say")
 
 TEST_CASE("on a ball of 5 120 triangles the force is that of the ball")
 {
-    Renderer renderer(shared(bare_scene(ball_of(4))));
+    Renderer renderer(shared(bare_scene(ball_mesh(4, size_m))));
     renderer.tick(at(0, 0, 1.1 * ball_m));
     for (const double deep_m : {0.5e-3, 1e-3, 2.5e-3, 5e-3}) {
         CAPTURE(deep_m);
@@ -137,7 +130,7 @@ TEST_CASE("on a ball of 5 120 triangles the force is that of the ball")
 TEST_CASE("from the first touch on, the force of a ball of triangles turns as a ball's")
 {
     for (const uint32_t subdivisions : {2u, 3u, 4u}) {
-        Renderer renderer(shared(bare_scene(ball_of(subdivisions))));
+        Renderer renderer(shared(bare_scene(ball_mesh(subdivisions, size_m))));
         renderer.tick(at(0, 0, 1.1 * ball_m));
         const double edge_m = 1.1 * ball_m / (1 << subdivisions), facets_degrees = 46.0 / (1 << subdivisions);
         int felt = 0;
@@ -178,7 +171,7 @@ TEST_CASE("a texture on a round surface is where the hand is, at any depth")
             return 1e-5 * std::sin(a);
         },
         -1e-5, 1e-5, HAPTEL_READS_POINT);
-    Renderer renderer(shared(bare_scene(ball_of(4), grating)));
+    Renderer renderer(shared(bare_scene(ball_mesh(4, size_m), grating)));
     for (const double deep_m : {0.1e-3, 0.5e-3, 2.5e-3, 5e-3}) {
         CAPTURE(deep_m);
         const auto hand = [&](double a) { return (ball_m - deep_m) * (std::cos(a) * east + std::sin(a) * north); };
@@ -203,7 +196,7 @@ TEST_CASE("a texture on a round surface is where the hand is, at any depth")
 
 TEST_CASE("where a texture is felt moves as the hand does")
 {
-    for (const Mesh& mesh : {ball_of(4), shape("torus", size_m)}) {
+    for (const Mesh& mesh : {ball_mesh(4, size_m), shape("torus", size_m)}) {
         const auto surface = surface_of(mesh);
         std::mt19937_64 random(5);
         std::uniform_real_distribution<double> uniform(-1, 1);

@@ -40,6 +40,7 @@ inline std::string first_difference(const runtime::Surface& a, const runtime::Su
             return same_bits(x.normal, y.normal) && x.fan == y.fan;
         }))
         return "fan parts";
+    if (differ(a.roundness, b.roundness, bits)) return "roundness";
     if (differ(a.uv, b.uv, bits) || differ(a.uv_of, b.uv_of, bits)) return "uv";
     for (const runtime::Surface* one : {&a, &b})
         if (!one->corner_uv.empty() || !one->smoothing_groups.empty()) return "what is for building alone";
