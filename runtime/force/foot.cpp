@@ -27,9 +27,10 @@ constexpr double beyond_most = 0.5;
 // Above the centres of curvature the foot is mostly nearer to the flat one than half an edge.
 constexpr int facets_most = 8;
 
-// Newton's steps double the digits: after one below this the next is less than 1e-12.
+// Chebyshev's steps make the digits three times as many: after one below this the next is less than 1e-12. Far away,
+// where they would overshoot, they are Newton's.
 constexpr int steps_most = 8;
-constexpr double step_settled = 1e-6, on_edge = 1e-10;
+constexpr double step_settled = 1e-4, bends_most = 0.25, on_edge = 1e-10;
 
 // Rises from 0 to 1 over 0 .. 1, and its derivative.
 struct Rise {
@@ -42,40 +43,43 @@ struct Rise {
     }
 };
 
-// The line through the hand, t lengths of its normal below its point; and what moves the hand there: by b, and against
-// the normal by t.
+// The line through the hand, t of its normal below its point.
 struct OnLine {
-    glm::dvec2 b{0};
+    dvec3 b{0};
     double t = 0;
-    dvec3 normal{0}, u{0}, v{0}, across{0}; // across: u x v
-    double per = 0;                         // 1 / (across . normal)
-    bool found = false;
+    dvec3 normal{0}, across{0}; // across: of the facet that the points t below span
+    double per_m3 = 0;          // 1 / (across . normal)
 };
 
-// By Newton's steps from b and t.
-void find_line(const FacetLines& lines, const dvec3& hand, OnLine& at) noexcept
+// By steps from how deep below the facet's plane the hand is: the points t of their normals below the facet span
+// another one, in whose plane the hand is where a cubic is 0. False where it finds none. Of the foot it fills how the
+// weights change.
+bool find_line(const FacetLines& lines, const dvec3& hand_m, OnLine& at, Foot& foot) noexcept
 {
-    at.found = false;
-    for (int step = 0; step < steps_most; ++step) {
-        at.normal = lines.normal(at.b);
-        at.u = lines.p[1] - at.t * lines.n[1];
-        at.v = lines.p[2] - at.t * lines.n[2];
-        at.across = cross(at.u, at.v);
-        at.per = 1 / dot(at.across, at.normal);
-        const dvec3 off = hand - lines.point(at.b) + at.t * at.normal, by_normal = cross(off, at.normal);
-        const glm::dvec2 more(-at.per * dot(at.v, by_normal), at.per * dot(at.u, by_normal));
-        at.b += more;
-        const double back = at.per * dot(at.across, off);
-        at.t -= back;
-        const double size = std::fabs(more.x) + std::fabs(more.y) + std::fabs(back) / lines.edge_m;
-        at.found = size < step_settled;
-        if (at.found || !(size < facets_most)) return; // or not finite
+    const dvec3 from = hand_m - lines.p[0];
+    const double c0 = dot(from, lines.area), c1 = lines.by_normal[0] - dot(from, lines.turn),
+                 c2 = dot(from, lines.turn_dt) - lines.by_normal[1], c3 = lines.by_normal[2];
+    double t = -c0 * lines.per_m2;
+    bool settled = false;
+    for (int step = 0; step < steps_most && !settled; ++step) {
+        const double per = 1 / (c1 + t * (2 * c2 + t * 3 * c3)), more = per * (c0 + t * (c1 + t * (c2 + t * c3)));
+        const double bends = more * per * (c2 + t * 3 * c3);
+        t -= std::fabs(bends) < bends_most ? more + bends * more : more;
+        settled = std::fabs(more) < step_settled * lines.edge_m;
     }
-}
-
-dvec3 weights(const glm::dvec2& b)
-{
-    return {1 - b.x - b.y, b.x, b.y};
+    at.t = t;
+    at.per_m3 = 1 / (c1 + t * (2 * c2 + t * 3 * c3)); // at the line this is across . normal
+    const dvec3 u = lines.p[1] - t * lines.n[1], v = lines.p[2] - t * lines.n[2];
+    at.across = cross(u, v);
+    const dvec3 off = cross(from + t * lines.n[0], lines.area);
+    const double by_area = 1 / (lines.by_area[0] - t * (lines.by_area[1] - t * lines.by_area[2]));
+    const double second = -by_area * dot(off, v), third = by_area * dot(off, u);
+    at.b = {1 - second - third, second, third};
+    at.normal = lines.normal({second, third});
+    foot.line_m[0] = u;
+    foot.line_m[1] = v;
+    foot.turned_per_m2 = at.per_m3 * at.normal;
+    return settled && std::fabs(second) + std::fabs(third) < facets_most; // and finite
 }
 
 // Over the edge, if the lines go on there: the same normals at both its ends.
@@ -101,11 +105,110 @@ bool cross_edge(const Surface& surface, uint32_t edge, uint32_t& face, uint32_t&
 }
 
 // From a face that the line leaves over the edge before the corner of the least weight, or over another one.
-bool go_on(const Surface& surface, uint32_t least, uint32_t& face, uint32_t& side, dvec3& b) noexcept
+bool go_on(const Surface& surface, double of_least, uint32_t& face, uint32_t& side, dvec3& b) noexcept
 {
+    const uint32_t least = b.x == of_least ? 0 : b.y == of_least ? 1 : 2;
     if (cross_edge(surface, next(least), face, side, b)) return true;
     for (const uint32_t other : {next(least), previous(least)})
         if (b[other] < -on_edge && cross_edge(surface, next(other), face, side, b)) return true;
+    return false;
+}
+
+// Fills `share`: how near its centre of curvature the hand is, whether the lines stand upright, how far it is beyond
+// them.
+void find_share(const FacetLines& lines, const OnLine& at, double least, double length, Foot& foot) noexcept
+{
+    const double below = at.t * length, away = std::fabs(below);
+    const dvec3& bent_per_m = below > 0 ? lines.bent_in_per_m : lines.bent_out_per_m;
+    const double bent = dot(bent_per_m, at.b);
+    foot.share = 1;
+    foot.share_dp = dvec3(0);
+    if (away * bent <= near_centre && lines.all_upright && least >= 0) return;
+    const Rise from_centre((at_centre - away * bent) / (at_centre - near_centre)),
+        upright(2 * dot(lines.upright, at.b) - 1), within(1 + std::min(0.0, least) / beyond_most);
+    foot.share = from_centre.value * upright.value * within.value;
+    if (!(foot.share > 0)) {
+        foot.share = 0;
+        return;
+    }
+    const auto by_hand = [&](const dvec3& of_corners) { // of what is linear between corners
+        return foot.by_weights(of_corners.y - of_corners.x, of_corners.z - of_corners.x);
+    };
+    const double longer = at.t / length;
+    const dvec3 below_dp = foot.by_weights(longer * dot(at.normal, lines.n[1]), longer * dot(at.normal, lines.n[2])) -
+                           length * at.per_m3 * at.across;
+    const dvec3 nearer_dp = (below > 0 ? bent : -bent) * below_dp + away * by_hand(bent_per_m);
+    foot.share_dp = -upright.value * within.value * from_centre.slope / (at_centre - near_centre) * nearer_dp +
+                    from_centre.value * within.value * upright.slope * 2.0 * by_hand(lines.upright);
+    if (least < 0)
+        foot.share_dp += from_centre.value * upright.value * within.slope / beyond_most *
+                         by_hand(dvec3(glm::equal(at.b, dvec3(least))));
+}
+
+// Fills `depth_m` and `push`.
+void find_depth(const FacetLines& lines, const OnLine& at, double length, double held_above_m, Foot& foot) noexcept
+{
+    const FacetLines::Height s = lines.raised(at.b);
+    const double depth = at.t * length + held_above_m, sunk = std::max(0.0, dot(lines.sunk_m, at.b));
+    double by_depth = 1, by_sunk = 0;
+    foot.depth_m = depth + s.m;
+    if (sunk > 0 && depth < rises_within * sunk) {
+        const Rise risen(depth / (rises_within * sunk));
+        foot.depth_m -= (1 - risen.value) * sunk;
+        by_depth += risen.slope / rises_within;
+        by_sunk = 1 - risen.value + risen.slope * std::max(0.0, depth) / (rises_within * sunk);
+    }
+    const double longer = by_depth * at.t / length; // the normal's length changes, too
+    const auto by_weight = [&](uint32_t corner, double raised_by) {
+        return by_sunk * (lines.sunk_m[corner] - lines.sunk_m.x) - longer * dot(at.normal, lines.n[corner]) - raised_by;
+    };
+    foot.push = foot.by_weights(by_weight(1, s.db.x), by_weight(2, s.db.y)) + by_depth * length * at.per_m3 * at.across;
+}
+
+// Fills where the texture is felt: beyond a border as at it.
+void find_place(const FacetLines& lines, const dvec3& b, bool beyond, Foot& foot) noexcept
+{
+    foot.face = lines.face;
+    foot.side = lines.side;
+    foot.barycentric = b;
+    foot.edge_m[0] = lines.p[1];
+    foot.edge_m[1] = lines.p[2];
+    if (beyond) {
+        const dvec3 kept(glm::greaterThan(b, dvec3(0)));
+        const double all = dot(kept, b);
+        foot.barycentric = kept * b / all;
+        const dvec3 at = lines.point({foot.barycentric.y, foot.barycentric.z}) - lines.p[0], first = kept.x * -at;
+        for (uint32_t i : {0u, 1u}) foot.edge_m[i] = (kept[i + 1] * (lines.p[i + 1] - at) - first) / all;
+    }
+    foot.at_m = lines.point({foot.barycentric.y, foot.barycentric.z});
+}
+
+// False where nothing of it is felt.
+bool find_foot(const Surface& surface, const Contact& contact, const dvec3& hand_m, double held_above_m,
+               FacetLines& lines, Foot& foot) noexcept
+{
+    uint32_t face = contact.face, side = contact.side;
+    OnLine at;
+    for (int facet = 0; facet < facets_most; ++facet) {
+        if (face != lines.face || side != lines.side) lines = FacetLines(surface, face, side);
+        if (lines.flat && facet == 0 && contact.normal == contact.facet_normal && lines.sunk_m == dvec3(0)) {
+            foot = flat_foot(contact);
+            return true;
+        }
+        if (!find_line(lines, hand_m, at, foot)) return false;
+        const double least = std::min({at.b.x, at.b.y, at.b.z}); // without branches, which nobody could foresee
+        const bool beyond = least < -on_edge;
+        if (beyond && go_on(surface, least, face, side, at.b)) continue;
+
+        const double length = glm::length(at.normal), open = dot(lines.area, at.normal);
+        if (!(least > -beyond_most) || !(length > Surface::least_normal) || !((side ? -open : open) > 0)) return false;
+        find_share(lines, at, least, length, foot);
+        if (foot.share == 0) return false;
+        find_depth(lines, at, length, held_above_m, foot);
+        foot.way = foot.normal = at.normal / length;
+        find_place(lines, at.b, beyond, foot);
+        return true;
+    }
     return false;
 }
 
@@ -136,92 +239,10 @@ Foot paper_foot(const Surface& surface, const Contact& contact) noexcept
 Foot smooth_foot(const Surface& surface, const Contact& contact, const dvec3& hand_m, double held_above_m,
                  FacetLines& last) noexcept
 {
-    Foot foot = flat_foot(contact);
-    foot.share = 0;
-    uint32_t face = contact.face, side = contact.side;
-    dvec3 b = contact.barycentric;
-    OnLine at;
-    at.t = contact.depth_m - held_above_m;
-    for (int facet = 0; facet < facets_most; ++facet) {
-        if (face != last.face || side != last.side) last = FacetLines(surface, face, side);
-        const FacetLines& lines = last;
-        if (lines.flat && facet == 0 && contact.normal == contact.facet_normal && lines.sunk_m == dvec3(0)) {
-            foot.share = 1;
-            return foot;
-        }
-        at.b = {b.y, b.z};
-        find_line(lines, hand_m, at);
-        if (!at.found) return foot;
-        b = weights(at.b);
-        const uint32_t least = b.x < b.y ? (b.x < b.z ? 0 : 2) : (b.y < b.z ? 1 : 2);
-        const bool beyond = b[least] < -on_edge;
-        if (beyond && go_on(surface, least, face, side, b)) continue;
-        if (!(b[least] > -beyond_most)) return foot;
-
-        const double length = glm::length(at.normal);
-        const double open = dot(lines.area, at.normal);
-        if (!(length > Surface::least_normal) || !((side ? -open : open) > 0)) return foot;
-
-        const dvec3 second_dp = at.per * cross(at.v, at.normal), third_dp = at.per * cross(at.normal, at.u),
-                    t_dp = -at.per * at.across;
-        const auto by_hand = [&](const dvec3& of_corners) { // of what is linear between corners
-            return (of_corners.y - of_corners.x) * second_dp + (of_corners.z - of_corners.x) * third_dp;
-        };
-        const double below = at.t * length, longer = at.t / length; // the normal's length changes, too
-        const dvec3 below_dp = length * t_dp + longer * dot(at.normal, lines.n[1]) * second_dp +
-                               longer * dot(at.normal, lines.n[2]) * third_dp;
-
-        // How near its centre of curvature the hand is, whether the lines stand upright, and how far it is beyond them.
-        const dvec3& bent_per_m = below > 0 ? lines.bent_in_per_m : lines.bent_out_per_m;
-        const double away = std::fabs(below), bent = dot(bent_per_m, b);
-        const Rise from_centre((at_centre - away * bent) / (at_centre - near_centre)),
-            upright(2 * dot(lines.upright, b) - 1), within(1 + std::min(0.0, b[least]) / beyond_most);
-        foot.share = from_centre.value * upright.value * within.value;
-        if (!(foot.share > 0)) {
-            foot.share = 0;
-            return foot;
-        }
-        if (foot.share < 1) {
-            const dvec3 nearer_dp = (below > 0 ? bent : -bent) * below_dp + away * by_hand(bent_per_m);
-            foot.share_dp = -upright.value * within.value * from_centre.slope / (at_centre - near_centre) * nearer_dp +
-                            from_centre.value * within.value * upright.slope * 2.0 * by_hand(lines.upright);
-            dvec3 corner(0);
-            corner[least] = 1;
-            if (b[least] < 0)
-                foot.share_dp += from_centre.value * upright.value * within.slope / beyond_most * by_hand(corner);
-        }
-
-        const FacetLines::Height s = lines.raised(b);
-        const double depth = below + held_above_m, sunk = std::max(0.0, dot(lines.sunk_m, b));
-        double by_depth = 1, by_sunk = 0;
-        foot.depth_m = depth + s.m;
-        if (sunk > 0 && depth < rises_within * sunk) {
-            const Rise risen(depth / (rises_within * sunk));
-            foot.depth_m -= (1 - risen.value) * sunk;
-            by_depth += risen.slope / rises_within;
-            by_sunk = 1 - risen.value + risen.slope * std::max(0.0, depth) / (rises_within * sunk);
-        }
-        foot.push = by_sunk * by_hand(lines.sunk_m) - by_depth * below_dp - s.db.x * second_dp - s.db.y * third_dp;
-        foot.way = foot.normal = at.normal / length;
-
-        foot.face = face;
-        foot.side = side;
-        foot.barycentric = b;
-        foot.edge_m[0] = lines.p[1];
-        foot.edge_m[1] = lines.p[2];
-        foot.weight_dp[0] = second_dp;
-        foot.weight_dp[1] = third_dp;
-        if (beyond) { // the texture is that of the border
-            foot.barycentric = glm::max(b, 0.0);
-            const double all = foot.barycentric.x + foot.barycentric.y + foot.barycentric.z;
-            foot.barycentric /= all;
-            const dvec3 b_dp[] = {-second_dp - third_dp, second_dp, third_dp};
-            dvec3 kept_dp[3], all_dp(0);
-            for (uint32_t i = 0; i < 3; ++i) all_dp += kept_dp[i] = b[i] > 0 ? b_dp[i] : dvec3(0);
-            for (uint32_t i : {0u, 1u}) foot.weight_dp[i] = (kept_dp[i + 1] - foot.barycentric[i + 1] * all_dp) / all;
-        }
-        foot.at_m = lines.point({foot.barycentric.y, foot.barycentric.z});
-        return foot;
+    Foot foot;
+    if (!find_foot(surface, contact, hand_m, held_above_m, last, foot)) {
+        foot = flat_foot(contact);
+        foot.share = 0;
     }
     return foot;
 }

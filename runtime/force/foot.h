@@ -37,9 +37,10 @@ struct Foot {
     glm::dvec3 way;         // unit: along which that depth is measured
     glm::dvec3 normal;      // unit: of what is felt there
     glm::dvec3 push;        // of a spring of depth_m: of a smooth foot minus its gradient, else `normal`
-    // How at_m moves with the hand: along edges of the facet, each by a weight with this gradient. Of a flat foot it
-    // moves as the hand does, across `normal`, and edge[0] is 0.
-    glm::dvec3 edge_m[2], weight_dp[2];
+    // How at_m moves with the hand: by the weights of the second and the third corner along edges of the facet, and by
+    // them the hand along `line_m`; `turned_per_m2` is `normal` over the volume of all three. Of a flat foot it moves
+    // as the hand does, across `normal`, and edge[0] is 0.
+    glm::dvec3 edge_m[2], line_m[2], turned_per_m2;
     double share;        // 0 .. 1, of this foot in what is felt
     glm::dvec3 share_dp; // 1/m: its gradient
 
@@ -47,7 +48,12 @@ struct Foot {
     glm::dvec3 felt(const glm::dvec3& gradient) const
     {
         if (edge_m[0] == glm::dvec3(0)) return gradient - glm::dot(gradient, normal) * normal;
-        return glm::dot(gradient, edge_m[0]) * weight_dp[0] + glm::dot(gradient, edge_m[1]) * weight_dp[1];
+        return by_weights(glm::dot(gradient, edge_m[0]), glm::dot(gradient, edge_m[1]));
+    }
+    // And of what changes so much with both weights.
+    glm::dvec3 by_weights(double second, double third) const
+    {
+        return glm::cross(turned_per_m2, third * line_m[0] - second * line_m[1]);
     }
 };
 

@@ -46,7 +46,14 @@ FacetLines::FacetLines(const Surface& surface, uint32_t of_face, uint32_t of_sid
         std::all_of(n, n + 3, [&](const dvec3& normal) { return glm::distance(normal, facet_normal) < same_normal; });
     for (uint32_t i : {1u, 2u}) p[i] -= p[0], n[i] -= n[0];
     area = cross(p[1], p[2]);
-    edge_m = std::sqrt(glm::length(area));
+    turn = cross(p[1], n[2]) + cross(n[1], p[2]);
+    turn_dt = cross(n[1], n[2]);
+    const dvec3* const by_t[] = {&area, &turn, &turn_dt};
+    for (uint32_t i = 0; i < 3; ++i) by_normal[i] = dot(n[0], *by_t[i]), by_area[i] = dot(area, *by_t[i]);
+    all_upright = upright == dvec3(1);
+    const double size_m2 = glm::length(area);
+    per_m2 = (side ? -1 : 1) / size_m2;
+    edge_m = std::sqrt(size_m2);
 }
 
 } // namespace haptel::runtime

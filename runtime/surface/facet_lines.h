@@ -17,13 +17,17 @@ struct FacetLines {
     uint32_t face = ~0u, side = 0;
     glm::dvec3 p[3], n[3]; // of the corners, the normals toward the side; of the second and third: from the first one
     glm::dvec3 area;       // p[1] x p[2]
-    double edge_m;         // a length of its size
+    // The points t of their normals below it span a facet of area - t turn + t^2 turn_dt; by n[0], and by area.
+    glm::dvec3 turn, turn_dt;
+    double by_normal[3], by_area[3];
+    double per_m2, edge_m;           // 1 / |area|, less than 0 on the back; a length of its size
     double rise[3], back[3], bubble; // s: slopes at both ends of each edge, and in the middle
     double across[3];                // and across each edge there
     glm::dvec3 sunk_m;               // by corner, as the next ones
     glm::dvec3 bent_in_per_m, bent_out_per_m;
     glm::dvec3 upright; // 1, or 0
-    bool flat;          // and all lines along the facet's normal
+    bool all_upright;
+    bool flat; // and all lines along the facet's normal
 
     struct Height {
         double m = 0;
