@@ -26,7 +26,11 @@ struct TextureBinding {
     const haptel_texture* texture = nullptr;
     const void* block = nullptr; // texture->block_size bytes, aligned to 8, starting with haptel_block_head
     haptel_facts facts = {};     // for this block and the object's box
-    bool band_limited = false;   // detail is faded or left out because it is finer than the block's footprint
+    // Of an end of the range of heights that was found by looking, and not proven: heights that come to within half of
+    // it are bent so that none is beyond the end (runtime/texture/surface_texture.h). At the lower and the upper end;
+    // 0: proven.
+    double shoulder_m[2] = {0, 0};
+    bool band_limited = false; // detail is faded or left out because it is finer than the block's footprint
 };
 
 // How a mesh is unrolled: the range of its coordinates u and v, of their Jacobian, and how fast each of them changes at

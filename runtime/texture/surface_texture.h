@@ -1,7 +1,11 @@
 // Texture stage: from a point on the surface to the height and the gradient that are felt there.
 //
-// Heights reach the contact shifted to the envelope h - h_max <= 0, with h_max the proven upper bound of the binding:
-// touching the base mesh is then necessary for touching the texture, and force starts at 0.
+// Heights reach the contact shifted to the envelope h - h_max <= 0, with h_max the upper bound of the binding: touching
+// the base mesh is then necessary for touching the texture, and force starts at 0. A bound that is not proven is made
+// true: before a shoulder of length L the height h is felt as it is, and from there on, x = h - (h_max - L/2) beyond
+// it, as h_max - L/2 + L (t - t^3 + t^4/2) with t = min(x/L, 1). So it comes to rest at h_max, its second derivative by
+// h is continuous, and its gradient is grad h (1 - 3 t^2 + 2 t^3): what is felt has a potential, whatever the texture
+// does where nobody looked.
 #pragma once
 
 #include "lang/abi/abi.h"
@@ -17,7 +21,8 @@ namespace haptel::runtime {
 
 // Bits beside those of haptel_sample::faults.
 enum : uint32_t {
-    fault_height_above_bound = 1u << 8 // the height exceeds the binding's facts; cut off there, gradient 0
+    fault_height_above_bound = 1u << 8, // the height exceeds the binding's facts; cut off there, gradient 0
+    fault_height_bent = 1u << 9         // the height is beyond what was found of the texture; felt bent by a shoulder
 };
 
 // Where a texture is evaluated, object space. What the texture does not read need not be filled, but for the normal.
@@ -28,7 +33,7 @@ struct SurfacePoint {
 };
 
 struct TextureSample {
-    double height_m = 0;    // as the texture says
+    double height_m = 0;    // as the texture says, or bent by a shoulder
     double envelope_m = 0;  // height - h_max, <= 0
     double raised_m = 0;    // height - min(h_min, 0), >= 0: as published where that is never below 0
     glm::dvec3 gradient{0}; // dh/dp, metres per metre: what of it is along the surface counts

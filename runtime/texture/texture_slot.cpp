@@ -23,6 +23,10 @@ std::string binding_fault(const TextureBinding& binding)
         facts.height_min_m > facts.height_max_m)
         return "the range of the texture's height is not known, so the surface that may be touched is not either: keep "
                "the height within bounds, for example with clamp()";
+    const double shoulders_m = 0.5 * (binding.shoulder_m[0] + binding.shoulder_m[1]);
+    if (!(binding.shoulder_m[0] >= 0 && binding.shoulder_m[1] >= 0 &&
+          shoulders_m <= facts.height_max_m - facts.height_min_m))
+        return "the shoulders of the range of the texture's height are longer than it";
     return {};
 }
 

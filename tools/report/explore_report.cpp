@@ -61,6 +61,8 @@ std::string faults_text(uint32_t bits)
         {HAPTEL_FAULT_GRADIENT_NOT_FINITE, "a gradient was not finite (0 was used)"},
         {HAPTEL_FAULT_OUTPUT_NOT_FINITE, "a material output was not finite or negative (1 was used)"},
         {runtime::fault_height_above_bound, "a height was above its proven bound (cut off there)"},
+        {runtime::fault_height_bent,
+         "a height was beyond what a search had found of its texture (bent to stay within)"},
         {runtime::fault_pose_not_finite, "the device gave a pose that is not finite (no force)"},
         {runtime::fault_force_not_finite, "the force was not finite (none was sent)"},
         {runtime::fault_scene_refused, "the scene was refused (no force)"},
