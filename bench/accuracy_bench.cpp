@@ -101,7 +101,7 @@ public:
     CaseBench(const Case& of, bool is_quick) : which(of), quick(is_quick)
     {
         for (const Variant& variant : variants) programs.push_back(compiled(which, variant));
-        binding = *jit::make_binding(programs[0].program, "t", {}, jit::Unbounded::allowed).binding;
+        binding = *jit::make_binding(programs[0].program, "t", {}, jit::For::figures).binding;
         for (double distance : distances) {
             near_and_far.emplace_back(quick ? 100 : 1000, distance, 7);
             truth.emplace_back(programs[0], binding, near_and_far.back());

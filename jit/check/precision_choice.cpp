@@ -104,7 +104,7 @@ PrecisionChoice measure_precisions(const std::string& file, const std::string& t
                                                                   .effort = Effort::full,
                                                                   .precision = precision});
         if (!made.program) return {{}, made.rendered()};
-        TextureResult bound = make_binding(made.program, texture, request, Unbounded::allowed);
+        TextureResult bound = make_binding(made.program, texture, request, For::figures);
         if (!bound.binding) return {{}, bound.diagnostics};
         const TextureBinding& binding = bindings.emplace_back(*std::move(bound.binding));
         if (truth.empty()) {

@@ -1,10 +1,12 @@
 #include "jit/picture/image_file.h"
+#include "jit/texture/envelope.h"
 #include "jit/texture/facts.h"
 #include "lang/parameter_value.h"
 #include "lang/text/near_name.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <utility>
 
@@ -130,6 +132,31 @@ void note_grain(const ir::Texture& texture, const std::vector<Argument>& argumen
     }
 }
 
+std::string micrometres(double metres)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.4g um", metres * 1e6);
+    return text;
+}
+
+// What a hand feels where the proof says too little.
+void find_envelope(TextureBinding& binding, const ir::Texture& texture, const TextureRequest& request,
+                   Findings& findings)
+{
+    const haptel_facts proven = binding.facts;
+    const FoundHeights found = find_heights(binding, request);
+    if (!give_envelope(binding, found)) return;
+    const bool is_bounded = std::isfinite(proven.height_min_m) && std::isfinite(proven.height_max_m);
+    findings.remark("note: the height of texture '" + texture.name + "' is " +
+                        (is_bounded ? "only proven to lie within " + micrometres(proven.height_min_m) + " .. " +
+                                          micrometres(proven.height_max_m)
+                                    : "not proven to be bounded") +
+                        "; found were " + micrometres(found.minimum_m) + " .. " + micrometres(found.maximum_m) +
+                        ", and what lies beyond " + micrometres(binding.facts.height_min_m) + " .. " +
+                        micrometres(binding.facts.height_max_m) + " is bent to stay within",
+                    "");
+}
+
 haptel_block_head head_of(const TextureRequest& request, Findings& findings)
 {
     haptel_block_head head{};
@@ -164,7 +191,7 @@ void write(std::vector<uint64_t>& block, const ir::Parameter& parameter, const A
 } // namespace
 
 TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program, std::string_view name,
-                           const TextureRequest& request, Unbounded unbounded)
+                           const TextureRequest& request, For use)
 {
     Findings findings;
     const auto refuse = [&] { return TextureResult{std::nullopt, findings.errors}; };
@@ -190,26 +217,21 @@ TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program
         values.push_back(argument.value);
         views.push_back(argument.image ? argument.image.get() : &flat_image());
     }
-    const auto facts_with = [&](const std::vector<const ir::SplineImage*>& seen) {
-        return facts_over_box(program->module(), source, values, seen, head, request);
+    const auto facts_with = [&](const std::vector<const ir::SplineImage*>& seen, Bounded what) {
+        return facts_over_box(program->module(), source, values, seen, head, request, what);
     };
-    const haptel_facts facts = facts_with(views);
-    const bool is_bounded = std::isfinite(facts.height_min_m) && std::isfinite(facts.height_max_m);
-    if (!is_bounded && unbounded == Unbounded::refused) {
-        findings.error("the height of texture '" + source.name +
-                           "' is not bounded over this object, and a hand cannot be kept above a surface of unknown "
-                           "height",
-                       "bound it where it grows, for example return clamp(height, -1mm, 1mm); or give its parameters "
-                       "ranges");
-        return refuse();
-    }
-    TextureBinding binding{storage, texture, storage->block.data(), facts};
+    const bool is_felt = use == For::hand;
+    TextureBinding binding{storage, texture, storage->block.data(),
+                           facts_with(views, is_felt ? Bounded::heights : Bounded::all)};
+    if (is_felt && texture->height_gradient) find_envelope(binding, source, request, findings);
     if (const std::string slow = too_slow(*program, binding, request); !slow.empty()) {
         findings.error(slow, "fewer octaves or terms, or a lower rate_hz");
         return refuse();
     }
     binding.band_limited = is_band_limited(binding, request);
-    note_grain(source, storage->arguments, views, facts_with, findings);
+    note_grain(
+        source, storage->arguments, views, [&](const auto& seen) { return facts_with(seen, Bounded::heights); },
+        findings);
     return {std::move(binding), std::move(findings.remarks)};
 }
 

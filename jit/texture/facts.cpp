@@ -1,5 +1,6 @@
 #include "jit/texture/facts.h"
 
+#include "jit/texture/object_points.h"
 #include "lang/ir/bounds/bounds.h"
 #include "lang/ir/cost.h"
 
@@ -9,7 +10,6 @@
 #include <cstdio>
 #include <cstring>
 #include <limits>
-#include <random>
 
 namespace haptel::jit {
 
@@ -48,7 +48,8 @@ uint32_t operations_max(const ir::Module& module, const ir::Texture& texture)
     return static_cast<uint32_t>(std::min<uint64_t>(ir::operations_max(module, entry), UINT32_MAX));
 }
 
-haptel_facts facts(const ir::Module& module, const ir::Texture& texture, const ir::BoundsBox& box, uint32_t evaluations)
+haptel_facts all_facts(const ir::Module& module, const ir::Texture& texture, const ir::BoundsBox& box,
+                       uint32_t evaluations)
 {
     const ir::TextureBounds bounds = ir::texture_bounds(module, texture, box, evaluations);
     constexpr auto number = [](ir::Continuity of) { return static_cast<uint32_t>(of); };
@@ -64,22 +65,27 @@ haptel_facts facts(const ir::Module& module, const ir::Texture& texture, const i
             operations_max(module, texture)};
 }
 
+haptel_facts heights_alone(const ir::Module& module, const ir::Texture& texture, const Interval& height)
+{
+    return {
+        height.minimum, height.maximum, infinity, infinity, HAPTEL_CONTINUITY_UNKNOWN, operations_max(module, texture)};
+}
+
 } // namespace
 
 haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& texture, bool are_wanted)
 {
-    if (!are_wanted)
-        return {-infinity, infinity, infinity, infinity, HAPTEL_CONTINUITY_UNKNOWN, operations_max(module, texture)};
+    if (!are_wanted) return heights_alone(module, texture, {-infinity, infinity});
     ir::BoundsBox box = anywhere();
     for (const ir::Parameter& parameter : texture.parameters)
         box.parameters.push_back(parameter.type == ir::Type::boolean ? Interval{0, 1}
                                                                      : Interval{parameter.minimum, parameter.maximum});
-    return facts(module, texture, box, evaluations_over_ranges);
+    return all_facts(module, texture, box, evaluations_over_ranges);
 }
 
 haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,
                             std::span<const ir::SplineImage* const> images, const haptel_block_head& head,
-                            const TextureRequest& request)
+                            const TextureRequest& request, Bounded what)
 {
     ir::BoundsBox box = anywhere();
     for (size_t i = 0; i < 3; ++i) {
@@ -102,7 +108,9 @@ haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture
     }
     for (double value : values) box.parameters.push_back({value, value});
     box.images.assign(images.begin(), images.end());
-    return facts(module, texture, box, evaluations_over_box);
+    if (what == Bounded::heights)
+        return heights_alone(module, texture, ir::height_bounds(module, texture, box, evaluations_over_box));
+    return all_facts(module, texture, box, evaluations_over_box);
 }
 
 namespace {
@@ -110,49 +118,13 @@ namespace {
 // Share of a servo's period that one texture's call may take; the rest is contact, force, device, and reserve.
 constexpr double share_of_period_max = 0.2;
 
-// Points of a request's object, the same for the same request.
-class RandomPoints {
-public:
-    explicit RandomPoints(const TextureRequest& of) : request(of) {}
-
-    haptel_point next()
-    {
-        haptel_point point{};
-        double length = 0;
-        for (size_t k = 0; k < 3; ++k) {
-            point.p[k] = between(request.box_minimum_m[k], request.box_maximum_m[k], 1);
-            point.n[k] = share() - 0.5;
-            length += point.n[k] * point.n[k];
-        }
-        for (double& n : point.n) n /= std::sqrt(length);
-        for (size_t k = 0; k < 2; ++k) {
-            point.uv[k] = between(request.uv.minimum[k], request.uv.maximum[k], 1);
-            for (size_t j = 0; j < 3; ++j)
-                point.uv_dp[k][j] = between(request.uv.dp_minimum[k][j], request.uv.dp_maximum[k][j], 100);
-        }
-        return point;
-    }
-
-private:
-    double share() { return static_cast<double>(random() >> 11) * 0x1p-53; }
-    // Somewhere between two figures; between 0 and another where they are not known.
-    double between(double minimum, double maximum, double otherwise)
-    {
-        if (!std::isfinite(minimum) || !std::isfinite(maximum)) return share() * otherwise;
-        return minimum + share() * (maximum - minimum);
-    }
-
-    const TextureRequest& request;
-    std::mt19937_64 random{1};
-};
-
 // Of one call of height_gradient, over 1000 calls, or fewer where they take more than a tenth of a second together.
 double median_call_s(const TextureBinding& binding, const TextureRequest& request)
 {
     constexpr size_t calls_max = 1000, calls_min = 11;
     constexpr double patience_s = 0.1;
     using Clock = std::chrono::steady_clock;
-    RandomPoints points(request);
+    ObjectPoints points(request);
     std::vector<double> times_s;
     times_s.reserve(calls_max);
     for (double spent_s = 0; times_s.size() < calls_max && (spent_s < patience_s || times_s.size() < calls_min);) {
@@ -190,7 +162,7 @@ bool is_band_limited(const TextureBinding& binding, const TextureRequest& reques
     // Textures that are too slow for a servo shall not be slow to refuse.
     const uint64_t operations = std::max<uint64_t>(binding.facts.operations_max, 1);
     const uint64_t places = std::clamp<uint64_t>(20'000'000 / operations, 1, 32);
-    RandomPoints points(request);
+    ObjectPoints points(request);
     for (uint64_t i = 0; i < places; ++i) {
         const haptel_point point = points.next();
         haptel_sample with = {}, without = {};

@@ -14,10 +14,12 @@ namespace haptel::jit {
 haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& texture, bool are_wanted);
 
 // For points of the box, these values and images (by Texture::parameters, SI), this footprint, and normals and mesh
-// coordinates as the request knows them.
+// coordinates as the request knows them. Bounds of slope and curvature take up to a thousand times as long as those of
+// heights, which are all that a hand needs.
+enum class Bounded : uint8_t { heights, all };
 haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,
                             std::span<const ir::SplineImage* const> images, const haptel_block_head& head,
-                            const TextureRequest& request);
+                            const TextureRequest& request, Bounded what);
 
 // True if the height of the binding, made for this request, is another one without its footprint at any of up to
 // 32 places: octaves are faded or left out.

@@ -109,13 +109,13 @@ const std::shared_ptr<ProgramCache>& ProgramCache::shared()
     return *cache; // never taken down: compile threads may outlive static objects
 }
 
-TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache, Unbounded unbounded)
+TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache)
 {
-    return [cache = std::move(cache), unbounded](const TextureRequest& request) -> TextureResult {
+    return [cache = std::move(cache)](const TextureRequest& request) -> TextureResult {
         const TextureReference reference = split_reference(request.reference);
         const auto compiled = cache->load(reference.file);
         if (!compiled->program) return {std::nullopt, compiled->rendered()};
-        TextureResult result = make_binding(compiled->program, reference.texture, request, unbounded);
+        TextureResult result = make_binding(compiled->program, reference.texture, request);
         result.diagnostics = compiled->rendered() + about_file(reference.file, result.diagnostics);
         return result;
     };

@@ -30,7 +30,6 @@ private:
 
 // Resolves "PATH.haptel:NAME", or "PATH.haptel" where the file holds one texture. The result's diagnostics start with
 // the file's name; warnings stand beside a binding. Any thread.
-TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache = ProgramCache::shared(),
-                              Unbounded unbounded = Unbounded::refused);
+TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache = ProgramCache::shared());
 
 } // namespace haptel::jit

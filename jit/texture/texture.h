@@ -95,14 +95,14 @@ CompiledTextures compile_texture(std::string_view text, const TextureOptions& op
 // `options.name` and `options.load_import` are set from `path`.
 CompiledTextures compile_texture_file(const std::string& path, TextureOptions options = {});
 
-// What becomes of a texture whose height is not bounded over the box: a hand needs a bound, pictures and figures do
-// not.
-enum class Unbounded : uint8_t { refused, allowed };
+// Who a binding is for. A hand is given a finite range of heights, whatever is proven (jit/texture/envelope.h), and no
+// other fact, which it need not wait for; pictures and figures all that is proven, infinite where nothing is.
+enum class For : uint8_t { hand, figures };
 
 // One texture of a program (empty name: its only one) with the request's parameters, box and footprint; the request's
 // reference is not looked at. Refused, with a message that says how to mend it: a name that does not exist, a value
-// that does not fit, a height that is not bounded over the box, a call that takes too long for the request's servo.
+// that does not fit, a call that takes too long for the request's servo.
 TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program, std::string_view texture,
-                           const TextureRequest& request, Unbounded unbounded = Unbounded::refused);
+                           const TextureRequest& request, For use = For::hand);
 
 } // namespace haptel::jit

@@ -28,7 +28,7 @@ struct Program {
     TextureBinding bind(const Evaluation& at) const
     {
         const TextureResult bound = jit::make_binding(compiled, compiled->textures().back().name,
-                                                      request_for(*compiled, at), jit::Unbounded::allowed);
+                                                      request_for(*compiled, at), jit::For::figures);
         INFO(bound.diagnostics);
         REQUIRE(bound.binding);
         return *bound.binding;

@@ -42,7 +42,7 @@ std::string differences(const std::string& text, jit::Effort effort)
     std::string all;
     for (const Evaluation& at : wanted.evaluations) {
         const TextureResult bound =
-            jit::make_binding(made.program, name, request_for(*made.program, at), jit::Unbounded::allowed);
+            jit::make_binding(made.program, name, request_for(*made.program, at), jit::For::figures);
         if (!bound.binding) return all + bound.diagnostics;
         haptel_sample sample{}, height{};
         bound.binding->texture->height_gradient(&at.point, bound.binding->block, &sample);

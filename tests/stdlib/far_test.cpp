@@ -93,7 +93,7 @@ TEST_CASE("f64 keeps the place within a wavelength up to 1e6 of them from the or
                 bool has_wavelength = false;
                 const TextureRequest request = request_for(texture, is_exact, has_wavelength);
                 if (!has_wavelength) continue;
-                const TextureResult bound = jit::make_binding(compiled.program, name, request, jit::Unbounded::allowed);
+                const TextureResult bound = jit::make_binding(compiled.program, name, request, jit::For::figures);
                 INFO(bound.diagnostics);
                 REQUIRE(bound.binding);
                 const double wavelength_m = is_exact ? 0x1p-8 : 0.0037;

@@ -193,7 +193,7 @@ TEST_CASE("bounds of a texture that reads the normal hold on the mesh that it is
         Mesh mesh = *make_shape(shape);
         scale_to_size(mesh, 0.1);
         const auto surface = build_surface(mesh).surface;
-        const TextureBinding binding = bound_for(program, "in_three_planes", *surface);
+        const TextureBinding binding = bound_for(program, "in_three_planes", *surface, {}, {}, 0, jit::For::figures);
         std::mt19937_64 random(8);
         double steepest = 0, highest = -1, lowest = 1;
         for (int i = 0; i < tries(20000); ++i) {
@@ -211,7 +211,8 @@ TEST_CASE("bounds of a texture that reads the normal hold on the mesh that it is
 
         // Without that knowledge there is no bound.
         TextureRequest unknown = request_over(0.1);
-        CHECK(std::isinf(jit::make_binding(program, "in_three_planes", unknown).binding->facts.slope_max));
+        CHECK(std::isinf(
+            jit::make_binding(program, "in_three_planes", unknown, jit::For::figures).binding->facts.slope_max));
         if (is_sanitized) break; // which takes long to bind them
     }
 }
@@ -223,7 +224,7 @@ TEST_CASE("bounds of a texture that reads mesh coordinates hold on the mesh that
         Mesh mesh = shape == "drawn" ? drawn_plane(0.1, 5, glm::dmat2(4, 1, -3, 2), dvec2(7, 0)) : *make_shape(shape);
         scale_to_size(mesh, 0.1);
         const auto surface = build_surface(mesh).surface;
-        const TextureBinding binding = bound_for(program, "printed", *surface);
+        const TextureBinding binding = bound_for(program, "printed", *surface, {}, {}, 0, jit::For::figures);
         const UvFigures figures = uv_figures(*surface);
         std::mt19937_64 random(8);
         double steepest = 0;
@@ -246,9 +247,10 @@ TEST_CASE("bounds of a texture that reads mesh coordinates hold on the mesh that
         CHECK(steepest <= binding.facts.slope_max);
         // At the poles of the sphere the coordinates crowd together, where no random point comes.
         CHECK(binding.facts.slope_max < (shape == "sphere" ? 40 : 4) * steepest);
-        CHECK(std::isinf(jit::make_binding(program, "printed", request_over(0.1)).binding->facts.slope_max));
+        CHECK(std::isinf(
+            jit::make_binding(program, "printed", request_over(0.1), jit::For::figures).binding->facts.slope_max));
     }
     const auto ball = build_surface(make_icosphere(2)).surface; // has none
     CHECK((uv_figures(*ball).maximum[0] == 0 && uv_figures(*ball).slope_max_per_m[1] == 0));
-    CHECK(bound_for(program, "printed", *ball).facts.slope_max == 0);
+    CHECK(bound_for(program, "printed", *ball, {}, {}, 0, jit::For::figures).facts.slope_max == 0);
 }

@@ -17,7 +17,7 @@ using Values = std::vector<std::pair<std::string, std::string>>;
 // The texture bound for that surface: its box, its normals.
 inline TextureBinding bound_for(const std::shared_ptr<const jit::CompiledProgram>& program, const char* texture,
                                 const runtime::Surface& surface, Values values = {}, const std::string& folder = {},
-                                double footprint_m = 0)
+                                double footprint_m = 0, jit::For use = jit::For::hand)
 {
     TextureRequest request;
     for (int i = 0; i < 3; ++i) {
@@ -29,7 +29,7 @@ inline TextureBinding bound_for(const std::shared_ptr<const jit::CompiledProgram
     request.parameters = std::move(values);
     request.folder = folder;
     request.footprint_m = footprint_m;
-    TextureResult result = jit::make_binding(program, texture, request);
+    TextureResult result = jit::make_binding(program, texture, request, use);
     INFO(result.diagnostics);
     REQUIRE(result.binding);
     return *result.binding;

@@ -1,6 +1,8 @@
 // haptel check: what is wrong with a texture file, and what is known of its textures before anybody touches them.
 #include "jit/picture/image_file.h"
+#include "jit/texture/envelope.h"
 #include "jit/texture/source_file.h"
+#include "jit/texture/texture.h"
 #include "lang/parameter_value.h"
 #include "lang/text/near_name.h"
 #include "stdlib/stdlib.h"
@@ -76,6 +78,9 @@ private:
     void note_grain(const CheckedTexture& checked, std::span<const double> values,
                     const std::vector<jit::ImageFile>& images);
     std::vector<double> values_of(const std::string& path, const ir::Texture& texture);
+    TextureRequest request_for(const ir::Texture& texture) const;
+    // What a search finds of its heights, and what a hand is given of them.
+    void find_heights(CheckedTexture& checked, const jit::CompiledTextures& compiled);
     // Measures, and says which precision is the fastest within error_max, or that none is.
     void pick_precision(CheckedTexture& checked);
     // Findings that belong to no line.
@@ -188,16 +193,35 @@ void CheckRun::note_grain(const CheckedTexture& checked, std::span<const double>
     }
 }
 
-void CheckRun::pick_precision(CheckedTexture& checked)
+TextureRequest CheckRun::request_for(const ir::Texture& texture) const
 {
     TextureRequest request;
     std::fill(request.box_minimum_m, request.box_minimum_m + 3, -options.box_m / 2);
     std::fill(request.box_maximum_m, request.box_maximum_m + 3, options.box_m / 2);
     request.footprint_m = options.footprint_m;
+    request.normal_turn_max_per_m = report.normal_turn_per_m;
     for (const auto& value : options.parameters)
-        for (const ir::Parameter& parameter : checked.texture->parameters)
+        for (const ir::Parameter& parameter : texture.parameters)
             if (value.first == parameter.name) request.parameters.push_back(value);
-    checked.precision = {*options.error_max, jit::measure_precisions(checked.file, checked.texture->name, request)};
+    return request;
+}
+
+void CheckRun::find_heights(CheckedTexture& checked, const jit::CompiledTextures& compiled)
+{
+    if (!compiled.program || !checked.any_picture.empty()) return;
+    const TextureRequest request = request_for(*checked.texture);
+    const TextureResult felt = jit::make_binding(compiled.program, checked.texture->name, request);
+    if (!felt.binding) return;
+    const jit::FoundHeights found = jit::find_heights(*felt.binding, request);
+    checked.heights = {{found.minimum_m, found.maximum_m},
+                       {felt.binding->facts.height_min_m, felt.binding->facts.height_max_m},
+                       felt.binding->shoulder_m[0] > 0 || felt.binding->shoulder_m[1] > 0};
+}
+
+void CheckRun::pick_precision(CheckedTexture& checked)
+{
+    checked.precision = {*options.error_max,
+                         jit::measure_precisions(checked.file, checked.texture->name, request_for(*checked.texture))};
     if (!checked.precision->choice.error.empty()) {
         say("no-code", checked.texture->name + " cannot be measured: " + checked.precision->choice.error, "",
             checked.file);
@@ -219,6 +243,8 @@ void CheckRun::check(const std::string& path)
     lang::Diagnostics& diagnostics = result.diagnostics;
     if (result.program) {
         const auto& textures = result.program->module.textures;
+        const jit::CompiledTextures compiled =
+            diagnostics.has_errors() ? jit::CompiledTextures() : jit::compile_texture_file(path, jit::servo_options());
         for (const ir::Texture& texture : textures) {
             progress.show(static_cast<double>(&texture - textures.data()) / static_cast<double>(textures.size()));
             const std::vector<double> values = values_of(path, texture);
@@ -236,6 +262,7 @@ void CheckRun::check(const std::string& path)
                                {options.box_m, options.footprint_m, report.normal_turn_per_m}, diagnostics),
                  std::move(any_picture)});
             note_grain(report.textures.back(), values, images);
+            find_heights(report.textures.back(), compiled);
             if (options.error_max && !diagnostics.has_errors()) pick_precision(report.textures.back());
         }
         progress.hide();

@@ -118,7 +118,7 @@ Engine open_engine(const EvalOptions& options)
         request.box_minimum_m[axis] = -options.box_m / 2;
         request.box_maximum_m[axis] = options.box_m / 2;
     }
-    TextureResult bound = jit::make_binding(compiled.program, options.texture.name, request, jit::Unbounded::allowed);
+    TextureResult bound = jit::make_binding(compiled.program, options.texture.name, request, jit::For::figures);
     fmt::print(stderr, "{}", bound.diagnostics);
     if (!bound.binding) return {};
     return {make_engine(options.engine, compiled.program, *bound.binding), bound.binding->texture->writes};

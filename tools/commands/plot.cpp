@@ -66,7 +66,8 @@ ExitCode draw(const PlotOptions& options)
     const jit::CompiledTextures compiled = jit::compile_texture_file(options.texture.file, compile);
     fmt::print(stderr, "{}", compiled.rendered(stderr_has_color()));
     if (!compiled.program) return ExitCode::findings;
-    const TextureResult texture = jit::make_binding(compiled.program, options.texture.name, request_of(options));
+    const TextureResult texture =
+        jit::make_binding(compiled.program, options.texture.name, request_of(options), jit::For::figures);
     fmt::print(stderr, "{}", texture.diagnostics);
     if (!texture.binding) return ExitCode::findings;
 

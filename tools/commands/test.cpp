@@ -60,7 +60,7 @@ void TestRun::test(const TextureTarget& target, const std::shared_ptr<const jit:
         for (const auto& value : options.parameters)
             if (value.first == parameter.name) request.parameters.push_back(value);
     const auto start = std::chrono::steady_clock::now();
-    const TextureResult bound = jit::make_binding(program, name, request, jit::Unbounded::allowed);
+    const TextureResult bound = jit::make_binding(program, name, request, jit::For::figures);
     if (bound.binding)
         tested.check = jit::check_gradient(program, *bound.binding, box, options.points, options.seed);
     else

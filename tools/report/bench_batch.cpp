@@ -32,8 +32,7 @@ BatchTextures batch_textures(const std::vector<std::string>& paths, const Parame
             for (const auto& value : parameters)
                 for (uint32_t i = 0; i < texture.parameter_count; ++i)
                     if (value.first == texture.parameters[i].name) request.parameters.push_back(value);
-            const TextureResult bound =
-                jit::make_binding(compiled.program, texture.name, request, jit::Unbounded::allowed);
+            const TextureResult bound = jit::make_binding(compiled.program, texture.name, request, jit::For::figures);
             if (bound.binding)
                 found.textures.push_back({std::filesystem::path(target.file).filename().string() + ":" + texture.name,
                                           compiled.program, *bound.binding});

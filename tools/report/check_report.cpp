@@ -108,7 +108,10 @@ Json ranges_of(const CheckedTexture& checked)
 Json checked_json(const CheckedTexture& checked)
 {
     Json json = texture_json(checked.file, *checked.texture);
+    const auto& heights = checked.heights;
     json.update({{"height_m", to_json(checked.analysis.at_values.height)},
+                 {"height_found_m", heights ? to_json(heights->found) : Json(nullptr)},
+                 {"height_felt_m", heights ? to_json(heights->felt) : Json(nullptr)},
                  {"slope_max", finite_or_null(checked.analysis.at_values.slope_max)},
                  {"curvature_max_per_m", curvature_of(checked.analysis.at_values)},
                  {"over_ranges",
@@ -256,6 +259,10 @@ std::string CheckReport::to_text() const
                             checked.texture->name, shown_length(box_m));
         text += fmt::format("  height     {} ({})\n", shown_range(here.height, shown_length),
                             shown_range(ranges.height, shown_length));
+        if (checked.heights && checked.heights->is_bent)
+            text += fmt::format("  felt       {}: found were {}, and what lies beyond is bent to stay within\n",
+                                shown_range(checked.heights->felt, shown_length),
+                                shown_range(checked.heights->found, shown_length));
         text += fmt::format("  slope      {}\n", shown_bounds(here.slope_max, ranges.slope_max, ""));
         constexpr double infinity = std::numeric_limits<double>::infinity();
         if (has_curvature(here))

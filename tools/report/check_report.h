@@ -20,6 +20,12 @@ struct CheckFinding {
     lang::Position begin, end;
 };
 
+// Of a texture's height, as a hand has it (jit/texture/envelope.h).
+struct CheckedHeights {
+    ir::Interval found, felt;
+    bool is_bent = false; // what lies beyond the latter, which is not proven
+};
+
 // A texture that compiled, and what it can be in a cube round the origin.
 struct CheckedTexture {
     std::string file;
@@ -27,6 +33,7 @@ struct CheckedTexture {
     const ir::Texture* texture = nullptr;
     lang::Analysis analysis;
     std::vector<std::string> any_picture;           // image parameters that nobody set
+    std::optional<CheckedHeights> heights = {};     // without a value where a picture is missing
     std::optional<CheckedPrecision> precision = {}; // where a precision is asked for
 };
 

@@ -37,7 +37,7 @@ struct Spoiled {
 jit::GradientCheck check(const char* text, uint32_t points = 100)
 {
     const auto program = compiled(text);
-    const auto bound = jit::make_binding(program, "", request_over(0.05), jit::Unbounded::allowed);
+    const auto bound = jit::make_binding(program, "", request_over(0.05), jit::For::figures);
     INFO(bound.diagnostics);
     REQUIRE(bound.binding);
     return jit::check_gradient(program, *bound.binding, {}, points);

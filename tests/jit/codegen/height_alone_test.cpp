@@ -128,7 +128,7 @@ std::optional<int> differences(const jit::CompiledTextures& compiled, const std:
     const haptel_texture* const texture = compiled.program->find(name);
     REQUIRE(texture);
     const ir::Texture& source = compiled.program->source_of(*texture);
-    const TextureResult bound = jit::make_binding(compiled.program, name, request_over(0.04), jit::Unbounded::allowed);
+    const TextureResult bound = jit::make_binding(compiled.program, name, request_over(0.04), jit::For::figures);
     INFO(bound.diagnostics);
     REQUIRE(bound.binding);
     std::vector<jit::EntryPoint> entries;

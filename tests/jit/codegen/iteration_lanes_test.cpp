@@ -191,7 +191,7 @@ TEST_CASE("loops whose iterations need not wait for one another run in lanes and
         for (const int n : {0, 1, 2, 3, 7, 8, 9, 15, 16, 17, 20, 40}) {
             TextureRequest request = test::request_over(20);
             request.parameters = {{"n", std::to_string(n)}};
-            const TextureResult bound = jit::make_binding(compiled.program, "t", request, jit::Unbounded::allowed);
+            const TextureResult bound = jit::make_binding(compiled.program, "t", request, jit::For::figures);
             INFO(bound.diagnostics);
             REQUIRE(bound.binding);
             for (const std::array<double, 3>& p : {std::array{0.0, 0.0, 0.0}, {3, -2, 5}, {-1, 4, 2}, {6, 1, -7}}) {
@@ -228,8 +228,7 @@ TEST_CASE("a lane that is idle reads nothing behind the table that the last iter
         INFO(compiled.rendered());
         REQUIRE(compiled.program);
         CHECK(loops_in_lanes(compiled.program->module(), "f(") == 1);
-        const TextureResult bound =
-            jit::make_binding(compiled.program, "t", test::request_over(1), jit::Unbounded::allowed);
+        const TextureResult bound = jit::make_binding(compiled.program, "t", test::request_over(1), jit::For::figures);
         REQUIRE(bound.binding);
         CHECK(test::sample_at(*bound.binding, {0.25, 0, 0}).height_m == 0.25 * (2 + 3 + 5));
     }
@@ -256,7 +255,7 @@ TEST_CASE("iterations in lanes: every texture's height is the same with and with
             const haptel_texture& texture = lanes.program->textures()[i];
             INFO(file << " " << texture.name);
             const TextureResult bound =
-                jit::make_binding(lanes.program, texture.name, test::request_over(0.04), jit::Unbounded::allowed);
+                jit::make_binding(lanes.program, texture.name, test::request_over(0.04), jit::For::figures);
             REQUIRE(bound.binding);
             size_t unequal = 0, differs = 0;
             double largest = 0, off = 0;
@@ -334,8 +333,7 @@ TEST_CASE("a draft, which has no lanes, gives the bits of lanes", "[code]")
                     TextureRequest request = test::request_over(6);
                     if (has_n) request.parameters = {{"n", std::to_string(n)}};
                     if (n > 0 && !has_n) continue;
-                    const TextureResult bound =
-                        jit::make_binding(lanes.program, a.name, request, jit::Unbounded::allowed);
+                    const TextureResult bound = jit::make_binding(lanes.program, a.name, request, jit::For::figures);
                     INFO(a.name << ", n " << n << "\n" << bound.diagnostics);
                     REQUIRE(bound.binding);
                     size_t unequal = 0;

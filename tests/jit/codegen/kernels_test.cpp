@@ -106,7 +106,7 @@ TEST_CASE("every texture of the library has the same bits with kernels and witho
                 const haptel_texture& texture = with.program->textures()[i];
                 INFO(texture.name);
                 const TextureResult bound =
-                    jit::make_binding(with.program, texture.name, request_over(0.1), jit::Unbounded::allowed);
+                    jit::make_binding(with.program, texture.name, request_over(0.1), jit::For::figures);
                 REQUIRE(bound.binding);
                 check_equal(texture, without.program->textures()[i], bound.binding->block);
             }
@@ -131,7 +131,7 @@ TEST_CASE("one function in several forms: of what varies and of what does not, w
         options.effort = jit::Effort::full;
         const auto without = jit::compile_texture(text, options);
         REQUIRE((with.program && without.program));
-        const TextureResult bound = jit::make_binding(with.program, "t", request_over(0.1), jit::Unbounded::allowed);
+        const TextureResult bound = jit::make_binding(with.program, "t", request_over(0.1), jit::For::figures);
         REQUIRE(bound.binding);
         check_equal(with.program->textures()[0], without.program->textures()[0], bound.binding->block);
     }

@@ -44,7 +44,7 @@ TEST_CASE("batches of every texture of the library and of the examples have the 
         REQUIRE(compiled.program);
         for (const haptel_texture& texture : compiled.program->textures()) {
             const TextureResult result =
-                jit::make_binding(compiled.program, texture.name, test::request_over(0.05), jit::Unbounded::allowed);
+                jit::make_binding(compiled.program, texture.name, test::request_over(0.05), jit::For::figures);
             INFO(file << " " << texture.name << " " << result.diagnostics);
             REQUIRE(result.binding);
             const std::vector<haptel_point> points = random_points(203, random);
@@ -194,7 +194,7 @@ TEST_CASE("mixed precision keeps its place in every texture of the library and o
             const haptel_texture& texture = exact.program->textures()[i];
             INFO(file << " " << texture.name);
             const TextureResult bound =
-                jit::make_binding(exact.program, texture.name, test::request_over(0.05), jit::Unbounded::allowed);
+                jit::make_binding(exact.program, texture.name, test::request_over(0.05), jit::For::figures);
             REQUIRE(bound.binding);
             std::mt19937_64 random(7);
             std::uniform_real_distribution<double> place(-1e3, 1e3); // wavelengths are some millimetres

@@ -57,7 +57,7 @@ struct Pictures {
         TextureRequest request = request_over(2);
         request.folder = folder.path.string();
         request.parameters = std::move(values);
-        return jit::make_binding(program, texture, request);
+        return jit::make_binding(program, texture, request, jit::For::figures);
     }
     TextureBinding bound(const char* texture, std::vector<std::pair<std::string, std::string>> values) const
     {

@@ -148,7 +148,7 @@ TEST_CASE("bounds of every library texture hold, and are near what is found")
         for (const haptel_texture& texture : compiled.program->textures()) {
             const std::string name = texture.name;
             CAPTURE(name);
-            const TextureResult made = jit::make_binding(compiled.program, name, request());
+            const TextureResult made = jit::make_binding(compiled.program, name, request(), jit::For::figures);
             REQUIRE(made.binding);
             const haptel_facts& facts = made.binding->facts;
             const Extremes found = Search(*made.binding, 1).run(4000, 12);
@@ -177,7 +177,7 @@ TEST_CASE("bounds of every library texture hold, and are near what is found")
                     if (parameter.type != HAPTEL_FLOAT) value = std::round(value);
                     chosen.parameters.emplace_back(parameter.name, with_value(parameter, value));
                 }
-                const TextureResult other = jit::make_binding(compiled.program, name, chosen);
+                const TextureResult other = jit::make_binding(compiled.program, name, chosen, jit::For::figures);
                 INFO(other.diagnostics);
                 REQUIRE(other.binding);
                 const haptel_facts& bounds = other.binding->facts;

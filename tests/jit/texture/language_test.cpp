@@ -60,7 +60,7 @@ Worst worst_of(const std::string& name, const std::vector<std::pair<std::string,
     const auto program = compiled(textures);
     TextureRequest request = request_over(0.008);
     request.parameters = parameters;
-    const TextureResult bound = jit::make_binding(program, name, request, jit::Unbounded::allowed);
+    const TextureResult bound = jit::make_binding(program, name, request, jit::For::figures);
     INFO(bound.diagnostics);
     REQUIRE(bound.binding);
     jit::Oracle oracle(program, *bound.binding);

@@ -184,11 +184,11 @@ TEST_CASE("facts over the parameters' ranges are looked for where they are asked
     }
 }
 
-TEST_CASE("facts hold over the object; an unbounded height is refused, unless nobody will feel it")
+TEST_CASE("facts hold over the object; a hand is given the heights alone, and a finite range of them")
 {
     const auto program = compiled("texture tilt() { return 0.1 * p.x; }"
                                   "texture pole() { return 1um / (p.x / 1m); }");
-    const TextureResult tilt = jit::make_binding(program, "tilt", request_over(0.05));
+    const TextureResult tilt = jit::make_binding(program, "tilt", request_over(0.05), jit::For::figures);
     REQUIRE(tilt.binding);
     CHECK(std::fabs(tilt.binding->facts.height_max_m - 0.0025) <= 1e-9);
     CHECK(std::fabs(tilt.binding->facts.height_min_m + 0.0025) <= 1e-9);
@@ -200,18 +200,28 @@ TEST_CASE("facts hold over the object; an unbounded height is refused, unless no
     CHECK(std::isinf(program->find("tilt")->facts.height_max_m)); // nobody asked
     CHECK(program->find("tilt")->facts.operations_max == tilt.binding->facts.operations_max);
 
+    const TextureResult felt = jit::make_binding(program, "tilt", request_over(0.05));
+    REQUIRE(felt.binding);
+    CHECK(felt.diagnostics.empty());
+    CHECK(felt.binding->facts.height_max_m == tilt.binding->facts.height_max_m);
+    CHECK((felt.binding->shoulder_m[0] == 0 && felt.binding->shoulder_m[1] == 0));
+    CHECK(std::isinf(felt.binding->facts.slope_max)); // which it need not wait for
+
     const TextureResult pole = jit::make_binding(program, "pole", request_over(0.05));
-    CHECK_FALSE(pole.binding);
-    CHECK(contains(pole.diagnostics, "not bounded"));
-    CHECK(contains(pole.diagnostics, "clamp(height"));
-    CHECK(jit::make_binding(program, "pole", request_over(0.05), jit::Unbounded::allowed).binding);
+    REQUIRE(pole.binding);
+    CHECK(contains(pole.diagnostics, "not proven to be bounded"));
+    CHECK(std::isfinite(pole.binding->facts.height_max_m));
+    CHECK(pole.binding->shoulder_m[1] > 0);
+    const TextureResult drawn = jit::make_binding(program, "pole", request_over(0.05), jit::For::figures);
+    REQUIRE(drawn.binding);
+    CHECK(std::isinf(drawn.binding->facts.height_max_m));
 }
 
 TEST_CASE("no entry returns what is not finite: it is 0 and a fault")
 {
     const auto program = compiled("texture root() { return 1mm * clamp(sqrt(p.x / 1m), 0.0, 1.0); }"
                                   "texture pole() { return clamp(1um / (p.x / 1m), -1mm, 1mm); }");
-    const auto bound = jit::make_binding(program, "root", request_over(0.05), jit::Unbounded::allowed);
+    const auto bound = jit::make_binding(program, "root", request_over(0.05), jit::For::figures);
     REQUIRE(bound.binding);
     const haptel_sample outside = sample_at(*bound.binding, {-0.01, 0, 0});
     CHECK((outside.height_m == 0 && outside.gradient[0] == 0));
@@ -230,7 +240,7 @@ TEST_CASE("the height beside a gradient is the height alone, bit for bit, and th
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> place(-0.025, 0.025);
     for (const haptel_texture& texture : program->textures()) {
-        const auto bound = jit::make_binding(program, texture.name, request_over(0.05), jit::Unbounded::allowed);
+        const auto bound = jit::make_binding(program, texture.name, request_over(0.05), jit::For::figures);
         REQUIRE(bound.binding);
         int different = 0;
         for (int i = 0; i < 500; ++i) {
@@ -328,7 +338,7 @@ TEST_CASE("many points at once have the bits of one after the other, whichever i
         CAPTURE(height);
         const auto made = jit::compile_texture(std::string("texture t() { return ") + height + "; }", options);
         REQUIRE(made.program);
-        const auto bound = jit::make_binding(made.program, "t", request_over(2), jit::Unbounded::allowed);
+        const auto bound = jit::make_binding(made.program, "t", request_over(2), jit::For::figures);
         REQUIRE(bound.binding);
         std::vector<haptel_sample> samples(points.size());
         evaluate(*bound.binding, points, samples);

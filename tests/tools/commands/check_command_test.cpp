@@ -271,6 +271,32 @@ TEST_CASE("check: a few lines per texture for people")
     CHECK(contains(ran.out, "reads p, time\n"));
 }
 
+TEST_CASE("check: a height that is proven too wide is told as it is felt")
+{
+    const Folder folder;
+    const std::string file = folder.write("folded.haptel", R"(texture folded()
+{
+    vec3 q = p / 2mm;
+    return 40um / (1.0 + q.x * q.x - 2.0 * q.x * sin(q.y) + sin(q.y) * sin(q.y));
+}
+texture plain() { return 50um * sin(p.x / 1mm); }
+)");
+    // 40 um / (1 + (x - sin y)^2) lies in 0 .. 40 um.
+    const Ran ran = run_command("check '" + file + "' --json");
+    CHECK(ran.code == 0);
+    const Json textures = Json::parse(ran.out)["textures"];
+    const Json &folded = textures[0], &plain = textures[1];
+    CHECK(folded["height_m"]["maximum"] > 80e-6);
+    CHECK(folded["height_found_m"]["maximum"] > 39e-6);
+    CHECK(folded["height_found_m"]["maximum"] < 40.1e-6);
+    CHECK(folded["height_felt_m"]["maximum"] > 40e-6);
+    CHECK(folded["height_felt_m"]["maximum"] < 60e-6);
+    CHECK(plain["height_felt_m"] == plain["height_m"]);
+    const Ran text = run_command("check '" + file + "'");
+    CHECK(contains(text.out, "and what lies beyond is bent to stay within\n"));
+    CHECK(text.out.find("bent") == text.out.rfind("bent")); // of folded alone
+}
+
 TEST_CASE("check: an import that is no file says what it is, or which file was meant")
 {
     const Folder folder;

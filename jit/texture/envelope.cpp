@@ -1,0 +1,174 @@
+#include "jit/texture/envelope.h"
+
+#include "jit/texture/object_points.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <vector>
+
+namespace haptel::jit {
+
+namespace {
+
+// Calls: no texture shall be slow to load for its search, and none be judged by a handful of places.
+constexpr uint64_t operations_most = 4'000'000, points_least = 128, points_most = 1024;
+constexpr size_t climbs = 6; // to each end, each of so many calls:
+constexpr int steps_of_climb = 32;
+constexpr double first_step = 1.0 / 64; // of the box
+constexpr double after_success = 1.4, after_failure = 0.3;
+
+// Where a climb comes so many times as far from the middle as the places did, it climbs a pole, and the end is so many
+// times as far as half of the places are.
+constexpr double is_pole = 8, before_pole = 16;
+
+// A range is proven well enough if it is no wider than so many times the one found: sums of octaves, whose peaks hardly
+// ever meet, are proven to twice what anybody finds, and are felt well.
+constexpr double wide_proof = 3;
+// Of the range found: heights up to so far beyond are felt as they are, and a shoulder goes on from there.
+constexpr double margin = 0.2, shoulder = 0.2;
+// Nothing was found where all heights were equal; so much is felt of what a search missed.
+constexpr double least_range_m = 1e-6;
+
+class Search {
+public:
+    Search(const TextureBinding& of, const TextureRequest& over) : binding(of), request(over)
+    {
+        for (int k = 0; k < 3; ++k) side_m = std::max(side_m, request.box_maximum_m[k] - request.box_minimum_m[k]);
+        if (!(side_m > 0)) side_m = 1;
+        for (int k = 0; k < 2; ++k) {
+            const double width = request.uv.maximum[k] - request.uv.minimum[k];
+            uv_side[k] = std::isfinite(width) && width > 0 ? width : 1;
+        }
+    }
+
+    FoundHeights heights()
+    {
+        const uint64_t operations = std::max<uint64_t>(binding.facts.operations_max, 1);
+        const uint64_t count = std::clamp(operations_most / operations, points_least, points_most);
+        ObjectPoints points(request);
+        std::vector<Seen> seen;
+        for (uint64_t i = 0; i < count; ++i) {
+            const haptel_point point = points.next();
+            seen.push_back({point, sample(point).height_m});
+        }
+        const auto ends = static_cast<std::ptrdiff_t>(std::min<size_t>(climbs, seen.size()));
+        const auto climb_from = [&](auto higher, double uphill) {
+            std::partial_sort(seen.begin(), seen.begin() + ends, seen.end(),
+                              [&](const Seen& a, const Seen& b) { return higher(a.height_m, b.height_m); });
+            for (auto start = seen.begin(); start != seen.begin() + ends; ++start) climb(start->point, uphill);
+        };
+        const FoundHeights of_places = found;
+        climb_from(std::greater<>(), 1);
+        climb_from(std::less<>(), -1);
+
+        const auto middle = [&](auto value_of) {
+            std::vector<double> values;
+            for (const Seen& one : seen) values.push_back(value_of(one.height_m));
+            const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+            std::nth_element(values.begin(), half, values.end());
+            return *half;
+        };
+        const double middle_m = middle([](double height_m) { return height_m; });
+        const double far_m = before_pole * middle([&](double height_m) { return std::fabs(height_m - middle_m); });
+        const auto before = [&](double& end_m, double of_places_m, double way) {
+            if (far_m > 0 && way * (end_m - middle_m) > is_pole * way * (of_places_m - middle_m))
+                end_m = middle_m + way * far_m;
+        };
+        before(found.maximum_m, of_places.maximum_m, 1);
+        before(found.minimum_m, of_places.minimum_m, -1);
+        return found;
+    }
+
+private:
+    struct Seen {
+        haptel_point point;
+        double height_m;
+    };
+
+    const TextureBinding& binding;
+    const TextureRequest& request;
+    double side_m = 0, uv_side[2];
+    FoundHeights found{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
+
+    haptel_sample sample(const haptel_point& point)
+    {
+        haptel_sample result = {0, {0, 0, 0}, 1, 1, 0};
+        binding.texture->height_gradient(&point, binding.block, &result);
+        found.minimum_m = std::min(found.minimum_m, result.height_m);
+        found.maximum_m = std::max(found.maximum_m, result.height_m);
+        return result;
+    }
+
+    // The point `way` farther, within the box: coordinates of the mesh and normals go along, so that what reads them
+    // alone is climbed as well.
+    haptel_point moved(const haptel_point& from, const double (&way_m)[3]) const
+    {
+        haptel_point to = from;
+        double length = 0;
+        for (int k = 0; k < 3; ++k) {
+            to.p[k] = std::clamp(from.p[k] + way_m[k], request.box_minimum_m[k], request.box_maximum_m[k]);
+            to.n[k] = from.n[k] + way_m[k] / side_m;
+            length += to.n[k] * to.n[k];
+            for (int j = 0; j < 3; ++j) to.n_dp[k][j] = k == j ? 1 / side_m : 0;
+        }
+        if (length > 0)
+            for (double& n : to.n) n /= std::sqrt(length);
+        for (int k = 0; k < 2; ++k) {
+            to.uv[k] = from.uv[k] + way_m[k] / side_m * uv_side[k];
+            if (std::isfinite(request.uv.minimum[k]) && std::isfinite(request.uv.maximum[k]))
+                to.uv[k] = std::clamp(to.uv[k], request.uv.minimum[k], request.uv.maximum[k]);
+            for (int j = 0; j < 3; ++j) to.uv_dp[k][j] = k == j ? uv_side[k] / side_m : 0;
+        }
+        return to;
+    }
+
+    // Uphill 1, or downhill -1, by steps that grow while they succeed.
+    void climb(const haptel_point& start, double uphill)
+    {
+        haptel_point at = moved(start, {0, 0, 0});
+        haptel_sample here = sample(at);
+        double step_m = first_step * side_m;
+        for (int i = 1; i < steps_of_climb; ++i) {
+            double slope = 0;
+            for (const double g : here.gradient) slope += g * g;
+            slope = std::sqrt(slope);
+            if (!(slope > 0) || !std::isfinite(slope)) return;
+            double way_m[3];
+            for (int k = 0; k < 3; ++k) way_m[k] = uphill * step_m * here.gradient[k] / slope;
+            const haptel_point there = moved(at, way_m);
+            const haptel_sample next = sample(there);
+            const bool is_higher = uphill * (next.height_m - here.height_m) > 0;
+            step_m *= is_higher ? after_success : after_failure;
+            if (is_higher) at = there, here = next;
+        }
+    }
+};
+
+} // namespace
+
+FoundHeights find_heights(const TextureBinding& binding, const TextureRequest& request)
+{
+    return Search(binding, request).heights();
+}
+
+bool give_envelope(TextureBinding& binding, const FoundHeights& found)
+{
+    haptel_facts& facts = binding.facts;
+    const double found_m = found.maximum_m - found.minimum_m, proven_m = facts.height_max_m - facts.height_min_m;
+    if (proven_m <= wide_proof * found_m) return false;
+    if (found_m == 0 && std::isfinite(proven_m)) return false; // what there is lies where nobody looked
+    const double range_m = std::max(found_m, least_range_m), reach_m = (margin + 0.5 * shoulder) * range_m;
+    if (facts.height_min_m < found.minimum_m - reach_m) {
+        facts.height_min_m = found.minimum_m - reach_m;
+        binding.shoulder_m[0] = shoulder * range_m;
+    }
+    if (facts.height_max_m > found.maximum_m + reach_m) {
+        facts.height_max_m = found.maximum_m + reach_m;
+        binding.shoulder_m[1] = shoulder * range_m;
+    }
+    return true;
+}
+
+} // namespace haptel::jit
