@@ -68,6 +68,7 @@ bool ExploreHands::drain(ExploreStatus& status)
         for (std::size_t left = telemetry.capacity(); left > 0 && telemetry.pop(newest_[i]); --left) {
             any = true;
             hands_[i].heights.add(newest_[i], hands_[i].workspace.scale);
+            hands_[i].unfelt.add(newest_[i], hands_[i].workspace.scale);
             if (hands_[i].files) hands_[i].files->add(newest_[i]);
         }
     }
@@ -79,9 +80,12 @@ std::vector<HandOutcome> ExploreHands::wait(ExploreStatus& status)
 {
     if (turns_) turns_->wait();
     std::vector<HandOutcome> outcomes;
-    for (Hand& hand : hands_) outcomes.push_back({hand.device, hand.servo->wait(), {}, hand.position_resolution_m});
+    for (Hand& hand : hands_) outcomes.push_back({hand.device, hand.servo->wait(), {}, {}, hand.position_resolution_m});
     drain(status);
-    for (std::size_t i = 0; i < hands_.size(); ++i) outcomes[i].heights = hands_[i].heights;
+    for (std::size_t i = 0; i < hands_.size(); ++i) {
+        outcomes[i].heights = hands_[i].heights;
+        outcomes[i].unfelt = hands_[i].unfelt;
+    }
     return outcomes;
 }
 

@@ -47,6 +47,7 @@ private:
         runtime::Workspace workspace;
         double position_resolution_m = 0; // of its device; 0: not known
         HeightRange heights;              // that it felt
+        UnfeltContact unfelt;
         std::unique_ptr<runtime::ServoThread> servo;
         std::optional<ExploreFiles> files;
     };

@@ -116,6 +116,7 @@ void add(Json& json, const HandOutcome& hand)
     json["felt_height_m"]["maximum"] = finite_or_null(hand.heights.maximum_m);
     json["position_resolution_m"] = hand.position_resolution_m > 0 ? Json(hand.position_resolution_m) : Json(nullptr);
     json["texture_below_resolution"] = hand.hides_texture();
+    json["unfelt"] = {{"longest_s", hand.unfelt_s()}, {"depth_m", hand.unfelt.depth_m}};
     json["faults"] = servo.faults;
     json["reloads"] = servo.reloads;
     json["scenes_swapped"] = servo.scenes_swapped;
@@ -167,6 +168,13 @@ std::string lines_of(const HandOutcome& hand, const ExploreOutcome& outcome)
     if (servo.faults > 0) line("faults", fmt::format("in {} ticks: {}", servo.faults, faults_text(servo.fault_bits)));
     if (servo.records_dropped > 0) line("telemetry", fmt::format("{} records were dropped", servo.records_dropped));
     if (!servo.real_time_note.empty()) line("note", servo.real_time_note);
+    if (hand.feels_nothing())
+        line("note",
+             fmt::format("for {:.2g} s the hand was up to {} below a surface and felt nothing: what is felt there lies "
+                         "deeper, a valley of the texture, or the smooth surface of a coarse mesh. Press harder "
+                         "(`press_n`), or make the texture shallower: haptel check says within which heights it is "
+                         "felt",
+                         hand.unfelt_s(), micrometres(hand.unfelt.depth_m)));
     if (hand.hides_texture())
         line("note",
              fmt::format("the texture is {} high along the path, but {} measures positions in steps of {}: the "
@@ -182,6 +190,17 @@ void HeightRange::add(const runtime::TickRecord& tick, double scale)
     if (!(tick.depth_m > 0)) return; // no texture was evaluated
     minimum_m = std::min(minimum_m, tick.height_m / scale);
     maximum_m = std::max(maximum_m, tick.height_m / scale);
+}
+
+void UnfeltContact::add(const runtime::TickRecord& tick, double scale)
+{
+    const bool is_unfelt = tick.contact > 0 && tick.depth_m > 0 && tick.force_n == glm::dvec3(0) && !tick.waiting &&
+                           tick.degradation == 0 && !tick.interrupted;
+    run_ticks_ = is_unfelt ? run_ticks_ + 1 : 0;
+    run_depth_m_ = is_unfelt ? std::max(run_depth_m_, tick.depth_m / scale) : 0;
+    if (run_ticks_ <= ticks) return;
+    ticks = run_ticks_;
+    depth_m = run_depth_m_;
 }
 
 bool HandOutcome::hides_texture() const

@@ -20,16 +20,32 @@ struct HeightRange {
     double width_m() const { return maximum_m > minimum_m ? maximum_m - minimum_m : 0; }
 };
 
+// The longest time for which a hand was below a surface and felt nothing.
+struct UnfeltContact {
+    uint64_t ticks = 0;
+    double depth_m = 0; // the most below the surface in that time, metres of the hand's own space
+
+    void add(const runtime::TickRecord& tick, double scale); // of its workspace
+
+private:
+    uint64_t run_ticks_ = 0;
+    double run_depth_m_ = 0;
+};
+
 // One hand of the exploration.
 struct HandOutcome {
     std::string device; // as given on the command line or in the scene
     runtime::ServoReport servo;
     HeightRange heights;
+    UnfeltContact unfelt;
     double position_resolution_m = 0; // of the device; 0: not known
 
     // The texture is less than two of the device's position steps high: the force jumps by a step as much as by the
     // texture.
     bool hides_texture() const;
+    double unfelt_s() const { return servo.rate_hz > 0 ? static_cast<double>(unfelt.ticks) / servo.rate_hz : 0; }
+    // Longer than a tap: whoever touches for so long waits for a force.
+    bool feels_nothing() const { return unfelt_s() >= 0.2; }
 };
 
 struct ExploreOutcome {

@@ -116,3 +116,32 @@ TEST_CASE("a texture lower than two position steps of the device is told, one th
     }
     CHECK(to_json(outcome_of(50e-6, 0, 1))["position_resolution_m"].is_null());
 }
+
+TEST_CASE("contact that is felt as nothing for 200 ms is told, a tap is not")
+{
+    using haptel::runtime::TickRecord;
+    const auto outcome_of = [](int unfelt_ticks, double force_n, bool waiting) {
+        ExploreOutcome outcome;
+        HandOutcome& hand = outcome.hands.emplace_back();
+        hand.servo.rate_hz = 1000;
+        TickRecord tick;
+        for (int i = 0; i < 3; ++i) { // thrice, with a push between
+            tick.contact = 1;
+            tick.waiting = waiting;
+            tick.force_n = {0, 0, force_n};
+            for (int k = 0; k < unfelt_ticks; ++k) {
+                tick.depth_m = 1e-6 * k;
+                hand.unfelt.add(tick, 0.5);
+            }
+            tick.force_n = {0, 0, 1};
+            hand.unfelt.add(tick, 0.5);
+        }
+        return outcome;
+    };
+    const std::string told = to_lines(outcome_of(251, 0, false));
+    CHECK(told.find("for 0.25 s the hand was up to 500 um below a surface and felt nothing") != std::string::npos);
+    CHECK(to_json(outcome_of(251, 0, false))["unfelt"]["longest_s"] == 0.25); // the first tick lies on it
+    for (const ExploreOutcome& fine :
+         {outcome_of(150, 0, false), outcome_of(251, 0.1, false), outcome_of(251, 0, true)})
+        CHECK(to_lines(fine).find("felt nothing") == std::string::npos);
+}
