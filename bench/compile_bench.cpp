@@ -63,7 +63,7 @@ void bind_to_object(const std::shared_ptr<const jit::CompiledProgram>& program)
 {
     TextureRequest request;
     for (size_t i = 0; i < 3; ++i) request.box_minimum_m[i] = -0.1, request.box_maximum_m[i] = 0.1;
-    jit::make_binding(program, program->textures()[0].name, request, jit::For::figures);
+    jit::make_binding(program, program->textures()[0].name, request); // for a hand
 }
 
 struct Measured {
