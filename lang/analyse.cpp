@@ -141,6 +141,35 @@ void report(const ir::FalseFact& fact, Diagnostics& diagnostics)
         "bounds are computed with what is declared here, and are wrong if it is: haptel test measures the true sizes");
 }
 
+std::string place_of(const double (&p_m)[3])
+{
+    std::array<char, 96> text;
+    std::snprintf(text.data(), text.size(), "(%.4g, %.4g, %.4g) mm", 1e3 * p_m[0], 1e3 * p_m[1], 1e3 * p_m[2]);
+    return text.data();
+}
+
+// Whether it does, or may for all that is known.
+bool report_jump(const ir::Texture& texture, const ir::Cause& cause, const std::string& by, const JumpSearch& seek_jump,
+                 Diagnostics& diagnostics)
+{
+    const std::string height = "the height of '" + texture.name + "' ";
+    const std::optional<SeenJump> seen = seek_jump ? seek_jump() : std::nullopt;
+    if (seek_jump && !seen) {
+        diagnostics.note(cause.span, "seam",
+                         height + "is not shown to be continuous here, " + by + "; a search found no jump",
+                         "if you know that both sides meet, put it into a function with a line /// @facts class C0");
+        return false;
+    }
+    std::array<char, 32> size;
+    if (seen) std::snprintf(size.data(), size.size(), "%.3g um", 1e6 * seen->height_m);
+    diagnostics.warning(cause.span, "jump",
+                        seen ? height + "jumps by " + size.data() + " at " + place_of(seen->p_m) + ", " + by +
+                                   " or the like: an impulse in the hand"
+                             : height + "may jump here, " + by + ": an impulse in the hand",
+                        smooth_form(cause));
+    return true;
+}
+
 // A scale that is no number, or would pull instead of push, counts as 1: no author means that.
 void report_scales(const ir::Texture& texture, std::span<const ir::Interval> scales, Diagnostics& diagnostics)
 {
@@ -166,7 +195,8 @@ void report_scales(const ir::Texture& texture, std::span<const ir::Interval> sca
 } // namespace
 
 Analysis analyse(const Program& program, const ir::Texture& texture, std::span<const double> values,
-                 std::span<const ir::SplineImage* const> images, const AnalysedCube& where, Diagnostics& diagnostics)
+                 std::span<const ir::SplineImage* const> images, const AnalysedCube& where, Diagnostics& diagnostics,
+                 const JumpSearch& seek_jump)
 {
     ir::BoundsBox at_values = box_of(where);
     at_values.images.assign(images.begin(), images.end());
@@ -175,10 +205,10 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
         at_values.parameters.push_back({values[i], values[i]});
         over_ranges.parameters.push_back(range_of(texture.parameters[i], values[i]));
     }
-    const Analysis found{ir::texture_bounds(program.module, texture, at_values, where.evaluations),
-                         ir::texture_bounds(program.module, texture, over_ranges, where.evaluations),
-                         ir::output_bounds(program.module, texture, at_values, where.evaluations),
-                         ir::output_bounds(program.module, texture, over_ranges, where.evaluations)};
+    Analysis found{ir::texture_bounds(program.module, texture, at_values, where.evaluations),
+                   ir::texture_bounds(program.module, texture, over_ranges, where.evaluations),
+                   ir::output_bounds(program.module, texture, at_values, where.evaluations),
+                   ir::output_bounds(program.module, texture, over_ranges, where.evaluations)};
     report_scales(texture, found.outputs_over_ranges, diagnostics);
     std::set<std::pair<uint32_t, ir::FalseFact::What>> told; // by place: each once
     for (const ir::TextureBounds* bounds : {&found.at_values, &found.over_ranges})
@@ -194,9 +224,7 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
     if (std::any_of(said.begin(), said.end(), is_same_place)) return found;
     const auto by = [&] { return "by " + what_of(cause, program.sources); };
     if (found.at_values.continuity == ir::Continuity::jump)
-        diagnostics.warning(cause.span, "jump",
-                            "the height of '" + texture.name + "' may jump here, " + by() + ": an impulse in the hand",
-                            smooth_form(cause));
+        found.no_jump_found = !report_jump(texture, cause, by(), seek_jump, diagnostics);
     if (found.at_values.continuity == ir::Continuity::c0)
         diagnostics.note(cause.span, "kink",
                          "the slope of '" + texture.name + "' may step here, " + by() + ": a tick in the hand",

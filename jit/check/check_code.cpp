@@ -1,5 +1,7 @@
 #include "jit/check/check_code.h"
 
+#include "jit/check/short_paths.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -63,75 +65,6 @@ double difference_error(const TextureBinding& binding, const CheckPoints& points
 }
 
 constexpr int paths = 400;
-constexpr int halvings = 26, halvings_before = 13; // of a path; by then what is smooth looks straight
-constexpr double rounding = 1e-9;                  // of the largest values met
-
-double distance(const double (&a)[3], const double (&b)[3])
-{
-    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
-}
-
-// How heights and gradients change along short paths: class, slope and curvature as measured.
-class Paths {
-public:
-    Paths(const TextureBinding& texture, const CheckPoints& where) : binding(texture), points(where) {}
-
-    uint64_t too_steep = 0, too_curved = 0;
-    uint32_t roughest = HAPTEL_CONTINUITY_C1;
-
-    void follow(uint64_t index)
-    {
-        const haptel_point first = points.random(2 * index), second = points.random(2 * index + 1);
-        double end[3]; // 1/32 of the box away: far enough to meet a kink, near enough to meet about one
-        for (size_t i = 0; i < 3; ++i) end[i] = first.p[i] + (second.p[i] - first.p[i]) / 32;
-        for (bool by_height : {true, false}) halve(touch(first.p), touch(end), by_height);
-    }
-
-private:
-    struct Touch {
-        haptel_point point;
-        haptel_sample sample;
-    };
-    const TextureBinding& binding;
-    const CheckPoints& points;
-    double largest_height = 0, largest_gradient = 0;
-
-    Touch touch(const double (&p_m)[3])
-    {
-        const haptel_point point = points.at(p_m);
-        const haptel_sample sample = sample_at(binding, point);
-        const double slope = distance(sample.gradient, {});
-        too_steep += slope > binding.facts.slope_max * (1 + rounding);
-        largest_height = std::max(largest_height, std::fabs(sample.height_m));
-        largest_gradient = std::max(largest_gradient, slope);
-        return {point, sample};
-    }
-
-    // Into the half with the greater change, again and again: at a jump or kink the change stays, else it is halved.
-    void halve(Touch a, Touch b, bool by_height)
-    {
-        const auto change = [by_height](const Touch& one, const Touch& other) {
-            return by_height ? std::fabs(one.sample.height_m - other.sample.height_m)
-                             : distance(one.sample.gradient, other.sample.gradient);
-        };
-        double before = 0;
-        for (int i = 0; i < halvings; ++i) {
-            double p_m[3];
-            for (size_t k = 0; k < 3; ++k) p_m[k] = a.point.p[k] / 2 + b.point.p[k] / 2;
-            const Touch middle = touch(p_m);
-            if (i == halvings_before) before = change(a, b);
-            (change(a, middle) > change(middle, b) ? b : a) = middle;
-        }
-        const double left = change(a, b);
-        const double size = by_height ? largest_height : largest_gradient;
-        if (left > 0.4 * before && left > 100 * rounding * size)
-            roughest = std::min<uint32_t>(roughest, by_height ? HAPTEL_CONTINUITY_JUMP : HAPTEL_CONTINUITY_C0);
-        const bool is_promised = binding.facts.continuity == HAPTEL_CONTINUITY_C1;
-        const double reach = distance(a.point.p, b.point.p) * binding.facts.curvature_max_per_m;
-        too_curved += is_promised && distance(a.sample.gradient, b.sample.gradient) >
-                                         reach * (1 + rounding) + rounding * largest_gradient;
-    }
-};
 
 const char* name_of(uint32_t continuity)
 {
@@ -173,8 +106,8 @@ void check_code(GradientCheck& check, const TextureBinding& binding, const Check
                    static_cast<double>(check.not_finite), 0);
     expect_at_most(check, "points where the height leaves its bounds", static_cast<double>(check.bounds_exceeded), 0);
 
-    Paths all(binding, points);
-    for (uint64_t i = 0; i < paths; ++i) all.follow(i);
+    ShortPaths all(binding, points);
+    for (uint64_t i = 0; i < paths; ++i) all.follow(i, 1.0 / 32);
     check.continuity_measured = all.roughest;
     check.bounds_exceeded += all.too_steep + all.too_curved;
     expect_at_most(check, "places along paths where the slope leaves its bound", static_cast<double>(all.too_steep), 0);

@@ -1,4 +1,5 @@
 // haptel check: what is wrong with a texture file, and what is known of its textures before anybody touches them.
+#include "jit/check/short_paths.h"
 #include "jit/picture/image_file.h"
 #include "jit/texture/envelope.h"
 #include "jit/texture/source_file.h"
@@ -80,7 +81,8 @@ private:
     std::vector<double> values_of(const std::string& path, const ir::Texture& texture);
     TextureRequest request_for(const ir::Texture& texture) const;
     // What a search finds of its heights, and what a hand is given of them.
-    void find_heights(CheckedTexture& checked, const jit::CompiledTextures& compiled);
+    static CheckedHeights heights_of(const TextureBinding& felt, const TextureRequest& request);
+    lang::JumpSearch jump_search(const TextureBinding& felt) const;
     // Measures, and says which precision is the fastest within error_max, or that none is.
     void pick_precision(CheckedTexture& checked);
     // Findings that belong to no line.
@@ -206,16 +208,24 @@ TextureRequest CheckRun::request_for(const ir::Texture& texture) const
     return request;
 }
 
-void CheckRun::find_heights(CheckedTexture& checked, const jit::CompiledTextures& compiled)
+CheckedHeights CheckRun::heights_of(const TextureBinding& felt, const TextureRequest& request)
 {
-    if (!compiled.program || !checked.any_picture.empty()) return;
-    const TextureRequest request = request_for(*checked.texture);
-    const TextureResult felt = jit::make_binding(compiled.program, checked.texture->name, request);
-    if (!felt.binding) return;
-    const jit::FoundHeights found = jit::find_heights(*felt.binding, request);
-    checked.heights = {{found.minimum_m, found.maximum_m},
-                       {felt.binding->facts.height_min_m, felt.binding->facts.height_max_m},
-                       felt.binding->shoulder_m[0] > 0 || felt.binding->shoulder_m[1] > 0};
+    const jit::FoundHeights found = jit::find_heights(felt, request);
+    return {{found.minimum_m, found.maximum_m},
+            {felt.facts.height_min_m, felt.facts.height_max_m},
+            felt.shoulder_m[0] > 0 || felt.shoulder_m[1] > 0};
+}
+
+lang::JumpSearch CheckRun::jump_search(const TextureBinding& felt) const
+{
+    return [&felt, this]() -> std::optional<lang::SeenJump> {
+        jit::CheckBox box;
+        std::fill(box.minimum_m, box.minimum_m + 3, -options.box_m / 2);
+        std::fill(box.maximum_m, box.maximum_m + 3, options.box_m / 2);
+        const std::optional<jit::Jump> jump = jit::find_jump(felt, box);
+        if (!jump) return std::nullopt;
+        return lang::SeenJump{jump->height_m, {jump->p_m[0], jump->p_m[1], jump->p_m[2]}};
+    };
 }
 
 void CheckRun::pick_precision(CheckedTexture& checked)
@@ -256,13 +266,18 @@ void CheckRun::check(const std::string& path)
                 const ir::Parameter& parameter = texture.parameters[i];
                 if (parameter.type == ir::Type::image && !images[i].image) any_picture.push_back(parameter.name);
             }
+            const TextureRequest request = request_for(texture);
+            TextureResult felt; // without a picture there is nothing to call
+            if (compiled.program && any_picture.empty())
+                felt = jit::make_binding(compiled.program, texture.name, request);
             report.textures.push_back(
                 {path, result.program, &texture,
                  lang::analyse(*result.program, texture, values, views,
-                               {options.box_m, options.footprint_m, report.normal_turn_per_m}, diagnostics),
+                               {options.box_m, options.footprint_m, report.normal_turn_per_m}, diagnostics,
+                               felt.binding ? jump_search(*felt.binding) : lang::JumpSearch()),
                  std::move(any_picture)});
             note_grain(report.textures.back(), values, images);
-            find_heights(report.textures.back(), compiled);
+            if (felt.binding) report.textures.back().heights = heights_of(*felt.binding, request);
             if (options.error_max && !diagnostics.has_errors()) pick_precision(report.textures.back());
         }
         progress.hide();

@@ -119,6 +119,7 @@ Json checked_json(const CheckedTexture& checked)
                    {"slope_max", finite_or_null(checked.analysis.over_ranges.slope_max)},
                    {"curvature_max_per_m", curvature_of(checked.analysis.over_ranges)}}},
                  {"continuity", continuity_of(checked.analysis.at_values)},
+                 {"no_jump_found", checked.analysis.no_jump_found},
                  {"output_bounds", ranges_of(checked)},
                  {"declared", checked.analysis.at_values.declared},
                  {"operations_max", operations_of(checked)},
@@ -169,8 +170,9 @@ std::string shown_class(const CheckedTexture& checked)
         return std::isfinite(bounds.curvature_max_per_m) ? "C1, smooth enough for a bounded change of force"
                                                          : "C1, no kinks, but no bound of how fast the slope changes";
     const std::string_view meaning = bounds.continuity == ir::Continuity::unknown ? "not found"
-                                     : bounds.continuity == ir::Continuity::jump  ? "jump, the height steps"
-                                                                                  : "C0, the slope steps";
+                                     : checked.analysis.no_jump_found ? "not shown to be continuous, no jump found"
+                                     : bounds.continuity == ir::Continuity::jump ? "jump, the height steps"
+                                                                                 : "C0, the slope steps";
     const lang::SourceSet& sources = checked.program->sources;
     const lang::Position at = sources.position(bounds.cause.span.file, bounds.cause.span.begin);
     return fmt::format("{}, at {}:{}:{}", meaning, sources.file(bounds.cause.span.file).name, at.line, at.column);
