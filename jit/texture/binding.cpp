@@ -140,11 +140,9 @@ std::string micrometres(double metres)
 }
 
 // What a hand feels where the proof says too little.
-void find_envelope(TextureBinding& binding, const ir::Texture& texture, const TextureRequest& request,
-                   Findings& findings)
+void give_envelope(TextureBinding& binding, const FoundHeights& found, const ir::Texture& texture, Findings& findings)
 {
     const haptel_facts proven = binding.facts;
-    const FoundHeights found = find_heights(binding, request);
     if (!give_envelope(binding, found)) return;
     const bool is_bounded = std::isfinite(proven.height_min_m) && std::isfinite(proven.height_max_m);
     findings.remark("note: the height of texture '" + texture.name + "' is " +
@@ -191,7 +189,7 @@ void write(std::vector<uint64_t>& block, const ir::Parameter& parameter, const A
 } // namespace
 
 TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program, std::string_view name,
-                           const TextureRequest& request, For use)
+                           const TextureRequest& request, For use, FoundHeights* found)
 {
     Findings findings;
     const auto refuse = [&] { return TextureResult{std::nullopt, findings.errors}; };
@@ -217,16 +215,22 @@ TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program
         values.push_back(argument.value);
         views.push_back(argument.image ? argument.image.get() : &flat_image());
     }
-    const auto facts_with = [&](const std::vector<const ir::SplineImage*>& seen, Bounded what) {
-        return facts_over_box(program->module(), source, values, seen, head, request, what);
+    const auto facts_with = [&](const std::vector<const ir::SplineImage*>& seen, Bounded what,
+                                LikelyPlaces* places = nullptr) {
+        return facts_over_box(program->module(), source, values, seen, head, request, what, places);
     };
     const bool is_felt = use == For::hand;
+    LikelyPlaces places;
     TextureBinding binding{storage, texture, storage->block.data(),
-                           facts_with(views, is_felt ? Bounded::heights : Bounded::all)};
-    if (is_felt && texture->height_gradient) find_envelope(binding, source, request, findings);
+                           facts_with(views, is_felt ? Bounded::heights : Bounded::all, &places)};
     if (const std::string slow = too_slow(*program, binding, request); !slow.empty()) {
         findings.error(slow, "fewer octaves or terms, or a lower rate_hz");
         return refuse();
+    }
+    if (is_felt && texture->height_gradient) {
+        const FoundHeights heights = find_heights(binding, request, places);
+        give_envelope(binding, heights, source, findings);
+        if (found) *found = heights;
     }
     binding.band_limited = is_band_limited(binding, request);
     note_grain(

@@ -65,6 +65,16 @@ haptel_facts all_facts(const ir::Module& module, const ir::Texture& texture, con
             operations_max(module, texture)};
 }
 
+haptel_point point_of(const double (&inputs)[ir::input_count])
+{
+    const auto at = [&](Input first, size_t i) { return inputs[static_cast<size_t>(first) + i]; };
+    haptel_point point{};
+    for (size_t i = 0; i < 3; ++i) point.p[i] = at(Input::p_x, i), point.n[i] = at(Input::n_x, i);
+    for (size_t i = 0; i < 2; ++i) point.uv[i] = at(Input::uv_x, i);
+    point.time_s = at(Input::time, 0);
+    return point;
+}
+
 haptel_facts heights_alone(const ir::Module& module, const ir::Texture& texture, const Interval& height)
 {
     return {
@@ -85,7 +95,7 @@ haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& text
 
 haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,
                             std::span<const ir::SplineImage* const> images, const haptel_block_head& head,
-                            const TextureRequest& request, Bounded what)
+                            const TextureRequest& request, Bounded what, LikelyPlaces* places)
 {
     ir::BoundsBox box = anywhere();
     for (size_t i = 0; i < 3; ++i) {
@@ -108,8 +118,13 @@ haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture
     }
     for (double value : values) box.parameters.push_back({value, value});
     box.images.assign(images.begin(), images.end());
-    if (what == Bounded::heights)
-        return heights_alone(module, texture, ir::height_bounds(module, texture, box, evaluations_over_box));
+    if (what == Bounded::heights) {
+        ir::HeightPlaces found;
+        const Interval height =
+            ir::height_bounds(module, texture, box, evaluations_over_box, places ? &found : nullptr);
+        if (places) *places = {point_of(found.lowest), point_of(found.highest)};
+        return heights_alone(module, texture, height);
+    }
     return all_facts(module, texture, box, evaluations_over_box);
 }
 

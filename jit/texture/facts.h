@@ -17,9 +17,13 @@ haptel_facts facts_over_ranges(const ir::Module& module, const ir::Texture& text
 // coordinates as the request knows them. Bounds of slope and curvature take up to a thousand times as long as those of
 // heights, which are all that a hand needs.
 enum class Bounded : uint8_t { heights, all };
+// Of heights alone: where the least and the greatest may be, if the bounds are true.
+struct LikelyPlaces {
+    haptel_point lowest{}, highest{};
+};
 haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture, std::span<const double> values,
                             std::span<const ir::SplineImage* const> images, const haptel_block_head& head,
-                            const TextureRequest& request, Bounded what);
+                            const TextureRequest& request, Bounded what, LikelyPlaces* places = nullptr);
 
 // True if the height of the binding, made for this request, is another one without its footprint at any of up to
 // 32 places: octaves are faded or left out.

@@ -99,10 +99,15 @@ CompiledTextures compile_texture_file(const std::string& path, TextureOptions op
 // other fact, which it need not wait for; pictures and figures all that is proven, infinite where nothing is.
 enum class For : uint8_t { hand, figures };
 
+// What a search finds of a texture's height: at least this.
+struct FoundHeights {
+    double minimum_m = 0, maximum_m = 0;
+};
+
 // One texture of a program (empty name: its only one) with the request's parameters, box and footprint; the request's
 // reference is not looked at. Refused, with a message that says how to mend it: a name that does not exist, a value
-// that does not fit, a call that takes too long for the request's servo.
+// that does not fit, a call that takes too long for the request's servo. `found`: filled for a hand.
 TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program, std::string_view texture,
-                           const TextureRequest& request, For use = For::hand);
+                           const TextureRequest& request, For use = For::hand, FoundHeights* found = nullptr);
 
 } // namespace haptel::jit

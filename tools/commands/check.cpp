@@ -1,7 +1,6 @@
 // haptel check: what is wrong with a texture file, and what is known of its textures before anybody touches them.
 #include "jit/check/short_paths.h"
 #include "jit/picture/image_file.h"
-#include "jit/texture/envelope.h"
 #include "jit/texture/source_file.h"
 #include "jit/texture/texture.h"
 #include "lang/parameter_value.h"
@@ -80,8 +79,6 @@ private:
                     const std::vector<jit::ImageFile>& images);
     std::vector<double> values_of(const std::string& path, const ir::Texture& texture);
     TextureRequest request_for(const ir::Texture& texture) const;
-    // What a search finds of its heights, and what a hand is given of them.
-    static CheckedHeights heights_of(const TextureBinding& felt, const TextureRequest& request);
     lang::JumpSearch jump_search(const TextureBinding& felt) const;
     // Measures, and says which precision is the fastest within error_max, or that none is.
     void pick_precision(CheckedTexture& checked);
@@ -208,14 +205,6 @@ TextureRequest CheckRun::request_for(const ir::Texture& texture) const
     return request;
 }
 
-CheckedHeights CheckRun::heights_of(const TextureBinding& felt, const TextureRequest& request)
-{
-    const jit::FoundHeights found = jit::find_heights(felt, request);
-    return {{found.minimum_m, found.maximum_m},
-            {felt.facts.height_min_m, felt.facts.height_max_m},
-            felt.shoulder_m[0] > 0 || felt.shoulder_m[1] > 0};
-}
-
 lang::JumpSearch CheckRun::jump_search(const TextureBinding& felt) const
 {
     return [&felt, this]() -> std::optional<lang::SeenJump> {
@@ -267,9 +256,10 @@ void CheckRun::check(const std::string& path)
                 if (parameter.type == ir::Type::image && !images[i].image) any_picture.push_back(parameter.name);
             }
             const TextureRequest request = request_for(texture);
+            jit::FoundHeights found;
             TextureResult felt; // without a picture there is nothing to call
             if (compiled.program && any_picture.empty())
-                felt = jit::make_binding(compiled.program, texture.name, request);
+                felt = jit::make_binding(compiled.program, texture.name, request, jit::For::hand, &found);
             report.textures.push_back(
                 {path, result.program, &texture,
                  lang::analyse(*result.program, texture, values, views,
@@ -277,7 +267,10 @@ void CheckRun::check(const std::string& path)
                                felt.binding ? jump_search(*felt.binding) : lang::JumpSearch()),
                  std::move(any_picture)});
             note_grain(report.textures.back(), values, images);
-            if (felt.binding) report.textures.back().heights = heights_of(*felt.binding, request);
+            if (const auto& hand = felt.binding)
+                report.textures.back().heights = {{found.minimum_m, found.maximum_m},
+                                                  {hand->facts.height_min_m, hand->facts.height_max_m},
+                                                  hand->shoulder_m[0] > 0 || hand->shoulder_m[1] > 0};
             if (options.error_max && !diagnostics.has_errors()) pick_precision(report.textures.back());
         }
         progress.hide();

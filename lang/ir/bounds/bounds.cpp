@@ -18,6 +18,9 @@ constexpr uint64_t usual_extent = 5'000;
 // A height in metres, a slope or a curvature per metre beyond this says as little as none: no piece that holds a pole
 // is small enough yet, and cutting goes on although nothing improves.
 constexpr double useless = 1e9;
+// Twenty of each side of a place in space: a millionth of the box.
+constexpr int cuts_of_dive = 60;
+constexpr uint64_t operations_of_dive = operations_in_all / 2;
 // At which declared facts are tried: enough for what is wrong in a tenth of the box, and a fraction of the time that
 // bounds take.
 constexpr uint32_t points_for_facts = 64;
@@ -101,6 +104,23 @@ public:
         }
     }
 
+    // Into the piece of the greatest bound, as far as f64 and patience go.
+    void dive(size_t which, double (&place)[input_count])
+    {
+        size_t at = next_of(queues[which]);
+        operations_left = std::max(operations_left, operations_of_dive);
+        for (int cuts = 0; cuts < cuts_of_dive && operations_left > 0; ++cuts) {
+            if (!halve(at)) break;
+            at = pieces.size() - (pieces.end()[-2].bounds[which] > pieces.back().bounds[which] ? 2 : 1);
+        }
+        for (size_t input = 0; input < input_count; ++input) {
+            const auto side = std::find(sides.begin(), sides.end(), &box.input[input]);
+            if (side == sides.end()) continue;
+            const Interval& middle_of = pieces[at].sides[static_cast<size_t>(side - sides.begin())];
+            place[input] = middle_of.minimum / 2 + middle_of.maximum / 2;
+        }
+    }
+
     double bound(size_t which) { return pieces[next_of(queues[which])].bounds[which]; }
     bool may_be_nan() const
     {
@@ -180,6 +200,12 @@ private:
     {
         while (!is_wanted(turn % queues.size())) ++turn;
         const size_t chosen = next_of(queues[turn++ % queues.size()]);
+        is_settled = operations_left == 0 || !halve(chosen); // too long, or too small to cut
+    }
+
+    // False where it is too small to be cut.
+    bool halve(size_t chosen)
+    {
         std::vector<Interval> left = pieces[chosen].sides, right = left;
         size_t widest = sides.size();
         double widest_share = 0;
@@ -188,29 +214,35 @@ private:
             const double share = (left[i].maximum - left[i].minimum) / (all.maximum - all.minimum);
             if (share > widest_share) widest = i, widest_share = share;
         }
-        is_settled = widest == sides.size() || operations_left == 0; // too small to cut, or too long
-        if (is_settled) return;
+        if (widest == sides.size()) return false;
         pieces[chosen].is_cut = true;
         const double middle = left[widest].minimum / 2 + left[widest].maximum / 2;
         left[widest].maximum = right[widest].minimum = middle;
         add(std::move(left));
         add(std::move(right));
+        return true;
     }
 };
 
 Interval result_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations,
-                       size_t result)
+                       size_t result, HeightPlaces* places = nullptr)
 {
     Bisection bisection(module, texture, box, Goal::result, result);
     bisection.run(evaluations);
-    return {-bisection.bound(1), bisection.bound(0), bisection.may_be_nan()};
+    const Interval bounds{-bisection.bound(1), bisection.bound(0), bisection.may_be_nan()};
+    if (places) {
+        bisection.dive(0, places->highest);
+        bisection.dive(1, places->lowest);
+    }
+    return bounds;
 }
 
 } // namespace
 
-Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations)
+Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations,
+                       HeightPlaces* places)
 {
-    Interval height = result_bounds(module, texture, box, evaluations, 0);
+    Interval height = result_bounds(module, texture, box, evaluations, 0, places);
     if (height.is_empty()) height = {0, 0, true};
     height.may_be_nan |= !height.is_finite();
     if (height.may_be_nan) height = {std::min(height.minimum, 0.0), std::max(height.maximum, 0.0), true};

@@ -67,8 +67,15 @@ TextureBounds texture_bounds(const Module& module, const Texture& texture, const
 // origin of atan2(y, x).
 std::vector<Undefined> undefined_in(const Module& module, const Texture& texture, const BoundsBox& box,
                                     uint32_t evaluations = 512);
-// Its height alone, which is cheaper.
-Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations = 4096);
+// Where in the box, by Input, the least and the greatest height may be: in the piece whose bound is the greatest, cut
+// on into the half with the greater bound. If the bounds are true, there are such heights near by. Inputs that have no
+// bounds, or are not read, are 0.
+struct HeightPlaces {
+    double lowest[input_count] = {}, highest[input_count] = {};
+};
+// Its height alone, which is cheaper; and, where asked for, its places.
+Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations = 4096,
+                       HeightPlaces* places = nullptr);
 
 // Its material outputs, by bit of Texture::writes. One that may be NaN says so; the rest holds where it is a number.
 std::vector<Interval> output_bounds(const Module& module, const Texture& texture, const BoundsBox& box,

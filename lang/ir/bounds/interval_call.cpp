@@ -1,5 +1,6 @@
 // Calls: what a function's facts say of its results, and what its body does.
 #include "lang/ir/bounds/interval_evaluator.h"
+#include "lang/ir/cost.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,6 +8,8 @@
 
 namespace haptel::ir {
 namespace {
+
+constexpr uint64_t short_body = 16; // instructions
 
 Interval declared_value(const Facts& facts, bool may_be_nan)
 {
@@ -119,6 +122,16 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     return results;
 }
 
+bool IntervalEvaluator::is_short(uint32_t index)
+{
+    const auto [known, is_new] = short_functions.try_emplace(index, false);
+    const auto is_proven = [](const Facts& facts) { return facts.proven; };
+    if (is_new)
+        known->second = std::ranges::all_of(module.functions[index].facts, is_proven) &&
+                        instructions_reached(module, index) <= short_body;
+    return known->second;
+}
+
 std::vector<Interval> IntervalEvaluator::values_inside(uint32_t index, std::vector<Interval> arguments, Span span)
 {
     const bool was_varying = std::exchange(varying, false);
@@ -190,8 +203,9 @@ IntervalEvaluator::Results IntervalEvaluator::call(uint32_t index, const Results
         is_all_told &= !variation.is_active || (facts.continuity && variation.curvature < infinity);
     }
     if (seams && varying) cross_call(function, index, arguments, declared, span);
-    // One value alone is looked at, too.
-    if (is_all_told && !is_narrow && reach > 0) return declared;
+    // One value alone is looked at, too, and what is no dearer than its proven facts: where a ramp is level they do not
+    // say so.
+    if (is_all_told && !is_narrow && reach > 0 && !is_short(index)) return declared;
 
     Results results = look_inside(index, arguments, span);
     for (size_t r = 0; r < count; ++r) {

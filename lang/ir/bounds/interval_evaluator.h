@@ -91,7 +91,10 @@ private:
     std::map<std::pair<uint32_t, std::vector<bool>>, Activity>
         activities; // by function and which parameters have tangents
 
+    std::map<uint32_t, bool> short_functions; // asked so far
+
     const Structure& structure_of(uint32_t function);
+    bool is_short(uint32_t function);
     const Activity& tangents_of(uint32_t function, std::span<const Variation> arguments);
     // Arguments and results of calls, carried values of loops, yields of arms.
     Results gather(const Frame& frame, std::span<const Value> values) const;

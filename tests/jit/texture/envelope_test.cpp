@@ -5,6 +5,7 @@
 #include "tests/jit/texture/idioms.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <random>
 
@@ -76,8 +77,8 @@ TEST_CASE("what is proven too wide is felt within what was found, and all of it 
         const double* shoulder_m = felt.binding->shoulder_m;
         CHECK(truth.maximum_m <= range.height_max_m - shoulder_m[1] / 2);
         CHECK(truth.minimum_m >= range.height_min_m + shoulder_m[0] / 2);
-        CHECK(range.height_max_m <= truth.maximum_m + 0.31 * true_m);
-        CHECK(range.height_min_m >= truth.minimum_m - 0.31 * true_m);
+        CHECK(range.height_max_m <= truth.maximum_m + 0.35 * true_m);
+        CHECK(range.height_min_m >= truth.minimum_m - 0.35 * true_m);
     }
 }
 
@@ -98,36 +99,72 @@ TEST_CASE("what is proven well is felt as it is proven")
     }
 }
 
-TEST_CASE("a pole does not take away what is beside it")
+TEST_CASE("a pole does not take away what is beside it, and what grows without bound is felt")
 {
     // Half of all places are within 80 um, and the pole is higher than anybody reaches.
-    const auto program = compiled("texture pole() { return 1um / (p.x / 1m); }");
-    const auto felt = jit::make_binding(program, "pole", request_over(0.05)).binding;
-    REQUIRE(felt);
-    CHECK((felt->facts.height_max_m > 80e-6 && felt->facts.height_max_m < 5e-3));
-    CHECK((felt->facts.height_min_m < -80e-6 && felt->facts.height_min_m > -5e-3));
+    const auto program = compiled("texture pole() { return 1um / (p.x / 1m); }"
+                                  "texture steep() { return 1um * exp(p.x / 0.05mm); }");
+    for (const char* name : {"pole", "steep"}) {
+        const auto felt = jit::make_binding(program, name, request_over(0.05)).binding;
+        REQUIRE(felt);
+        CAPTURE(name, felt->facts.height_max_m, felt->facts.height_min_m);
+        CHECK(felt->facts.height_max_m < (std::string(name) == "pole" ? 5e-3 : 50e-3));
+        CHECK(felt->facts.height_min_m > -5e-3);
+    }
+    const auto pole = jit::make_binding(program, "pole", request_over(0.05)).binding;
+    CHECK((pole->facts.height_max_m > 80e-6 && pole->facts.height_min_m < -80e-6));
 }
 
-TEST_CASE("rare peaks that nobody found are not taken away while they are proven")
+TEST_CASE("rare peaks are felt as they are proven, beside a background too")
 {
-    const auto program =
-        compiled("texture rivet() { return 100um * smoothstep(0.99999, 1.0, 1.0 - length(p - vec3(7mm, "
-                 "3mm, 2mm)) / 1m); }");
-    const auto felt = jit::make_binding(program, "rivet", request_over(0.05)).binding;
-    REQUIRE(felt);
-    CHECK(felt->facts.height_max_m >= 100e-6);
-    CHECK(felt->shoulder_m[1] == 0);
+    // Each is less than a millionth of the box; the first lies on nothing, the others on grain.
+    const auto program = compiled(R"(
+texture rivet() { return 100um * smoothstep(0.99999, 1.0, 1.0 - length(p - vec3(7mm, 3mm, 2mm)) / 1m); }
+texture grain() { return 2um * noise(p / 1mm) + 200um * smoothstep(0.0, 0.2mm, 0.8mm - length(p.xy - vec2(7mm, 3mm))); }
+texture high() { return 2um * noise(p / 1mm) + 2mm * smoothstep(0.0, 0.2mm, 0.8mm - length(p - vec3(7mm, 3mm, 2mm))); }
+texture ridge() { return 3um * noise(p / 1mm) + 900um * smoothstep(0.0, 0.1mm, 0.1mm - abs(p.x - 13.3mm)); }
+texture tip() { vec3 q = (p - vec3(7mm, 3mm, 2mm)) / 0.3mm; return 100um / (1.0 + dot(q, q)); }
+texture late() { return 1um * noise(p / 1mm) + 100um * smoothstep(0.0, 1.0, time - 90.0s); }
+)");
+    for (const haptel_texture& texture : program->textures())
+        for (const double side_m : {0.05, 0.2}) {
+            const TextureResult made = jit::make_binding(program, texture.name, request_over(side_m));
+            const auto proven =
+                jit::make_binding(program, texture.name, request_over(side_m), jit::For::figures).binding;
+            REQUIRE((made.binding && proven));
+            CAPTURE(texture.name, side_m, made.binding->facts.height_max_m);
+            CHECK(made.diagnostics.empty());
+            CHECK(made.binding->facts.height_max_m == proven->facts.height_max_m);
+            CHECK(made.binding->shoulder_m[1] == 0);
+        }
 }
 
 TEST_CASE("a search is the same each time, and finds at least what even places show")
 {
     const auto program = compiled(idioms);
-    const TextureRequest request = request_over(0.05);
-    const auto binding = jit::make_binding(program, "simplex", request, jit::For::figures).binding;
+    jit::FoundHeights once, again;
+    const auto bound = [&](jit::FoundHeights* found) {
+        return jit::make_binding(program, "simplex", request_over(0.05), jit::For::hand, found).binding;
+    };
+    const auto binding = bound(&once);
+    bound(&again);
     REQUIRE(binding);
-    const jit::FoundHeights once = jit::find_heights(*binding, request), again = jit::find_heights(*binding, request);
     CHECK((once.minimum_m == again.minimum_m && once.maximum_m == again.maximum_m));
     const Truth truth = dense(*binding, 0.05);
     CHECK(once.maximum_m >= truth.maximum_m - 0.1 * (truth.maximum_m - truth.minimum_m));
     CHECK(once.minimum_m <= truth.minimum_m + 0.1 * (truth.maximum_m - truth.minimum_m));
+}
+
+TEST_CASE("a texture that is slow is searched by few calls, and one that is too slow by none")
+{
+    const auto program =
+        compiled("texture slow(int n = 20000 in 1 .. 20000) { float s = 0.0; for (int i = 0; i < n; ++i) "
+                 "s += sin(p.x / 1mm + s); return 1um / (1.1 + sin(s)); }");
+    TextureRequest request = request_over(0.05);
+    request.servo_period_s = 1e-3;
+    const auto start = std::chrono::steady_clock::now();
+    CHECK(contains(jit::make_binding(program, "slow", request).diagnostics, "per call"));
+    request.servo_period_s = 0;
+    CHECK(jit::make_binding(program, "slow", request).binding);
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20)); // hangs are not felt otherwise
 }

@@ -103,6 +103,58 @@ TEST_CASE("what a foot says of its changes is what differences say")
     CHECK(shared_ones > tries(100));
 }
 
+TEST_CASE("beyond borders and corners of an open surface a foot says of its changes what differences say")
+{
+    Mesh cap = ball_mesh(1, size_m); // of which the triangles above stay
+    std::erase_if(cap.triangles, [&](const auto& triangle) {
+        return std::any_of(triangle.begin(), triangle.end(),
+                           [&](uint32_t corner) { return cap.positions_m[corner].z < 0.2 * size_m; });
+    });
+    const auto surface = surface_of(cap);
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    int beyond_borders = 0, beyond_corners = 0;
+    for (int i = 0; i < tries(20'000); ++i) {
+        Contact contact;
+        contact.touching = true;
+        contact.face = static_cast<uint32_t>(random() % surface->faces.size());
+        contact.barycentric = dvec3(1, 1, 1) / 3.0;
+        contact.normal = contact.facet_normal = surface->facet_normal(contact.face);
+        const uint32_t corner = static_cast<uint32_t>(random() % 3);
+        const dvec3 hand_m = surface->vertex_m(contact.face, corner) - 2e-3 * contact.normal +
+                             4e-3 * dvec3(uniform(random), uniform(random), uniform(random));
+        const auto foot_of = [&](const dvec3& hand) {
+            FacetLines lines;
+            return smooth_foot(*surface, contact, hand, 0, lines);
+        };
+        const Foot here = foot_of(hand_m);
+        const int borders = static_cast<int>(here.barycentric.x == 0) + static_cast<int>(here.barycentric.y == 0) +
+                            static_cast<int>(here.barycentric.z == 0);
+        if (here.share == 0 || borders == 0) continue;
+        const dvec3 g(uniform(random), uniform(random), uniform(random)); // of a height
+        constexpr double step_m = 1e-8;
+        dvec3 felt(0), depth_dp(0);
+        bool same = true; // and not at the place where another facet begins
+        for (int j = 0; j < 3; ++j) {
+            dvec3 step(0);
+            step[j] = step_m;
+            const Foot ahead = foot_of(hand_m + step), behind = foot_of(hand_m - step);
+            same = same && ahead.face == here.face && behind.face == here.face && ahead.share > 0 && behind.share > 0 &&
+                   glm::equal(ahead.barycentric, dvec3(0)) == glm::equal(here.barycentric, dvec3(0)) &&
+                   glm::equal(behind.barycentric, dvec3(0)) == glm::equal(here.barycentric, dvec3(0));
+            felt[j] = glm::dot(g, ahead.at_m - behind.at_m) / (2 * step_m);
+            depth_dp[j] = (ahead.depth_m - behind.depth_m) / (2 * step_m);
+        }
+        if (!same) continue;
+        (borders == 2 ? beyond_corners : beyond_borders) += 1;
+        CAPTURE(i, borders);
+        CHECK(glm::distance(here.felt(g), felt) < 1e-5);
+        CHECK(glm::distance(here.push, -depth_dp) < 1e-5 * (1 + glm::length(here.push)));
+    }
+    CHECK(beyond_borders > tries(100));
+    CHECK(beyond_corners > tries(20));
+}
+
 TEST_CASE("on a ball of 5 120 triangles the force is that of the ball")
 {
     Renderer renderer(shared(bare_scene(ball_mesh(4, size_m))));

@@ -5,6 +5,8 @@
 #include "tests/tools/commands/run_command.h"
 #include "tools/output/json.h"
 
+#include <cmath>
+#include <cstdio>
 #include <map>
 
 using namespace haptel::test;
@@ -185,4 +187,42 @@ TEST_CASE("check: material outputs are bounded like the height, and those that c
     CHECK(scales[1].first == 8);
     CHECK(contains(scales[1].second, "friction_scale of 'bursts' may be not finite"));
     CHECK(contains(run_command("check '" + file + "'").out, "friction_scale 1 .. 1.5 (1 .. 2)\n"));
+}
+
+TEST_CASE("check: patterns that jump are told so with height and place, the others have a note at most")
+{
+    const std::string file = std::string(HAPTEL_SOURCE_DIR) + "/tests/lang/patterns.haptel"; // docs say which jump
+    const Json report = Json::parse(run_command("check '" + file + "' --json").out);
+    int jumps = 0, seams = 0;
+    for (const Json& texture : report["textures"]) {
+        const std::string name = texture["name"], doc = texture["doc"];
+        const bool does_jump = doc.starts_with("Jumps");
+        bool is_told = false;
+        for (const Json& finding : report["diagnostics"]) {
+            const std::string message = finding["message"];
+            if (!contains(message, "'" + name + "'")) continue;
+            is_told |= finding["code"] == "jump" && contains(message, " jumps by ") && contains(message, ") mm");
+            seams += finding["code"] == "seam";
+        }
+        CAPTURE(name);
+        CHECK(is_told == does_jump);
+        CHECK((texture["continuity"] == "jump") == (does_jump || texture["no_jump_found"] == true));
+        jumps += does_jump;
+    }
+    CHECK(jumps == 8);
+    CHECK(seams == 3);
+}
+
+TEST_CASE("check: a jump is told where it is, as high as it is")
+{
+    const Folder folder;
+    // At x = 3 mm alone, by 30 um beside a slope.
+    const std::string file = folder.write(
+        "t.haptel", "texture t() { return 0.01 * p.x + 30um * step(3mm, p.x) + 50um * sin(p.y / 10mm); }\n");
+    const Json report = Json::parse(run_command("check '" + file + "' --box 50mm --json").out);
+    const std::string message = report["diagnostics"][0]["message"];
+    double height_um = 0, x_mm = 0;
+    REQUIRE(std::sscanf(message.c_str(), "the height of 't' jumps by %lf um at (%lf,", &height_um, &x_mm) == 2);
+    CHECK(std::abs(height_um - 30) < 0.01);
+    CHECK(std::abs(x_mm - 3) < 1e-3);
 }
