@@ -76,8 +76,9 @@ constexpr ForeignWord meanings[] = {
     {operation, "xor", "^^", "write ^^"},
     {operation, "not", "!", "write !"},
 
-    {name, "PI pi M_PI TAU", "",
-     "write const float PI = 3.141592653589793; or use sinturn and costurn, which count full turns"},
+    {name, "pi M_PI", "PI", "write PI; or use sinturn and costurn, which count full turns"},
+    {name, "tau TWO_PI M_TAU", "TAU", "write TAU; or use sinturn and costurn, which count full turns"},
+    {name, "M_E", "E", "write E"},
     {name, "P", "p", "the point of contact is p"},
     {name, "N", "n", "the normal is n"},
     {name, "position", "", "the point of contact is p"},

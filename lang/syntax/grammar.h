@@ -106,6 +106,9 @@ private:
     void read_misspelt_keyword();
     void read_misspelt_in();
     void read_foreign_operator();
+    bool read_foreign_else();
+    ast::ExpressionPtr parted_number(Span number);
+    void bracketed_range(ast::TextureParameter& parameter);
     ast::ExpressionPtr cast();
     ast::ExpressionPtr method_call(ast::ExpressionPtr object);
 

@@ -306,8 +306,13 @@ TextureParameter Grammar::texture_parameter()
     }
     read_misspelt_in();
     if (!lost && accept(Token::kw_in)) {
-        parameter.minimum = binary(1);
-        if (!lost && at(Token::dot_dot)) {
+        if (at(Token::left_bracket))
+            bracketed_range(parameter);
+        else
+            parameter.minimum = binary(1);
+        if (parameter.maximum) {
+            // told
+        } else if (!lost && at(Token::dot_dot)) {
             advance();
             parameter.maximum = binary(1);
         } else {

@@ -173,6 +173,8 @@ ExpressionPtr Grammar::primary()
     Diagnostic& reported = error(first, "expected-expression", "expected an expression" + found());
     if (at(Token::kw_texture) && kind(1) == Token::left_paren)
         reported.hint = foreign_word(ForeignKind::function, "texture2D")->hint;
+    if (at(Token::string))
+        reported.hint = "a text names a file; what is chosen by a word in OSL is a function: perlin(q)";
     return unknown(first);
 }
 
@@ -187,6 +189,7 @@ ExpressionPtr Grammar::number()
         ++mistakes;
         return unknown(where);
     }
+    if (read.unit.empty() && at(Token::name) && !si_unit(text()).empty() && !on_new_line()) return parted_number(where);
     return make(where, NumberLiteral{read.kind, read.value, read.integer, std::string(read.unit),
                                      std::string(sources.text(where))});
 }

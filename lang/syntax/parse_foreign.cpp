@@ -91,6 +91,42 @@ void Grammar::read_foreign_operator()
                                                              : Token::bang;
 }
 
+// "elif (b)", behind the body of an if: from now on an "if".
+bool Grammar::read_foreign_else()
+{
+    if (!at(Token::name) || kind(1) != Token::left_paren) return false;
+    if (text() != "elif" && text() != "elsif" && text() != "elseif") return false;
+    slip(span(), "foreign-word", not_in_haptel(), "write else if").fix = FixIt{span(), "else if"};
+    list.tokens[position].kind = Token::kw_if;
+    return true;
+}
+
+// "50 um", at the unit.
+ExpressionPtr Grammar::parted_number(Span number)
+{
+    const Span whole = join(number, span());
+    const std::string written = std::string(sources.text(number)) + std::string(text());
+    slip(whole, "syntax", "a unit stands right behind its number", "write " + written).fix = FixIt{whole, written};
+    advance();
+    const Number read = read_number(written);
+    return make(whole, NumberLiteral{read.kind, read.value, read.integer, std::string(read.unit), written});
+}
+
+// "in [0um, 200um]", at the bracket.
+void Grammar::bracketed_range(TextureParameter& parameter)
+{
+    const Span opener = span();
+    advance();
+    parameter.minimum = binary(1);
+    if (!accept(Token::comma)) expect(Token::dot_dot, "in the range");
+    parameter.maximum = binary(1);
+    if (!close(Token::right_bracket, opener) || lost) return;
+    const std::string written = std::string(sources.text(parameter.minimum->span)) + " .. " +
+                                std::string(sources.text(parameter.maximum->span));
+    slip(since(opener), "range", "a range stands in no brackets", "write " + printable(written)).fix =
+        FixIt{since(opener), written};
+}
+
 // "(float)x", at the opening bracket.
 ExpressionPtr Grammar::cast()
 {

@@ -129,7 +129,7 @@ StatementPtr Grammar::if_statement()
         arm.body = single_statement(has_condition ? "the condition" : "'else'");
         result.arms.push_back(std::move(arm));
         if (!has_condition) break;
-    } while (accept(Token::kw_else));
+    } while (read_foreign_else() || accept(Token::kw_else));
     return make_statement(since(first), std::move(result));
 }
 
