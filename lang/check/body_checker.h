@@ -124,6 +124,7 @@ private:
     void require(ast::Expression& e, Type wanted, const std::string& where);
     // Reports; the type of what is wrong.
     Type fail(Span span, ErrorCode code, std::string message, std::string_view hint = {});
+    void warn_of_whole_division(const ast::Expression& dividend, const ast::Chain::Link& link);
     Type report_operator(ast::BinaryOp op, Span span, Type left, const ast::Expression& right);
     std::string excerpt(const ast::Expression& e) const;
     std::string operand(const ast::Expression& e) const; // to write something behind it

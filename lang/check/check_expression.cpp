@@ -239,12 +239,27 @@ Type BodyChecker::check(Expression&, Chain& node)
         if (&link == &node.rest.front()) {
             adopt_literal(*node.first, right);
             left = node.first->type;
+            warn_of_whole_division(*node.first, link);
         }
         const auto types = operator_types(link.op, left, link.operand->type);
         left = types ? types->result
                      : report_operator(link.op, join(node.first->span, link.operand->span), left, *link.operand);
     }
     return left;
+}
+
+// "1 / 2 * depth" is flat.
+void BodyChecker::warn_of_whole_division(const Expression& dividend, const Chain::Link& link)
+{
+    const auto whole = [](const Expression& e) -> const NumberLiteral* {
+        const auto* literal = std::get_if<NumberLiteral>(&e.node);
+        return literal && (e.type == int_type || e.type == uint_type) ? literal : nullptr;
+    };
+    const NumberLiteral *a = whole(dividend), *b = whole(*link.operand);
+    if (link.op != BinaryOp::divide || !a || !b || b->integer == 0 || a->integer % b->integer == 0) return;
+    diagnostics.warning(join(dividend.span, link.operand->span), "whole-division",
+                        "whole numbers are divided without a rest: this is " + std::to_string(a->integer / b->integer),
+                        "write " + std::to_string(a->integer) + ".0 / " + std::to_string(b->integer) + ".0");
 }
 
 Type BodyChecker::report_operator(BinaryOp op, Span span, Type left, const Expression& right)
