@@ -13,7 +13,7 @@ constexpr double rounding = 1e-9;                  // of the largest values met
 // Far enough to meet a seam that crosses the box once, and near enough to meet one of many.
 constexpr double shares[] = {1.0 / 4, 1.0 / 32, 1.0 / 256};
 // As many as a texture of 10 000 operations follows within a second.
-constexpr uint64_t operations_most = 400'000'000, paths_least = 100, paths_most = 1200;
+constexpr uint64_t operations_most = 400'000'000, paths_least = 12, paths_most = 1200;
 
 double distance(const double (&a)[3], const double (&b)[3])
 {
