@@ -168,7 +168,6 @@ void find_depth(const FacetLines& lines, const OnLine& at, double length, double
 // Fills where the texture is felt: beyond a border as at it.
 void find_place(const FacetLines& lines, const dvec3& b, bool beyond, Foot& foot) noexcept
 {
-    foot.is_flat = false;
     foot.face = lines.face;
     foot.side = lines.side;
     foot.barycentric = b;
@@ -224,7 +223,7 @@ Foot flat_foot(const Contact& contact) noexcept
     foot.at_m = contact.proxy_m;
     foot.depth_m = contact.depth_m;
     foot.way = foot.normal = foot.push = contact.normal;
-    foot.is_flat = true;
+    foot.turned_per_m2 = dvec3(0);
     foot.share = 1;
     foot.share_dp = dvec3(0);
     return foot;

@@ -38,17 +38,17 @@ struct Foot {
     glm::dvec3 normal;      // unit: of what is felt there
     glm::dvec3 push;        // of a spring of depth_m: of a smooth foot minus its gradient, else `normal`
     // How at_m moves with the hand: by the weights of the second and the third corner along edges of the facet, and by
-    // them the hand along `line_m`; `turned_per_m2` is `normal` over the volume of all three. Of a flat foot it moves
-    // as the hand does, across `normal`, and edge[0] is 0.
+    // them the hand along `line_m`; `turned_per_m2` is `normal` over the volume of all three. Of a flat foot that is 0:
+    // it moves as the hand does, across `normal`.
     glm::dvec3 edge_m[2], line_m[2], turned_per_m2;
-    bool is_flat;
     double share;        // 0 .. 1, of this foot in what is felt
     glm::dvec3 share_dp; // 1/m: its gradient
 
+    bool is_flat() const { return turned_per_m2 == glm::dvec3(0); }
     // What the hand feels of a gradient by at_m.
     glm::dvec3 felt(const glm::dvec3& gradient) const
     {
-        if (is_flat) return gradient - glm::dot(gradient, normal) * normal;
+        if (is_flat()) return gradient - glm::dot(gradient, normal) * normal;
         return by_weights(glm::dot(gradient, edge_m[0]), glm::dot(gradient, edge_m[1]));
     }
     // And of what changes so much with both weights.

@@ -12,7 +12,8 @@ constexpr double same_foot = 1e-6;
 
 bool are_one(const Foot& a, const Foot& b)
 {
-    return a.share > 0 && b.share > 0 && !a.is_flat && !b.is_flat && glm::distance(a.normal, b.normal) < same_foot &&
+    return a.share > 0 && b.share > 0 && !a.is_flat() && !b.is_flat() &&
+           glm::distance(a.normal, b.normal) < same_foot &&
            glm::distance(a.at_m, b.at_m) < same_foot * glm::length(a.line_m[0]);
 }
 

@@ -71,36 +71,8 @@ haptel_sample evaluate(const TextureBinding& binding, const haptel_point& point)
     return sample;
 }
 
-// `beyond` the beginning of a shoulder, > 0: what is left of it, and how fast that grows with it.
-struct Bent {
-    double value, slope;
-    Bent(double beyond, double shoulder)
-    {
-        const double t = std::min(1.0, beyond / shoulder);
-        value = shoulder * (t - t * t * t * (1 - 0.5 * t));
-        slope = 1 - t * t * (3 - 2 * t);
-    }
-};
-
-// Made to stay within the ends that are not proven.
-void bend(haptel_sample& sample, const TextureBinding& binding)
+TextureSample felt_within(const TextureBinding& binding, const haptel_sample& sample)
 {
-    const double lower = binding.facts.height_min_m + 0.5 * binding.shoulder_m[0],
-                 upper = binding.facts.height_max_m - 0.5 * binding.shoulder_m[1];
-    const bool below = binding.shoulder_m[0] > 0 && sample.height_m < lower,
-               above = binding.shoulder_m[1] > 0 && sample.height_m > upper;
-    if (!below && !above) return;
-    const Bent bent = below ? Bent(lower - sample.height_m, binding.shoulder_m[0])
-                            : Bent(sample.height_m - upper, binding.shoulder_m[1]);
-    sample.height_m = below ? std::max(lower - bent.value, binding.facts.height_min_m)
-                            : std::min(upper + bent.value, binding.facts.height_max_m);
-    for (double& g : sample.gradient) g *= bent.slope;
-    sample.faults |= fault_height_bent;
-}
-
-TextureSample felt(const TextureBinding& binding, haptel_sample sample)
-{
-    bend(sample, binding);
     TextureSample result;
     result.height_m = sample.height_m;
     result.envelope_m = std::min(0.0, sample.height_m - binding.facts.height_max_m);
@@ -114,6 +86,45 @@ TextureSample felt(const TextureBinding& binding, haptel_sample sample)
         result.faults |= fault_height_above_bound;
     }
     return result;
+}
+
+// `beyond` the beginning of a shoulder, > 0: what is left of it, and how fast that grows with it.
+struct Bent {
+    double value, slope;
+    Bent(double beyond, double shoulder)
+    {
+        const double t = std::min(1.0, beyond / shoulder);
+        value = shoulder * (t - t * t * t * (1 - 0.5 * t));
+        slope = 1 - t * t * (3 - 2 * t);
+    }
+};
+
+// Where a shoulder begins, at the lower and the upper end.
+bool is_on_shoulder(const TextureBinding& binding, double height_m)
+{
+    const double* shoulder_m = binding.shoulder_m;
+    return (shoulder_m[1] > 0 && height_m > binding.facts.height_max_m - 0.5 * shoulder_m[1]) ||
+           (shoulder_m[0] > 0 && height_m < binding.facts.height_min_m + 0.5 * shoulder_m[0]);
+}
+
+haptel_sample bent_on_shoulder(const TextureBinding& binding, haptel_sample sample)
+{
+    const double lower = binding.facts.height_min_m + 0.5 * binding.shoulder_m[0],
+                 upper = binding.facts.height_max_m - 0.5 * binding.shoulder_m[1];
+    const bool below = binding.shoulder_m[0] > 0 && sample.height_m < lower;
+    const Bent bent = below ? Bent(lower - sample.height_m, binding.shoulder_m[0])
+                            : Bent(sample.height_m - upper, binding.shoulder_m[1]);
+    sample.height_m = below ? std::max(lower - bent.value, binding.facts.height_min_m)
+                            : std::min(upper + bent.value, binding.facts.height_max_m);
+    for (double& g : sample.gradient) g *= bent.slope;
+    sample.faults |= fault_height_bent;
+    return sample;
+}
+
+TextureSample felt(const TextureBinding& binding, const haptel_sample& sample)
+{
+    if (is_on_shoulder(binding, sample.height_m)) return felt_within(binding, bent_on_shoulder(binding, sample));
+    return felt_within(binding, sample);
 }
 
 } // namespace

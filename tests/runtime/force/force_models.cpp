@@ -127,7 +127,6 @@ dvec3 force_on(const Solid& solid, const dvec3& p, const ForceRule& rule, bool c
         felt.edge_m[0] =
             glm::normalize(glm::cross(normal, std::fabs(normal.x) < 0.7 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
         felt.edge_m[1] = glm::cross(normal, felt.edge_m[0]);
-        felt.is_flat = false;
         felt.turned_per_m2 = normal;
         felt.line_m[0] = glm::cross(moves * felt.edge_m[1], normal);
         felt.line_m[1] = glm::cross(normal, moves * felt.edge_m[0]);
