@@ -52,7 +52,8 @@ Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
     Symbol* other = find_local(name.text);
     const bool is_twice = std::find(declared.begin() + scope_marks.back(), declared.end(), other) != declared.end();
     if (is_twice && !type.is_error() && !other->type.is_error()) {
-        other->is_read = other->is_assigned = true; // whichever was meant
+        other->is_read = true; // whichever was meant
+        other->parts_assigned = all_parts;
         diagnostics.error(name.span, "duplicate-name", quoted(name.text) + " is declared twice in one block")
             .related.push_back({other->span, "first declared here"});
     }
@@ -70,7 +71,7 @@ Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
                                   " variables in a function or texture",
                               "an array is one; what repeats is a loop");
         flow.variables.resize(++slot_count);
-        flow.variables.back().range = full_range(type);
+        flow.variables.back().hold(full_range(type));
     }
     by_name[symbol.name].push_back(&symbol); // the key lives in the symbol
     declared.push_back(&symbol);
@@ -140,6 +141,7 @@ void BodyChecker::whole_body(StatementPtr& tree, const Name& name, Type result, 
     if (!tree) return;
     if (auto block = std::get_if<Scope>(&tree->node))
         statements(block->statements); // in the parameters' scope, as in C
+    if (flow.reachable && result == void_type) return require_outputs(name.span);
     if (flow.reachable && !in_damaged_body && !result.is_error()) {
         diagnostics.error(name.span, "missing-return",
                           std::string(what) + " " + quoted(name.text) + " can end without returning a " +
@@ -151,6 +153,7 @@ void BodyChecker::whole_body(StatementPtr& tree, const Name& name, Type result, 
 void BodyChecker::check_function(Function& tree, FunctionInfo& info)
 {
     open_scope();
+    is_never_called = !info.is_mentioned && !context.is_library;
     uint32_t functions = 0;
     for (size_t i = 0; i < info.parameters.size(); ++i) {
         ParameterInfo& parameter = info.parameters[i];
@@ -166,7 +169,10 @@ void BodyChecker::check_function(Function& tree, FunctionInfo& info)
             symbol.slot = functions++;
             for (Type type : parameter.signature) symbol.parameters.push_back({type});
         } else {
-            flow.variables[symbol.slot].assigned = all_parts;
+            if (parameter.passing != Passing::out) flow.variables[symbol.slot].assigned = all_parts;
+            if (parameter.range && !context.is_library) flow.variables[symbol.slot].called = *parameter.range;
+            if (parameter.is_written()) must_be_written.push_back(&symbol);
+            symbol.is_read = parameter.is_written();
             if (parameter.type == image_type) symbol.read_only = "it is an image";
         }
         parameter.symbol = &symbol;
@@ -176,6 +182,26 @@ void BodyChecker::check_function(Function& tree, FunctionInfo& info)
     info.slot_count = slot_count;
     info.reads = reads;
     info.mentions = std::move(mentions);
+}
+
+std::vector<ConstantPart> BodyChecker::check_default(Expression& e, const ParameterInfo& parameter, Span where)
+{
+    open_scope();
+    is_global = true;
+    const uint32_t reports = diagnostics.reports();
+    if (parameter.is_function || parameter.is_written() || parameter.type == image_type) {
+        diagnostics.error(where, "default-argument", "expected a value that is only read before a default");
+        return {};
+    }
+    if (expression(e).is_error()) return {};
+    require(e, parameter.type, " for " + quoted(parameter.name));
+    const Expression* varies = first_not_constant(e);
+    if (varies && !varies->type.is_error())
+        diagnostics.error(varies->span, "not-constant",
+                          "a default is constant, expected a value known when the texture is compiled",
+                          "literals, constants and built-in functions of them are");
+    if (varies || diagnostics.reports() != reports || parameter.type.is_error()) return {};
+    return context.constants.value(e, parameter.type);
 }
 
 Symbol& BodyChecker::check_global(Declaration& declaration)

@@ -16,6 +16,7 @@
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace haptel::lang {
@@ -45,6 +46,8 @@ void propose(Diagnostic& reported, Span span, const ForeignWord& word);
 // Without being asked: what converts_implicitly(), and a whole number where a uint is wanted, which it is then.
 bool converts(const ast::Expression& e, Type wanted);
 void adopt_literal(ast::Expression& e, Type wanted);
+Type operand_type(Type other);  // what a literal beside it is
+std::string zero_of(Type type); // as it is written: "vec2(0.0)"
 
 // The type of a name in source, or nothing if the name means no type.
 std::optional<Type> type_named(std::string_view name);
@@ -75,6 +78,8 @@ public:
     void check_texture(ast::Texture& tree, CheckedTexture& texture);
     // Of a parameter or result: the type with the size in brackets, or the error that was reported.
     Type array_type(const ast::TypeName& name, Type element);
+    // That of a parameter of a function; empty after a mistake.
+    std::vector<ConstantPart> check_default(ast::Expression& e, const ParameterInfo& parameter, Span where);
     // A global constant or table.
     Symbol& check_global(ast::Declaration& declaration);
 
@@ -87,6 +92,8 @@ private:
     struct Variable {
         uint64_t assigned = 0; // a bit per component; of an array, per element
         ir::IntRange range{INT32_MIN, INT32_MAX};
+        ir::IntRange called = range; // the same, where calls seen so far are all that there are
+        void hold(ir::IntRange whole) { range = called = whole; }
     };
     struct Flow {
         std::vector<Variable> variables; // by Symbol::slot; those declared last on a path may be missing on others
@@ -94,6 +101,11 @@ private:
     };
     struct Argument;
     struct Call;
+    // What is assigned to, and which of its parts.
+    struct Target {
+        Symbol* symbol = nullptr; // null: reported
+        uint64_t parts = 0;
+    };
 
     // ---- names
     void open_scope() { scope_marks.push_back(declared.size()); }
@@ -131,6 +143,12 @@ private:
 
     // ---- calls
     Type constructor(ast::Expression& e, ast::CallExpression& call, Type type);
+    // Outputs of a call: the arguments that stand where a function writes, and what it makes of them.
+    using Targets = std::vector<std::optional<Target>>; // by argument
+    void write(const Candidate& function, std::vector<ast::ExpressionPtr>& arguments, const Targets& targets,
+               Span call);
+    void require_outputs(Span where);
+    void note_ranges(const FunctionInfo& callee, const std::vector<ast::ExpressionPtr>& arguments);
     std::optional<Candidate> resolve(const ast::Expression& e, const ast::Name& callee,
                                      std::vector<ast::ExpressionPtr>& arguments, uint32_t order, CallTarget& target,
                                      Type& result);
@@ -143,7 +161,9 @@ private:
     // ---- statements
     void statement(ast::Statement& s)
     {
+        std::vector<const Symbol*>* const around = std::exchange(written_by_calls, &s.written);
         std::visit([&](auto& node) { check(s.span, node); }, s.node);
+        written_by_calls = around;
     }
     void statements(std::vector<ast::StatementPtr>& list);
     void body(ast::Statement& s); // in a scope of its own
@@ -154,6 +174,8 @@ private:
     void check(Span span, ast::If& node);
     void check(Span span, ast::For& node);
     void check(Span span, ast::Break& node);
+    void check(Span span, ast::Continue& node);
+    void leave_loop(Span span, const char* what);
     void check(Span span, ast::Return& node);
     void condition(ast::ExpressionPtr& e, const char* of_what);
     void merge(Flow& into, const Flow& other) const;
@@ -161,12 +183,7 @@ private:
                     const ast::Damage& body_damage);
 
     // ---- arrays, and variables with parts
-    // What is assigned to, and which of its parts.
-    struct Target {
-        Symbol* symbol = nullptr; // null: reported
-        uint64_t parts = 0;
-    };
-    Target target_of(ast::Expression& e);
+    Target target_of(ast::Expression& e, const char* where);
     uint64_t parts_written(Type type, const std::vector<const ast::Expression*>& accessors) const;
     Symbol& array(ast::Declaration& declaration, Type element);
     Type declared_array(ast::Declaration& declaration, Type element, std::vector<ConstantPart>& cells);
@@ -176,10 +193,15 @@ private:
     std::optional<uint32_t> size_of_array(const ast::TypeName& type);
 
     // ---- loops
+    std::vector<const ast::NameExpression*> assigned_in(const ast::StatementPtr& s) const;
+    void add_written(const ast::Expression& e, std::vector<const ast::NameExpression*>& names) const;
     void plan(Span span, ast::For& loop, Symbol& counter);
+    void plan_of_reals(ast::For& loop, LoopPlan made, bool is_upwards, const ast::Assignment& step);
 
     // ---- integers
     ir::IntRange range(const ast::Expression& e) const;
+    ir::IntRange range_over_calls(const ast::Expression& e);
+    void hold(Variable& variable, const ast::Expression& value);
 
     CheckContext& context;
     Diagnostics& diagnostics;
@@ -194,7 +216,12 @@ private:
     Flow flow;
     uint32_t slot_count = 0; // of variables declared so far: no slot is used twice
     uint32_t loop_depth = 0;
-    bool is_global = false; // what is declared stands outside of any body
+    uint32_t choice_depth = 0;                              // of operands that may not be evaluated, or more than once
+    std::vector<const Symbol*>* written_by_calls = nullptr; // in the innermost statement
+    std::vector<const Symbol*> must_be_written;             // parameters of the function
+    bool is_never_called = false;
+    bool counts_calls = false; // range() tells Variable::called
+    bool is_global = false;    // what is declared stands outside of any body
     Type result_type;
     std::string owner_name; // of the function or texture, for messages
     uint32_t reads = 0;

@@ -2,6 +2,7 @@
 #include "lang/check/check.h"
 
 #include "lang/check/body_checker.h"
+#include "lang/check/call_order.h"
 #include "lang/check/library.h"
 #include "lang/syntax/grammar.h"
 #include "lang/text/limits.h"
@@ -19,9 +20,10 @@ std::optional<Type> type_named(std::string_view name)
 {
     static const auto types = [] {
         std::map<std::string, Type, std::less<>> by_name;
-        for (Type type : {float_type, int_type, uint_type, bool_type, vec(2), vec(3), vec(4), mat(2), mat(3), mat(4),
-                          image_type, void_type})
-            by_name.emplace(to_string(type), type);
+        const auto add = [&](Type type) { by_name.emplace(to_string(type), type); };
+        for (const Scalar of : {Scalar::float_, Scalar::int_, Scalar::uint_, Scalar::bool_})
+            for (uint8_t size = 1; size <= 4; ++size) add(vec(size, of));
+        for (const Type type : {mat(2), mat(3), mat(4), image_type, void_type}) add(type);
         return by_name;
     }();
     const auto found = types.find(name);
@@ -38,7 +40,7 @@ Type resolve_type(CheckContext& context, const TypeName& name)
         reported.hint = "vecN is vec2 and vec3 in a function that has a parameter of it: float f(vecN q)";
         return Type::error();
     }
-    reported.hint = "types are float, int, uint, bool, vec2, vec3, vec4, mat2, mat3 and mat4";
+    reported.hint = "types are float, int, uint, bool, vec2, vec3, vec4 (ivec2, uvec2, bvec2 ...), mat2, mat3 and mat4";
     if (name.base.text.starts_with("mat") && name.base.text.find('x') != std::string::npos)
         reported.hint = "matrices are square: mat2, mat3 and mat4";
     else
@@ -189,11 +191,13 @@ public:
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], false);
         for (uint32_t file = 0; file < count; ++file) check_constants(file, scopes[file]);
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], true);
-        for (FunctionInfo& function : program.functions) {
-            if (diagnostics.full()) return;
-            BodyChecker(context, scopes[function.file]).check_function(const_cast<Function&>(*function.tree), function);
-        }
+        for (FunctionInfo& function : program.functions) check_defaults(function, scopes[function.file]);
         for (uint32_t file = 0; file < count; ++file) check_textures(file, scopes[file]);
+        for (FunctionInfo* function : callers_first(program.functions)) {
+            if (diagnostics.full()) return;
+            BodyChecker(context, scopes[function->file])
+                .check_function(const_cast<Function&>(*function->tree), *function);
+        }
         check_call_graph(program, diagnostics);
     }
 
@@ -212,7 +216,12 @@ private:
             info.tree = &tree;
             info.file = file;
             info.is_library = context.is_library;
-            info.result = type_of(tree.result, "a function returns a value", scope, true);
+            const auto is_written = [](const FunctionParameter& parameter) { return parameter.passing != Passing::in; };
+            const bool returns_nothing = tree.result.base.text == "void" && !tree.result.is_array;
+            info.result =
+                returns_nothing && std::ranges::any_of(tree.parameters, is_written)
+                    ? void_type
+                    : type_of(tree.result, "a function returns a value, or has an 'out' parameter", scope, true);
             if (type_named(info.name))
                 diagnostics.error(tree.name.span, "reserved-name",
                                   quoted(info.name) + " is a type, expected a name of your own");
@@ -222,6 +231,14 @@ private:
                 made.type = type_of(parameter.type, "a parameter holds a value", scope);
                 made.name = parameter.name.text;
                 made.is_function = parameter.is_function;
+                made.passing = parameter.passing;
+                made.value = parameter.value.get();
+                if (made.is_written() && (made.is_function || made.type == image_type)) {
+                    diagnostics.error(parameter.span, "output-parameter",
+                                      std::string(made.is_function ? "a function" : "an image") +
+                                          " cannot be a result, expected numbers");
+                    made.type = Type::error();
+                }
                 for (const TypeName& type : parameter.signature)
                     made.signature.push_back(type_of(type, "a function takes values", scope));
                 if ((numbers += std::max(made.type.components(), 1u)) <= parameters_max) continue;
@@ -272,6 +289,29 @@ private:
     {
         const Type type = value_type(context, name, why, !name.is_array && !is_result);
         return name.is_array ? BodyChecker(context, scope).array_type(name, type) : type;
+    }
+
+    // What a call may leave out stands last, and is known when the texture is compiled.
+    void check_defaults(FunctionInfo& info, const FileScope& scope)
+    {
+        const ParameterInfo* optional = nullptr;
+        for (size_t i = 0; i < info.parameters.size(); ++i) {
+            ParameterInfo& parameter = info.parameters[i];
+            const FunctionParameter& tree = info.tree->parameters[i];
+            if (tree.value) {
+                optional = &parameter;
+                parameter.value_parts = BodyChecker(context, scope).check_default(*tree.value, parameter, tree.span);
+                if (!parameter.value_parts.empty()) continue;
+                info.is_valid = false;
+            } else if (optional) {
+                diagnostics.error(tree.span, "default-argument",
+                                  quoted(parameter.name) + " needs a default too, as " + quoted(optional->name) +
+                                      " before it has one",
+                                  "what a call may leave out stands last");
+                info.is_valid = false;
+                return;
+            }
+        }
     }
 
     void check_constants(uint32_t file, const FileScope& scope)

@@ -170,7 +170,8 @@ Type BodyChecker::check(Expression& e, BraceList& node)
                 "write float a[2] = {1.0, 2.0}; or a constructor, vec2(1.0, 2.0)");
 }
 
-BodyChecker::Target BodyChecker::target_of(Expression& e)
+// `where` as a clause: "before '='".
+BodyChecker::Target BodyChecker::target_of(Expression& e, const char* where)
 {
     std::vector<const Expression*> accessors; // from the name outwards
     Expression* object = &e;
@@ -185,7 +186,8 @@ BodyChecker::Target BodyChecker::target_of(Expression& e)
     auto name = std::get_if<NameExpression>(&object->node);
     if (!name) {
         if (!std::holds_alternative<ErrorExpression>(object->node))
-            diagnostics.error(e.span, "not-assignable", "expected a variable or components of one before '='",
+            diagnostics.error(e.span, "not-assignable",
+                              std::string("expected a variable or components of one ") + where,
                               "v.xy and v[1] are such components, v.xyz.x is not");
         return {};
     }

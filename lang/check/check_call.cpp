@@ -18,7 +18,9 @@ struct BodyChecker::Argument {
     // The function that is passed; null if none fits.
     const Candidate* passed_as(const ParameterInfo& parameter) const
     {
-        const auto same = [](const ParameterInfo& p, Type type) { return !p.is_function && p.type == type; };
+        const auto same = [](const ParameterInfo& p, Type type) {
+            return !p.is_function && !p.is_written() && p.type == type;
+        };
         const auto found = std::ranges::find_if(functions, [&](const Candidate& candidate) {
             return parameter.is_function && candidate.result == parameter.type &&
                    std::ranges::equal(candidate.parameters, parameter.signature, same);
@@ -28,6 +30,7 @@ struct BodyChecker::Argument {
     bool fits(const ParameterInfo& parameter) const
     {
         if (parameter.is_function || is_function()) return passed_as(parameter);
+        if (parameter.is_written()) return tree->type == parameter.type; // what it gets is of its own type
         return converts(*tree, parameter.type);
     }
 };
@@ -40,12 +43,18 @@ struct BodyChecker::Call {
     bool fits(const Candidate& candidate) const
     {
         const auto fits = [](const Argument& argument, const ParameterInfo& p) { return argument.fits(p); };
-        return std::ranges::equal(arguments, candidate.parameters, fits);
+        return takes_as_many(candidate) &&
+               std::ranges::equal(arguments, candidate.parameters.first(arguments.size()), fits);
     }
-    // Arguments that become what a function takes, which they fit.
+    bool takes_as_many(const Candidate& candidate) const
+    {
+        const size_t given = arguments.size(), all = candidate.parameters.size();
+        return given == all || (given < all && candidate.parameters[given].value);
+    }
+    // Arguments that become what a function takes, which they fit, and those that are left out.
     ptrdiff_t conversions(const Candidate& candidate) const
     {
-        ptrdiff_t count = 0;
+        ptrdiff_t count = std::ssize(candidate.parameters) - std::ssize(arguments);
         for (size_t i = 0; i < arguments.size(); ++i)
             count += !arguments[i].is_function() && arguments[i].tree->type != candidate.parameters[i].type;
         return count;
@@ -120,12 +129,14 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
                               "leave this argument out");
             damaged = true;
         }
-        if (!damaged && (found == image_type || found.is_array() || is_second_matrix)) {
+        const bool is_nothing = found == void_type || found == image_type || found.is_array();
+        if (!damaged && (is_nothing || is_second_matrix)) {
             diagnostics.error(argument.span, found == image_type ? ErrorCode("image") : ErrorCode("type-mismatch"),
                               "expected numbers and vectors for " + to_string(type) + ", found " + to_string(found),
-                              found == image_type ? "read it: sample(" + excerpt(argument) + ", uv)"
-                              : found.is_array()  ? "pick elements: " + operand(argument) + "[i]"
-                                                  : "pick columns: " + operand(argument) + "[0]");
+                              found == image_type  ? "read it: sample(" + excerpt(argument) + ", uv)"
+                              : found.is_array()   ? "pick elements: " + operand(argument) + "[i]"
+                              : found == void_type ? "call it as a statement of its own"
+                                                   : "pick columns: " + operand(argument) + "[0]");
             damaged = true;
         }
         components += found.components();
@@ -143,7 +154,7 @@ Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
         Diagnostic& reported =
             diagnostics.error(e.span, "wrong-argument-count",
                               to_string(type) + " needs " + all + ", found " + std::to_string(components));
-        if (type.is_vector()) reported.hint = "one number fills all: " + to_string(type) + "(0.0)";
+        if (type.is_vector()) reported.hint = "one fills all: " + zero_of(type);
         if (type.is_matrix()) reported.hint = "one number fills the diagonal: " + to_string(type) + "(1.0)";
     }
     return type;
@@ -154,6 +165,9 @@ Type BodyChecker::check(Expression& e, GradCall& call)
     Type made;
     const auto chosen = resolve(e, call.function, call.arguments, call.order, call.target, made);
     if (!chosen) return Type::error();
+    if (std::ranges::any_of(chosen->parameters, &ParameterInfo::is_written))
+        return fail(e.span, "not-differentiable", "grad is of functions that only return a value",
+                    "the function is " + to_string(*chosen));
     const auto first = std::find_if(chosen->parameters.begin(), chosen->parameters.end(),
                                     [](const ParameterInfo& p) { return !p.is_function && p.type != image_type; });
     const Type argument = first == chosen->parameters.end() ? void_type : first->type;
@@ -189,7 +203,19 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
 {
     Call call{e, callee, {}};
     bool damaged = false;
-    for (ExpressionPtr& tree : arguments) {
+    const std::vector<Candidate> candidates = functions_called(callee.text);
+    Targets targets(arguments.size());
+    for (size_t i = 0; i < arguments.size(); ++i) {
+        ExpressionPtr& tree = arguments[i];
+        const auto writes_here = [&](const Candidate& c) {
+            return i < c.parameters.size() && c.parameters[i].is_written();
+        };
+        if (std::ranges::any_of(candidates, writes_here)) {
+            targets[i] = target_of(*tree, "for an output");
+            damaged |= !targets[i]->symbol;
+            call.arguments.push_back({tree.get(), {}});
+            continue;
+        }
         auto name = std::get_if<NameExpression>(&tree->node);
         const Symbol* symbol = name ? find(name->name) : nullptr;
         const bool is_value = !name || (symbol && symbol->kind != SymbolKind::function);
@@ -197,7 +223,6 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
         const std::vector<Candidate>& functions = call.arguments.back().functions;
         damaged |= functions.empty() ? expression(*tree).is_error() : !std::ranges::all_of(functions, is_valid);
     }
-    const std::vector<Candidate> candidates = functions_called(callee.text);
     if (candidates.empty()) {
         report_unknown_function(call);
         return std::nullopt;
@@ -215,6 +240,8 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
     }
     if (best.empty()) {
         report_no_match(call, candidates);
+        for (const auto& target_here : targets) // whatever was meant has a value now
+            if (target_here) flow.variables[target_here->symbol->slot].assigned = all_parts;
         return std::nullopt;
     }
     if (best.size() > 1) {
@@ -223,20 +250,88 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
                           listed(best) + "; convert arguments to say which, for example float(i)");
         return std::nullopt;
     }
+    write(best.front(), arguments, targets, e.span);
     target.function = best.front().function;
     const FunctionInfo* source = source_of(target.function);
     if (source || order > 0) mentions.push_back({source, callee.span, order, nullptr});
+    if (source) note_ranges(*source, arguments);
     for (size_t i = 0; i < arguments.size(); ++i) {
         const ParameterInfo& parameter = best.front().parameters[i];
         const Candidate* passed = call.arguments[i].passed_as(parameter);
         target.function_arguments.push_back(passed ? passed->function : FunctionReference{});
-        if (passed)
+        if (passed) {
             mentions.push_back({source_of(passed->function), arguments[i]->span, order, source});
-        else
+            if (auto handed_on = source_of(passed->function)) note_ranges(*handed_on, {});
+        } else {
             adopt_literal(*arguments[i], parameter.type);
+        }
     }
     result = best.front().result;
     return best.front();
+}
+
+// Gives the arguments that it writes a value, once those that it reads are read.
+void BodyChecker::write(const Candidate& function, std::vector<ExpressionPtr>& arguments, const Targets& targets,
+                        Span call)
+{
+    for (size_t i = 0; i < arguments.size(); ++i) // what only another function of that name writes is read
+        if (targets[i] && (function.parameters[i].passing != Passing::out)) expression(*arguments[i]);
+    for (size_t i = 0; i < arguments.size(); ++i) {
+        if (!function.parameters[i].is_written()) continue;
+        Symbol& symbol = *targets[i]->symbol;
+        Variable& variable = flow.variables[symbol.slot];
+        variable.assigned |= targets[i]->parts;
+        variable.hold(full_range(symbol.type));
+        symbol.parts_assigned |= targets[i]->parts;
+        symbol.is_read = true;
+        if (written_by_calls) written_by_calls->push_back(&symbol);
+    }
+    if (choice_depth == 0 || std::ranges::none_of(function.parameters, &ParameterInfo::is_written)) return;
+    diagnostics.error(call, "output-parameter",
+                      "a call that writes its arguments cannot stand in ?:, behind && or ||, or in the head of a loop",
+                      "call it in a statement above, or write if");
+}
+
+// At a return, or at the end of a function without one.
+void BodyChecker::require_outputs(Span where)
+{
+    for (const Symbol* output : must_be_written) {
+        uint64_t& assigned = flow.variables[output->slot].assigned;
+        const uint64_t missing = parts_of(output->type) & ~assigned;
+        if (!missing || in_damaged_body || output->type.is_error()) continue;
+        assigned = all_parts;
+        if (!(missing & ~output->parts_assigned)) {
+            diagnostics.warning(where, "perhaps-unassigned",
+                                "the output " + quoted(output->name) +
+                                    " has no value here on some path, and is 0 there",
+                                "give it one first: " + output->name + " = " + zero_of(output->type) + ";");
+            continue;
+        }
+        diagnostics
+            .error(where, "unassigned", "the output " + quoted(output->name) + " has no value here on every path",
+                   "give it one first: " + output->name + " = " + zero_of(output->type) + ";")
+            .related.push_back({output->span, quoted(output->name) + " is declared here"});
+    }
+}
+
+// Between what the callee's whole numbers lie; what it is called with where it is only passed on, nobody knows.
+void BodyChecker::note_ranges(const FunctionInfo& callee, const std::vector<ExpressionPtr>& arguments)
+{
+    if (is_never_called) return; // what is not compiled calls nothing
+    auto& info = const_cast<FunctionInfo&>(callee); // what is found out of it is owned by the program being checked
+    info.is_mentioned = true;
+    for (size_t i = 0; i < info.parameters.size(); ++i) {
+        ParameterInfo& parameter = info.parameters[i];
+        if (!is_integer(parameter.type) || parameter.is_function) continue;
+        ir::IntRange here = full_range(parameter.type);
+        if (i < arguments.size() && converts(*arguments[i], parameter.type)) {
+            here = range_over_calls(*arguments[i]);
+        } else if (!arguments.empty() && i >= arguments.size() && !parameter.value_parts.empty()) {
+            const auto number = static_cast<int64_t>(as_number(parameter.value_parts.front(), parameter.type));
+            here = {number, number};
+        }
+        parameter.range = parameter.range ? ir::join(*parameter.range, here) : here;
+    }
 }
 
 // That the name means where it is called or passed.
@@ -255,8 +350,10 @@ void BodyChecker::report_no_match(const Call& call, const std::vector<Candidate>
     std::set<size_t> counts;
     std::vector<Candidate> same_count;
     for (const Candidate& candidate : candidates) {
-        counts.insert(candidate.parameters.size());
-        if (candidate.parameters.size() == call.arguments.size()) same_count.push_back(candidate);
+        size_t most = candidate.parameters.size();
+        counts.insert(most);
+        while (most > 0 && candidate.parameters[most - 1].value) counts.insert(--most);
+        if (call.takes_as_many(candidate)) same_count.push_back(candidate);
     }
     if (same_count.empty()) {
         std::string numbers;

@@ -25,21 +25,16 @@ std::string conversion_hint(Type from, Type to, const std::string& text, const s
         if (from.is_matrix() && to.is_scalar()) return "pick an element: " + operand + "[0][0]";
         return from.is_vector() || to.is_vector() ? "" : "write " + to_string(to) + "(" + text + ")";
     }
+    if (from.is_vector() && to.is_vector() && from.size == to.size) return "write " + to_string(to) + "(" + text + ")";
     if (from.is_vector() && to.is_vector())
         return from.size > to.size
                    ? "pick components: " + operand + "." + std::string("xyzw").substr(0, to.size)
                    : "write " + to_string(to) + "(" + text + ", 0.0" + (to.size - from.size > 1 ? ", 0.0" : "") + ")";
+    if (from.is_vector() && from.scalar == Scalar::bool_) return "write any(" + text + ") or all(" + text + ")";
     if (from.is_vector()) return "pick a component, " + operand + ".x, or take length(" + text + ")";
     if (to == bool_type) return "write " + operand + (from == float_type ? " != 0.0" : " != 0");
     if (to == int_type && from == float_type) return "write int(" + text + "), which drops the fraction";
     return "write " + to_string(to) + "(" + text + ")";
-}
-
-// As it is written.
-std::string zero_of(Type type)
-{
-    if (!type.is_scalar()) return to_string(type) + "(0.0)";
-    return type == bool_type ? "false" : type == float_type ? "0.0" : "0";
 }
 
 // ".x", "[2]", "[0][1]": which part of a variable a bit stands for.
@@ -56,10 +51,10 @@ std::string operator_hint(BinaryOp op, Type left, Type right)
     const bool vectors = !left.is_scalar() || !right.is_scalar();
     const bool matrices = left.is_matrix() || right.is_matrix();
     const bool reals = left.scalar == Scalar::float_ || right.scalar == Scalar::float_;
-    const bool bools = left == bool_type || right == bool_type;
+    const bool bools = left.scalar == Scalar::bool_ || right.scalar == Scalar::bool_;
     if (left.is_array() || right.is_array()) return "an array is used by its elements: a[i]";
-    if (is_integer(left) && is_integer(right))
-        return "int and uint do not mix: write uint(...) or int(...) round one of them";
+    if (left.is_whole() && right.is_whole() && left.scalar != right.scalar)
+        return "int and uint do not mix: write " + to_string(vec(right.size, left.scalar)) + "(...) round the second";
     switch (op) {
     case add:
     case subtract:
@@ -73,13 +68,14 @@ std::string operator_hint(BinaryOp op, Type left, Type right)
     case less_equal:
     case greater:
     case greater_equal:
-        if (vectors) return "compare components, a.x < b.x, or length(a) < length(b)";
+        if (matrices) return "compare their elements, a[0][0] < b[0][0]";
+        if (vectors) return "compare components, a.x < b.x, all of them, all(lessThan(a, b)), or lengths";
         return "join comparisons with &&";
     case equal:
     case not_equal: return vectors ? "vectors must have the same size" : "both sides must be of one kind";
     case logical_and:
     case logical_or:
-    case logical_xor: return "compare first, for example x != 0.0";
+    case logical_xor: return vectors ? "write any(x) or all(x)" : "compare first, for example x != 0.0";
     case bit_and: return bools ? "write && for bool" : "bits are those of int or uint";
     case bit_or: return bools ? "write || for bool" : "bits are those of int or uint";
     case bit_xor:
@@ -93,6 +89,12 @@ std::string operator_hint(BinaryOp op, Type left, Type right)
 
 } // namespace
 
+std::string zero_of(Type type)
+{
+    const std::string zero = type.scalar == Scalar::bool_ ? "false" : type.scalar == Scalar::float_ ? "0.0" : "0";
+    return type.is_scalar() ? zero : to_string(type) + "(" + zero + ")";
+}
+
 bool converts(const Expression& e, Type wanted)
 {
     return converts_implicitly(e.type, wanted) ||
@@ -102,6 +104,12 @@ bool converts(const Expression& e, Type wanted)
 void adopt_literal(Expression& e, Type wanted)
 {
     if (wanted == uint_type && converts(e, wanted)) e.type = uint_type;
+}
+
+// That goes with each component, where the other operand is a vector.
+Type operand_type(Type other)
+{
+    return other.is_vector() ? other.element() : other;
 }
 
 Type BodyChecker::expression(Expression& e)
@@ -181,6 +189,13 @@ Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
         diagnostics.count_consequence();
         return Type::error();
     }
+    if (!(missing & ~symbol->parts_assigned)) {
+        diagnostics.warning(e.span, "perhaps-unassigned",
+                            quoted(node.name) + " is read here and has no value on some path: it is 0 there",
+                            "give it one where it is declared: " + to_string(symbol->type.element()) + " " + node.name +
+                                " = " + zero_of(symbol->type) + ";");
+        return symbol->type;
+    }
     const std::string part = has_some ? part_name(symbol->type, static_cast<uint32_t>(std::countr_zero(missing))) : "";
     const std::string type = to_string(symbol->type), count = std::to_string(symbol->type.array_size);
     diagnostics
@@ -213,12 +228,13 @@ Type BodyChecker::check(Expression& e, Unary& node)
                     type.is_array() ? "an array is used by its elements: a[i]" : "write !x for a bool");
     case UnaryOp::logical_not:
         if (type == bool_type) return type;
-        return fail(e.span, "type-mismatch", "'!' expects bool, found " + to_string(type),
-                    !type.is_scalar()
-                        ? "there are no bool vectors: compare the components"
-                        : "compare: " + operand(*node.operand) + (type == float_type ? " == 0.0" : " == 0"));
+        return fail(
+            e.span, "type-mismatch", "'!' expects bool, found " + to_string(type),
+            type.is_vector() && type.scalar == Scalar::bool_ ? "of each component: not(" + excerpt(*node.operand) + ")"
+            : !type.is_scalar()                              ? "compare its components"
+                                : "compare: " + operand(*node.operand) + (type == float_type ? " == 0.0" : " == 0"));
     case UnaryOp::bit_not:
-        if (is_integer(type)) return type;
+        if (type.is_whole() && !type.is_array()) return type;
         return fail(e.span, "type-mismatch", "'~' expects int or uint, found " + to_string(type),
                     type == bool_type ? "write !x for a bool" : "bits are those of int or uint");
     }
@@ -230,14 +246,17 @@ Type BodyChecker::check(Expression&, Chain& node)
 {
     Type left = expression(*node.first);
     for (Chain::Link& link : node.rest) {
+        const uint32_t may_be_left_out = link.op == BinaryOp::logical_and || link.op == BinaryOp::logical_or ? 1 : 0;
+        choice_depth += may_be_left_out;
         const Type right = expression(*link.operand);
+        choice_depth -= may_be_left_out;
         if (left.is_error() || right.is_error()) {
             left = Type::error();
             continue; // the other operands deserve their messages
         }
-        adopt_literal(*link.operand, left);
+        adopt_literal(*link.operand, operand_type(left));
         if (&link == &node.rest.front()) {
-            adopt_literal(*node.first, right);
+            adopt_literal(*node.first, operand_type(right));
             left = node.first->type;
             warn_of_whole_division(*node.first, link);
         }
@@ -273,7 +292,9 @@ Type BodyChecker::report_operator(BinaryOp op, Span span, Type left, const Expre
 Type BodyChecker::check(Expression& e, Conditional& node)
 {
     condition(node.condition, "before '?'");
+    ++choice_depth;
     const Type a = expression(*node.when_true), b = expression(*node.when_false);
+    --choice_depth;
     if (a.is_error() || b.is_error()) return Type::error();
     if (a == image_type && b == image_type)
         return fail(e.span, "image", "an image cannot be chosen by '?:'",
@@ -312,7 +333,7 @@ Type BodyChecker::check(Expression& e, Member& node)
             reported.hint += ", picked by up to four letters of one set: xyzw, rgba or stpq";
         return Type::error();
     }
-    return vec(swizzle->size);
+    return vec(swizzle->size, object.scalar);
 }
 
 Type BodyChecker::check(Expression& e, Index& node)

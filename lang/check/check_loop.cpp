@@ -5,6 +5,7 @@
 #include "lang/syntax/operators.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace haptel::lang {
@@ -15,17 +16,33 @@ namespace {
 
 constexpr const char* loop_form = "a loop counts: for (int i = 0; i < 8; ++i)";
 
+} // namespace
+
+// The names that are arguments where a function of that name may write.
+void BodyChecker::add_written(const Expression& e, std::vector<const NameExpression*>& names) const
+{
+    if (auto call = std::get_if<CallExpression>(&e.node))
+        for (const Candidate& candidate : scope.functions(call->callee.text))
+            for (size_t i = 0; i < std::min(candidate.parameters.size(), call->arguments.size()); ++i)
+                if (auto name = root_of(*call->arguments[i]); name && candidate.parameters[i].is_written())
+                    names.push_back(name);
+    for (const Expression* operand : operands_of(e)) add_written(*operand, names);
+}
+
 // The names that are assigned to anywhere in a statement, if there is one.
-std::vector<const NameExpression*> assigned_in(const StatementPtr& s)
+std::vector<const NameExpression*> BodyChecker::assigned_in(const StatementPtr& s) const
 {
     std::vector<const NameExpression*> names;
     if (!s) return names;
     for_each_in(*s, [&](const Statement& inner) {
         auto assignment = std::get_if<Assignment>(&inner.node);
-        if (auto name = assignment ? root_of(*assignment) : nullptr) names.push_back(name);
+        if (auto name = assignment ? root_of(*assignment->target) : nullptr) names.push_back(name);
+        for (const Expression* e : expressions_of(inner)) add_written(*e, names);
     });
     return names;
 }
+
+namespace {
 
 // The first variable in `e` whose name stands in `names`.
 const NameExpression* first_read(const Expression& e, const std::vector<const NameExpression*>& names)
@@ -50,14 +67,18 @@ void BodyChecker::check(Span span, For& node)
     for (const StatementPtr* repeated : {&node.step, &node.body})
         for (const NameExpression* name : assigned_in(*repeated))
             if (const Symbol* local = find_local(name->name); local && local->kind == SymbolKind::local)
-                flow.variables[local->slot].range = full_range(local->type);
+                flow.variables[local->slot].hold(full_range(local->type));
+    for (const NameExpression* name : assigned_in(node.body)) // a turn may read what one before it has assigned
+        if (Symbol* local = find_local(name->name)) local->parts_assigned = all_parts;
+    ++choice_depth;
     if (node.condition) condition(node.condition, "as the condition of a loop");
+    --choice_depth;
     if (!counter && in_damaged_body) {
         diagnostics.count_consequence(); // most likely what declares it could not be read
     } else if (!counter) {
         diagnostics.error(node.init ? node.init->span : span, "unbounded-loop",
                           "expected a counter declared in the loop", loop_form);
-    } else if (!counter->type.is_error() && !is_integer(counter->type)) {
+    } else if (!counter->type.is_error() && !is_integer(counter->type) && counter->type != float_type) {
         diagnostics.error(counter->span, "unbounded-loop", "a loop counts in int, found " + to_string(counter->type),
                           "count in int and compute the " + to_string(counter->type) + " from it: float x = 0.1 * i;");
     } else if (!counter->type.is_error() && declaration->is_const) {
@@ -74,7 +95,8 @@ void BodyChecker::check(Span span, For& node)
     --loop_depth;
     const Flow behind = std::exchange(flow, before);
     // What the body assigns on its way to its end has a value, if it runs at all.
-    const bool reaches_end = node.plan.runs && behind.reachable && !completion_of(*node.body).breaks;
+    const Completion ends = node.body ? completion_of(*node.body) : Completion{};
+    const bool reaches_end = node.plan.runs && behind.reachable && !ends.breaks && !ends.continues;
     for (size_t slot = 0; reaches_end && slot < before.variables.size(); ++slot)
         flow.variables[slot].assigned = behind.variables[slot].assigned;
     close_scope();
@@ -119,7 +141,7 @@ void BodyChecker::plan(Span span, For& loop, Symbol& counter)
     }
     made.is_inclusive = compare == BinaryOp::less_equal || compare == BinaryOp::greater_equal;
     made.bound = left ? chain->rest[0].operand.get() : chain->first.get();
-    if (made.bound->type != counter.type) {
+    if (made.bound->type != counter.type && counter.type != float_type) {
         refuse(made.bound->span,
                "expected " + to_string(counter.type) + " as the bound of a loop, found " + to_string(made.bound->type))
             .hint = "write " + to_string(counter.type) + "(" + excerpt(*made.bound) + ")";
@@ -138,6 +160,7 @@ void BodyChecker::plan(Span span, For& loop, Symbol& counter)
     }
     stepped->symbol = &counter;
     if (expression(*step->value).is_error()) return;
+    if (counter.type == float_type) return plan_of_reals(loop, made, is_less == left, *step);
     const ir::IntRange by = range(*step->value);
     if (!by.is_constant() || by.minimum == 0) {
         refuse(step->value->span, "expected a constant step, not 0");
@@ -166,7 +189,7 @@ void BodyChecker::plan(Span span, For& loop, Symbol& counter)
     // how often, at most: the distance between the farthest start and bound, in steps. Ranges as if it counted up
     const bool up = made.step > 0;
     const auto upwards = [&](ir::IntRange r) { return up ? r : ir::IntRange{-r.maximum, -r.minimum}; };
-    const ir::IntRange from = upwards(range(*made.start)), to = upwards(range(*made.bound)),
+    const ir::IntRange from = upwards(range_over_calls(*made.start)), to = upwards(range_over_calls(*made.bound)),
                        full = upwards(full_range(counter.type));
     const int64_t stride = up ? made.step : -made.step, excess = made.is_inclusive ? 0 : 1;
     const int64_t farthest = to.maximum - from.minimum, nearest = to.minimum - from.maximum;
@@ -177,6 +200,7 @@ void BodyChecker::plan(Span span, For& loop, Symbol& counter)
         const bool bound_unknown = !to.is_constant() && to.maximum == full.maximum;
         const bool start_unknown = !from.is_constant() && from.minimum == full.minimum;
         if (bound_unknown || start_unknown) {
+            if (is_never_called) return; // with which numbers is not known yet, and it is not compiled
             const Expression& culprit = bound_unknown ? *made.bound : *made.start;
             const bool is_upper = up == bound_unknown;
             diagnostics.error(culprit.span, "unbounded-loop",
@@ -201,7 +225,40 @@ void BodyChecker::plan(Span span, For& loop, Symbol& counter)
     made.difference_may_wrap = nearest < INT32_MIN;
     loop.plan = made;
     const ir::IntRange inside = upwards({from.minimum, to.maximum - excess});
-    if (inside.minimum <= inside.maximum) flow.variables[counter.slot].range = inside;
+    if (inside.minimum <= inside.maximum) flow.variables[counter.slot].hold(inside);
+}
+
+// A float counts only from, to and by what is constant: how often is then certain, whatever the precision.
+void BodyChecker::plan_of_reals(For& loop, LoopPlan made, bool is_upwards, const Assignment& step)
+{
+    double number[3] = {};
+    const Expression* parts[] = {made.start, made.bound, step.value.get()};
+    for (size_t i = 0; i < 3; ++i) {
+        const Expression& part = *parts[i];
+        if (first_not_constant(part) || !converts(part, float_type)) {
+            diagnostics.error(part.span, "unbounded-loop",
+                              "a float counts between constants and by a constant, found one that varies",
+                              "count in int and compute the float from it: float x = 0.1 * i;");
+            return;
+        }
+        number[i] = as_number(context.constants.value(part, float_type).front(), float_type);
+    }
+    const auto [start, bound, size] = number;
+    made.real_start = start;
+    made.real_step = step.op == BinaryOp::add ? size : -size;
+    const double farthest = (bound - start) / made.real_step; // in steps
+    if ((made.real_step > 0) != is_upwards || !(std::abs(farthest) <= ir::operations_limit)) {
+        diagnostics.error(step.value->span, "unbounded-loop",
+                          "this step does not lead to the bound in at most " + std::to_string(ir::operations_limit) +
+                              " turns",
+                          loop_form);
+        return;
+    }
+    const double whole = std::max(std::ceil(farthest), 0.0);
+    const bool meets_bound = whole == farthest && made.is_inclusive;
+    made.trip_max = static_cast<uint32_t>(whole) + (meets_bound && farthest >= 0 ? 1 : 0);
+    made.runs = loop.body && made.trip_max > 0;
+    loop.plan = made;
 }
 
 } // namespace haptel::lang

@@ -49,6 +49,22 @@ ir::IntRange absolute(ir::IntRange a)
 
 } // namespace
 
+// What loops may rely on, since a function is compiled for the calls that there are; the finding that an index is
+// always outside may not, since it is of the function as it stands.
+ir::IntRange BodyChecker::range_over_calls(const Expression& e)
+{
+    counts_calls = true;
+    const ir::IntRange found = range(e);
+    counts_calls = false;
+    return found;
+}
+
+void BodyChecker::hold(Variable& variable, const Expression& value)
+{
+    variable.range = range(value);
+    variable.called = range_over_calls(value);
+}
+
 ir::IntRange BodyChecker::range(const Expression& e) const
 {
     const ir::IntRange full = full_range(e.type);
@@ -57,7 +73,10 @@ ir::IntRange BodyChecker::range(const Expression& e) const
         return ir::constant_range(ir_type(e.type), static_cast<uint32_t>(literal->integer));
     if (auto name = std::get_if<NameExpression>(&e.node)) {
         if (!name->symbol) return full;
-        if (name->symbol->kind == SymbolKind::local) return flow.variables[name->symbol->slot].range;
+        if (name->symbol->kind == SymbolKind::local) {
+            const Variable& variable = flow.variables[name->symbol->slot];
+            return counts_calls ? variable.called : variable.range;
+        }
         return name->symbol->range.value_or(full);
     }
     if (auto unary = std::get_if<Unary>(&e.node)) {

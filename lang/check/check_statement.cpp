@@ -75,14 +75,14 @@ void BodyChecker::check(Span, Declaration& node)
         }
     } else if (value) {
         flow.variables[symbol.slot].assigned = all_parts;
-        if (value->type == type) flow.variables[symbol.slot].range = range(*value);
+        if (value->type == type) hold(flow.variables[symbol.slot], *value);
     }
 }
 
 void BodyChecker::check(Span span, Assignment& node)
 {
     expression(*node.value);
-    const Target target = target_of(*node.target);
+    const Target target = target_of(*node.target, "before '='");
     if (!target.symbol) {
         // Whatever was meant has a value now.
         if (auto name = std::get_if<NameExpression>(&node.target->node))
@@ -90,21 +90,22 @@ void BodyChecker::check(Span span, Assignment& node)
                 flow.variables[local->slot].assigned = all_parts;
         return;
     }
-    target.symbol->is_assigned = true;
     const Type type = node.target->type;
     Variable& variable = flow.variables[target.symbol->slot];
     if (!node.op) {
         require(*node.value, type, " for " + quoted(excerpt(*node.target)));
-        if (node.value->type == type) variable.range = range(*node.value);
+        if (node.value->type == type) hold(variable, *node.value);
         variable.assigned |= target.parts;
+        target.symbol->parts_assigned |= target.parts;
         return;
     }
     const bool was_read = target.symbol->is_read; // "x += 1" alone is no use of x
     if (target.parts & ~variable.assigned) expression(*node.target);
     target.symbol->is_read = was_read;
-    variable.range = full_range(type);
+    target.symbol->parts_assigned |= target.parts;
+    variable.hold(full_range(type));
     if (node.value->type.is_error()) return;
-    adopt_literal(*node.value, type);
+    adopt_literal(*node.value, operand_type(type));
     const auto types = operator_types(*node.op, type, node.value->type);
     if (!types) {
         report_operator(*node.op, span, type, *node.value);
@@ -120,7 +121,10 @@ void BodyChecker::check(Span span, Assignment& node)
 
 void BodyChecker::check(Span span, ExpressionStatement& node)
 {
-    if (expression(*node.expression).is_error() || in_damaged_body) return;
+    auto call = std::get_if<CallExpression>(&node.expression->node);
+    const uint32_t reports = diagnostics.reports();
+    if (expression(*node.expression).is_error() || in_damaged_body || diagnostics.reports() > reports) return;
+    if (call && writes(call->target.function)) return;
     diagnostics.warning(span, "useless-statement",
                         "this value is not used: functions only return values, they change nothing",
                         "assign it to a variable or leave it out");
@@ -133,6 +137,8 @@ void BodyChecker::condition(ExpressionPtr& e, const char* of_what)
                                              std::string("expected bool ") + of_what + ", found " + to_string(e->type));
     if (e->type == float_type || is_integer(e->type))
         reported.hint = "compare: " + operand(*e) + (e->type == float_type ? " != 0.0" : " != 0");
+    else if (e->type.is_vector() && e->type.scalar == Scalar::bool_)
+        reported.hint = "write any(" + excerpt(*e) + ") or all(" + excerpt(*e) + ")";
 }
 
 // What holds on either of two paths; a path that does not go on has no say.
@@ -143,6 +149,7 @@ void BodyChecker::merge(Flow& into, const Flow& other) const
     for (size_t i = 0; i < std::min(into.variables.size(), other.variables.size()); ++i) {
         into.variables[i].assigned &= other.variables[i].assigned;
         into.variables[i].range = ir::join(into.variables[i].range, other.variables[i].range);
+        into.variables[i].called = ir::join(into.variables[i].called, other.variables[i].called);
     }
 }
 
@@ -163,21 +170,37 @@ void BodyChecker::check(Span, If& node)
 
 void BodyChecker::check(Span span, Break&)
 {
+    leave_loop(span, "'break' leaves a loop");
+}
+
+void BodyChecker::check(Span span, Continue&)
+{
+    leave_loop(span, "'continue' ends one turn of a loop");
+}
+
+void BodyChecker::leave_loop(Span span, const char* what)
+{
     flow.reachable = false;
     if (loop_depth > 0 || in_damaged_body) return;
-    diagnostics.error(span, "misplaced-break", "'break' leaves a loop, and there is none round it");
+    diagnostics.error(span, "misplaced-break", std::string(what) + ", and there is none round it");
     in_damaged_body = true; // what follows is reached, if it is left out
 }
 
 void BodyChecker::check(Span span, Return& node)
 {
     if (!node.value) {
-        if (!result_type.is_error()) // of what returns nothing, enough has been said
+        if (result_type != void_type && !result_type.is_error()) // of what returns nothing, enough has been said
             diagnostics.error(span, "missing-value", "expected a " + to_string(result_type) + " behind 'return'");
     } else {
         expression(*node.value);
-        require(*node.value, result_type, " from " + quoted(owner_name));
+        if (result_type == void_type && !node.value->type.is_error())
+            diagnostics.error(node.value->span, "type-mismatch",
+                              quoted(owner_name) + " returns nothing, found " + to_string(node.value->type),
+                              "its results are its 'out' parameters");
+        else
+            require(*node.value, result_type, " from " + quoted(owner_name));
     }
+    require_outputs(span);
     flow.reachable = false;
 }
 

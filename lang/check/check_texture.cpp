@@ -44,7 +44,7 @@ void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
     std::ranges::sort(texture.outputs, {}, &CheckedOutput::writes);
     whole_body(tree.body, tree.name, float_type, "texture", tree.damage);
     for (const CheckedOutput& output : texture.outputs)
-        if (!output.symbol->is_assigned && !context.is_library && !in_damaged_body)
+        if (output.symbol->parts_assigned == 0 && !context.is_library && !in_damaged_body)
             diagnostics.warning(output.symbol->span, "unassigned-output",
                                 "output " + quoted(output.symbol->name) + " is never assigned: it is always 1",
                                 "assign it in the body or leave it out");

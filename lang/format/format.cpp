@@ -227,6 +227,12 @@ std::optional<std::string> format(const SourceSet& sources, uint32_t file, Diagn
     const TokenList list = lex(sources, file, diagnostics);
     parse(sources, file, list, diagnostics);
     if (diagnostics.has_errors()) return std::nullopt;
+    if (list.has_directives) { // what they leave out is in no token
+        diagnostics.error({file, 0, 0}, "preprocessor",
+                          "a text with lines that begin with '#' has no layout of its own",
+                          "haptel check --fix makes constants of some");
+        return std::nullopt;
+    }
     return Formatter(pieces_of(sources.file(file).text, list.tokens)).run();
 }
 

@@ -30,6 +30,7 @@ public:
     Value iclamp(Parts x) { return make(Op::imin, make(Op::imax, x[0], x[1]), x[2]); }
     Value uclamp(Parts x) { return make(Op::umin, make(Op::umax, x[0], x[1]), x[2]); }
     Value mix(Parts x) { return add(mul(x[0], sub(real(1), x[2])), mul(x[1], x[2])); }
+    Value mix_either(Parts x) { return select(x[2], x[1], x[0]); }
     Value step(Parts x) { return select(less(x[1], x[0]), real(0), real(1)); }
     Value smoothstep(Parts x)
     {
@@ -98,6 +99,19 @@ public:
         return each(x[0].size(),
                     [&](size_t i) { return select(reflected, real(0), sub(mul(eta, x[0][i]), mul(along, x[1][i]))); });
     }
+
+    Value less_than(Parts x) { return compared(x[0], x[1], Op::lt, Op::ilt, Op::ult); }
+    Value less_than_equal(Parts x) { return compared(x[0], x[1], Op::le, Op::ile, Op::ule); }
+    Value greater_than(Parts x) { return compared(x[1], x[0], Op::lt, Op::ilt, Op::ult); }
+    Value greater_than_equal(Parts x) { return compared(x[1], x[0], Op::le, Op::ile, Op::ule); }
+    Value equal_to(Parts x)
+    {
+        if (builder.type(x[0]) == ir::Type::boolean) return no(make(Op::lxor, x[0], x[1]));
+        return compared(x[0], x[1], Op::eq, Op::ieq, Op::ueq);
+    }
+    Value not_equal_to(Parts x) { return no(equal_to(x)); }
+    Values any(Whole x) { return {joined(x[0], Op::lor)}; }
+    Values all(Whole x) { return {joined(x[0], Op::land)}; }
 
     Value matrix_comp_mult(Parts x) { return mul(x[0], x[1]); }
     Values outer_product(Whole x)
@@ -168,6 +182,17 @@ private:
         return sum;
     }
 
+    Value compared(Value a, Value b, Op of_real, Op of_int, Op of_uint)
+    {
+        const ir::Type type = builder.type(a);
+        return make(type == ir::Type::real ? of_real : type == ir::Type::i32 ? of_int : of_uint, a, b);
+    }
+    Value joined(const Values& parts, Op by)
+    {
+        Value all = parts[0];
+        for (size_t i = 1; i < parts.size(); ++i) all = make(by, all, parts[i]);
+        return all;
+    }
     Value make(Op op, Value a, Value b) { return builder.operation(op, {a, b}); }
     Value real(double value) { return builder.real(value); }
     Value add(Value a, Value b) { return make(Op::add, a, b); }

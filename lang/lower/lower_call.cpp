@@ -20,20 +20,20 @@ constexpr size_t value_count_max = 250'000;
 // ones.
 constexpr bool images_last[] = {false, true};
 
-// What is passed by value, as parameters of the function.
+// What is passed by value, as parameters of the function; nothing where it is only written.
 std::vector<Values> declared(ir::Builder& builder, const std::vector<ParameterInfo>& parameters)
 {
-    std::vector<Type> types;
+    std::vector<const ParameterInfo*> values;
     for (const ParameterInfo& parameter : parameters)
-        if (!parameter.is_function) types.push_back(parameter.type);
-    std::vector<Values> arguments(types.size());
+        if (!parameter.is_function) values.push_back(&parameter);
+    std::vector<Values> arguments(values.size());
     uint32_t& first_size = builder.function().first_argument_size;
     for (const bool are_images : images_last)
-        for (size_t p = 0; p < types.size(); ++p) {
-            if ((types[p] == image_type) != are_images) continue;
-            if (first_size == 0 && !are_images) first_size = types[p].components();
-            for (uint32_t i = 0; i < types[p].components(); ++i)
-                arguments[p].push_back(builder.parameter(ir_type(types[p])));
+        for (size_t p = 0; p < values.size(); ++p) {
+            const Type type = values[p]->type;
+            if ((type == image_type) != are_images || values[p]->passing == Passing::out) continue;
+            if (first_size == 0 && !are_images) first_size = type.components();
+            for (uint32_t i = 0; i < type.components(); ++i) arguments[p].push_back(builder.parameter(ir_type(type)));
         }
     return arguments;
 }
@@ -106,9 +106,11 @@ Values BodyLowering::call(const Expression& e, const CallTarget& target, const s
     for (size_t i = 0; i < arguments.size(); ++i) {
         if (parameters[i].is_function)
             passed.push_back(resolved(target.function_arguments[i]));
-        else
+        else if (parameters[i].passing != Passing::out)
             values.push_back(converted(*arguments[i], parameters[i].type));
     }
+    for (size_t i = arguments.size(); i < parameters.size(); ++i) // left out
+        values.push_back(constant(parameters[i].value_parts, parameters[i].type));
     builder.span = here;
     if (auto builtin = std::get_if<const BuiltinOverload*>(&callee); builtin && order == 0)
         return lower_builtin(owner, builder, **builtin, values);
@@ -131,7 +133,17 @@ Values BodyLowering::call(const Expression& e, const CallTarget& target, const s
                                 "calls, ifs and loops nest more than " + std::to_string(depth_max) + " deep here");
         depth = 0; // once is enough
     }
-    return builder.call(function.index, flat);
+    Values results = builder.call(function.index, flat);
+    const size_t returned = e.type == void_type ? 0 : e.type.components();
+    std::span<const Value> written(results.begin() + static_cast<std::ptrdiff_t>(returned), results.end());
+    for (size_t i = 0; i < arguments.size() && order == 0; ++i) {
+        if (!parameters[i].is_written()) continue;
+        const size_t size = parameters[i].type.components();
+        store(*arguments[i], Values(written.begin(), written.begin() + static_cast<std::ptrdiff_t>(size)));
+        written = written.subspan(size);
+    }
+    if (order == 0) results.resize(returned);
+    return results;
 }
 
 // ---- in the module
@@ -185,9 +197,17 @@ LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector
     body.input_parameters(made.reads);
     body.bind_functions(passed);
     function.is_library = info.is_library;
-    if (info.tree->facts) function.facts.assign(info.result.components(), *info.tree->facts);
+    if (info.tree->facts && info.result != void_type)
+        function.facts.assign(info.result.components(), *info.tree->facts);
     for (ir::Facts& facts : function.facts) facts.proven = info.is_library;
-    const Values results = body.whole_body(*info.tree->body, info.result);
+    for (const ParameterInfo& parameter : info.parameters)
+        if (parameter.passing == Passing::out && parameter.symbol) body.clear(*parameter.symbol);
+    Values results = body.whole_body(*info.tree->body, info.result);
+    for (const ParameterInfo& parameter : info.parameters) {
+        if (!parameter.is_written()) continue;
+        const Values more = parameter.symbol ? body.variable(*parameter.symbol) : body.zeros(parameter.type);
+        results.insert(results.end(), more.begin(), more.end());
+    }
     made.index = body.builder.finish(results);
     made.depth = body.depth;
     return made;

@@ -68,6 +68,7 @@ ir::Type ir_type(Type type)
 
 Values BodyLowering::zeros(Type type)
 {
+    if (type == void_type) return {};
     const ir::Type part = ir_type(type);
     const bool is_word = part != ir::Type::real && part != ir::Type::image; // no variable is an image
     return Values(type.components(), is_word ? builder.word(0, part) : builder.real(0));
@@ -140,7 +141,7 @@ Values BodyLowering::lower(const Expression& e, const NameExpression& node)
                                 "the compiler reads '" + symbol.name + "' before it has given it a value");
         break;
     case SymbolKind::constant:
-    case SymbolKind::table: return constant(symbol);
+    case SymbolKind::table: return constant(symbol.value, symbol.type);
     case SymbolKind::input: return input(symbol.input);
     case SymbolKind::texture_parameter: {
         Value value = builder.texture_parameter(symbol.slot, ir_type(symbol.type));
@@ -174,16 +175,16 @@ void BodyLowering::input_parameters(uint32_t reads)
             passed_inputs[index].push_back(builder.parameter(ir::Type::real));
 }
 
-Values BodyLowering::constant(const Symbol& symbol)
+Values BodyLowering::constant(std::span<const ConstantPart> parts, Type type)
 {
     Values made;
-    for (const ConstantPart& part : symbol.value) {
+    for (const ConstantPart& part : parts) {
         if (auto real = std::get_if<double>(&part))
             made.push_back(builder.real(*real));
         else if (auto truth = std::get_if<bool>(&part))
             made.push_back(builder.boolean(*truth));
         else
-            made.push_back(builder.word(std::get<uint32_t>(part), ir_type(symbol.type)));
+            made.push_back(builder.word(std::get<uint32_t>(part), ir_type(type)));
     }
     return made;
 }

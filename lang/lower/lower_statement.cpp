@@ -4,6 +4,7 @@
 // and the others leave, the rest moves into that arm and no flag is needed: the usual early return.
 #include "lang/lower/lowering.h"
 #include "lang/program/completion.h"
+#include "lang/program/scope.h"
 #include "lang/syntax/operators.h"
 #include "lang/syntax/swizzle.h"
 
@@ -30,7 +31,7 @@ std::vector<const Statement*> listed(const Statement* first, std::span<const Sta
 } // namespace
 
 BodyLowering::BodyLowering(ModuleLowering& module_lowering, std::string name, uint32_t slot_count)
-    : builder(module_lowering.module, std::move(name)), owner(module_lowering), variables(slot_count + 3)
+    : builder(module_lowering.module, std::move(name)), owner(module_lowering), variables(slot_count + 4)
 {
 }
 
@@ -38,7 +39,7 @@ Values BodyLowering::whole_body(const Statement& body, Type result)
 {
     result_type = result;
     builder.span = body.span;
-    variables[returned_slot()] = variables[broken_slot()] = {builder.boolean(false)};
+    variables[returned_slot()] = variables[broken_slot()] = variables[turned_slot()] = {builder.boolean(false)};
     variables[result_slot()] = zeros(result);
     sequence(std::get<ast::Scope>(body.node).statements);
     return variables[result_slot()];
@@ -51,6 +52,7 @@ BodyLowering::Slots BodyLowering::changed_slots(const std::vector<const Statemen
     Slots slots = changed_in(statements);
     if (ends.returns) slots.insert(slots.end(), {returned_slot(), result_slot()});
     if (ends.breaks) slots.push_back(broken_slot());
+    if (ends.continues) slots.push_back(turned_slot());
     return slots;
 }
 
@@ -94,7 +96,8 @@ void BodyLowering::choose(Value condition, const Slots& changed, const std::func
 
 Value BodyLowering::left()
 {
-    return builder.operation(Op::lor, {variables[returned_slot()][0], variables[broken_slot()][0]});
+    const Value ended = builder.operation(Op::lor, {variables[returned_slot()][0], variables[broken_slot()][0]});
+    return builder.operation(Op::lor, {ended, variables[turned_slot()][0]});
 }
 
 void BodyLowering::sequence(Statements statements)
@@ -129,19 +132,24 @@ void BodyLowering::statement(const Statement& s, Statements rest)
         lower(*declaration);
     } else if (auto assignment = std::get_if<Assignment>(&s.node)) {
         lower(*assignment);
+    } else if (auto evaluated = std::get_if<ExpressionStatement>(&s.node)) {
+        auto made = std::get_if<CallExpression>(&evaluated->expression->node);
+        if (made && writes(made->target.function)) expression(*evaluated->expression);
     } else if (auto scope = std::get_if<ast::Scope>(&s.node)) {
         sequence(scope->statements);
     } else if (auto branch_node = std::get_if<If>(&s.node)) {
-        const Completion own = completion_of(s), later = completion_of(rest);
-        const Completion either{true, own.returns || later.returns, own.breaks || later.breaks};
+        Completion either = completion_of(s);
+        either.add(completion_of(rest));
         const Slots changed = changed_slots(listed(&s, rest), either);
         branch(*branch_node, 0, rest, changed);
     } else if (auto loop = std::get_if<For>(&s.node)) {
         lower(*loop);
     } else if (std::holds_alternative<Break>(s.node)) {
         variables[broken_slot()] = {builder.boolean(true)};
+    } else if (std::holds_alternative<Continue>(s.node)) {
+        variables[turned_slot()] = {builder.boolean(true)};
     } else if (auto leave = std::get_if<Return>(&s.node)) {
-        variables[result_slot()] = converted(*leave->value, result_type);
+        if (leave->value) variables[result_slot()] = converted(*leave->value, result_type);
         variables[returned_slot()] = {builder.boolean(true)};
     }
 }
@@ -218,6 +226,14 @@ void BodyLowering::lower(const For& node)
 {
     const LoopPlan& plan = node.plan;
     const Type type = plan.counter->type;
+    if (type == float_type) {
+        const Value start = builder.real(plan.real_start), step = builder.real(plan.real_step);
+        const Value trips = builder.i32(static_cast<int32_t>(plan.trip_max));
+        return turns(node, trips, [&](Value turn) {
+            const Value way = builder.operation(Op::mul, {builder.operation(Op::i_to_r, {turn}), step});
+            return builder.operation(Op::add, {start, way});
+        });
+    }
     const bool up = plan.step > 0;
     const auto stride = static_cast<int32_t>(up ? plan.step : -plan.step);
     const Value start = converted(*plan.start, type)[0], bound = converted(*plan.bound, type)[0];
@@ -232,30 +248,40 @@ void BodyLowering::lower(const For& node)
         const Value beyond = binary_scalar(BinaryOp::less, up ? bound : start, up ? start : bound);
         trips = builder.operation(Op::select, {beyond, builder.i32(0), trips});
     }
+    turns(node, trips, [&](Value turn) {
+        Value offset = builder.operation(Op::imul, {turn, builder.i32(static_cast<int32_t>(plan.step))});
+        if (type == uint_type) offset = builder.operation(Op::i_as_u, {offset});
+        return integer(Op::iadd, start, offset);
+    });
+}
 
-    const Completion ends = node.body ? completion_of(*node.body) : Completion{};
+// `counter` makes what counts of the number of a turn, from 0.
+void BodyLowering::turns(const For& node, Value trips, const std::function<Value(Value turn)>& counter)
+{
+    const LoopPlan& plan = node.plan;
+    Completion ends = node.body ? completion_of(*node.body) : Completion{};
+    ends.continues = false; // of concern to its own turn alone
     const Slots changed = node.body ? changed_slots(listed(node.body.get(), {}), ends) : Slots{};
     if (region_depth >= region_max) return choose(builder.boolean(true), {}, [] {}, [] {}); // which reports it
     const Nesting region(region_depth);
     depth = std::max(depth, region_depth);
-    const Values broken_before = variables[broken_slot()];
-    variables[broken_slot()] = {builder.boolean(false)};
+    const Values broken_before = variables[broken_slot()], turned_before = variables[turned_slot()];
+    variables[broken_slot()] = variables[turned_slot()] = {builder.boolean(false)};
     const Values before = gather(changed);
     const Values after =
         builder.for_loop(trips, plan.trip_max, before, [&](Value iteration, std::span<const Value> carried) {
             scatter(changed, carried);
-            const Value step = builder.i32(static_cast<int32_t>(plan.step));
-            Value offset = builder.operation(Op::imul, {iteration, step});
-            if (type == uint_type) offset = builder.operation(Op::i_as_u, {offset});
-            variables[plan.counter->slot] = {integer(Op::iadd, start, offset)};
+            variables[plan.counter->slot] = {counter(iteration)};
             if (ends.may_leave())
                 choose(left(), changed, [] {}, [&] { statement(*node.body, {}); });
             else if (node.body)
                 statement(*node.body, {});
+            variables[turned_slot()] = {builder.boolean(false)};
             return gather(changed);
         });
     scatter(changed, after);
     variables[broken_slot()] = broken_before;
+    variables[turned_slot()] = turned_before;
 }
 
 } // namespace haptel::lang

@@ -89,6 +89,8 @@ public:
     void input_parameters(uint32_t reads);
     void bind_functions(const std::vector<FunctionReference>& passed) { functions = passed; }
     Values& variable(const Symbol& local) { return variables[local.slot]; }
+    void clear(const Symbol& local) { variables[local.slot] = zeros(local.type); }
+    Values zeros(Type type); // none of void
 
     Values whole_body(const ast::Statement& body, Type result);
     Values converted(const ast::Expression& e, Type to);
@@ -118,8 +120,7 @@ private:
     ir::Value integer(ir::Op op, ir::Value a, ir::Value b); // signed operation, on the bits where operands are u32
     ir::Value index_within(const ast::Expression& index, uint32_t size);
     Values input(InputName name);
-    Values constant(const Symbol& symbol);
-    Values zeros(Type type);
+    Values constant(std::span<const ConstantPart> parts, Type type);
     bool too_deep(Span span);
 
     // ---- calls
@@ -128,8 +129,8 @@ private:
     Values constructor(const ast::Expression& e, const ast::CallExpression& node);
     FunctionReference resolved(const FunctionReference& reference) const;
 
-    // ---- statements. Besides the variables three more slots hold the flow: whether the function has returned, with
-    // what, and whether the loop was left.
+    // ---- statements. Besides the variables four more slots hold the flow: whether the function has returned, with
+    // what, whether the loop was left, and whether this turn of it is over.
     using Statements = std::span<const ast::StatementPtr>;
     using Slots = std::vector<uint32_t>;
     void sequence(Statements statements);
@@ -138,6 +139,7 @@ private:
     void lower(const ast::Assignment& node);
     void store(const ast::Expression& target, const Values& value);
     void lower(const ast::For& node);
+    void turns(const ast::For& node, ir::Value trips, const std::function<ir::Value(ir::Value turn)>& counter);
     void branch(const ast::If& node, size_t arm, Statements rest, const Slots& changed);
     void choose(ir::Value condition, const Slots& changed, const std::function<void()>& then_arm,
                 const std::function<void()>& else_arm);
@@ -146,12 +148,13 @@ private:
     Values gather(const Slots& slots) const;
     void scatter(const Slots& slots, std::span<const ir::Value> parts);
     ir::Value left();
-    uint32_t returned_slot() const { return static_cast<uint32_t>(variables.size()) - 3; }
-    uint32_t result_slot() const { return static_cast<uint32_t>(variables.size()) - 2; }
-    uint32_t broken_slot() const { return static_cast<uint32_t>(variables.size()) - 1; }
+    uint32_t returned_slot() const { return static_cast<uint32_t>(variables.size()) - 4; }
+    uint32_t result_slot() const { return static_cast<uint32_t>(variables.size()) - 3; }
+    uint32_t broken_slot() const { return static_cast<uint32_t>(variables.size()) - 2; }
+    uint32_t turned_slot() const { return static_cast<uint32_t>(variables.size()) - 1; }
 
     ModuleLowering& owner;
-    std::vector<Values> variables;            // by Symbol::slot, then the three of the flow
+    std::vector<Values> variables;            // by Symbol::slot, then the four of the flow
     std::vector<FunctionReference> functions; // parameters that are functions, by Symbol::slot
     Values passed_inputs[input_name_count];
     Type result_type;

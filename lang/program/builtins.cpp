@@ -16,6 +16,12 @@ constexpr Builtin builtins[] = {
 Type type_of(char letter, uint8_t generic_size)
 {
     switch (letter) {
+    case 'I':
+    case 'j': return vec(generic_size, Scalar::int_);
+    case 'U':
+    case 'k': return vec(generic_size, Scalar::uint_);
+    case 'B':
+    case 'l': return vec(generic_size, Scalar::bool_);
     case 'i': return int_type;
     case 'u': return uint_type;
     case 'b': return bool_type;
@@ -45,8 +51,8 @@ BuiltinOverloads expand_all()
         for (std::string_view rest = builtin.signatures; !rest.empty();) {
             const std::string_view signature = rest.substr(0, rest.find(' '));
             rest.remove_prefix(std::min(rest.size(), signature.size() + 1));
-            const bool generic = signature.find_first_of("gvm") != std::string_view::npos;
-            const bool scalars = signature.find_first_of("vm") == std::string_view::npos;
+            const bool generic = signature.find_first_of("gvmjklIUB") != std::string_view::npos;
+            const bool scalars = signature.find_first_of("vmIUB") == std::string_view::npos;
             for (uint8_t size = scalars ? 1 : 2; size <= (generic ? 4 : 1); ++size) {
                 BuiltinOverload made = overload(builtin, signature, size);
                 // g(g,f) of a float is g(g,g) once more

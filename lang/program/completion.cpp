@@ -9,32 +9,32 @@ using namespace ast;
 
 Completion completion_of(const Statement& s)
 {
-    if (std::holds_alternative<Return>(s.node)) return {false, true, false};
-    if (std::holds_alternative<Break>(s.node)) return {false, false, true};
+    if (std::holds_alternative<Return>(s.node)) return {.returns = true};
+    if (std::holds_alternative<Break>(s.node)) return {.breaks = true};
+    if (std::holds_alternative<Continue>(s.node)) return {.continues = true};
     if (auto scope = std::get_if<Scope>(&s.node)) return completion_of(scope->statements);
     if (auto branch = std::get_if<If>(&s.node)) {
-        Completion all{branch->arms.back().condition != nullptr, false, false}; // no else
+        Completion all{.falls_through = branch->arms.back().condition != nullptr}; // no else
         for (const If::Arm& arm : branch->arms) {
-            const Completion one = arm.body ? completion_of(*arm.body) : Completion{true, false, false};
+            const Completion one = arm.body ? completion_of(*arm.body) : Completion{.falls_through = true};
             all.falls_through |= one.falls_through;
-            all.returns |= one.returns;
-            all.breaks |= one.breaks;
+            all.add(one);
         }
         return all;
     }
-    if (auto loop = std::get_if<For>(&s.node)) return {true, loop->body && completion_of(*loop->body).returns, false};
-    return {true, false, false};
+    if (auto loop = std::get_if<For>(&s.node))
+        return {.falls_through = true, .returns = loop->body && completion_of(*loop->body).returns};
+    return {.falls_through = true};
 }
 
 Completion completion_of(std::span<const StatementPtr> statements)
 {
-    Completion all{true, false, false};
+    Completion all{.falls_through = true};
     for (const StatementPtr& s : statements) {
         if (!s) continue; // an error
         const Completion one = completion_of(*s);
         all.falls_through = one.falls_through;
-        all.returns |= one.returns;
-        all.breaks |= one.breaks;
+        all.add(one);
         if (!all.falls_through) break;
     }
     return all;
@@ -45,8 +45,9 @@ std::vector<uint32_t> changed_in(std::span<const Statement* const> statements)
     std::vector<uint32_t> assigned, declared;
     for (const Statement* s : statements)
         for_each_in(*s, [&](const Statement& inner) {
+            for (const Symbol* written : inner.written) assigned.push_back(written->slot);
             if (auto assignment = std::get_if<Assignment>(&inner.node))
-                assigned.push_back(root_of(*assignment)->symbol->slot);
+                assigned.push_back(root_of(*assignment->target)->symbol->slot);
             else if (auto declaration = std::get_if<Declaration>(&inner.node))
                 if (declaration->symbol->kind == SymbolKind::local) declared.push_back(declaration->symbol->slot);
         });

@@ -1,4 +1,4 @@
-// How a statement can end, on some path: by going on, by returning, by leaving the loop round it.
+// How a statement can end, on some path: by going on, by returning, by leaving the loop round it or its turn.
 #pragma once
 
 #include "lang/syntax/ast.h"
@@ -9,8 +9,14 @@
 namespace haptel::lang {
 
 struct Completion {
-    bool falls_through = false, returns = false, breaks = false;
-    bool may_leave() const { return returns || breaks; }
+    bool falls_through = false, returns = false, breaks = false, continues = false;
+    bool may_leave() const { return returns || breaks || continues; }
+    void add(const Completion& other) // that way too
+    {
+        returns |= other.returns;
+        breaks |= other.breaks;
+        continues |= other.continues;
+    }
 };
 
 Completion completion_of(const ast::Statement& s);

@@ -6,7 +6,8 @@ namespace haptel::lang {
 
 std::string to_string(const ParameterInfo& parameter, const std::string& name, std::string_view separator)
 {
-    std::string text = to_string(parameter.type) + (name.empty() ? "" : ' ' + name);
+    std::string text = parameter.passing == Passing::out ? "out " : parameter.passing == Passing::inout ? "inout " : "";
+    text += to_string(parameter.type) + (name.empty() ? "" : ' ' + name);
     if (!parameter.is_function) return text;
     text += '(';
     for (size_t i = 0; i < parameter.signature.size(); ++i)
@@ -36,6 +37,12 @@ std::string signature_of(const FunctionInfo& function)
     for (const ParameterInfo& parameter : function.parameters)
         (text += text.ends_with('(') ? "" : ",") += to_string(parameter, {}, ",");
     return text + ')';
+}
+
+bool writes(const FunctionReference& function)
+{
+    auto source = std::get_if<const FunctionInfo*>(&function);
+    return source && std::ranges::any_of((*source)->parameters, &ParameterInfo::is_written);
 }
 
 std::vector<Candidate> FileScope::functions(std::string_view name) const

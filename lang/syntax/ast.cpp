@@ -37,9 +37,25 @@ void for_each_in(const Statement& s, const std::function<void(const Statement&)>
         for (const StatementPtr* part : {&loop->init, &loop->step, &loop->body}) inner(*part);
 }
 
-const NameExpression* root_of(const Assignment& assignment)
+std::vector<const Expression*> expressions_of(const Statement& s)
 {
-    const Expression* object = assignment.target.get();
+    std::vector<const Expression*> expressions;
+    const auto add = [&](const ExpressionPtr& e) {
+        if (e) expressions.push_back(e.get());
+    };
+    if (auto declaration = std::get_if<Declaration>(&s.node)) add(declaration->initializer);
+    if (auto assignment = std::get_if<Assignment>(&s.node)) add(assignment->target), add(assignment->value);
+    if (auto evaluated = std::get_if<ExpressionStatement>(&s.node)) add(evaluated->expression);
+    if (auto loop = std::get_if<For>(&s.node)) add(loop->condition);
+    if (auto left = std::get_if<Return>(&s.node)) add(left->value);
+    if (auto branch = std::get_if<If>(&s.node))
+        for (const If::Arm& arm : branch->arms) add(arm.condition);
+    return expressions;
+}
+
+const NameExpression* root_of(const Expression& target)
+{
+    const Expression* object = &target;
     if (auto member = std::get_if<Member>(&object->node)) object = member->object.get();
     while (auto index = std::get_if<Index>(&object->node)) object = index->object.get();
     return std::get_if<NameExpression>(&object->node);

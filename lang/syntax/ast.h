@@ -166,7 +166,7 @@ struct Assignment { // target: name, swizzle or index of one. "++i;" and "i++;" 
 };
 struct ExpressionStatement {
     ExpressionPtr expression;
-}; // useless in a pure language: the checker says so
+}; // a call that writes its arguments; else it does nothing, and the checker says so
 struct Scope {
     std::vector<StatementPtr> statements;
 };
@@ -186,26 +186,33 @@ struct For {
     LoopPlan plan = {}; // set by the checker
 }; // parts may be null
 struct Break {};
+struct Continue {};
 struct Return {
     ExpressionPtr value;
 }; // may be null
 
 struct Statement {
     Span span;
-    std::variant<Declaration, Assignment, ExpressionStatement, Scope, If, For, Break, Return> node;
+    std::vector<const Symbol*> written; // by calls in it; set by the checker
+    std::variant<Declaration, Assignment, ExpressionStatement, Scope, If, For, Break, Continue, Return> node;
 };
+
+// The expressions that stand in `s` itself and not in a statement inside of it, in source order.
+std::vector<const Expression*> expressions_of(const Statement& s);
 
 // `look` at `s` and at every statement inside of it, in source order.
 void for_each_in(const Statement& s, const std::function<void(const Statement&)>& look);
 // What is assigned to, or has the part that is: a name; null where it is none, which is a mistake.
-const NameExpression* root_of(const Assignment& assignment);
+const NameExpression* root_of(const Expression& target);
 
 // Parameter of a function: a value, or a function ("float basis(vec3)") resolved at compile time.
 struct FunctionParameter {
     TypeName type; // of a function parameter: its result
     Name name;
+    Passing passing = Passing::in;
     bool is_function = false;
     std::vector<TypeName> signature; // argument types where is_function
+    ExpressionPtr value;             // where a call leaves it out; may be null
     Span span;
 };
 

@@ -9,7 +9,6 @@ namespace {
 
 using enum ForeignKind;
 
-constexpr std::string_view no_bvec = "compare component by component and join with && or ||";
 constexpr std::string_view no_precision = "leave it out; precision is chosen when the texture is compiled";
 constexpr std::string_view leave_out = "leave it out";
 
@@ -24,9 +23,15 @@ constexpr ForeignWord meanings[] = {
     {type, "float2 half2 double2 dvec2 vec2f vec2h", "vec2", "write vec2"},
     {type, "float3 half3 double3 dvec3 vec3f vec3h point vector color", "vec3", "write vec3"},
     {type, "float4 half4 double4 dvec4 vec4f vec4h", "vec4", "write vec4"},
-    {type, "ivec2 ivec3 ivec4 int2 int3 int4 vec2i vec3i vec4i uvec2 uvec3 uvec4 uint2 uint3 uint4 vec2u vec3u vec4u",
-     "", "vectors are of float; keep whole numbers in int variables"},
-    {type, "bvec2 bvec3 bvec4 bool2 bool3 bool4", "", no_bvec},
+    {type, "int2 vec2i", "ivec2", "write ivec2"},
+    {type, "int3 vec3i", "ivec3", "write ivec3"},
+    {type, "int4 vec4i", "ivec4", "write ivec4"},
+    {type, "uint2 vec2u", "uvec2", "write uvec2"},
+    {type, "uint3 vec3u", "uvec3", "write uvec3"},
+    {type, "uint4 vec4u", "uvec4", "write uvec4"},
+    {type, "bool2", "bvec2", "write bvec2"},
+    {type, "bool3", "bvec3", "write bvec3"},
+    {type, "bool4", "bvec4", "write bvec4"},
     {type, "mat2x2 dmat2", "mat2", "write mat2"},
     {type, "mat3x3 dmat3", "mat3", "write mat3"},
     {type, "mat4x4 dmat4", "mat4", "write mat4"},
@@ -64,7 +69,8 @@ constexpr ForeignWord meanings[] = {
     {function, "worley voronoi", "", "write cellular(q, smoothing)"},
     {function, "rand random hash", "",
      "what a hand feels is continuous: write perlin(q) or noise(q), with a last int seed"},
-    {function, "lessThan lessThanEqual greaterThan greaterThanEqual equal notEqual any all", "", no_bvec},
+    {function, "floatBitsToInt floatBitsToUint intBitsToFloat uintBitsToFloat asuint asint asfloat", "",
+     "the bits of a float depend on its precision: hash the whole numbers of a cell, int(floor(x))"},
     {function, "dFdx dFdy fwidth ddx ddy Du Dv", "", "derivatives are exact: write grad(f)(q)"},
     {function, "tex2D texture2D textureLod", "",
      "write sample(picture, uv), a float; outside of 0 .. 1 sample_tiled repeats"},
@@ -93,10 +99,9 @@ constexpr ForeignWord meanings[] = {
     {qualifier, "highp mediump lowp", "", no_precision},
     {qualifier, "precise", "", "leave it out; every operation is IEEE 754 as written"},
 
-    {statement, "while do", "", "every texture must end: write a for loop with a constant bound and leave it by break"},
+    {statement, "do", "", "write /// @bound 64 and while (...) { ... }, or a for loop"},
     {statement, "switch case default goto", "", "write if (...) { ... } else if (...) { ... }"},
     {statement, "discard", "", "a texture has a height everywhere: return 0.0"},
-    {statement, "continue", "", "put the rest of the loop's body into an if"},
 
     {declaration, "struct class union typedef", "",
      "there are no structures; pass the values one by one or in a vector"},

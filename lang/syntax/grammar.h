@@ -6,6 +6,7 @@
 #include "lang/syntax/foreign.h"
 #include "lang/syntax/token_cursor.h"
 
+#include <map>
 #include <span>
 #include <vector>
 
@@ -14,9 +15,10 @@ namespace haptel::lang {
 // A type that stands for each of some: a function whose parameters name it is read once for each.
 inline constexpr std::string_view any_size = "vecN", sizes_of_any[] = {"vec2", "vec3"};
 // Those that are made of numbers stand first.
-inline constexpr std::string_view own_types[] = {"float", "int",  "uint", "bool", "vec2",  "vec3",
-                                                 "vec4",  "mat2", "mat3", "mat4", "image", "void"};
-inline constexpr std::span types_of_numbers = std::span(own_types).first<10>();
+inline constexpr std::string_view own_types[] = {"float", "int",   "uint",  "bool",  "vec2",  "vec3",  "vec4",
+                                                 "ivec2", "ivec3", "ivec4", "uvec2", "uvec3", "uvec4", "bvec2",
+                                                 "bvec3", "bvec4", "mat2",  "mat3",  "mat4",  "image", "void"};
+inline constexpr std::span types_of_numbers = std::span(own_types).first<19>();
 bool is_own_type(std::string_view word);
 // Those of other languages too.
 bool is_type_word(std::string_view word);
@@ -58,8 +60,10 @@ private:
     ast::StatementPtr single_statement(std::string_view after);
     ast::StatementPtr if_statement();
     ast::StatementPtr for_statement();
+    ast::StatementPtr while_statement();
     ast::StatementPtr return_statement();
     ast::StatementPtr assignment_or_expression();
+    ast::StatementPtr chained(ast::Assignment left, Span first, size_t value);
     void declarations(Statements& into);
     void declaration_list(Statements& into);
     bool at_declaration() const;
@@ -84,6 +88,32 @@ private:
     void note_unread(size_t first_position);
     ast::Damage take_damage(uint32_t mistakes_before, ast::StatementPtr& body);
 
+    // parse_macro.cpp
+    void definition();
+    struct Macro {
+        Span name;
+        bool takes_arguments = false;
+        std::vector<std::string_view> parameters;
+        size_t first = 0, end = 0; // tokens of the value
+        bool is_open = false;      // told
+    };
+    // Where tokens stand that a macro's use is read from: of an argument, with what its own names stand for.
+    struct Range {
+        size_t first = 0, end = 0;
+    };
+    struct Use {
+        const Macro* macro;
+        std::vector<Range> arguments;
+        const Use* around; // the macro that the arguments are written in; null: none
+    };
+    Macro* macro_here();
+    ast::ExpressionPtr use_of(Macro& macro);
+    std::vector<Range> macro_arguments();
+    const Range* argument_here() const;
+    ast::ExpressionPtr read_range(Range range, const Use* names, const std::string& what);
+    std::string_view alias_of(std::string_view word) const;
+    void note_constant(Span whole, const ast::Name& name, const Macro& macro);
+
     // parse_expression.cpp
     ast::ExpressionPtr expression();
     ast::ExpressionPtr conditional();
@@ -101,6 +131,7 @@ private:
     // parse_foreign.cpp
     void skip_foreign_qualifiers();
     void skip_type_arguments();
+    bool skip_precision();
     void skip_foreign_declaration(std::string message, std::string_view hint);
     void foreign_statement(const ForeignWord& word, Statements& into);
     void read_misspelt_keyword();
@@ -114,10 +145,11 @@ private:
 
     std::string not_in_haptel() const { return "there is no '" + std::string(text()) + "' in Haptel"; }
 
-    // In a function that is written for vectors of any size, that of the size being read.
+    // In a function that is written for vectors of any size, that of the size being read; and what a macro renames.
     std::string_view text(size_t ahead = 0) const
     {
-        const std::string_view word = TokenCursor::text(ahead);
+        std::string_view word = TokenCursor::text(ahead);
+        if (!macros.empty() && kind(ahead) == Token::name) word = alias_of(word);
         return word == any_size && !one_size.empty() ? one_size : word;
     }
 
@@ -127,6 +159,7 @@ private:
     ast::Name name(std::string_view what); // empty, and reported, where there is none
     ast::Name name_after(const ast::TypeName& type);
     std::string doc_before(size_t token_index, std::optional<ir::Facts>* facts);
+    ast::ExpressionPtr bound_before(size_t token_index);
     template <class Node>
     static ast::ExpressionPtr make(Span where, Node node)
     {
@@ -144,6 +177,12 @@ private:
         return made;
     }
     static ast::ExpressionPtr unknown(Span where) { return make(where, ast::ErrorExpression{}); }
+
+    std::map<std::string_view, Macro> macros; // by name; a name's text belongs to the sources
+    const Use* macro_use = nullptr;           // whose value is being read
+    size_t macro_tokens = 0;                  // read of all values so far
+
+    bool has_own_grad = false; // a function of that name stands above
 
     // Of the function or texture that is being read:
     std::string_view one_size;                 // what `any_size` stands for; empty: nothing

@@ -30,27 +30,36 @@ constexpr Operator operators[] = {
     {BinaryOp::remainder, Token::percent, 11, Token::percent_assign},
 };
 
-bool is_scalar_number(Type type)
+// Of numbers and vectors of them, which become one kind of number; int and uint do not mix. A number goes with every
+// component of a vector.
+std::optional<OperatorTypes> numbers(Type left, Type right)
 {
-    return type.is_numeric() && type.is_scalar();
-}
-
-// Of two numbers, which become one type; int and uint do not mix.
-std::optional<OperatorTypes> numbers(Type left, Type right, bool are_compared)
-{
-    if (!is_scalar_number(left) || !is_scalar_number(right)) return std::nullopt;
-    if (left != right && left != float_type && right != float_type) return std::nullopt;
-    const Type common = left == right ? left : float_type;
-    return OperatorTypes{common, common, are_compared ? bool_type : common};
+    if (!left.is_numeric() || !right.is_numeric() || left.is_array() || right.is_array()) return std::nullopt;
+    if (left.is_matrix() || right.is_matrix()) return std::nullopt;
+    if (left.size != right.size && !left.is_scalar() && !right.is_scalar()) return std::nullopt;
+    if (left.scalar != right.scalar && left.is_whole() && right.is_whole()) return std::nullopt;
+    const Scalar common = left.scalar == right.scalar ? left.scalar : Scalar::float_;
+    return OperatorTypes{vec(left.size, common), vec(right.size, common), vec(std::max(left.size, right.size), common)};
 }
 
 std::optional<OperatorTypes> arithmetic(Type left, Type right)
 {
-    if (left.is_array() || right.is_array()) return std::nullopt;
-    if (!left.is_scalar() && left == right) return OperatorTypes{left, right, left};
-    if (!left.is_scalar() && is_scalar_number(right)) return OperatorTypes{left, float_type, left};
-    if (!right.is_scalar() && is_scalar_number(left)) return OperatorTypes{float_type, right, right};
-    return numbers(left, right, false);
+    if (left.is_matrix() && left == right) return OperatorTypes{left, right, left};
+    if (left.is_matrix() && right.is_numeric() && right.is_scalar()) return OperatorTypes{left, float_type, left};
+    if (right.is_matrix() && left.is_numeric() && left.is_scalar()) return OperatorTypes{float_type, right, right};
+    return numbers(left, right);
+}
+
+std::optional<OperatorTypes> compared(Type left, Type right)
+{
+    const auto types = left.is_scalar() && right.is_scalar() ? numbers(left, right) : std::nullopt;
+    return types ? std::optional(OperatorTypes{types->left, types->right, bool_type}) : std::nullopt;
+}
+
+// Of whole numbers of one kind, where a uint is a uint.
+std::optional<OperatorTypes> bits(Type left, Type right)
+{
+    return left.is_whole() && right.is_whole() ? numbers(left, right) : std::nullopt;
 }
 
 std::optional<OperatorTypes> both(bool fits, Type operands, Type result)
@@ -73,23 +82,24 @@ std::optional<OperatorTypes> operator_types(ast::BinaryOp op, Type left, Type ri
     case less:
     case less_equal:
     case greater:
-    case greater_equal: return numbers(left, right, true);
+    case greater_equal: return compared(left, right);
     case equal:
     case not_equal:
         if (left == right && !left.is_array() && (left == bool_type || !left.is_scalar()))
             return OperatorTypes{left, right, bool_type};
-        return numbers(left, right, true);
+        return compared(left, right);
     case logical_and:
     case logical_or:
     case logical_xor: return both(left == bool_type && right == bool_type, bool_type, bool_type);
     case remainder:
     case bit_and:
     case bit_or:
-    case bit_xor: return both(left == right && is_integer(left), left, left);
+    case bit_xor: return bits(left, right);
     case shift_left:
-    case shift_right:
-        if (is_integer(left) && is_integer(right)) return OperatorTypes{left, right, left};
-        return std::nullopt;
+    case shift_right: // the kind of number by which does not matter
+        if (!right.is_whole() || !bits(left, vec(right.size, left.scalar))) return std::nullopt;
+        if (right.is_array() || right.size > left.size) return std::nullopt;
+        return OperatorTypes{left, right, left};
     }
     return std::nullopt;
 }
@@ -97,12 +107,13 @@ std::optional<OperatorTypes> operator_types(ast::BinaryOp op, Type left, Type ri
 bool is_linear_product(Type left, Type right)
 {
     if (left.is_array() || right.is_array() || left.size != right.size) return false;
-    return left.is_matrix() ? right.is_matrix() || right.is_vector() : left.is_vector() && right.is_matrix();
+    const auto is_real_vector = [](Type type) { return type.is_vector() && type.scalar == Scalar::float_; };
+    return left.is_matrix() ? right.is_matrix() || is_real_vector(right) : is_real_vector(left) && right.is_matrix();
 }
 
 bool converts_implicitly(Type from, Type to)
 {
-    return from == to || (is_integer(from) && to == float_type);
+    return from == to || (from.is_whole() && !from.is_array() && to == vec(from.size));
 }
 
 const Operator& operator_of(BinaryOp op)

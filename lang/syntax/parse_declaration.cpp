@@ -118,8 +118,8 @@ void Grammar::constants(File& result)
 void Grammar::function_or_variable(File& result)
 {
     if (kind(1) == Token::name && kind(2) != Token::left_paren && !body_follows()) {
-        diagnostics.error(span(), "global-variable", "a variable of a whole file must be constant",
-                          "write 'const' before it, or make it a parameter of the texture");
+        diagnostics.warning(span(), "global-variable", "a variable of a whole file is read as a constant",
+                            "write 'const' before it, or make it a parameter of the texture");
         constants(result);
         if (!result.constants.empty()) result.constants.back().declaration.is_const = true;
     } else {
@@ -182,9 +182,7 @@ void Grammar::function(File& result)
     made.name = name_after(made.result);
     if (made.name.text.empty()) return;
     made.doc = doc_before(first_token, &made.facts);
-    if (made.name.text == "grad")
-        diagnostics.error(made.name.span, "reserved-name", "'grad' is the derivative of functions",
-                          "choose another name");
+    has_own_grad |= made.name.text == "grad";
     const uint32_t mistakes_before = mistakes;
     if (expect(Token::left_paren, "after the name of the function")) {
         if (text() == "void" && kind(1) == Token::right_paren) advance();
@@ -206,17 +204,20 @@ void Grammar::function(File& result)
     result.functions.push_back(std::move(made));
 }
 
-// function_parameter = ["const"] ["in"] type name | type name "(" [type [name] {"," type [name]}] ")"
+// function_parameter = ["const"] ["in" | "out" | "inout"] type name ["=" expression]
+//                    | type name "(" [type [name] {"," type [name]}] ")"
 FunctionParameter Grammar::function_parameter()
 {
     FunctionParameter parameter;
     const Span first = span();
     accept(Token::kw_const);
-    accept(Token::kw_in); // as GLSL writes it: all parameters are
-    if (at(Token::kw_out) || text() == "inout") {
-        diagnostics.error(span(), "output-parameter", "a function cannot write its parameters",
-                          "return the result; several results fit into a vector");
+    if (accept(Token::kw_out)) {
+        parameter.passing = Passing::out;
+    } else if (text() == "inout" && kind(1) == Token::name) {
+        parameter.passing = Passing::inout;
         advance();
+    } else {
+        accept(Token::kw_in); // as GLSL writes it
     }
     parameter.type = type_name();
     if (lost) return parameter;
@@ -225,10 +226,8 @@ FunctionParameter Grammar::function_parameter()
     array_suffix(parameter.type);
     if (at(Token::left_paren)) function_signature(parameter);
     parameter.span = since(first);
-    if (at(Token::assign) && !lost) {
-        error(span(), "default-argument", "parameters of functions have no default",
-              "write a second function with fewer parameters that calls this one");
-    }
+    if (!lost && accept(Token::assign)) parameter.value = expression();
+    parameter.span = since(first);
     return parameter;
 }
 

@@ -65,8 +65,7 @@ ExpressionPtr Grammar::binary(int lowest_precedence)
 // unary = ("-" | "+" | "!" | "~") unary | postfix
 ExpressionPtr Grammar::unary()
 {
-    if (at(Token::name) && text() == "not" && (kind(1) == Token::name || kind(1) == Token::left_paren))
-        read_foreign_operator();
+    if (at(Token::name) && text() == "not" && kind(1) == Token::name) read_foreign_operator();
     constexpr std::pair<Token, UnaryOp> prefixes[] = {{Token::minus, UnaryOp::negate},
                                                       {Token::plus, UnaryOp::plus},
                                                       {Token::bang, UnaryOp::logical_not},
@@ -124,6 +123,14 @@ ExpressionPtr Grammar::primary()
 {
     const Span first = span();
     if (at(Token::number)) return number();
+    if (const Range* argument = argument_here()) {
+        const size_t behind = position + 1;
+        const Use* inside = macro_use;
+        ExpressionPtr read = read_range(*argument, inside->around, "the argument");
+        if (!at(Token::end)) position = behind;
+        return read;
+    }
+    if (Macro* macro = macro_here()) return use_of(*macro);
     if (at(Token::name)) return name_or_call();
     if (accept(Token::kw_true)) return make(first, BoolLiteral{true});
     if (accept(Token::kw_false)) return make(first, BoolLiteral{false});
@@ -261,6 +268,7 @@ ExpressionPtr Grammar::grad_call(Span first)
         ++call.order;
     bool closed = kind(ahead) == Token::name;
     for (uint32_t i = 1; i <= call.order; ++i) closed = closed && kind(ahead + i) == Token::right_paren;
+    if (has_own_grad && closed) closed = kind(ahead + 1 + call.order) == Token::left_paren; // else it is called
     if (!closed) {
         const uint32_t reports = diagnostics.reports();
         std::vector<ExpressionPtr> values = arguments();

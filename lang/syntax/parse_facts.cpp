@@ -51,6 +51,25 @@ std::string Grammar::doc_before(size_t token_index, std::optional<ir::Facts>* fa
     return doc;
 }
 
+// The number of "/// @bound 64"; null where no such line stands right above the token.
+ExpressionPtr Grammar::bound_before(size_t token_index)
+{
+    constexpr std::string_view word = "@bound";
+    const auto lines = std::ranges::equal_range(list.docs, token_index, {}, &DocLine::before_token);
+    for (const DocLine& line : lines) {
+        const std::string_view whole = sources.text(line.span);
+        const size_t at_word = whole.find_first_not_of(" \t", 3);
+        if (at_word == whole.npos || !whole.substr(at_word).starts_with(word)) continue;
+        const Span inside{file, line.span.begin + static_cast<uint32_t>(at_word + word.size()), line.span.end};
+        Grammar reader(sources, file, lex(sources, inside, diagnostics), diagnostics);
+        ExpressionPtr bound = reader.expression();
+        if (!reader.at(Token::end) && !reader.lost)
+            reader.error(reader.span(), "unbounded-loop", "expected a whole number after '@bound'" + reader.found());
+        return bound;
+    }
+    return nullptr;
+}
+
 // facts = fact {"," fact}
 // fact  = "value" number ".." number | "slope" number | "curvature" number | "class" ("jump" | "C0" | "C1" | "C2")
 ir::Facts Grammar::parse_facts(Span where)

@@ -17,9 +17,12 @@ void Grammar::skip_foreign_qualifiers()
                                         (kind(2) == Token::left_bracket && is_type_word(text(1))) ||
                                         kind(2) == Token::less || kind(1) == Token::kw_const;
         if (!word || !stands_before_type) return; // "flat x": a type that is misspelt
-        slip(span(), "foreign-word", not_in_haptel(), word->hint).fix =
-            word->replacement.empty() ? FixIt{{file, span().begin, span(1).begin}, ""}
-                                      : FixIt{span(), std::string(word->replacement)};
+        if (word->replacement.empty())
+            diagnostics.note(span(), "no-effect", "'" + std::string(text()) + "' changes nothing here", word->hint)
+                .fix = FixIt{{file, span().begin, span(1).begin}, ""};
+        else
+            slip(span(), "foreign-word", not_in_haptel(), word->hint).fix =
+                FixIt{span(), std::string(word->replacement)};
         advance();
     }
 }
@@ -45,7 +48,8 @@ void Grammar::read_misspelt_keyword()
         return;
     constexpr std::pair<std::string_view, Token> keywords[] = {
         {"return", Token::kw_return}, {"if", Token::kw_if},       {"else", Token::kw_else},
-        {"for", Token::kw_for},       {"break", Token::kw_break}, {"const", Token::kw_const}};
+        {"for", Token::kw_for},       {"break", Token::kw_break}, {"continue", Token::kw_continue},
+        {"const", Token::kw_const}};
     // Between a name that is misspelt and a type that is, the nearer decides.
     std::vector<std::string_view> words(std::begin(own_types), std::end(own_types));
     for (const auto& [word, token] : keywords) words.push_back(word);
@@ -54,9 +58,9 @@ void Grammar::read_misspelt_keyword()
     if (keyword == std::end(keywords) || foreign_word(ForeignKind::statement, text())) return;
     // What follows must be able to follow the keyword, and be no use of a name.
     const Token next = kind(1), then = keyword->second;
-    const bool fits = then == Token::kw_if || then == Token::kw_for ? next == Token::left_paren
-                      : then == Token::kw_break                     ? next == Token::semicolon
-                      : then == Token::kw_const                     ? next == Token::name
+    const bool fits = then == Token::kw_if || then == Token::kw_for           ? next == Token::left_paren
+                      : then == Token::kw_break || then == Token::kw_continue ? next == Token::semicolon
+                      : then == Token::kw_const                               ? next == Token::name
                       : then == Token::kw_else
                           ? next != Token::left_paren && next != Token::semicolon
                           : next == Token::name || next == Token::number || next == Token::left_paren ||
@@ -165,6 +169,20 @@ ExpressionPtr Grammar::method_call(ExpressionPtr object)
     return make(whole, CallExpression{std::move(callee), std::move(values)});
 }
 
+// "precision highp float;"
+bool Grammar::skip_precision()
+{
+    if (text() != "precision" || kind(1) != Token::name || kind(2) != Token::name || kind(3) != Token::semicolon)
+        return false;
+    const Span whole = join(span(), span(3));
+    diagnostics
+        .note(whole, "no-effect", "'precision' changes nothing here",
+              foreign_word(ForeignKind::declaration, "precision")->hint)
+        .fix = FixIt{whole, ""};
+    advance(4);
+    return true;
+}
+
 // "struct S {...};", "uniform float x;", "in vec2 uv;": says what to write, skips the whole.
 void Grammar::skip_foreign_declaration(std::string message, std::string_view hint)
 {
@@ -177,12 +195,12 @@ void Grammar::skip_foreign_declaration(std::string message, std::string_view hin
     lost = false;
 }
 
-// "while (...) {...}", "switch (...) {...}": says what to write. A loop's body, which may never
+// "do {...} while (...);", "switch (...) {...}": says what to write. A loop's body, which may never
 // run, is still read for its own mistakes.
 void Grammar::foreign_statement(const ForeignWord& word, Statements& into)
 {
     error(span(), "foreign-word", not_in_haptel(), word.hint);
-    const bool is_do = text() == "do", is_loop = is_do || text() == "while";
+    const bool is_loop = text() == "do";
     advance();
     const Span head = since(span());
     if (at(Token::left_paren)) {
@@ -197,11 +215,11 @@ void Grammar::foreign_statement(const ForeignWord& word, Statements& into)
         If loop;
         loop.arms.push_back(std::move(arm));
         into.push_back(make_statement(since(head), std::move(loop)));
-        if (is_do && at(Token::name) && text() == "while") advance(), skip_to({});
+        if (at(Token::name) && text() == "while") advance(), skip_to({});
     } else if (at(Token::left_brace)) {
         skip_braces();
     } else {
-        skip_to({Token::colon}); // "case 1:", "default:", "continue;"
+        skip_to({Token::colon}); // "case 1:", "default:"
         accept(Token::colon);
     }
     accept(Token::semicolon);

@@ -8,27 +8,34 @@ namespace haptel::lang {
 
 using namespace ast;
 
-// statement = block | if | for | "break" ";" | return | declaration | assignment | ";"
+// statement = macro | block | if | for | while | "break" ";" | "continue" ";" | return | declaration | assignment | ";"
 // Appends none, one, or, for "float a, b;", several.
 void Grammar::statement(Statements& into)
 {
     lost = false;
     const Span first = span();
     const size_t first_position = position, first_made = into.size();
-    if (accept(Token::semicolon)) return;
+    if (accept(Token::semicolon) || skip_precision()) return;
     skip_foreign_qualifiers();
     read_misspelt_keyword();
-    if (at(Token::left_brace)) {
+    if (at(Token::define)) {
+        definition();
+    } else if (at(Token::left_brace)) {
         into.push_back(block());
     } else if (at(Token::kw_if)) {
         into.push_back(if_statement());
     } else if (at(Token::kw_for)) {
         into.push_back(for_statement());
+    } else if (text() == "while" && kind(1) == Token::left_paren) {
+        into.push_back(while_statement());
     } else if (at(Token::kw_return)) {
         into.push_back(return_statement());
     } else if (accept(Token::kw_break)) {
         expect_semicolon("'break'");
         into.push_back(make_statement(since(first), Break{}));
+    } else if (accept(Token::kw_continue)) {
+        expect_semicolon("'continue'");
+        into.push_back(make_statement(since(first), Continue{}));
     } else if (at(Token::kw_else)) {
         error(first, "else-without-if", "this 'else' belongs to no 'if'",
               "an 'if' with several statements needs braces around them");
@@ -176,6 +183,47 @@ StatementPtr Grammar::for_statement()
     return make_statement(since(first), std::move(loop));
 }
 
+// while = "/// @bound" number  "while" "(" expression ")" statement
+// Stands for "for (int turn = 0; turn < bound; ++turn) { if (!(expression)) break; statement }".
+StatementPtr Grammar::while_statement()
+{
+    const Span first = span();
+    ExpressionPtr bound = bound_before(position);
+    if (!bound) {
+        error(first, "unbounded-loop", "cannot tell how often this loop runs",
+              "write /// @bound 64 above it: it then ends after 64 turns at the latest");
+        lost = false;
+        bound = unknown(first);
+    }
+    advance();
+    const Span opener = span();
+    advance();
+    ExpressionPtr condition = expression();
+    close(Token::right_paren, opener);
+    if (lost) condition = unknown(condition->span);
+    const Span head = condition->span;
+    Scope turn;
+    If::Arm ends{make(head, Unary{UnaryOp::logical_not, std::move(condition)}), make_statement(head, Break{})};
+    If leave;
+    leave.arms.push_back(std::move(ends));
+    turn.statements.push_back(make_statement(head, std::move(leave)));
+    turn.statements.push_back(single_statement("the loop's head"));
+
+    const Name counter{" turn", first}; // which nobody can write
+    const auto number = [&](uint64_t value) {
+        return make(first, NumberLiteral{NumberLiteral::Kind::integer, 0, value, {}, std::to_string(value)});
+    };
+    const auto name_of_counter = [&] { return make(first, NameExpression{counter.text}); };
+    For loop;
+    loop.init = make_statement(first, Declaration{false, {{"int", first}, false, nullptr}, counter, number(0)});
+    Chain compared{name_of_counter(), {}};
+    compared.rest.push_back({BinaryOp::less, first, std::move(bound)});
+    loop.condition = make(first, std::move(compared));
+    loop.step = make_statement(first, Assignment{name_of_counter(), BinaryOp::add, first, number(1)});
+    loop.body = make_statement(since(first), std::move(turn));
+    return make_statement(since(first), std::move(loop));
+}
+
 // return = "return" [expression] ";"
 StatementPtr Grammar::return_statement()
 {
@@ -213,12 +261,33 @@ StatementPtr Grammar::assignment_or_expression()
         made.op_span = span();
         made.op = operation_in(kind());
         advance();
-        made.value = expression();
+        const size_t value = position;
+        made.value = conditional();
+        if (is_assignment(kind()) && !lost) return chained(std::move(made), first, value);
     } else if (!step()) {
         const Span whole = made.target->span;
         return make_statement(whole, ExpressionStatement{std::move(made.target)});
     }
     return make_statement(since(first), std::move(made));
+}
+
+// "a = b = 0.0": first the one on the right, which is then read from its target.
+StatementPtr Grammar::chained(Assignment left, Span first, size_t value)
+{
+    const Nesting nesting(*this, Nesting::bracket);
+    if (at(Token::end)) return make_statement(first, Scope{}); // it nests too deep
+    position = value;
+    Scope both;
+    both.statements.push_back(assignment_or_expression());
+    const size_t behind = position;
+    if (!at(Token::end)) {
+        position = value;
+        left.value = conditional();
+        position = behind;
+    }
+    const Span whole = since(first);
+    both.statements.push_back(make_statement(whole, std::move(left)));
+    return make_statement(whole, std::move(both));
 }
 
 // A type is followed by a name: "vec3 q", "float[3] a", "const ...". A type's own word is enough ("float = 1" is a

@@ -19,7 +19,7 @@ File parse(const SourceSet& sources, uint32_t file, TokenList tokens, Diagnostic
     return Grammar(sources, file, std::move(tokens), diagnostics).parse_file();
 }
 
-// file = {import | constants | texture | function | ";"}
+// file = {import | constants | texture | function | macro | ";"}
 File Grammar::parse_file()
 {
     File result;
@@ -31,10 +31,12 @@ File Grammar::parse_file()
     while (!at(Token::end)) {
         begin_declaration();
         const size_t first_position = position;
-        if (accept(Token::semicolon)) continue;
+        if (accept(Token::semicolon) || skip_precision()) continue;
         bool strayed = false;
         skip_foreign_qualifiers();
-        if (at(Token::kw_import)) {
+        if (at(Token::define)) {
+            definition();
+        } else if (at(Token::kw_import)) {
             import_declaration(result);
         } else if (at(Token::kw_const)) {
             constants(result);

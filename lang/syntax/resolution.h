@@ -38,6 +38,9 @@ enum class SymbolKind : uint8_t {
     function,          // parameter that is a function, known when its owner is lowered; `slot` counts such parameters
 };
 
+// What a function does with its argument: read it, give it a value, or both. What it writes is a result of the call.
+enum class Passing : uint8_t { in, out, inout };
+
 // A parameter of something that can be called. Two are equal if overloads cannot be told apart by them.
 struct ParameterInfo {
     Type type; // of a function: its result
@@ -45,6 +48,11 @@ struct ParameterInfo {
     bool is_function = false;
     std::vector<Type> signature = {}; // of a function: types of its arguments
     const Symbol* symbol = nullptr;   // inside the function that has it; null if it has no name
+    Passing passing = Passing::in;
+    bool is_written() const { return passing != Passing::in; }
+    const ast::Expression* value = nullptr; // where a call leaves it out; null: it may not
+    std::vector<ConstantPart> value_parts = {};
+    std::optional<ir::IntRange> range = {}; // of a whole number, over all calls seen so far; nothing: none
     bool operator==(const ParameterInfo& other) const
     {
         return type == other.type && is_function == other.is_function && signature == other.signature;
@@ -66,7 +74,7 @@ struct Symbol {
     const char* read_only = nullptr;       // why it cannot be assigned to, as a clause; null: it can
     bool is_parameter = false;             // of a function or texture, for messages
     bool is_read = false;
-    bool is_assigned = false; // behind its declaration
+    uint64_t parts_assigned = 0; // behind its declaration, by text read so far or by a loop round it; see parts_of()
 };
 
 // A function that is called or passed: from source, built in, or a parameter of the function around the call.
@@ -86,8 +94,10 @@ struct CallTarget {
     std::vector<FunctionReference> function_arguments; // one per argument; empty where the argument is a value
 };
 
-// A loop whose trip count is bounded: `for (int i = start; i < bound; i += step)`, or with <=, > or >=.
+// A loop whose trip count is bounded: `for (int i = start; i < bound; i += step)`, or with <=, > or >=. The counter may
+// be a float if all three are constant; it is then start + turn * step, and `trip_max` the number of turns.
 struct LoopPlan {
+    double real_start = 0, real_step = 0;
     const Symbol* counter = nullptr;
     const ast::Expression* start = nullptr;
     const ast::Expression* bound = nullptr; // not changed by the body, so it is evaluated once
@@ -119,7 +129,8 @@ struct FunctionInfo {
     uint32_t call_depth = 0;       // functions in the longest chain of calls that starts here
     uint32_t derivative_order = 0; // of derivatives of derivatives that it takes, at most
     std::vector<Mention> mentions;
-    bool is_valid = true; // false: its head has errors; calls to it are not checked
+    bool is_valid = true;      // false: its head has errors; calls to it are not checked
+    bool is_mentioned = false; // called or passed, by what is checked so far
 };
 
 } // namespace haptel::lang

@@ -1,4 +1,4 @@
-// Types of the language: scalars, vectors and square matrices of 2 to 4, arrays of them, and images.
+// Types of the language: scalars, vectors of 2 to 4 of them, square matrices, arrays of all these, and images.
 #pragma once
 
 #include <cstdint>
@@ -10,9 +10,9 @@ enum class Scalar : uint8_t { error, void_, float_, int_, uint_, bool_, image_ }
 
 struct Type {
     Scalar scalar = Scalar::error;
-    uint8_t size = 1;        // 1: scalar; 2 to 4: components of a vector, rows of a matrix (of float only)
+    uint8_t size = 1;        // 1: scalar; 2 to 4: components of a vector, rows of a matrix
     uint32_t array_size = 0; // 0: not an array
-    uint8_t columns = 1;     // 2 to 4: square matrix, column after column as in GLSL
+    uint8_t columns = 1;     // 2 to 4: square matrix of floats, column after column as in GLSL
 
     static constexpr Type error() { return {}; }
     bool is_error() const { return scalar == Scalar::error; }
@@ -20,7 +20,8 @@ struct Type {
     bool is_scalar() const { return size == 1 && !is_array(); }
     bool is_vector() const { return size > 1 && columns == 1 && !is_array(); }
     bool is_matrix() const { return columns > 1 && !is_array(); }
-    bool is_numeric() const { return scalar == Scalar::float_ || scalar == Scalar::int_ || scalar == Scalar::uint_; }
+    bool is_numeric() const { return scalar == Scalar::float_ || is_whole(); }
+    bool is_whole() const { return scalar == Scalar::int_ || scalar == Scalar::uint_; } // or of whole numbers
     // What an index picks: an element of an array, a column of a matrix, a component of a vector.
     constexpr Type element() const
     {
@@ -39,9 +40,9 @@ constexpr bool is_integer(Type type)
 {
     return type == int_type || type == uint_type;
 }
-inline constexpr Type vec(uint8_t size)
+inline constexpr Type vec(uint8_t size, Scalar of = Scalar::float_)
 {
-    return {Scalar::float_, size, 0, 1};
+    return {of, size, 0, 1};
 }
 inline constexpr Type mat(uint8_t size)
 {
@@ -52,12 +53,16 @@ inline constexpr Type mat(uint8_t size)
 // at run time costs a choice per element.
 inline constexpr uint32_t array_size_max = 64, array_components_max = 256;
 
-// As written in source: "mat3", "vec3", "float[4]".
+// As written in source: "mat3", "ivec3", "float[4]".
 inline std::string to_string(Type type)
 {
     if (type.is_array()) return to_string(type.element()) + "[" + std::to_string(type.array_size) + "]";
     if (type.is_matrix()) return "mat" + std::to_string(type.size);
-    if (type.is_vector()) return "vec" + std::to_string(type.size);
+    if (type.is_vector()) {
+        const Scalar of = type.scalar;
+        const char* letter = of == Scalar::int_ ? "i" : of == Scalar::uint_ ? "u" : of == Scalar::bool_ ? "b" : "";
+        return letter + ("vec" + std::to_string(type.size));
+    }
     switch (type.scalar) {
     case Scalar::error: return "<error>";
     case Scalar::void_: return "void";

@@ -1,5 +1,6 @@
 #include "lang/text/lexer.h"
 
+#include "lang/text/directive.h"
 #include "lang/text/number.h"
 
 #include <algorithm>
@@ -88,6 +89,9 @@ public:
     {
         list.tokens.reserve(std::min<size_t>(text.size() / 4, 1 << 16)); // as texts go
         while (at < text.size() && !diagnostics.full()) next();
+        for (const Conditions::Open& left : conditions.open)
+            diagnostics.error({file, left.begin, left.end}, "preprocessor",
+                              "this choice is never ended: expected '#endif' before the end of the file");
         list.tokens.push_back({Token::end, size(), size()});
         return std::move(list);
     }
@@ -110,7 +114,7 @@ private:
             number();
         } else if (c == '"') {
             string();
-        } else if (c == '#') {
+        } else if (c == '#' && !in_definition) {
             directive();
         } else if (!symbol()) {
             unexpected();
@@ -144,7 +148,7 @@ private:
                           "expected at most " + std::to_string(tokens_max) +
                               " words, numbers, signs and comments in a program with its imports",
                           "large tables belong into pictures: texture t(image picture)");
-        list = {{}, {}, room};
+        list = {{}, {}, room, list.has_directives};
         at = size();
         return false;
     }
@@ -219,24 +223,119 @@ private:
         push(Token::invalid, begin);
     }
 
-    // "#define", "#version" and the like of other shading languages: one message, the line is skipped.
+    // A line of other shading languages' preprocessor; see directive.h.
     void directive()
     {
+        list.has_directives = true;
         const uint32_t begin = at++;
+        while (peek() == ' ' || peek() == '\t') ++at; // "# define"
+        const uint32_t name_begin = at;
         while (is_name_part(peek())) ++at;
-        const Span word = span_from(begin);
-        while (!at_line_end()) {
-            if (text[at] == '\\') ++at; // a continued line
-            if (at < text.size() && text[at] == '\r' && peek(1) == '\n') ++at;
-            if (at < text.size()) ++at;
+        const Span where = span_from(begin);
+        const std::string word = "#" + std::string(text.substr(name_begin, at - name_begin));
+        if (word == "#define") return definition(where);
+        const std::string_view line = rest_of_line();
+        if (word == "#ifdef" || word == "#ifndef" || word == "#if") {
+            conditions.open.push_back({begin, where.end, choose(where, word, line)});
+            if (!conditions.open.back().is_taken) skip_choice();
+        } else if (word == "#else" || word == "#elif" || word == "#endif") {
+            if (conditions.open.empty())
+                refuse(where, "'" + word + "' belongs to no '#if' above", "leave it out");
+            else if (word == "#endif")
+                conditions.open.pop_back();
+            else
+                skip_choice(); // what stands above was taken
+        } else if (word == "#version" || word == "#extension" || word == "#pragma" || word == "#line") {
+            diagnostics.note(where, "directive", "'" + word + "' changes nothing here", "leave the line out").fix =
+                FixIt{span_from(begin), ""};
+        } else {
+            refuse(where, "Haptel has no '" + word + "'",
+                   word == "#include" ? "write import \"file.haptel\"; what it imports must be Haptel too"
+                                      : "leave this line out");
         }
-        const std::string_view name = text.substr(begin, word.end - begin);
-        Diagnostic& found =
-            diagnostics.error(word, "preprocessor", "Haptel has no preprocessor",
-                              name == "#define" ? "write a constant, \"const float WIDTH = 2mm;\", or a function"
-                                                : "leave this line out");
-        if (name == "#version" || name == "#extension" || name == "#pragma" || name == "#line") // change nothing here
-            found.fix = FixIt{span_from(begin), ""};
+    }
+
+    void refuse(Span where, std::string message, std::string_view hint)
+    {
+        diagnostics.error(where, "preprocessor", std::move(message), hint);
+    }
+
+    bool choose(Span where, std::string_view word, std::string_view line)
+    {
+        const std::optional<bool> chosen =
+            conditions.chosen(word, line.substr(0, std::min(line.find("//"), line.find("/*"))));
+        if (!chosen)
+            refuse(where, "expected 0, 1 or defined(NAME) after '#if'", "keep the lines that are meant, without it");
+        return chosen.value_or(true);
+    }
+
+    // Takes it, with lines that continue it.
+    std::string_view rest_of_line()
+    {
+        const uint32_t begin = at;
+        while (!at_line_end())
+            if (!take_continuation()) ++at;
+        return text.substr(begin, at - begin);
+    }
+
+    // A backslash and the end of the line behind it.
+    bool take_continuation()
+    {
+        if (peek() != '\\') return false;
+        const uint32_t length = peek(1) == '\r' && peek(2) == '\n' ? 3 : peek(1) == '\n' || peek(1) == '\r' ? 2 : 0;
+        at += length;
+        return length > 0;
+    }
+
+    // To behind the "#else", the "#elif" that is chosen or the "#endif" of the innermost open choice.
+    void skip_choice()
+    {
+        for (size_t inner = 0; at < text.size();) {
+            while (at < text.size() && (is_space(text[at]))) ++at;
+            const uint32_t begin = at;
+            const std::string_view line = rest_of_line();
+            if (!line.starts_with('#')) continue;
+            const size_t name = std::min(line.size(), line.find_first_not_of(" \t", 1));
+            const std::string_view word = line.substr(name);
+            if (word.starts_with("if")) ++inner;
+            if (word.starts_with("endif") && inner-- == 0) {
+                conditions.open.pop_back();
+                return;
+            }
+            bool& is_taken = conditions.open.back().is_taken;
+            if (inner > 0 || is_taken || (!word.starts_with("else") && !word.starts_with("elif"))) continue;
+            is_taken = word.starts_with("else") || choose({file, begin, at}, "#if", word.substr(4));
+            if (is_taken) return;
+        }
+    }
+
+    // "#define NAME value": the line's own tokens, between two that mark it. Without a value it only tells "#ifdef".
+    void definition(Span where)
+    {
+        const auto take_spaces = [&] {
+            while (peek() == ' ' || peek() == '\t' || take_continuation())
+                if (peek() == ' ' || peek() == '\t') ++at;
+        };
+        take_spaces();
+        const uint32_t name_begin = at;
+        if (is_name_start(peek()))
+            while (is_name_part(peek())) ++at;
+        const uint32_t name_end = at;
+        if (name_begin == name_end) return refuse(where, "expected a name after '#define'", "#define WIDTH 0.5");
+        conditions.define(text.substr(name_begin, name_end - name_begin));
+        take_spaces();
+        const uint32_t value = at;
+        const bool is_empty = at_line_end() || rest().starts_with("//");
+        at = where.end;
+        if (is_empty) return static_cast<void>(at = value);
+        push(Token::define, where.begin);
+        at = name_end;
+        push(Token::name, name_begin);
+        in_definition = true;
+        while (!at_line_end() && !diagnostics.full())
+            if (!take_continuation()) next();
+        in_definition = false;
+        push(Token::line_end, at);
     }
 
     bool symbol()
@@ -287,6 +386,8 @@ private:
     Diagnostics& diagnostics;
     size_t room;
     TokenList list;
+    Conditions conditions;
+    bool in_definition = false;
 };
 
 // Where a file that is no text stops being one: at a zero byte, or at the first of many bytes that no text has.
@@ -313,6 +414,7 @@ std::string_view describe(Token token)
 {
     static constexpr std::string_view descriptions[] = {
         "the end of the file", "something unreadable", "a name", "a number", "a string",
+        "'#define'",           "the end of the line",
 #define SYMBOL(name, spelling) "'" spelling "'",
 #define KEYWORD(name, spelling) "'" spelling "'",
 #include "lang/text/token.def"

@@ -15,8 +15,10 @@ enum class Token : uint8_t {
     end,     // last token of every file, empty span
     invalid, // already reported
     name,
-    number, // with its unit suffix; not yet converted
-    string, // with its quotes
+    number,   // with its unit suffix; not yet converted
+    string,   // with its quotes
+    define,   // "#define", with a value behind its name
+    line_end, // of that
 #define SYMBOL(name, spelling) name,
 #define KEYWORD(name, spelling) name,
 #include "lang/text/token.def"
@@ -51,7 +53,8 @@ struct DocLine {
 struct TokenList {
     std::vector<PlacedToken> tokens; // ends with Token::end
     std::vector<DocLine> docs;
-    size_t count = 0; // of tokens, but for the last, and of comments
+    size_t count = 0;            // of tokens, but for the last, and of comments
+    bool has_directives = false; // lines that begin with '#': not all of the text is in the tokens
 };
 
 // Stops early once `diagnostics` is full. More than `room` tokens and comments are an error, and none of them is kept.

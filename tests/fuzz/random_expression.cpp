@@ -14,6 +14,9 @@ const char* type_of(Kind kind)
     case Kind::vec4: return "vec4";
     case Kind::mat2: return "mat2";
     case Kind::mat3: return "mat3";
+    case Kind::cell: return "ivec3";
+    case Kind::words: return "uvec2";
+    case Kind::truths: return "bvec2";
     }
     return "";
 }
@@ -74,6 +77,9 @@ std::string ExpressionWriter::of(Kind kind, int depth)
     case Kind::vec4: return vector(4, depth);
     case Kind::mat2: return matrix(2, depth);
     case Kind::mat3: return matrix(3, depth);
+    case Kind::cell: return cell(depth);
+    case Kind::words: return words(depth);
+    case Kind::truths: return truths(depth);
     }
     return "";
 }
@@ -148,7 +154,9 @@ std::string ExpressionWriter::real_of_parts(int depth)
 {
     const int size = 2 + static_cast<int>(below(3));
     const std::string v = vector(size, depth - 1), w = vector(size, depth - 1);
-    switch (below(9)) {
+    switch (below(11)) {
+    case 8: return "dot(" + cell(depth - 1) + " & 15, " + vector(3, depth - 1) + ")";
+    case 9: return "half_of(" + v + swizzle(size, 1) + ", " + number() + ")";
     case 0: return "length(" + v + ")";
     case 1: return "dot(" + v + ", " + w + ")";
     case 2: return "distance(" + v + ", " + w + ")";
@@ -196,7 +204,9 @@ std::string ExpressionWriter::whole(int depth)
 {
     if (depth <= 0) return below(4) ? variable_or(Kind::whole, [&] { return whole_number(); }) : whole_number();
     const auto a = [&] { return whole(depth - 1); };
-    switch (below(11)) {
+    switch (below(13)) {
+    case 11: return "(" + cell(depth - 1) + ")" + swizzle(3, 1);
+    case 12: return "C[" + index(2, depth) + "][" + index(3, depth) + "]";
     case 8: return choice(Kind::whole, depth);
     case 9: return below(2) ? "clamp(" + a() + ", -5, " + one_of({"3", "90"}) + ")" : "int(" + truth(depth - 1) + ")";
     case 0: return "(" + a() + one_of({" + ", " - ", " * "}) + a() + ")";
@@ -220,7 +230,8 @@ std::string ExpressionWriter::word(int depth)
         return below(4) ? variable_or(Kind::word, [] { return std::string("9u"); })
                         : one_of({"0u", "3u", "4294967295u", "0xffu"});
     const auto a = [&] { return word(depth - 1); };
-    switch (below(8)) {
+    switch (below(9)) {
+    case 7: return "(" + words(depth - 1) + ")" + swizzle(2, 1);
     case 4: return choice(Kind::word, depth);
     case 5: return one_of({"min(", "max("}) + a() + ", " + a() + ")";
     case 6: return below(2) ? "U[" + index(3, depth) + "]" : "~" + a();
@@ -237,7 +248,9 @@ std::string ExpressionWriter::truth(int depth)
     if (depth <= 0)
         return below(2) ? variable_or(Kind::truth, [&] { return truth(1); })
                         : variable_or(Kind::real, [&] { return number(); }) + one_of({" < ", " > "}) + number();
-    switch (below(11)) {
+    switch (below(13)) {
+    case 10: return one_of({"any(", "all("}) + truths(depth - 1) + ")";
+    case 11: return "(" + cell(depth - 1) + one_of({" == ", " != "}) + cell(depth - 1) + ")";
     case 0: return "(" + truth(depth - 1) + one_of({" && ", " || ", " ^^ ", " == ", " != "}) + truth(depth - 1) + ")";
     case 1: return "!(" + truth(depth - 1) + ")";
     case 2:
@@ -260,7 +273,11 @@ std::string ExpressionWriter::vector(int size, int depth)
     const std::string type = type_of(kind);
     if (depth <= 0) return variable_or(kind, [&] { return type + "(" + number() + ")"; });
     const auto v = [&] { return vector(size, depth - 1); };
-    switch (below(13)) {
+    switch (below(14)) {
+    case 12:
+        if (size == 2) return "mix(" + v() + ", " + v() + ", " + truths(depth - 1) + ")";
+        return size == 3 ? "(" + v() + " - (" + cell(depth - 1) + " & 7))"
+                         : "vec4(" + words(depth - 1) + " % 9u, 1, 2)";
     case 0: return type + "(" + reals(size, depth - 1) + ")";
     case 1: return "(" + v() + one_of({" + ", " - ", " * "}) + v() + ")";
     case 2: return "(" + v() + " * " + tame(depth) + ")";
@@ -286,6 +303,52 @@ std::string ExpressionWriter::vector(int size, int depth)
         return "vec4(" + vector(3, depth - 1) + ", " + real(depth - 1) + ")";
     case 11: return one_of({"clamp(" + v() + ", -0.5, 1.5)", "step(0.25, " + v() + ")", "mod(" + v() + ", 1.5)"});
     default: return "mix(" + v() + ", " + v() + ", " + tame(depth) + ")";
+    }
+}
+
+std::string ExpressionWriter::cell(int depth)
+{
+    if (depth <= 0) return variable_or(Kind::cell, [&] { return "ivec3(" + whole_number() + ")"; });
+    const auto a = [&] { return cell(depth - 1); };
+    switch (below(9)) {
+    case 0: return "ivec3(" + whole(depth - 1) + ", " + whole(depth - 1) + ", " + whole(depth - 1) + ")";
+    case 1: return "ivec3(" + vector(3, depth - 1) + ")";
+    case 2: return "(" + a() + one_of({" + ", " - ", " * ", " / ", " % ", " & ", " | ", " ^ "}) + a() + ")";
+    case 3: return "(" + a() + one_of({" + ", " * ", " & "}) + whole(depth - 1) + ")";
+    case 4: return "(" + a() + one_of({" << ", " >> "}) + one_of({a(), word(depth - 1), "3"}) + ")";
+    case 5: return one_of({"abs(", "sign(", "-(", "~("}) + a() + ")";
+    case 6: return one_of({"min(", "max("}) + a() + ", " + one_of({a(), "5"}) + ")";
+    case 7: return choice(Kind::cell, depth);
+    default: return "(" + a() + ")" + swizzle(3, 3);
+    }
+}
+
+std::string ExpressionWriter::words(int depth)
+{
+    if (depth <= 0) return variable_or(Kind::words, [&] { return "uvec2(" + word(0) + ", 7)"; });
+    const auto a = [&] { return words(depth - 1); };
+    switch (below(6)) {
+    case 0: return "uvec2(" + word(depth - 1) + ", " + word(depth - 1) + ")";
+    case 1: return "uvec2(" + cell(depth - 1) + swizzle(3, 2) + ")";
+    case 2: return "(" + a() + one_of({" + ", " * ", " / ", " % ", " ^ "}) + a() + ")";
+    case 3: return "(" + a() + one_of({" * 1664525", " >> 16", " ^ 9u", " << 1u"}) + ")";
+    case 4: return "clamp(" + a() + ", 1u, " + word(depth - 1) + ")";
+    default: return "(" + a() + ")" + swizzle(2, 2);
+    }
+}
+
+std::string ExpressionWriter::truths(int depth)
+{
+    if (depth <= 0) return variable_or(Kind::truths, [&] { return "bvec2(" + truth(0) + ", false)"; });
+    switch (below(5)) {
+    case 0: return "bvec2(" + truth(depth - 1) + ", " + truth(depth - 1) + ")";
+    case 1:
+        return one_of({"lessThan(", "greaterThanEqual(", "notEqual("}) + vector(2, depth - 1) + ", " +
+               vector(2, depth - 1) + ")";
+    case 2:
+        return one_of({"lessThanEqual(", "greaterThan(", "equal("}) + words(depth - 1) + ", " + words(depth - 1) + ")";
+    case 3: return "not(" + truths(depth - 1) + ")";
+    default: return "lessThan(" + cell(depth - 1) + ".xy, ivec2(" + whole(depth - 1) + "))";
     }
 }
 

@@ -11,8 +11,8 @@
 
 namespace haptel::fuzz {
 
-enum class Kind : uint8_t { real, whole, word, truth, vec2, vec3, vec4, mat2, mat3 };
-inline constexpr uint64_t kinds = 9;
+enum class Kind : uint8_t { real, whole, word, truth, vec2, vec3, vec4, mat2, mat3, cell, words, truths };
+inline constexpr uint64_t kinds = 12;
 const char* type_of(Kind kind);
 
 struct Variable {
@@ -22,8 +22,8 @@ struct Variable {
 };
 
 // Functions of the program by what they take: float(float, float), float(vec3), vec2(vec2), int(int, uint),
-// bool(float), float(float[3], bool).
-enum class Shape : uint8_t { of_two, field, map, of_ints, test, of_array };
+// bool(float), float(float[3], bool), float(float, out float, inout ivec3, float = ..).
+enum class Shape : uint8_t { of_two, field, map, of_ints, test, of_array, writer };
 struct Callable {
     std::string name;
     Shape shape;
@@ -52,9 +52,13 @@ protected:
     std::string truth(int depth);
     std::string vector(int size, int depth);
     std::string matrix(int size, int depth);
+    std::string cell(int depth);   // an ivec3
+    std::string words(int depth);  // a uvec2
+    std::string truths(int depth); // a bvec2
     std::string number();
     std::string whole_number();
     std::string swizzle(int from, int size); // ".xy", of a vector of `from` components
+    const Callable* any_callable(Shape shape);
 
 private:
     std::mt19937_64 random;
@@ -62,7 +66,6 @@ private:
 
     std::string variable_or(Kind kind, const std::function<std::string()>& other);
     std::string choice(Kind kind, int depth);
-    const Callable* any_callable(Shape shape);
     std::string real_of_parts(int depth);
     std::string real_of_calls(int depth);
     std::string reals(int size, int depth); // a list of arguments

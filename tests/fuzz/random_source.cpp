@@ -18,6 +18,15 @@ public:
         line("const mat2 M[2] = {mat2(0.6, 0.8, -0.8, 0.6), mat2(2.0)};");
         line("const float C1 = " + number() + " * 0.5, C2 = 1.0 - " + number() + ";");
         line("const int FEW = 1 + 2;");
+        line("const ivec3 C[2] = {ivec3(1, -2, 3), ivec3(2147483647, " + whole_number() + ", 0)};");
+        line("#define HALF 0.5");
+        line("#define half_of(x, y) \\");
+        line("    (HALF * (x) + HALF * (y))");
+        line("#ifdef HALF");
+        line("#define REAL float");
+        line("#else");
+        line("nothing (");
+        line("#endif");
         line("float by_two(float f(float, float), float x) { return f(x, 0.5) - f(0.25, x); }");
         line("float over(float f(vec3), const vec3 v) { return f(v.zxy) - 0.5 * f(v); }");
         line("float across(float f(vecN), const vecN v) { vecN w = vecN(0.5) - v; return f(w) - 0.5 * f(v); }");
@@ -68,7 +77,10 @@ private:
             {Kind::vec2, "in vec2 w", {{"w", Kind::vec2, true}}},
             {Kind::whole, "int i, uint j", {{"i", Kind::whole, true}, {"j", Kind::word, true}}},
             {Kind::truth, "float x", {{"x", Kind::real, true}}},
-            {Kind::real, "float l[3], bool c", {{"c", Kind::truth, true}}},
+            {Kind::real, "REAL l[3], bool c", {{"c", Kind::truth, true}}},
+            {Kind::real,
+             "float x, out float y, inout ivec3 c, float z = 0.25 + HALF",
+             {{"x", Kind::real, true}, {"y", Kind::real, true}, {"c", Kind::cell, true}, {"z", Kind::real, false}}},
         };
         const size_t shape = below(std::size(shapes));
         const std::string name = "f" + std::to_string(callables.size());
@@ -78,6 +90,7 @@ private:
         scope = shapes[shape].variables;
         few = {"2", "FEW", "int(3u)"};
         if (static_cast<Shape>(shape) == Shape::of_array) list("l");
+        if (static_cast<Shape>(shape) == Shape::writer) line("y = " + tame(1) + ";");
         if (below(2)) scope.push_back({"C2", Kind::real, false});
         statements(static_cast<int>(below(4)), 0);
         line("return " + returned(3) + ";");
@@ -102,7 +115,18 @@ private:
 
     void statement(int depth)
     {
-        switch (below(15)) {
+        switch (below(20)) {
+        case 11: return call();
+        case 12:
+            if (loops > 0 && depth > 0) return line("if (" + truth(1) + ") continue;");
+            break;
+        case 13:
+            if (depth < 3 && loops < 2) return turns(depth);
+            break;
+        case 14: return several();
+        case 15:
+            if (depth > 0 && below(3) == 0) return line("if (" + truth(1) + ") { return " + returned(1) + "; }");
+            break;
         case 0:
         case 1:
             if (depth < 3) return branch(depth);
@@ -192,6 +216,12 @@ private:
         case Kind::mat3:
             if (below(2)) return line(name + " *= " + tame(2) + ";");
             return line(name + "[" + std::to_string(below(3)) + "][" + index(3, 1) + "] = " + real(2) + ";");
+        case Kind::cell:
+            if (below(3) == 0)
+                return line(name + one_of({".zx = ", ".xy -= ", ".zy ^= "}) + cell(1) + swizzle(3, 2) + ";");
+            return line(name + one_of({" = ", " += ", " *= ", " >>= ", " %= "}) + cell(2) + ";");
+        case Kind::words: return line(name + one_of({" = ", " ^= ", ".yx += "}) + words(2) + ";");
+        case Kind::truths: return line(name + one_of({" = ", ".yx = "}) + truths(2) + ";");
         }
     }
 
@@ -271,6 +301,58 @@ private:
         few = outer_few;
         scope.pop_back();
         line("}");
+    }
+
+    // A loop that counts no whole number.
+    void turns(int depth)
+    {
+        const std::string counter = fresh();
+        const bool counts = below(2);
+        if (counts) {
+            line("for (float " + counter + " = -1.0; " + counter + one_of({" < ", " <= "}) + "0.5; " + counter +
+                 one_of({"++", " += 0.5", " += HALF"}) + ") {");
+            scope.push_back({counter, Kind::real, false});
+        } else {
+            line("/// @bound " + one_of({"3", "FEW", "1 + 1"}));
+            line("while (" + truth(2) + ") {");
+        }
+        ++loops;
+        body(depth);
+        --loops;
+        if (counts) scope.pop_back();
+        line("}");
+    }
+
+    // A call that writes its arguments: variables and parts of one.
+    void call()
+    {
+        const Callable* const writer = any_callable(Shape::writer);
+        if (!writer) return declaration();
+        const std::string result_of = fresh(), written = fresh(), cells = fresh();
+        const bool in_part = below(2);
+        line(in_part ? "vec2 " + written + " = " + vector(2, 1) + ";" : "float " + written + ";");
+        line("ivec3 " + cells + "[2] = {" + cell(1) + ", " + cell(1) + "};");
+        const std::string arguments = tame(2) + ", " + written + (in_part ? swizzle(2, 1) : "") + ", " + cells + "[" +
+                                      index(2, 1) + "]" + (below(2) ? ", " + number() : "");
+        if (below(3) == 0)
+            line(writer->name + "(" + arguments + ");");
+        else
+            line("float " + result_of + " = " + tame(1) + " + " + writer->name + "(" + arguments + ");"),
+                scope.push_back({result_of, Kind::real, true});
+        scope.push_back({written, in_part ? Kind::vec2 : Kind::real, true});
+        const std::string one = fresh();
+        line("ivec3 " + one + " = " + cells + "[1] ^ " + cells + "[0];");
+        scope.push_back({one, Kind::cell, true});
+    }
+
+    // Assignments in a row.
+    void several()
+    {
+        const std::string first = fresh(), second = fresh();
+        line("float " + first + " = " + number() + ", " + second + ";");
+        line(first + one_of({" = ", " += ", " *= "}) + second + " = " + tame(2) + ";");
+        scope.push_back({first, Kind::real, true});
+        scope.push_back({second, Kind::real, true});
     }
 
     // Elements are read back into a variable: expressions need not know of arrays.

@@ -37,9 +37,14 @@ Dimension DimensionBody::call(const Expression& e, const std::string& name, cons
             continue;
         }
         const bool counts = source && (*source)->parameters[i].type.scalar != Scalar::float_;
-        const Dimension found = expression(*arguments[i]);
+        const bool is_read = !source || (*source)->parameters[i].passing != Passing::out;
+        const Dimension found = is_read ? expression(*arguments[i]) : Dimension::any();
         call.values.push_back(arguments[i].get());
         call.dimensions.push_back(counts ? Dimension::plain() : found);
+    }
+    for (size_t i = arguments.size(); source && i < (*source)->parameters.size(); ++i) { // left out
+        call.values.push_back((*source)->parameters[i].value);
+        call.dimensions.push_back(expression(*call.values.back()));
     }
 
     Dimension result = Dimension::any();
@@ -58,6 +63,9 @@ Dimension DimensionBody::call(const Expression& e, const std::string& name, cons
             blame_call(call, **source);
         owner.user_call = outer;
         result = made.result;
+        for (size_t i = 0, next = 0; i < arguments.size() && order == 0; ++i)
+            if ((*source)->parameters[i].is_written() && next < made.written.size())
+                give(*arguments[i], made.written[next++], *arguments[i]);
     }
     const auto is_number = [](const Expression* value) { return value->type != image_type; };
     const auto by = std::ranges::find_if(call.values, is_number) - call.values.begin(); // a derivative's

@@ -40,6 +40,7 @@ struct DimensionFinding {
 struct DimensionInstance {
     std::string name;
     Dimension result = Dimension::any();
+    Dimensions written;                      // of the parameters that it writes, in their order
     std::vector<DimensionFinding> findings;  // in code of the user's own
     std::vector<DimensionInstance*> callees; // whose findings are findings of the program too
     bool is_at_fault = false;                // library code that these dimensions do not go with
@@ -136,6 +137,8 @@ private:
     // ---- statements
     void statement(const ast::Statement& s);
     void assign(const ast::Statement& s, const ast::Assignment& node);
+    void give(const ast::Expression& target, Dimension value, const ast::Expression& whence);
+    void collect_written(Span where);
     void branch(const ast::If& node);
     void loop(const ast::For& node);
     void leave(const ast::Return& node);
@@ -157,10 +160,11 @@ private:
     bool is_library;
     FunctionReferences functions; // parameters that are functions, by Symbol::slot
     Flow flow;
-    std::vector<Flow*> loop_exits; // innermost last: what breaks bring together
+    std::vector<Flow*> loop_exits, loop_turns; // innermost last: what break and what continue brings together
     std::unordered_map<const ast::For*, Variables> heads;
     bool heads_changed = false;
     const std::vector<CheckedOutput>* outputs = nullptr; // of a texture; null: this is a function
+    const FunctionInfo* info_of = nullptr;               // the function
     Span returned_at;                                    // a value of the result's dimension
 };
 

@@ -50,7 +50,7 @@ Dimension DimensionBody::expression(const Expression& e)
     const Dimension found = find(e);
     --owner.nesting;
     // Whole numbers and truth values count: only the literal 0 may stand for a length too.
-    const bool counts = e.type == int_type || e.type == uint_type || e.type == bool_type;
+    const bool counts = e.type.is_whole() || e.type.scalar == Scalar::bool_;
     return counts && !bare_number(e) ? Dimension::plain() : found;
 }
 

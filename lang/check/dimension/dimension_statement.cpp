@@ -21,6 +21,7 @@ constexpr int passes_max = 16;
 void DimensionBody::function(const FunctionInfo& info, const FunctionReferences& passed, const Dimensions& arguments)
 {
     functions = passed;
+    info_of = &info;
     Variables start;
     for (const Dimension dimension : arguments) start.push_back({{dimension, info.tree->name.span}});
     start.resize(info.slot_count);
@@ -47,8 +48,10 @@ void DimensionBody::body(const Statement& tree, const Variables& start)
         instance.callees.clear();
         instance.is_at_fault = heads_changed = false;
         instance.result = Dimension::any();
+        instance.written.clear();
         flow = start;
         statement(tree);
+        if (flow && info_of) collect_written(tree.span);
     }
 }
 
@@ -72,8 +75,9 @@ void DimensionBody::statement(const Statement& s)
     } else if (auto left = std::get_if<Return>(&s.node)) {
         leave(*left);
         flow.reset();
-    } else { // break
-        merge(*loop_exits.back(), flow);
+    } else {
+        const bool ends_turn = std::holds_alternative<Continue>(s.node); // else the loop
+        merge(*(ends_turn ? loop_turns : loop_exits).back(), flow);
         flow.reset();
     }
     --owner.nesting;
@@ -90,7 +94,18 @@ void DimensionBody::declaration(const Declaration& node)
 
 void DimensionBody::assign(const Statement& s, const Assignment& node)
 {
-    const Expression* object = node.target.get();
+    Dimension value = expression(*node.value);
+    if (node.op) {
+        const NameExpression& name = *root_of(*node.target);
+        value = binary(*node.op, read(*name.symbol, node.target->span), value, s.span, nullptr, *node.value);
+    }
+    give(*node.target, value, *node.value);
+}
+
+// `whence` for messages.
+void DimensionBody::give(const Expression& target, Dimension value, const Expression& whence)
+{
+    const Expression* object = &target;
     uint32_t components = 0; // of a vector that is assigned in part
     if (auto member = std::get_if<Member>(&object->node)) {
         object = member->object.get();
@@ -101,19 +116,35 @@ void DimensionBody::assign(const Statement& s, const Assignment& node)
         object = index->object.get();
         components = 0;
     }
-    Dimension value = expression(*node.value);
     const Symbol& symbol = *std::get<NameExpression>(object->node).symbol;
-    if (node.op) value = binary(*node.op, read(symbol, object->span), value, s.span, nullptr, *node.value);
     Variable& variable = (*flow)[symbol.slot];
-    const bool is_whole = object == node.target.get() || components == (1u << symbol.type.size) - 1;
+    const bool is_whole = object == &target || components == (1u << symbol.type.size) - 1;
     const Dimension before = is_whole ? Dimension::any() : read(symbol, object->span);
     if (before.is_any()) {
-        variable = {{value, node.value->span}};
+        variable = {{value, whence.span}};
     } else if (!join(before, value)) {
-        report(node.value->span,
+        report(whence.span,
                described(symbol.type) + " has one dimension: '" + symbol.name + "' is " + description(before) +
                    ", got " + description(value),
-               proposal(*node.value, before, value));
+               proposal(whence, before, value));
+    }
+}
+
+// What a function's outputs are where it ends; one on all paths.
+void DimensionBody::collect_written(Span where)
+{
+    size_t next = 0;
+    for (const ParameterInfo& parameter : info_of->parameters) {
+        if (!parameter.is_written()) continue;
+        if (next == instance.written.size()) instance.written.push_back(Dimension::any());
+        Dimension& known = instance.written[next++];
+        if (!parameter.symbol) continue;
+        const Dimension found = read(*parameter.symbol, where);
+        if (const auto both = join(known, found))
+            known = *both;
+        else
+            report(where, "'" + parameter.name + "' must have one dimension wherever its function ends, found " +
+                              description(known) + " and " + description(found));
     }
 }
 
@@ -156,12 +187,15 @@ void DimensionBody::loop(const For& node)
     learnt.resize(flow->size());
     for (size_t i = 0; i < learnt.size(); ++i)
         if ((*flow)[i].first.dimension.is_any()) (*flow)[i] = learnt[i];
-    Flow after = flow, exit;
+    Flow after = flow, exit, turn;
     loop_exits.push_back(&exit);
+    loop_turns.push_back(&turn);
     if (node.condition) expression(*node.condition);
     if (node.body) statement(*node.body);
-    if (node.step) statement(*node.step);
     loop_exits.pop_back();
+    loop_turns.pop_back();
+    merge(flow, turn);
+    if (node.step) statement(*node.step);
     if (flow) settle(learnt, *after);
     merge(after, flow);
     merge(after, exit);
@@ -206,7 +240,9 @@ void DimensionBody::check_outputs()
 
 void DimensionBody::leave(const Return& node)
 {
-    const Dimension found = expression(*node.value);
+    const Dimension found = node.value ? expression(*node.value) : Dimension::any();
+    if (info_of) collect_written(node.value ? node.value->span : Span{});
+    if (!node.value) return;
     Dimension& result = instance.result;
     if (outputs) {
         check_outputs();

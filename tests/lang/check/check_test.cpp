@@ -74,14 +74,14 @@ TEST_CASE("check: fixes turn other dialects into Haptel")
     const std::string dialects = R"(#version 450
 static const half A = 2.0;
 highp float3 f(mat3x3 m, vec3<f32> q) { return m * (q + 1.0) * saturate(q.x) / rcp(1.0 + q.y); }
-float g(float x) { if (x > 0.0 and not (x > 1.0)) retrun frac(x); return lerp(sinf(x), atan2(x, A), (float)2); }
-texture h(float depth = 1mm) { if (P.x < 0.0) return 0.0; return depth * g(1.0) * f(mat3x3(1.0), n).x; }
+float g(float x, bool b) { if (x > 0.0 and not b) retrun frac(x); return lerp(sinf(x), atan2(x, A), (float)2); }
+texture h(float depth = 1mm) { if (P.x < 0.0) return 0.0; return depth * g(1.0, false) * f(mat3x3(1.0), n).x; }
 )";
     const std::string haptel = R"(
 const float A = 2.0;
 vec3 f(mat3 m, vec3 q) { return m * (q + 1.0) * clamp(q.x, 0.0, 1.0) / (1.0 / (1.0 + q.y)); }
-float g(float x) { if (x > 0.0 && ! (x > 1.0)) return fract(x); return mix(sin(x), atan(x, A), float(2)); }
-texture h(float depth = 1mm) { if (p.x < 0.0) return 0.0; return depth * g(1.0) * f(mat3(1.0), n).x; }
+float g(float x, bool b) { if (x > 0.0 && ! b) return fract(x); return mix(sin(x), atan(x, A), float(2)); }
+texture h(float depth = 1mm) { if (p.x < 0.0) return 0.0; return depth * g(1.0, false) * f(mat3(1.0), n).x; }
 )";
     // What names a function that the parser cannot see is mended in the second round.
     CHECK(mended(mended(dialects)) == haptel);

@@ -119,8 +119,8 @@ TEST_CASE("grammar: what is no Haptel cannot be derived")
     const Ebnf grammar = grammar_of_the_page();
     CHECK(grammar.derives("file", terminals_of("texture t() { return 1mm; }", grammar)));
     for (const char* text :
-         {"texture t() { return 1mm }", "texture t( { }", "float f() { a = b = c; }", "float x = 1.0;",
-          "float f() { while (x) y; }", "float f(float a = 1.0) { }", "texture t(float a) { }"}) {
+         {"texture t() { return 1mm }", "texture t( { }", "float f() { a = (b = c); }", "float x = 1.0;",
+          "float f() { while (x) y; }", "float f(float a = ) { }", "texture t(float a) { }"}) {
         CAPTURE(text);
         CHECK_FALSE(grammar.derives("file", terminals_of(text, grammar)));
     }

@@ -128,6 +128,7 @@ struct StatementText {
         return "(for " + maybe(f.init) + " " + maybe(f.condition) + " " + maybe(f.step) + " " + maybe(f.body) + ")";
     }
     std::string operator()(const Break&) const { return "(break)"; }
+    std::string operator()(const Continue&) const { return "(continue)"; }
     std::string operator()(const Return& r) const
     {
         return "(return" + (r.value ? " " + tree_text(*r.value) : "") + ")";

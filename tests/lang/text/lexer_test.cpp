@@ -109,14 +109,21 @@ TEST_CASE("strings end on their line")
     CHECK(lexed("\"").diagnostics.all().size() == 1);
 }
 
-TEST_CASE("the preprocessor of other languages gets one message per line")
+TEST_CASE("lines that begin with # are read up to the end of the line")
 {
     const Lexed l = lexed("#define A \\\n 1\n#version 300\nb");
-    CHECK(l.text() == "b");
-    REQUIRE(l.diagnostics.all().size() == 2);
-    CHECK(l.diagnostics.all()[0].code == "preprocessor");
-    CHECK(l.diagnostics.all()[0].hint == "write a constant, \"const float WIDTH = 2mm;\", or a function");
-    CHECK(l.diagnostics.all()[1].hint == "leave this line out");
+    CHECK(l.text() == "#define A 1  b");
+    CHECK(l.list.tokens[3].kind == Token::line_end);
+    REQUIRE(l.diagnostics.all().size() == 1);
+    CHECK(l.diagnostics.all()[0].code == "directive");
+    CHECK(l.list.has_directives);
+    CHECK(lexed("# define A").text().empty());
+    CHECK(lexed("#define A // nothing\nb").text() == "b");
+    CHECK(lexed("#if 0\n#if 1\n#else\na\n#endif\n#else\nb\n#endif\nc").text() == "b c");
+    CHECK(lexed("#if 1\na\n#elif 1\nb\n#else\nc\n#endif\nd").text() == "a d");
+    CHECK(lexed("#ifdef A\na").first_message() ==
+          "this choice is never ended: expected '#endif' before the end of the file");
+    CHECK(lexed("#endif").first_message() == "'#endif' belongs to no '#if' above");
 }
 
 TEST_CASE("characters that look like others say which was meant")
