@@ -169,8 +169,10 @@ void BodyChecker::check_function(Function& tree, FunctionInfo& info)
             symbol.slot = functions++;
             for (Type type : parameter.signature) symbol.parameters.push_back({type});
         } else {
-            if (parameter.passing != Passing::out) flow.variables[symbol.slot].assigned = all_parts;
-            if (parameter.range && !context.is_library) flow.variables[symbol.slot].called = *parameter.range;
+            if (parameter.passing != Passing::out || info.is_texture) flow.variables[symbol.slot].assigned = all_parts;
+            if (parameter.held) flow.variables[symbol.slot].hold(*parameter.held);
+            if (parameter.range && !parameter.held && !context.is_library)
+                flow.variables[symbol.slot].called = *parameter.range;
             if (parameter.is_written()) must_be_written.push_back(&symbol);
             symbol.is_read = parameter.is_written();
             if (parameter.type == image_type) symbol.read_only = "it is an image";

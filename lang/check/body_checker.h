@@ -76,6 +76,7 @@ public:
 
     void check_function(ast::Function& tree, FunctionInfo& info);
     void check_texture(ast::Texture& tree, CheckedTexture& texture);
+    void check_parameters(ast::Texture& tree, CheckedTexture& texture);
     // Of a parameter or result: the type with the size in brackets, or the error that was reported.
     Type array_type(const ast::TypeName& name, Type element);
     // That of a parameter of a function; empty after a mistake.
@@ -131,6 +132,7 @@ private:
     Type check(ast::Expression& e, ast::Member& node);
     Type check(ast::Expression& e, ast::Index& node);
     Type check(ast::Expression& e, ast::BraceList& node);
+    Type check(ast::Expression&, ast::LeftOut& node) { return node.parameter->type; }
     Type read(ast::Expression& e, ast::NameExpression& node, uint64_t parts);
     // Reports unless `e` has or becomes that type, or is wrong already; `where` as a clause: " for 'x'".
     void require(ast::Expression& e, Type wanted, const std::string& where);
@@ -142,9 +144,12 @@ private:
     std::string operand(const ast::Expression& e) const; // to write something behind it
 
     // ---- calls
-    Type constructor(ast::Expression& e, ast::CallExpression& call, Type type);
-    // Outputs of a call: the arguments that stand where a function writes, and what it makes of them.
     using Targets = std::vector<std::optional<Target>>; // by argument
+    Type constructor(ast::Expression& e, ast::CallExpression& call, Type type);
+    Type texture_call(ast::Expression& e, ast::CallExpression& call);
+    bool named_argument(ast::CallExpression& call, const FunctionInfo& callee, size_t index,
+                        std::vector<ast::ExpressionPtr>& ordered, Targets& targets);
+    // Outputs of a call: the arguments that stand where a function writes, and what it makes of them.
     void write(const Candidate& function, std::vector<ast::ExpressionPtr>& arguments, const Targets& targets,
                Span call);
     void require_outputs(Span where);

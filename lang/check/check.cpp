@@ -192,9 +192,11 @@ public:
         for (uint32_t file = 0; file < count; ++file) check_constants(file, scopes[file]);
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], true);
         for (FunctionInfo& function : program.functions) check_defaults(function, scopes[function.file]);
+        for (uint32_t file = 0; file < count; ++file) declare_textures(file, scopes[file]);
         for (uint32_t file = 0; file < count; ++file) check_textures(file, scopes[file]);
         for (FunctionInfo* function : callers_first(program.functions)) {
             if (diagnostics.full()) return;
+            if (function->is_texture && !function->is_mentioned) continue; // it is checked as a texture
             BodyChecker(context, scopes[function->file])
                 .check_function(const_cast<Function&>(*function->tree), *function);
         }
@@ -289,6 +291,46 @@ private:
     {
         const Type type = value_type(context, name, why, !name.is_array && !is_result);
         return name.is_array ? BodyChecker(context, scope).array_type(name, type) : type;
+    }
+
+    // Textures as what other textures may call. Of two of one name, which is told, the first.
+    void declare_textures(uint32_t file, const FileScope& scope)
+    {
+        for (Texture& tree : program.files[file].tree.textures) {
+            if (diagnostics.full() || tree.parameters.size() > parameters_max) return;
+            if (!tree.as_function.body || declarations_of(file).textures.contains(tree.name.text)) continue;
+            CheckedTexture texture;
+            const uint32_t reports = diagnostics.reports();
+            BodyChecker(context, scope).check_parameters(tree, texture);
+            FunctionInfo& info = program.functions.emplace_back();
+            info.name = tree.name.text;
+            info.tree = &tree.as_function;
+            info.file = file;
+            info.is_texture = true;
+            info.result = float_type;
+            info.is_valid = diagnostics.reports() == reports;
+            auto checked = texture.parameters.begin();
+            for (const TextureParameter& parameter : tree.parameters) {
+                ParameterInfo& made = info.parameters.emplace_back();
+                made.name = parameter.name.text;
+                made.type = float_type;
+                if (parameter.is_output) {
+                    made.passing = Passing::out;
+                    continue;
+                }
+                made.type = checked->symbol->type;
+                made.value = parameter.value.get();
+                if (made.type == float_type)
+                    made.value_parts = {checked->value};
+                else if (made.type == bool_type)
+                    made.value_parts = {checked->value != 0};
+                else if (is_integer(made.type))
+                    made.value_parts = {static_cast<uint32_t>(static_cast<int64_t>(checked->value))};
+                if (is_integer(made.type)) made.held = checked->symbol->range;
+                ++checked;
+            }
+            declarations_of(file).textures.emplace(info.name, &info);
+        }
     }
 
     // What a call may leave out stands last, and is known when the texture is compiled.

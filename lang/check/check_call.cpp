@@ -80,6 +80,15 @@ bool is_valid(const Candidate& candidate)
     return !candidate.result.is_error() && std::ranges::none_of(candidate.parameters, is_error);
 }
 
+ExpressionPtr left_out(Span where, const ParameterInfo& parameter)
+{
+    auto made = std::make_unique<Expression>();
+    made->span = where;
+    made->type = parameter.type;
+    made->node = LeftOut{&parameter};
+    return made;
+}
+
 const FunctionInfo* source_of(const FunctionReference& function)
 {
     auto source = std::get_if<const FunctionInfo*>(&function);
@@ -104,6 +113,11 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
         for (ExpressionPtr& argument : call.arguments) expression(*argument);
         return resolve_type(context, TypeName{.base = call.callee, .is_array = false, .array_size = nullptr});
     }
+    const auto may_be_meant = [&](const Candidate& candidate) {
+        return !call.arguments.empty() || candidate.parameters.empty() || candidate.parameters.front().value;
+    };
+    const bool is_function = find(call.callee.text) || std::ranges::any_of(scope.functions(call.callee.text), may_be_meant);
+    if (!call.names.empty() || (!is_function && scope.texture(call.callee.text))) return texture_call(e, call);
     Type result;
     resolve(e, call.callee, call.arguments, 0, call.target, result);
     return result;
@@ -250,6 +264,11 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
                           listed(best) + "; convert arguments to say which, for example float(i)");
         return std::nullopt;
     }
+    for (size_t i = arguments.size(); i < best.front().parameters.size(); ++i) {
+        arguments.push_back(left_out(e.span, best.front().parameters[i]));
+        call.arguments.push_back({arguments.back().get(), {}});
+        targets.emplace_back();
+    }
     write(best.front(), arguments, targets, e.span);
     target.function = best.front().function;
     const FunctionInfo* source = source_of(target.function);
@@ -277,7 +296,7 @@ void BodyChecker::write(const Candidate& function, std::vector<ExpressionPtr>& a
     for (size_t i = 0; i < arguments.size(); ++i) // what only another function of that name writes is read
         if (targets[i] && (function.parameters[i].passing != Passing::out)) expression(*arguments[i]);
     for (size_t i = 0; i < arguments.size(); ++i) {
-        if (!function.parameters[i].is_written()) continue;
+        if (!function.parameters[i].is_written() || std::holds_alternative<LeftOut>(arguments[i]->node)) continue;
         Symbol& symbol = *targets[i]->symbol;
         Variable& variable = flow.variables[symbol.slot];
         variable.assigned |= targets[i]->parts;
@@ -317,16 +336,17 @@ void BodyChecker::require_outputs(Span where)
 // Between what the callee's whole numbers lie; what it is called with where it is only passed on, nobody knows.
 void BodyChecker::note_ranges(const FunctionInfo& callee, const std::vector<ExpressionPtr>& arguments)
 {
-    if (is_never_called) return; // what is not compiled calls nothing
+    if (is_never_called) return;                    // what is not compiled calls nothing
     auto& info = const_cast<FunctionInfo&>(callee); // what is found out of it is owned by the program being checked
     info.is_mentioned = true;
     for (size_t i = 0; i < info.parameters.size(); ++i) {
         ParameterInfo& parameter = info.parameters[i];
         if (!is_integer(parameter.type) || parameter.is_function) continue;
         ir::IntRange here = full_range(parameter.type);
-        if (i < arguments.size() && converts(*arguments[i], parameter.type)) {
+        const bool is_left_out = !arguments.empty() && std::holds_alternative<LeftOut>(arguments[i]->node);
+        if (!arguments.empty() && !is_left_out && converts(*arguments[i], parameter.type)) {
             here = range_over_calls(*arguments[i]);
-        } else if (!arguments.empty() && i >= arguments.size() && !parameter.value_parts.empty()) {
+        } else if (is_left_out && !parameter.value_parts.empty()) {
             const auto number = static_cast<int64_t>(as_number(parameter.value_parts.front(), parameter.type));
             here = {number, number};
         }

@@ -32,7 +32,8 @@ std::string unit_in(const Expression& e)
 
 } // namespace
 
-void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
+// Of what is around the body.
+void BodyChecker::check_parameters(Texture& tree, CheckedTexture& texture)
 {
     open_scope();
     for (TextureParameter& parameter : tree.parameters) {
@@ -41,6 +42,11 @@ void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
         else
             check_parameter(parameter, texture);
     }
+}
+
+void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
+{
+    check_parameters(tree, texture);
     std::ranges::sort(texture.outputs, {}, &CheckedOutput::writes);
     whole_body(tree.body, tree.name, float_type, "texture", tree.damage);
     for (const CheckedOutput& output : texture.outputs)

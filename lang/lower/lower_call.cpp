@@ -58,7 +58,7 @@ Values BodyLowering::lower(const Expression& e, const CallExpression& node)
 {
     if (node.target.is_constructor) return constructor(e, node);
     builder.span = e.span;
-    return call(e, node.target, node.arguments, 0);
+    return call(e, node.target, node.arguments, 0, node.inputs);
 }
 
 Values BodyLowering::lower(const Expression& e, const GradCall& node)
@@ -94,7 +94,7 @@ Values BodyLowering::constructor(const Expression& e, const CallExpression& node
 }
 
 Values BodyLowering::call(const Expression& e, const CallTarget& target, const std::vector<ExpressionPtr>& arguments,
-                          uint32_t order)
+                          uint32_t order, GivenInputs given)
 {
     const Span here = builder.span;
     const FunctionReference callee = resolved(target.function);
@@ -109,8 +109,6 @@ Values BodyLowering::call(const Expression& e, const CallTarget& target, const s
         else if (parameters[i].passing != Passing::out)
             values.push_back(converted(*arguments[i], parameters[i].type));
     }
-    for (size_t i = arguments.size(); i < parameters.size(); ++i) // left out
-        values.push_back(constant(parameters[i].value_parts, parameters[i].type));
     builder.span = here;
     if (auto builtin = std::get_if<const BuiltinOverload*>(&callee); builtin && order == 0)
         return lower_builtin(owner, builder, **builtin, values);
@@ -124,7 +122,9 @@ Values BodyLowering::call(const Expression& e, const CallTarget& target, const s
                 flat.insert(flat.end(), value.begin(), value.end());
     for (uint32_t name = 0; name < input_name_count; ++name) {
         if (!(function.reads >> name & 1)) continue;
-        const Values parts = input(static_cast<InputName>(name));
+        const auto own = std::ranges::find(given, static_cast<InputName>(name), [](auto& one) { return one.first; });
+        const Values parts = own == given.end() ? input(static_cast<InputName>(name))
+                                                : converted(*own->second, vec(builtin_inputs[name].size));
         flat.insert(flat.end(), parts.begin(), parts.end());
     }
     depth = std::max(depth, region_depth + 1 + function.depth);
@@ -139,7 +139,8 @@ Values BodyLowering::call(const Expression& e, const CallTarget& target, const s
     for (size_t i = 0; i < arguments.size() && order == 0; ++i) {
         if (!parameters[i].is_written()) continue;
         const size_t size = parameters[i].type.components();
-        store(*arguments[i], Values(written.begin(), written.begin() + static_cast<std::ptrdiff_t>(size)));
+        if (!std::holds_alternative<LeftOut>(arguments[i]->node))
+            store(*arguments[i], Values(written.begin(), written.begin() + static_cast<std::ptrdiff_t>(size)));
         written = written.subspan(size);
     }
     if (order == 0) results.resize(returned);
@@ -201,7 +202,12 @@ LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector
         function.facts.assign(info.result.components(), *info.tree->facts);
     for (ir::Facts& facts : function.facts) facts.proven = info.is_library;
     for (const ParameterInfo& parameter : info.parameters)
-        if (parameter.passing == Passing::out && parameter.symbol) body.clear(*parameter.symbol);
+        if (parameter.passing == Passing::out && parameter.symbol && info.is_texture)
+            body.variable(*parameter.symbol) = {body.builder.real(1)};
+        else if (parameter.passing == Passing::out && parameter.symbol)
+            body.clear(*parameter.symbol);
+        else if (parameter.held && parameter.symbol)
+            body.hold(*parameter.symbol, *parameter.held);
     Values results = body.whole_body(*info.tree->body, info.result);
     for (const ParameterInfo& parameter : info.parameters) {
         if (!parameter.is_written()) continue;

@@ -145,12 +145,7 @@ Values BodyLowering::lower(const Expression& e, const NameExpression& node)
     case SymbolKind::input: return input(symbol.input);
     case SymbolKind::texture_parameter: {
         Value value = builder.texture_parameter(symbol.slot, ir_type(symbol.type));
-        if (symbol.range) { // whatever the block holds: loops and tables rely on the range
-            const auto end = [&](int64_t at) { return builder.word(static_cast<uint32_t>(at), builder.type(value)); };
-            const bool is_int = symbol.type == int_type;
-            value = builder.operation(is_int ? Op::imax : Op::umax, {value, end(symbol.range->minimum)});
-            value = builder.operation(is_int ? Op::imin : Op::umin, {value, end(symbol.range->maximum)});
-        }
+        if (symbol.range) value = held(value, *symbol.range); // whatever the block holds
         return {value};
     }
     case SymbolKind::function: break;
@@ -328,6 +323,21 @@ Values BodyLowering::lower(const Expression&, const Member& node)
     Values made;
     for (uint8_t i = 0; i < swizzle.size; ++i) made.push_back(object[swizzle.component[i]]);
     return made;
+}
+
+// Loops and tables rely on the range of a texture's parameter.
+Value BodyLowering::held(Value value, ir::IntRange range)
+{
+    const auto end = [&](int64_t at) { return builder.word(static_cast<uint32_t>(at), builder.type(value)); };
+    const bool is_int = builder.type(value) == ir::Type::i32;
+    value = builder.operation(is_int ? Op::imax : Op::umax, {value, end(range.minimum)});
+    return builder.operation(is_int ? Op::imin : Op::umin, {value, end(range.maximum)});
+}
+
+void BodyLowering::hold(const Symbol& local, ir::IntRange range)
+{
+    Value& value = variables[local.slot][0];
+    value = held(value, range);
 }
 
 // i32 in [0, size - 1]

@@ -90,7 +90,8 @@ public:
     void bind_functions(const std::vector<FunctionReference>& passed) { functions = passed; }
     Values& variable(const Symbol& local) { return variables[local.slot]; }
     void clear(const Symbol& local) { variables[local.slot] = zeros(local.type); }
-    Values zeros(Type type); // none of void
+    void hold(const Symbol& local, ir::IntRange range); // a whole number, whatever it was given
+    Values zeros(Type type);                            // none of void
 
     Values whole_body(const ast::Statement& body, Type result);
     Values converted(const ast::Expression& e, Type to);
@@ -113,19 +114,25 @@ private:
     Values lower(const ast::Expression& e, const ast::Member& node);
     Values lower(const ast::Expression& e, const ast::Index& node);
     Values lower(const ast::Expression& e, const ast::BraceList& node);
+    Values lower(const ast::Expression&, const ast::LeftOut& node)
+    {
+        return constant(node.parameter->value_parts, node.parameter->type);
+    }
     Values convert(const Values& parts, Type from, Type to);
     Values binary(ast::BinaryOp op, const Values& a, Type a_type, const Values& b, Type b_type);
     Values linear_product(const Values& left, const Values& right, size_t size);
     ir::Value binary_scalar(ast::BinaryOp op, ir::Value a, ir::Value b);
     ir::Value integer(ir::Op op, ir::Value a, ir::Value b); // signed operation, on the bits where operands are u32
+    ir::Value held(ir::Value value, ir::IntRange range);
     ir::Value index_within(const ast::Expression& index, uint32_t size);
     Values input(InputName name);
     Values constant(std::span<const ConstantPart> parts, Type type);
     bool too_deep(Span span);
 
     // ---- calls
+    using GivenInputs = std::span<const std::pair<InputName, ast::ExpressionPtr>>;
     Values call(const ast::Expression& e, const CallTarget& target, const std::vector<ast::ExpressionPtr>& arguments,
-                uint32_t order);
+                uint32_t order, GivenInputs given = {});
     Values constructor(const ast::Expression& e, const ast::CallExpression& node);
     FunctionReference resolved(const FunctionReference& reference) const;
 

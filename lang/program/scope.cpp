@@ -45,6 +45,13 @@ bool writes(const FunctionReference& function)
     return source && std::ranges::any_of((*source)->parameters, &ParameterInfo::is_written);
 }
 
+FunctionInfo* FileScope::texture(std::string_view name) const
+{
+    for (const Declarations* layer : layers)
+        if (const auto found = layer->textures.find(name); found != layer->textures.end()) return found->second;
+    return nullptr;
+}
+
 std::vector<Candidate> FileScope::functions(std::string_view name) const
 {
     std::vector<Candidate> found;

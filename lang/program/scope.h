@@ -16,6 +16,7 @@ namespace haptel::lang {
 // Global names of one file, or of the whole library.
 struct Declarations {
     std::map<std::string, std::vector<FunctionInfo*>, std::less<>> functions;
+    std::map<std::string, FunctionInfo*, std::less<>> textures;  // as functions
     std::map<std::string, const Symbol*, std::less<>> constants; // those above the place that is being checked
     std::set<std::string, std::less<>> constant_names;           // all, for a hint
     bool lacks_functions = false;                                // some could not be read
@@ -54,6 +55,7 @@ struct FileScope {
 
     // Every function of that name; of equal signatures only the nearest, so that a file may replace what it imports.
     std::vector<Candidate> functions(std::string_view name) const;
+    FunctionInfo* texture(std::string_view name) const; // null: none has that name
 };
 
 } // namespace haptel::lang

@@ -11,7 +11,10 @@ std::vector<const Expression*> operands_of(const Expression& e)
     };
     if (auto unary = std::get_if<Unary>(&e.node)) add(unary->operand);
     if (auto member = std::get_if<Member>(&e.node)) add(member->object);
-    if (auto call = std::get_if<CallExpression>(&e.node)) add_all(call->arguments);
+    if (auto call = std::get_if<CallExpression>(&e.node)) {
+        add_all(call->arguments);
+        for (const auto& [name, value] : call->inputs) add(value);
+    }
     if (auto grad = std::get_if<GradCall>(&e.node)) add_all(grad->arguments);
     if (auto list = std::get_if<BraceList>(&e.node)) add_all(list->elements);
     if (auto index = std::get_if<Index>(&e.node)) add(index->object, index->index);

@@ -102,11 +102,18 @@ struct Chain {
 struct Conditional {
     ExpressionPtr condition, when_true, when_false;
 };
-// Function, constructor or built-in: the checker decides.
+// Function, constructor, built-in or texture: the checker decides.
 struct CallExpression {
     Name callee;
     std::vector<ExpressionPtr> arguments;
-    CallTarget target = {}; // set by the checker
+    std::vector<Name> names = {}; // by argument, "depth = 1mm"; no text: it has none. The checker clears them
+    CallTarget target = {};       // set by the checker
+    // What a texture reads instead of an input, "p = q"; set by the checker, out of the arguments.
+    std::vector<std::pair<InputName, ExpressionPtr>> inputs = {};
+};
+// An argument that a call leaves out; put there by the checker.
+struct LeftOut {
+    const ParameterInfo* parameter;
 };
 // grad(f)(args), grad(grad(f))(args): `order` counts the grads.
 struct GradCall {
@@ -133,7 +140,7 @@ struct BraceList {
 struct Expression {
     Span span;
     std::variant<ErrorExpression, NumberLiteral, BoolLiteral, NameExpression, Unary, Chain, Conditional, CallExpression,
-                 GradCall, Member, Index, BraceList>
+                 GradCall, Member, Index, BraceList, LeftOut>
         node;
     Type type; // set by the checker; Type::error() where something was reported
 };
@@ -248,7 +255,8 @@ struct Texture {
     std::string doc;
     Name name;
     std::vector<TextureParameter> parameters;
-    StatementPtr body; // as in Function
+    StatementPtr body;    // as in Function
+    Function as_function; // what other textures call: the same parameters and body; no body after a mistake
     Damage damage;
     Span span;
 };

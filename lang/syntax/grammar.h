@@ -42,6 +42,7 @@ private:
     // parse_declaration.cpp
     void import_declaration(ast::File& result);
     void texture(ast::File& result);
+    void read_as_function(ast::Texture& texture, size_t body);
     ast::TextureParameter texture_parameter();
     void constants(ast::File& result);
     void function_or_variable(ast::File& result);
@@ -66,6 +67,7 @@ private:
     ast::StatementPtr chained(ast::Assignment left, Span first, size_t value);
     void declarations(Statements& into);
     void declaration_list(Statements& into);
+    ast::ExpressionPtr initializer(Statements& before);
     bool at_declaration() const;
     bool is_used_as_name() const;
     bool at_top_level_start() const;
@@ -125,7 +127,7 @@ private:
     ast::ExpressionPtr brace_list();
     ast::ExpressionPtr name_or_call();
     ast::ExpressionPtr grad_call(Span first);
-    std::vector<ast::ExpressionPtr> arguments();
+    std::vector<ast::ExpressionPtr> arguments(std::vector<ast::Name>* names = nullptr);
     ast::ExpressionPtr array_constructor(ast::Name type);
 
     // parse_foreign.cpp

@@ -268,10 +268,33 @@ void Grammar::texture(File& result)
     } else {
         return;
     }
+    const size_t body = position;
     made.body = body_of("the texture '" + made.name.text + "'");
     made.damage = take_damage(mistakes_before, made.body);
     made.span = since(first);
+    if (made.body && !made.damage.any) read_as_function(made, body);
     result.textures.push_back(std::move(made));
+}
+
+// Read anew: a tree is checked for one use. What is told of both is told once, since it is at one place.
+void Grammar::read_as_function(Texture& texture, size_t body)
+{
+    const size_t behind = position;
+    position = body;
+    Function& made = texture.as_function;
+    made.doc = texture.doc;
+    made.result.base = {"float", texture.name.span};
+    made.name = texture.name;
+    for (const TextureParameter& parameter : texture.parameters) {
+        FunctionParameter& one = made.parameters.emplace_back();
+        one.type = parameter.type;
+        one.name = parameter.name;
+        one.passing = parameter.is_output ? Passing::out : Passing::in;
+        one.span = parameter.span;
+    }
+    made.body = body_of("the texture '" + made.name.text + "'");
+    made.span = texture.span;
+    position = behind;
 }
 
 // texture_parameter = ["out"] type name ["=" expression ["in" binary ".." binary]]

@@ -239,19 +239,30 @@ ExpressionPtr Grammar::name_or_call()
     if (callee.text == "grad") return grad_call(callee.span);
 
     advance();
-    std::vector<ExpressionPtr> values = arguments();
-    return make(since(callee.span), CallExpression{std::move(callee), std::move(values)});
+    std::vector<Name> names;
+    std::vector<ExpressionPtr> values = arguments(&names);
+    return make(since(callee.span), CallExpression{std::move(callee), std::move(values), std::move(names)});
 }
 
-// The rest of a call behind '(': [expression {"," expression}] ")"
-std::vector<ExpressionPtr> Grammar::arguments()
+// The rest of a call behind '(': [argument {"," argument}] ")"          argument = [name "="] expression
+// Names are read where they may stand; `names` is empty where none does.
+std::vector<ExpressionPtr> Grammar::arguments(std::vector<Name>* names)
 {
     std::vector<ExpressionPtr> result;
     const Span opener = previous_span();
     const Nesting nesting(*this, Nesting::bracket);
     if (accept(Token::right_paren)) return result;
-    do result.push_back(expression());
-    while (accept(Token::comma));
+    do {
+        Name own;
+        if (names && at(Token::name) && kind(1) == Token::assign) {
+            own = name("");
+            advance();
+        }
+        result.push_back(expression());
+        if (!names || (own.text.empty() && names->empty())) continue;
+        names->resize(result.size());
+        names->back() = std::move(own);
+    } while (accept(Token::comma));
     if (!close(Token::right_paren, opener, true) || lost)
         result.push_back(unknown(span())); // nobody knows how many were meant
     return result;

@@ -312,6 +312,22 @@ void Grammar::declarations(Statements& into)
     if (!lost) expect_semicolon("the declaration");
 }
 
+// An expression; in "float a = b = 0.0" what is assigned on the way stands before.
+ExpressionPtr Grammar::initializer(Statements& before)
+{
+    const size_t first = position;
+    ExpressionPtr value = conditional();
+    if (!is_assignment(kind()) || lost) return value;
+    position = first;
+    before.push_back(assignment_or_expression());
+    if (at(Token::end)) return value;
+    const size_t behind = position;
+    position = first;
+    value = conditional();
+    position = behind;
+    return value;
+}
+
 void Grammar::declaration_list(Statements& into)
 {
     const Span first = span();
@@ -322,7 +338,7 @@ void Grammar::declaration_list(Statements& into)
         Declaration made{is_const, type, name_after(type), nullptr};
         if (made.name.text.empty()) return;
         array_suffix(made.type);
-        if (accept(Token::assign)) made.initializer = at(Token::left_brace) ? brace_list() : expression();
+        if (accept(Token::assign)) made.initializer = at(Token::left_brace) ? brace_list() : initializer(into);
         into.push_back(make_statement(since(begin), std::move(made)));
     } while (!lost && accept(Token::comma));
 }

@@ -53,6 +53,7 @@ struct ParameterInfo {
     const ast::Expression* value = nullptr; // where a call leaves it out; null: it may not
     std::vector<ConstantPart> value_parts = {};
     std::optional<ir::IntRange> range = {}; // of a whole number, over all calls seen so far; nothing: none
+    std::optional<ir::IntRange> held = {};  // that of a texture's parameter, within which it is held
     bool operator==(const ParameterInfo& other) const
     {
         return type == other.type && is_function == other.is_function && signature == other.signature;
@@ -131,6 +132,7 @@ struct FunctionInfo {
     std::vector<Mention> mentions;
     bool is_valid = true;      // false: its head has errors; calls to it are not checked
     bool is_mentioned = false; // called or passed, by what is checked so far
+    bool is_texture = false;   // called by names; its outputs are 1 from the start, and may be left out
 };
 
 } // namespace haptel::lang

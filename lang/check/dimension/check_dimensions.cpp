@@ -76,7 +76,7 @@ void check_dimensions(const SourceSet& sources, const CheckedProgram& program, D
     for (DimensionInstance& root : roots) report(root, diagnostics);
     // What no texture calls may be called with anything.
     for (const FunctionInfo& function : program.functions) {
-        if (function.is_library || checker.has_seen(function)) continue;
+        if (function.is_library || function.is_texture || checker.has_seen(function)) continue;
         const auto functions =
             static_cast<size_t>(std::ranges::count(function.parameters, true, &ParameterInfo::is_function));
         const Dimensions anything(function.parameters.size() - functions, Dimension::any());

@@ -42,10 +42,6 @@ Dimension DimensionBody::call(const Expression& e, const std::string& name, cons
         call.values.push_back(arguments[i].get());
         call.dimensions.push_back(counts ? Dimension::plain() : found);
     }
-    for (size_t i = arguments.size(); source && i < (*source)->parameters.size(); ++i) { // left out
-        call.values.push_back((*source)->parameters[i].value);
-        call.dimensions.push_back(expression(*call.values.back()));
-    }
 
     Dimension result = Dimension::any();
     if (auto overload = std::get_if<const BuiltinOverload*>(&callee)) {
@@ -64,8 +60,10 @@ Dimension DimensionBody::call(const Expression& e, const std::string& name, cons
         owner.user_call = outer;
         result = made.result;
         for (size_t i = 0, next = 0; i < arguments.size() && order == 0; ++i)
-            if ((*source)->parameters[i].is_written() && next < made.written.size())
-                give(*arguments[i], made.written[next++], *arguments[i]);
+            if ((*source)->parameters[i].is_written() && next < made.written.size()) {
+                const Dimension written = made.written[next++];
+                if (!std::holds_alternative<LeftOut>(arguments[i]->node)) give(*arguments[i], written, *arguments[i]);
+            }
     }
     const auto is_number = [](const Expression* value) { return value->type != image_type; };
     const auto by = std::ranges::find_if(call.values, is_number) - call.values.begin(); // a derivative's

@@ -62,9 +62,18 @@ Dimension DimensionBody::find(const Expression& e)
     if (auto member = std::get_if<Member>(&e.node)) return expression(*member->object);
     if (auto grad = std::get_if<GradCall>(&e.node))
         return call(e, grad->function.text, grad->target, grad->arguments, grad->order);
-    if (auto made = std::get_if<CallExpression>(&e.node))
+    if (auto left_out = std::get_if<LeftOut>(&e.node))
+        return left_out->parameter->value ? expression(*left_out->parameter->value) : Dimension::any();
+    if (auto made = std::get_if<CallExpression>(&e.node)) {
+        for (const auto& [input, value] : made->inputs) {
+            const BuiltinInput& read = builtin_inputs[static_cast<size_t>(input)];
+            const Dimension found = expression(*value), expected = dimension_of_unit(read.unit);
+            if (!join(found, expected))
+                report_expected("the input '" + std::string(read.name) + "' is", *value, expected, found);
+        }
         return made->target.is_constructor ? constructor(e, *made)
                                            : call(e, made->callee.text, made->target, made->arguments, 0);
+    }
     if (auto index = std::get_if<Index>(&e.node)) {
         expression(*index->index);
         return expression(*index->object);

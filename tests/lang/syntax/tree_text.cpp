@@ -89,6 +89,7 @@ struct ExpressionText {
     }
     std::string operator()(const Member& m) const { return "(. " + maybe(m.object) + " " + m.member.text + ")"; }
     std::string operator()(const Index& i) const { return "([] " + maybe(i.object) + " " + maybe(i.index) + ")"; }
+    std::string operator()(const LeftOut&) const { return "()"; }
     std::string operator()(const BraceList& b) const { return "({}" + list(b.elements) + ")"; }
 };
 
