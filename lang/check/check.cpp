@@ -4,6 +4,7 @@
 #include "lang/check/body_checker.h"
 #include "lang/check/call_order.h"
 #include "lang/check/library.h"
+#include "lang/check/preset.h"
 #include "lang/syntax/grammar.h"
 #include "lang/text/limits.h"
 
@@ -187,6 +188,7 @@ public:
             declarations_of(file).lacks_functions |= program.files[file].tree.lacks_functions;
             declarations_of(file).unread.merge(program.files[file].tree.unread);
         }
+        add_presets(program.files, diagnostics);
         // Sizes of arrays in heads of functions are constants, and constants may name functions.
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], false);
         for (uint32_t file = 0; file < count; ++file) check_constants(file, scopes[file]);

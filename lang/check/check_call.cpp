@@ -99,7 +99,12 @@ const FunctionInfo* source_of(const FunctionReference& function)
 
 Type BodyChecker::check(Expression& e, CallExpression& call)
 {
-    if (const auto type = type_named(call.callee.text)) return constructor(e, call, *type);
+    if (const auto type = type_named(call.callee.text)) {
+        if (!call.names.empty())
+            diagnostics.error(call.callee.span, "named-argument",
+                              "the parts of a " + to_string(*type) + " have no names", "leave the names out");
+        return constructor(e, call, *type);
+    }
     const ForeignWord* foreign = foreign_word(ForeignKind::type, call.callee.text);
     if (foreign && !find(call.callee.text) && scope.functions(call.callee.text).empty()) {
         Diagnostic& reported =
@@ -116,7 +121,8 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
     const auto may_be_meant = [&](const Candidate& candidate) {
         return !call.arguments.empty() || candidate.parameters.empty() || candidate.parameters.front().value;
     };
-    const bool is_function = find(call.callee.text) || std::ranges::any_of(scope.functions(call.callee.text), may_be_meant);
+    const bool is_function =
+        find(call.callee.text) || std::ranges::any_of(scope.functions(call.callee.text), may_be_meant);
     if (!call.names.empty() || (!is_function && scope.texture(call.callee.text))) return texture_call(e, call);
     Type result;
     resolve(e, call.callee, call.arguments, 0, call.target, result);

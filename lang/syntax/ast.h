@@ -246,8 +246,9 @@ struct TextureParameter {
     std::string doc;
     TypeName type;
     Name name;
-    bool is_output = false;                // "out float stiffness_scale"
-    ExpressionPtr value, minimum, maximum; // default and range; range may be absent
+    bool is_output = false; // "out float stiffness_scale"
+    // Default and range, which a preset of the texture has too; the range may be absent.
+    std::shared_ptr<Expression> value, minimum, maximum;
     Span span;
 };
 
@@ -258,6 +259,15 @@ struct Texture {
     StatementPtr body;    // as in Function
     Function as_function; // what other textures call: the same parameters and body; no body after a mistake
     Damage damage;
+    Span span;
+};
+
+// "texture oak = wood(depth = 40um);": a texture with other defaults. The checker makes it one of File::textures.
+struct Preset {
+    std::string doc;
+    Name name, of;
+    std::vector<Name> names; // by value
+    std::vector<ExpressionPtr> values;
     Span span;
 };
 
@@ -275,6 +285,7 @@ struct File {
     std::vector<Constant> constants;
     std::vector<Function> functions;
     std::vector<Texture> textures;
+    std::vector<Preset> presets;
     // Functions that could not be read may have any name, other declarations one of those that stand there.
     bool lacks_functions = false;
     std::set<std::string, std::less<>> unread;

@@ -43,6 +43,7 @@ private:
     void import_declaration(ast::File& result);
     void texture(ast::File& result);
     void read_as_function(ast::Texture& texture, size_t body);
+    void preset(ast::File& result, ast::Texture head, Span first);
     ast::TextureParameter texture_parameter();
     void constants(ast::File& result);
     void function_or_variable(ast::File& result);

@@ -245,7 +245,7 @@ void Grammar::function_signature(FunctionParameter& parameter)
     close(Token::right_paren, opener, true);
 }
 
-// texture = "texture" name "(" [texture_parameter {"," texture_parameter}] ")" block
+// texture = "texture" name "(" [texture_parameter {"," texture_parameter}] ")" block | preset
 void Grammar::texture(File& result)
 {
     Texture made;
@@ -259,6 +259,7 @@ void Grammar::texture(File& result)
     advance();
     made.name = name("after 'texture'");
     if (made.name.text.empty()) return;
+    if (accept(Token::assign)) return preset(result, std::move(made), first);
     if (at(Token::left_brace)) {
         diagnostics.error(made.name.span, "syntax", "expected '(' after the name of the texture",
                           "write 'texture " + made.name.text + "()' if it has no parameters");
@@ -274,6 +275,18 @@ void Grammar::texture(File& result)
     made.span = since(first);
     if (made.body && !made.damage.any) read_as_function(made, body);
     result.textures.push_back(std::move(made));
+}
+
+// preset = "texture" name "=" name "(" [name "=" expression {"," name "=" expression}] ")" ";"        Behind "=".
+void Grammar::preset(File& result, Texture head, Span first)
+{
+    Preset made{std::move(head.doc), std::move(head.name), name("of a texture"), {}, {}, {}};
+    if (lost || !expect(Token::left_paren, "and other defaults of the texture")) return;
+    made.values = arguments(&made.names);
+    made.names.resize(made.values.size());
+    if (!lost) expect_semicolon("the preset");
+    made.span = since(first);
+    if (!lost) result.presets.push_back(std::move(made));
 }
 
 // Read anew: a tree is checked for one use. What is told of both is told once, since it is at one place.

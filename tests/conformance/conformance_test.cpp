@@ -118,8 +118,8 @@ TEST_CASE("conformance: every finding that a text can show has a file")
                 finding.text.substr(finding.text.rfind('[') + 1, finding.text.size() - finding.text.rfind('[') - 2));
     // Findings about files and machines, not about texts.
     const std::set<std::string_view> elsewhere = {
-        "bad-value", "coarse-picture", "dimension-limit",   "internal-error",  "no-code",         "not-close-enough",
-        "seam",      "too-large",      "unknown-parameter", "unknown-texture", "unreadable-file", "unwritable-file"};
+        "bad-value", "coarse-picture", "dimension-limit",   "internal-error",  "no-code",        "not-close-enough",
+        "seam",      "too-large",      "unknown-parameter", "unreadable-file", "unwritable-file"};
     for (const lang::DiagnosticInfo& info : lang::all_diagnostics) {
         CAPTURE(info.code);
         CHECK(shown.contains(std::string(info.code)) != elsewhere.contains(info.code));

@@ -90,7 +90,7 @@ private:
         scope = shapes[shape].variables;
         few = {"2", "FEW", "int(3u)"};
         if (static_cast<Shape>(shape) == Shape::of_array) list("l");
-        if (static_cast<Shape>(shape) == Shape::writer) line("y = " + tame(1) + ";");
+        if (static_cast<Shape>(shape) == Shape::writer) line(one_of({"y = x;", "y = 0.5 * x;"}));
         if (below(2)) scope.push_back({"C2", Kind::real, false});
         statements(static_cast<int>(below(4)), 0);
         line("return " + returned(3) + ";");

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <memory>
+#include <span>
 
 namespace haptel::tools {
 
@@ -70,7 +71,7 @@ ExitCode show_all(const InfoOptions& options)
 // Values and ranges as the author wrote them.
 std::string to_text(const lang::SourceSet& sources, const lang::ast::TextureParameter& parameter)
 {
-    const auto text = [&](const lang::ast::ExpressionPtr& part) { return std::string(sources.text(part->span)); };
+    const auto text = [&](const auto& part) { return std::string(sources.text(part->span)); };
     std::string line = fmt::format("  {} {}", parameter.type.base.text, parameter.name.text);
     if (parameter.value) line += " = " + text(parameter.value);
     if (parameter.minimum && parameter.maximum)
@@ -79,11 +80,13 @@ std::string to_text(const lang::SourceSet& sources, const lang::ast::TexturePara
     return line + "\n";
 }
 
-std::string to_text(const lang::SourceSet& sources, const lang::ast::Texture& tree, const ir::Texture& texture)
+// `head` is its first line; a preset's parameters are listed with the texture that it is of.
+std::string to_text(const lang::SourceSet& sources, const std::string& head,
+                    std::span<const lang::ast::TextureParameter> parameters, const ir::Texture& texture)
 {
-    std::string text = fmt::format("texture {}\n", texture.name);
+    std::string text = head + "\n";
     if (!texture.doc.empty()) text += "  " + texture.doc + "\n";
-    for (const lang::ast::TextureParameter& parameter : tree.parameters)
+    for (const lang::ast::TextureParameter& parameter : parameters)
         if (!parameter.is_output) text += to_text(sources, parameter);
     const std::vector<std::string> inputs = inputs_of(texture), outputs = outputs_of(texture);
     text += fmt::format("  reads {}\n", inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")));
@@ -119,9 +122,13 @@ ExitCode show_file(const InfoOptions& options)
         names.push_back(texture.name);
         if (!wanted.empty() && texture.name != wanted) continue;
         all.push_back(texture_json(path, texture));
+        const auto add = [&](const std::string& head, std::span<const lang::ast::TextureParameter> parameters) {
+            text += (text.empty() ? "" : "\n") + to_text(result.sources, head, parameters, texture);
+        };
         for (const lang::ast::Texture& written : tree.textures)
-            if (written.name.text == texture.name)
-                text += (text.empty() ? "" : "\n") + to_text(result.sources, written, texture);
+            if (written.name.text == texture.name) add("texture " + texture.name, written.parameters);
+        for (const lang::ast::Preset& written : tree.presets)
+            if (written.name.text == texture.name) add(std::string(result.sources.text(written.span)), {});
     }
     if (all.empty() && !wanted.empty()) {
         const std::string_view meant = near_name(wanted, names).name;

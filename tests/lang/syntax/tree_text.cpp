@@ -45,7 +45,8 @@ std::string spelling(UnaryOp op)
     return "?";
 }
 
-std::string maybe(const ExpressionPtr& expression)
+template <class Pointer>
+std::string maybe(const Pointer& expression)
 {
     return expression ? tree_text(*expression) : "none";
 }

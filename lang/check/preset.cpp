@@ -1,0 +1,121 @@
+#include "lang/check/preset.h"
+
+#include "lang/check/body_checker.h"
+
+#include <algorithm>
+
+namespace haptel::lang {
+
+using namespace ast;
+
+namespace {
+
+ExpressionPtr named(const Name& name)
+{
+    auto made = std::make_unique<Expression>();
+    made->span = name.span;
+    made->node = NameExpression{name.text};
+    return made;
+}
+
+// "{ return wood(depth = depth, pitch = pitch); }"
+StatementPtr body_of(const Preset& preset, const std::vector<TextureParameter>& parameters)
+{
+    CallExpression call{preset.of, {}};
+    for (const TextureParameter& parameter : parameters) {
+        const Name here{parameter.name.text, preset.of.span};
+        call.names.push_back(here);
+        call.arguments.push_back(named(here));
+    }
+    auto value = std::make_unique<Expression>();
+    value->span = preset.of.span;
+    value->node = std::move(call);
+    auto leave = std::make_unique<Statement>();
+    leave->span = preset.span;
+    leave->node = Return{std::move(value)};
+    ast::Scope scope;
+    scope.statements.push_back(std::move(leave));
+    auto body = std::make_unique<Statement>();
+    body->span = preset.span;
+    body->node = std::move(scope);
+    return body;
+}
+
+const Texture* find_texture(const std::vector<CheckFile>& files, const CheckFile& file, const std::string& name)
+{
+    const auto in = [&](const CheckFile& one) -> const Texture* {
+        const auto found = std::ranges::find(one.tree.textures, name, [](const Texture& t) { return t.name.text; });
+        return found == one.tree.textures.end() ? nullptr : &*found;
+    };
+    if (const Texture* own = in(file)) return own;
+    for (const uint32_t imported : file.imported)
+        if (const Texture* found = in(files[imported])) return found;
+    return nullptr;
+}
+
+void give_defaults(Texture& made, Preset& preset, Diagnostics& diagnostics)
+{
+    std::vector<std::string_view> names;
+    for (const TextureParameter& parameter : made.parameters) names.push_back(parameter.name.text);
+    for (size_t i = 0; i < preset.values.size(); ++i) {
+        const Name& name = preset.names[i];
+        const auto parameter = std::ranges::find(names, name.text);
+        const Span where = name.text.empty() ? preset.values[i]->span : name.span;
+        if (name.text.empty() || parameter == names.end()) {
+            Diagnostic& reported = diagnostics.error(
+                where, "named-argument",
+                name.text.empty() ? "a default of a preset has no name"
+                                  : "the texture " + quoted(preset.of.text) + " has no parameter " + quoted(name.text),
+                name.text.empty() ? "write depth = ..." : "haptel info lists them");
+            propose(reported, where, near_name(name.text, names));
+            continue;
+        }
+        TextureParameter& changed = made.parameters[static_cast<size_t>(parameter - names.begin())];
+        if (std::exchange(*parameter, std::string_view{}).empty() || changed.is_output || !changed.value)
+            diagnostics.error(where, "named-argument", quoted(name.text) + " has no default to be changed here",
+                              "each parameter has one default; images and outputs have none");
+        else
+            changed.value = std::move(preset.values[i]);
+    }
+}
+
+} // namespace
+
+void add_presets(std::vector<CheckFile>& files, Diagnostics& diagnostics)
+{
+    for (size_t i = files.size(); i-- > 0;) { // what is imported stands behind
+        std::vector<Texture>& textures = files[i].tree.textures;
+        for (Preset& preset : files[i].tree.presets) {
+            const Texture* of = find_texture(files, files[i], preset.of.text);
+            if (!of) {
+                diagnostics.error(preset.of.span, "unknown-texture",
+                                  "there is no texture " + quoted(preset.of.text) + " above or in an imported file",
+                                  "a preset stands below the texture or preset that it is of");
+                continue;
+            }
+            Texture made;
+            made.doc = preset.doc.empty() ? of->doc : preset.doc;
+            made.name = preset.name;
+            made.parameters = of->parameters;
+            made.span = preset.span;
+            give_defaults(made, preset, diagnostics);
+            made.body = body_of(preset, made.parameters);
+            Function& function = made.as_function;
+            function.result.base = {"float", preset.name.span};
+            function.name = preset.name;
+            for (const TextureParameter& parameter : made.parameters) {
+                FunctionParameter& one = function.parameters.emplace_back();
+                one.type = parameter.type;
+                one.name = parameter.name;
+                one.passing = parameter.is_output ? Passing::out : Passing::in;
+                one.span = parameter.span;
+            }
+            function.body = body_of(preset, made.parameters);
+            function.span = preset.span;
+            textures.push_back(std::move(made));
+        }
+        std::ranges::stable_sort(textures, {}, [](const Texture& texture) { return texture.span.begin; });
+    }
+}
+
+} // namespace haptel::lang
