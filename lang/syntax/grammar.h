@@ -160,7 +160,7 @@ private:
     ast::TypeName type_name();
     void array_suffix(ast::TypeName& type);
     ast::Name name(std::string_view what); // empty, and reported, where there is none
-    ast::Name name_after(const ast::TypeName& type);
+    ast::Name name_after(ast::TypeName& type); // mends "q vec2"
     std::string doc_before(size_t token_index, std::optional<ir::Facts>* facts);
     ast::ExpressionPtr bound_before(size_t token_index);
     template <class Node>

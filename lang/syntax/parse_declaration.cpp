@@ -27,11 +27,17 @@ Name Grammar::name(std::string_view what)
     return {};
 }
 
-Name Grammar::name_after(const TypeName& type)
+Name Grammar::name_after(TypeName& type)
 {
     if (at(Token::star) || at(Token::ampersand))
         error(span(), "no-pointers", "there are no pointers or references in Haptel");
-    return name("after '" + type.base.text + "'");
+    Name result = name("after '" + type.base.text + "'");
+    if (is_own_type(result.text) && !type.is_array && !is_type_word(type.base.text)) { // "cell float"
+        diagnostics.error(since(type.base.span), "syntax", "the type comes first",
+                          "write " + result.text + " " + type.base.text);
+        std::swap(type.base, result);
+    }
+    return result;
 }
 
 // type = name ["[" [expression] "]"]

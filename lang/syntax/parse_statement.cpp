@@ -332,10 +332,11 @@ void Grammar::declaration_list(Statements& into)
 {
     const Span first = span();
     const bool is_const = accept(Token::kw_const);
-    const TypeName type = type_name();
+    TypeName type = type_name();
     do {
         const Span begin = into.empty() ? first : span();
-        Declaration made{is_const, type, name_after(type), nullptr};
+        Name name = name_after(type);
+        Declaration made{is_const, type, std::move(name), nullptr};
         if (made.name.text.empty()) return;
         array_suffix(made.type);
         if (accept(Token::assign)) made.initializer = at(Token::left_brace) ? brace_list() : initializer(into);
