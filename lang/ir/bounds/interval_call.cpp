@@ -62,8 +62,14 @@ bool tells_derivative(const Function& function, const IntervalEvaluator::Results
            std::ranges::none_of(all.subspan(function.first_argument_size), stays);
 }
 
+// Rather than only step from one value to another, as the number of a cell does.
+bool moves(const Variation& argument)
+{
+    return argument.is_active && !(argument.slope == 0 && argument.curvature == 0);
+}
+
 // By the chain rule: of the first argument by the facts, of the others, where they move too, as found (`by_others`;
-// null: not looked for). Of how it bends by both, only the class is known.
+// null: not looked for). Of how it bends by both, only the class is known. Others that step add to the class alone.
 Variation by_facts(const Function& function, const Facts& facts, const IntervalEvaluator::Results& arguments,
                    const Variation* by_others)
 {
@@ -71,8 +77,9 @@ Variation by_facts(const Function& function, const Facts& facts, const IntervalE
     const auto first = all.first(function.first_argument_size), others = all.subspan(first.size());
     Variation variation = chain(facts, first);
     if (std::ranges::any_of(others, &Variation::is_active)) {
-        const Variation of_first = std::exchange(variation, unknown_variation({}));
-        if (by_others) {
+        const bool is_of_first_alone = std::ranges::none_of(others, moves);
+        const Variation of_first = std::exchange(variation, is_of_first_alone ? variation : unknown_variation({}));
+        if (by_others && !is_of_first_alone) {
             for (size_t j = 0; j < variation.gradient.size(); ++j)
                 variation.gradient[j] = add(of_first.gradient[j], by_others->gradient[j]);
             variation.slope = (of_first.slope + by_others->slope) * (1 + 1e-15);
@@ -147,7 +154,7 @@ IntervalEvaluator::Results IntervalEvaluator::by_other_arguments(uint32_t index,
     const auto others = std::span(arguments.variations).subspan(function.first_argument_size);
     const auto first = std::span(arguments.variations).first(function.first_argument_size);
     const auto has_slope = [](const Facts& facts) { return facts.slope.has_value(); };
-    if (std::ranges::none_of(function.facts, has_slope) || std::ranges::none_of(others, &Variation::is_active) ||
+    if (std::ranges::none_of(function.facts, has_slope) || std::ranges::none_of(others, moves) ||
         std::ranges::none_of(first, &Variation::is_active))
         return {};
     Results held = arguments;

@@ -151,6 +151,22 @@ TEST_CASE("slope and curvature: facts by the chain rule")
                   {{0, 1}}, noise, 1);
     CHECK(is_near(warped.slope_max, 2 * 5));
     CHECK(is_near(warped.curvature_max_per_m, 10 * 25 + 2 * 2));
+
+    // further arguments: a number of a cell only steps, one that moves adds its own part, which has no bound here
+    const std::string tile = R"(
+        function "tile" (%x: real, %cell: real) first 1 facts minimum -1 maximum 1 slope 2 curvature 10 class C2 {
+          %s = floor %x
+          %b = add %s, %cell
+          %w = sin %b
+          %t = sqrt %w
+          return %t
+        })";
+    const std::string place = "%x = input p_x %c = floor %x %d = sub %x, %c ";
+    const TextureBounds stepping = bounds_of(place + "%h = call \"tile\" (%d, %c) return %h", {{-9, 9}}, tile);
+    CHECK(is_near(stepping.slope_max, 2));
+    CHECK(is_near(stepping.curvature_max_per_m, 10));
+    CHECK(stepping.continuity == Continuity::jump);
+    CHECK(bounds_of(place + "%h = call \"tile\" (%d, %x) return %h", {{-9, 9}}, tile).slope_max > 1e9);
 }
 
 TEST_CASE("class: the roughest part that can be met, with its place")
