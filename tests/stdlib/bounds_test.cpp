@@ -1,11 +1,11 @@
 // The facts that the library states about itself. Those of the noises are compared with the supremum over all tables of
 // unit vectors, found by search: each corner contributes at most the length of what its vector is multiplied by.
+#include "tests/stdlib/facts.h"
 #include "tests/stdlib/field.h"
 #include "tests/support/catch.h"
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 using namespace haptel;
 using namespace haptel::test;
@@ -60,70 +60,14 @@ Norms largest_at(Weight (*weight)(double), size_t dimensions, const Vec3& x, con
     return sum;
 }
 
-// Random starts, random steps that shrink while nothing gets better.
-double supremum(double Norms::* which, Weight (*weight)(double), size_t dimensions)
-{
-    std::mt19937_64 random(5);
-    const auto uniform = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
-    const auto unit = [&](Vec3 v) {
-        const double length = std::hypot(v[0], v[1], v[2]);
-        return Vec3{v[0] / length, v[1] / length, v[2] / length};
-    };
-    double best = 0;
-    for (int start = 0; start < 40; ++start) {
-        Vec3 x{}, e{};
-        for (size_t a = 0; a < dimensions; ++a) {
-            x[a] = uniform();
-            e[a] = uniform() - 0.5;
-        }
-        e = unit(e);
-        double found = largest_at(weight, dimensions, x, e).*which;
-        for (double step = 0.3; step > 1e-7;) {
-            bool better = false;
-            for (int attempt = 0; attempt < 30; ++attempt) {
-                Vec3 y = x, f = e;
-                for (size_t a = 0; a < dimensions; ++a) {
-                    y[a] = std::clamp(x[a] + step * (2 * uniform() - 1), 0.0, 1.0);
-                    f[a] += step * (2 * uniform() - 1);
-                }
-                f = unit(f);
-                const double there = largest_at(weight, dimensions, y, f).*which;
-                if (there > found) {
-                    found = there;
-                    x = y;
-                    e = f;
-                    better = true;
-                }
-            }
-            if (!better) step /= 2;
-        }
-        best = std::max(best, found);
-    }
-    return best;
-}
-
-// Facts of a library function as the compiler knows them: "noise(vec3,int)".
-ir::Facts facts_of(const std::string& function, const std::string& call)
-{
-    const jit::CompiledTextures compiled =
-        jit::compile_texture("texture t() { vec3 q = p / 1m; return 1m * " + call + "; }");
-    REQUIRE(compiled.program);
-    // made anew for its caller, a function that asks for its footprint is called "resolved f(vec3) [...]"
-    const std::string resolved = "resolved " + function;
-    for (const ir::Function& candidate : compiled.program->module().functions) {
-        const std::string name = candidate.name.substr(0, candidate.name.find(" ["));
-        if (name == function || name == resolved) return candidate.facts.at(0);
-    }
-    FAIL("no function " << function);
-    return {};
-}
-
 void check_facts(const std::string& name, Weight (*weight)(double), size_t dimensions)
 {
     const std::string type = dimensions == 3 ? "vec3" : "vec2", argument = dimensions == 3 ? "q" : "q.xy";
-    const double value = supremum(&Norms::value, weight, dimensions),
-                 slope = supremum(&Norms::slope, weight, dimensions),
-                 curvature = supremum(&Norms::curvature, weight, dimensions);
+    const auto largest = [&](double Norms::* which) {
+        return supremum(dimensions, 0, 1,
+                        [&](const Vec3& x, const Vec3& e) { return largest_at(weight, dimensions, x, e).*which; });
+    };
+    const double value = largest(&Norms::value), slope = largest(&Norms::slope), curvature = largest(&Norms::curvature);
     for (const bool seeded : {false, true}) {
         const ir::Facts facts =
             facts_of(name + "(" + type + (seeded ? ",int)" : ")"), name + "(" + argument + (seeded ? ", 3)" : ")"));
@@ -136,33 +80,6 @@ void check_facts(const std::string& name, Weight (*weight)(double), size_t dimen
         CHECK(just_above(*facts.curvature, curvature));
         CHECK(facts.proven);
     }
-}
-
-double length(const Vec3& v)
-{
-    return std::hypot(v[0], v[1], v[2]);
-}
-
-// Value, slope, and change of the gradient over short steps, at many points.
-void check_never_exceeded(const std::string& call, const ir::Facts& facts, double size, int count = 20'000)
-{
-    CAPTURE(call);
-    const Field field(call);
-    double least = INFINITY, most = -INFINITY, slope = 0, curvature = 0;
-    const double step = 1e-4;
-    for (const Vec3& q : points_within(size, count)) {
-        const FieldSample here = field(q), beside = field({q[0] + step, q[1] - step, q[2] + step});
-        least = std::min(least, here.value);
-        most = std::max(most, here.value);
-        slope = std::max(slope, length(here.gradient));
-        const Vec3 change{beside.gradient[0] - here.gradient[0], beside.gradient[1] - here.gradient[1],
-                          beside.gradient[2] - here.gradient[2]};
-        curvature = std::max(curvature, length(change) / (step * std::sqrt(3.0)));
-    }
-    CHECK((!facts.value_minimum || least >= *facts.value_minimum));
-    CHECK((!facts.value_maximum || most <= *facts.value_maximum));
-    CHECK((!facts.slope || slope <= *facts.slope));
-    CHECK((!facts.curvature || curvature <= *facts.curvature * (1 + 1e-9)));
 }
 
 } // namespace
