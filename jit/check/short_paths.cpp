@@ -48,13 +48,23 @@ void ShortPaths::halve(Touch a, Touch b, bool by_height)
         return by_height ? std::fabs(one.sample.height_m - other.sample.height_m)
                          : distance(one.sample.gradient, other.sample.gradient);
     };
+    // Of two halves the one that a jump is in: what the gradients at both ends account for is no jump, and were it
+    // counted, a steep half would hide one in the other.
+    const auto unaccounted = [&](const Touch& one, const Touch& other) {
+        double by_gradient = 0;
+        for (size_t k = 0; k < 3; ++k)
+            by_gradient +=
+                (one.sample.gradient[k] + other.sample.gradient[k]) / 2 * (other.point.p[k] - one.point.p[k]);
+        const double rest = std::fabs(other.sample.height_m - one.sample.height_m - by_gradient);
+        return by_height && std::isfinite(rest) ? rest : change(one, other);
+    };
     double before = 0;
     for (int i = 0; i < halvings; ++i) {
         double p_m[3];
         for (size_t k = 0; k < 3; ++k) p_m[k] = a.point.p[k] / 2 + b.point.p[k] / 2;
         const Touch middle = touch(p_m);
         if (i == halvings_before) before = change(a, b);
-        (change(a, middle) > change(middle, b) ? b : a) = middle;
+        (unaccounted(a, middle) > unaccounted(middle, b) ? b : a) = middle;
     }
     const double left = change(a, b);
     const double size = by_height ? largest_height : largest_gradient;

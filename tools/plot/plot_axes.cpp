@@ -85,7 +85,10 @@ std::vector<Tick> ticks(const Axis& axis, int wanted)
 
 Axis fitted(std::string label, double low, double high)
 {
-    if (!(high > low)) { // a constant, or nothing
+    // A constant but for rounding, or nothing: ticks so close would have equal labels, and steps from one to the next
+    // could be lost.
+    const double least = 1e-9 * std::max(std::abs(low), std::abs(high));
+    if (!(high - low > least)) {
         const double middle = std::isfinite(low + high) ? (low + high) / 2 : 0;
         const double around = middle != 0 ? std::abs(middle) : 1;
         low = middle - around / 2, high = middle + around / 2;

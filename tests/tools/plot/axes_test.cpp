@@ -31,11 +31,17 @@ TEST_CASE("ticks stand at round numbers within the axis, with as many decimals a
 
 TEST_CASE("a fitted axis holds its data and has a length, also where the data have none")
 {
-    for (const auto& [low, high] :
-         {std::pair{0.0, 0.97}, {-0.31, 0.29}, {5.0, 5.0}, {0.0, 0.0}, {-3e-7, 1e9}, {1.0, 0.0}}) {
+    for (const auto& [low, high] : {std::pair{0.0, 0.97},
+                                    {-0.31, 0.29},
+                                    {5.0, 5.0},
+                                    {0.0, 0.0},
+                                    {-3e-7, 1e9},
+                                    {1.0, 0.0},
+                                    {7.0, std::nextafter(7.0, 8.0)}}) {
         const Axis axis = fitted("x", low, high);
         CAPTURE(low, high, axis.low, axis.high);
         CHECK(axis.high > axis.low);
+        CHECK(ticks(axis, 5).size() < 20);
         if (high >= low) {
             CHECK(axis.low <= low + 1e-5 * (axis.high - axis.low));
             CHECK(axis.high >= high - 1e-5 * (axis.high - axis.low));
