@@ -32,7 +32,8 @@ ir::Facts facts_of(const std::string& function, const std::string& call)
     return {};
 }
 
-void check_never_exceeded(const std::string& call, const ir::Facts& facts, double size, int count)
+void check_never_exceeded(const std::string& call, const ir::Facts& facts, double size, int count,
+                          double rounding)
 {
     CAPTURE(call);
     const Field field(call);
@@ -49,7 +50,7 @@ void check_never_exceeded(const std::string& call, const ir::Facts& facts, doubl
     }
     CHECK((!facts.value_minimum || least >= *facts.value_minimum));
     CHECK((!facts.value_maximum || most <= *facts.value_maximum));
-    CHECK((!facts.slope || slope <= *facts.slope));
+    CHECK((!facts.slope || slope <= *facts.slope * (1 + rounding)));
     CHECK((!facts.curvature || curvature <= *facts.curvature * (1 + 1e-9)));
 }
 
