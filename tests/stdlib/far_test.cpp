@@ -29,6 +29,12 @@ bool adds_coordinates(const std::string& texture)
     return texture == "wave_plain" || texture == "grating_plain";
 }
 
+// Textures of places that are moved: a sum or a turn rounds them as a division does.
+bool moves_places(const std::string& texture)
+{
+    return texture.starts_with("domain_warp") || texture.starts_with("rotate");
+}
+
 // Largest over the points; shares of the largest true gradient.
 struct Far {
     double error = 0, conditioning = 0;
@@ -104,7 +110,7 @@ TEST_CASE("f64 keeps the place within a wavelength up to 1e6 of them from the or
                     INFO(file << " " << name << " within " << reach << " wavelengths of " << wavelength_m
                               << " m, in units of 2^-52: error " << far.error / unit << ", conditioning "
                               << far.conditioning / unit);
-                    CHECK(far.error <= 16 * unit + (is_exact ? 0 : 8 * far.conditioning));
+                    CHECK(far.error <= 16 * unit + (is_exact && !moves_places(name) ? 0 : 8 * far.conditioning));
                 }
             }
         }
