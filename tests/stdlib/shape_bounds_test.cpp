@@ -52,8 +52,18 @@ TEST_CASE("no fact of a shape, a tile or a mark is exceeded anywhere")
     check("sd_subtraction(float,float,float)", "sd_subtraction(q.x, 0.4, 0.3)", 2);
     check("outline(float,float)", "outline(q.x, 0.4)", 2);
     for (const std::string size : {"-1.0", "0.0", "0.6"}) {
+        check("hexagon_rim(vec2,float)", "hexagon_rim(q.xy, " + size + ")", 2);
         check("groove_profile(vec2,float,float)", "groove_profile(q.xy, 0.1, " + size + ")", 2);
+        check("ridge_round(vec2,float)", "ridge_round(q.xy, 0.4 + " + size + ")", 3);
     }
+    check("rim_profile(vec2)", "rim_profile(q.xy)", 2);
+    check("tile(vec2,float,float)", "tile(q.xy, 0.1, 0.2)", 5);
+    check("brick(vec2,float,float,float)", "brick(q.xy, 3.0, 0.1, 0.2)", 5);
+    check("plank(vec2,float,float,float,int)", "plank(q.xy, 3.0, 0.1, 0.2, 7)", 5);
+    check("herringbone(vec2,float,float)", "herringbone(q.xy, 0.1, 0.2)", 5);
+    check("hex_tile(vec2,float,float)", "hex_tile(q.xy, 0.1, 0.2)", 5);
+    check("truchet(vec2,float,int)", "truchet(q.xy, 0.3, 7)", 5);
+    check("knit(vec2)", "knit(q.xy)", 5);
     check("splat_near(vec2,int,int,float,uint)", "splat_near(q.xy, 3, 7, 0.5, 9u)", 2.5);
     check("splat(vec2,float,int)", "splat(q.xy, 0.5, 7)", 20);
     check("scratches_near(vec2,int,int,float,float,uint)", "scratches_near(q.xy, 3, 7, 0.25, 0.75, 9u)", 6);
