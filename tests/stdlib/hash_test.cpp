@@ -73,6 +73,23 @@ TEST_CASE("hash of a place is that of its cell and of the seed behind it")
         }
 }
 
+TEST_CASE("hash of a cell by its whole numbers is that of the numbers, over all of their range")
+{
+    const std::string cell = "ivec3(q)";
+    const Field plane("hash(" + cell + ".xy)"), plane_seed("hash2(" + cell + ".xy, -5).y"),
+        of_three("hash3(" + cell + ".xy, 2).z"), space("hash3(" + cell + ").z"), space_seed("hash(" + cell + ", 7)"),
+        of_two("hash2(" + cell + ", 1).x");
+    for (const Vec3& q : points_within(2147483647, 200)) {
+        const double i = std::trunc(q[0]), j = std::trunc(q[1]), k = std::trunc(q[2]);
+        CHECK(plane(q).value == expected(0, i, j));
+        CHECK(plane_seed(q).value == expected(1, i, j, -5));
+        CHECK(of_three(q).value == expected(2, i, j, 2));
+        CHECK(space(q).value == expected(2, i, j, k));
+        CHECK(space_seed(q).value == expected(0, i, j, k, 7));
+        CHECK(of_two(q).value == expected(0, i, j, k, 1));
+    }
+}
+
 TEST_CASE("hash has the same bits in f32, in mixed precision and in the interpreter")
 {
     const std::string source =
