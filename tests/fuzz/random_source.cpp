@@ -7,7 +7,7 @@ namespace {
 
 class Writer : public ExpressionWriter {
 public:
-    Writer(uint64_t seed, bool odd) : ExpressionWriter(seed), is_odd(odd) {}
+    Writer(uint64_t seed, bool odd) : ExpressionWriter(seed), is_odd(odd), has_directives(seed % 2 == 1) {}
 
     std::string program()
     {
@@ -19,14 +19,7 @@ public:
         line("const float C1 = " + number() + " * 0.5, C2 = 1.0 - " + number() + ";");
         line("const int FEW = 1 + 2;");
         line("const ivec3 C[2] = {ivec3(1, -2, 3), ivec3(2147483647, " + whole_number() + ", 0)};");
-        line("#define HALF 0.5");
-        line("#define half_of(x, y) \\");
-        line("    (HALF * (x) + HALF * (y))");
-        line("#ifdef HALF");
-        line("#define REAL float");
-        line("#else");
-        line("nothing (");
-        line("#endif");
+        names_of_half();
         line("float by_two(float f(float, float), float x) { return f(x, 0.5) - f(0.25, x); }");
         line("float over(float f(vec3), const vec3 v) { return f(v.zxy) - 0.5 * f(v); }");
         line("float across(float f(vecN), const vecN v) { vecN w = vecN(0.5) - v; return f(w) - 0.5 * f(v); }");
@@ -55,7 +48,7 @@ public:
 
 private:
     std::string text;
-    const bool is_odd;
+    const bool is_odd, has_directives;
     int indent = 0, loops = 0;
     bool in_texture = false, has_output = false;
     Kind result = Kind::real;
@@ -63,6 +56,22 @@ private:
 
     void line(const std::string& code) { text += std::string(static_cast<size_t>(indent) * 4, ' ') + code + "\n"; }
     std::string returned(int depth) { return in_texture ? "1m * (" + real(depth) + ")" : of(result, depth); }
+
+    void names_of_half()
+    {
+        if (!has_directives) {
+            line("const float HALF = 0.5;");
+            return line("float half_of(float x, float y) { return HALF * x + HALF * y; }");
+        }
+        line("#define HALF 0.5");
+        line("#define half_of(x, y) \\");
+        line("    (HALF * (x) + HALF * (y))");
+        line("#ifdef HALF");
+        line("#define REAL float");
+        line("#else");
+        line("nothing (");
+        line("#endif");
+    }
 
     // One of the shapes that expressions know to call.
     void function()
@@ -85,7 +94,9 @@ private:
         const size_t shape = below(std::size(shapes));
         const std::string name = "f" + std::to_string(callables.size());
         result = shapes[shape].result;
-        line(std::string(type_of(result)) + " " + name + "(" + shapes[shape].parameters + ")\n{");
+        std::string parameters = shapes[shape].parameters;
+        if (!has_directives && parameters.starts_with("REAL")) parameters.replace(0, 4, "float");
+        line(std::string(type_of(result)) + " " + name + "(" + parameters + ")\n{");
         ++indent;
         scope = shapes[shape].variables;
         few = {"2", "FEW", "int(3u)"};
