@@ -326,10 +326,11 @@ void BodyChecker::require_outputs(Span where)
         if (!missing || in_damaged_body || output->type.is_error()) continue;
         assigned = all_parts;
         if (!(missing & ~output->parts_assigned)) {
-            diagnostics.warning(where, "perhaps-unassigned",
-                                "the output " + quoted(output->name) +
-                                    " has no value here on some path, and is 0 there",
-                                "give it one first: " + output->name + " = " + zero_of(output->type) + ";");
+            diagnostics
+                .warning(output->span, "perhaps-unassigned",
+                         "the output " + quoted(output->name) + " has no value on some path, and is 0 there",
+                         "give it one first: " + output->name + " = " + zero_of(output->type) + ";")
+                .related.push_back({where, "where the function ends"});
             continue;
         }
         diagnostics

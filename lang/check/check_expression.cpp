@@ -192,8 +192,10 @@ Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
     if (!(missing & ~symbol->parts_assigned)) {
         diagnostics.warning(e.span, "perhaps-unassigned",
                             quoted(node.name) + " is read here and has no value on some path: it is 0 there",
-                            "give it one where it is declared: " + to_string(symbol->type.element()) + " " + node.name +
-                                " = " + zero_of(symbol->type) + ";");
+                            symbol->type.is_array() || symbol->is_parameter
+                                ? "give it one first"
+                                : "give it one where it is declared: " + to_string(symbol->type) + " " + node.name +
+                                      " = " + zero_of(symbol->type) + ";");
         return symbol->type;
     }
     const std::string part = has_some ? part_name(symbol->type, static_cast<uint32_t>(std::countr_zero(missing))) : "";

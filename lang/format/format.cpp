@@ -14,7 +14,13 @@ constexpr size_t step = Page::step;
 
 class Formatter {
 public:
-    explicit Formatter(std::vector<Piece> all) : pieces(std::move(all)) {}
+    explicit Formatter(std::vector<Piece> all) : pieces(std::move(all))
+    {
+        for (size_t i = 0; i + 1 < pieces.size(); ++i) // a while stands as a for does
+            if (pieces[i].kind == Token::name && pieces[i].text.ends_with("while") &&
+                pieces[i + 1].kind == Token::left_paren && begins_statement(i))
+                pieces[i].kind = Token::kw_for;
+    }
 
     std::string run()
     {
@@ -25,6 +31,13 @@ public:
 
 private:
     Token kind() const { return pieces[at].kind; }
+    bool begins_statement(size_t i) const
+    {
+        if (i == 0) return false;
+        const Token before = pieces[i - 1].kind;
+        return before == Token::left_brace || before == Token::right_brace || before == Token::semicolon ||
+               before == Token::right_paren || before == Token::kw_else;
+    }
     std::span<const Piece> part(size_t begin, size_t end) const
     {
         return std::span<const Piece>(pieces).subspan(begin, end - begin);
