@@ -153,7 +153,7 @@ void BodyChecker::whole_body(StatementPtr& tree, const Name& name, Type result, 
 void BodyChecker::check_function(Function& tree, FunctionInfo& info)
 {
     open_scope();
-    is_never_called = !info.is_mentioned && !context.is_library;
+    is_never_called = !info.is_mentioned && !info.is_in_circle && !context.is_library;
     uint32_t functions = 0;
     for (size_t i = 0; i < info.parameters.size(); ++i) {
         ParameterInfo& parameter = info.parameters[i];
@@ -171,7 +171,7 @@ void BodyChecker::check_function(Function& tree, FunctionInfo& info)
         } else {
             if (parameter.passing != Passing::out || info.is_texture) flow.variables[symbol.slot].assigned = all_parts;
             if (parameter.held) flow.variables[symbol.slot].hold(*parameter.held);
-            if (parameter.range && !parameter.held && !context.is_library)
+            if (parameter.range && !parameter.held && !info.is_in_circle && !context.is_library)
                 flow.variables[symbol.slot].called = *parameter.range;
             if (parameter.is_written()) must_be_written.push_back(&symbol);
             symbol.is_read = parameter.is_written();

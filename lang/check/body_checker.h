@@ -28,6 +28,7 @@ struct CheckContext {
     CheckedProgram& program;
     bool is_library; // nobody is told what is not used in it
     ConstantEvaluator constants = {};
+    const std::vector<FileScope>* scopes = nullptr;            // by file; null before they are known
     std::vector<const Symbol*> inputs = {};                    // by InputName
     std::set<std::string, std::less<>> unknown_functions = {}; // those without a guess: each is reported once
     uint32_t near_searches = 200; // that are left: beyond, names that are unknown have no proposal

@@ -13,24 +13,39 @@ using namespace ast;
 
 namespace {
 
-using Names = std::set<std::string_view>;
+struct Named {
+    std::string_view name;
+    size_t arguments; // of the call; SIZE_MAX: it is passed
+    auto operator<=>(const Named&) const = default;
+};
 
-void add_names(const Expression& e, Names& names)
+void add_names(const Expression& e, std::set<Named>& names)
 {
-    if (auto name = std::get_if<NameExpression>(&e.node)) names.insert(name->name);
-    if (auto call = std::get_if<CallExpression>(&e.node)) names.insert(call->callee.text);
-    if (auto grad = std::get_if<GradCall>(&e.node)) names.insert(grad->function.text);
+    if (auto name = std::get_if<NameExpression>(&e.node)) names.insert({name->name, SIZE_MAX});
+    if (auto call = std::get_if<CallExpression>(&e.node)) names.insert({call->callee.text, call->arguments.size()});
+    if (auto grad = std::get_if<GradCall>(&e.node)) names.insert({grad->function.text, grad->arguments.size()});
     for (const Expression* operand : operands_of(e)) add_names(*operand, names);
 }
 
-Names names_in(const FunctionInfo& function)
+std::set<Named> names_in(const FunctionInfo& function)
 {
-    Names names;
+    std::set<Named> names;
     if (!function.tree || !function.tree->body) return names;
+    std::set<std::string_view> own; // of variables: what is named like them is not passed
+    for (const FunctionParameter& parameter : function.tree->parameters) own.insert(parameter.name.text);
     for_each_in(*function.tree->body, [&](const Statement& s) {
+        if (auto declaration = std::get_if<Declaration>(&s.node)) own.insert(declaration->name.text);
         for (const Expression* e : expressions_of(s)) add_names(*e, names);
     });
+    std::erase_if(names, [&](const Named& one) { return one.arguments == SIZE_MAX && own.contains(one.name); });
     return names;
+}
+
+bool may_be(const Named& named, const FunctionInfo& function)
+{
+    const size_t all = function.parameters.size();
+    if (named.arguments == SIZE_MAX || function.is_texture || named.arguments == all) return true;
+    return named.arguments < all && function.parameters[named.arguments].value;
 }
 
 } // namespace
@@ -42,10 +57,10 @@ std::vector<FunctionInfo*> callers_first(std::deque<FunctionInfo>& functions)
     std::vector<std::vector<size_t>> callees(functions.size());
     std::vector<size_t> callers(functions.size()); // that are not in order yet
     for (size_t i = 0; i < functions.size(); ++i)
-        for (const std::string_view name : names_in(functions[i]))
-            if (const auto found = called.find(name); found != called.end())
+        for (const Named& named : names_in(functions[i]))
+            if (const auto found = called.find(named.name); found != called.end())
                 for (const size_t callee : found->second) {
-                    if (callee == i) continue;
+                    if (callee == i || !may_be(named, functions[callee])) continue;
                     callees[i].push_back(callee);
                     ++callers[callee];
                 }
@@ -56,7 +71,10 @@ std::vector<FunctionInfo*> callers_first(std::deque<FunctionInfo>& functions)
         for (const size_t callee : callees[order[next]])
             if (--callers[callee] == 0) order.push_back(callee);
     for (size_t i = 0; i < functions.size(); ++i)
-        if (callers[i] > 0) order.push_back(i);
+        if (callers[i] > 0) {
+            functions[i].is_in_circle = true;
+            order.push_back(i);
+        }
     std::vector<FunctionInfo*> sorted;
     for (const size_t i : order) sorted.push_back(&functions[i]);
     return sorted;

@@ -9,7 +9,8 @@
 
 namespace haptel::lang {
 
-// As far as names tell; functions that call each other in a circle, which is a mistake, stand last.
+// As far as names and numbers of arguments tell. What is, or is called, in a circle of them stands last and is marked:
+// of its calls nothing is known.
 std::vector<FunctionInfo*> callers_first(std::deque<FunctionInfo>& functions);
 
 } // namespace haptel::lang

@@ -188,6 +188,7 @@ public:
             declarations_of(file).lacks_functions |= program.files[file].tree.lacks_functions;
             declarations_of(file).unread.merge(program.files[file].tree.unread);
         }
+        context.scopes = &scopes;
         add_presets(program.files, diagnostics);
         // Sizes of arrays in heads of functions are constants, and constants may name functions.
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], false);
@@ -300,6 +301,7 @@ private:
     {
         for (Texture& tree : program.files[file].tree.textures) {
             if (diagnostics.full() || tree.parameters.size() > parameters_max) return;
+            if (!tree.as_function.body) declarations_of(file).unread.insert(tree.name.text); // told
             if (!tree.as_function.body || declarations_of(file).textures.contains(tree.name.text)) continue;
             CheckedTexture texture;
             const uint32_t reports = diagnostics.reports();

@@ -216,7 +216,10 @@ BodyChecker::Target BodyChecker::target_of(Expression& e, const char* where)
     const uint64_t before = variable.assigned;
     variable.assigned = all_parts;
     const bool was_read = local->is_read;
-    if (expression(e).is_error()) return {}; // whatever was meant has a value now
+    ++choice_depth; // an index is computed once for reading and once for writing
+    const bool is_wrong = expression(e).is_error();
+    --choice_depth;
+    if (is_wrong) return {}; // whatever was meant has a value now
     if (std::holds_alternative<Member>(e.node)) local->is_read = was_read;
     flow.variables[local->slot].assigned = before;
     if (auto member = std::get_if<Member>(&e.node); member && parse_swizzle(member->member.text)->has_repeats()) {

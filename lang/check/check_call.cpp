@@ -118,12 +118,18 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
         for (ExpressionPtr& argument : call.arguments) expression(*argument);
         return resolve_type(context, TypeName{.base = call.callee, .is_array = false, .array_size = nullptr});
     }
+    if (call.target.function != FunctionReference{} && !call.target.is_constructor) { // checked before
+        for (size_t i = 0; i < call.arguments.size(); ++i)
+            if (call.target.function_arguments[i] == FunctionReference{}) expression(*call.arguments[i]);
+        return e.type;
+    }
     const auto may_be_meant = [&](const Candidate& candidate) {
         return !call.arguments.empty() || candidate.parameters.empty() || candidate.parameters.front().value;
     };
     const bool is_function =
         find(call.callee.text) || std::ranges::any_of(scope.functions(call.callee.text), may_be_meant);
-    if (!call.names.empty() || (!is_function && scope.texture(call.callee.text))) return texture_call(e, call);
+    if (call.is_of_texture || !call.names.empty() || (!is_function && scope.texture(call.callee.text)))
+        return texture_call(e, call);
     Type result;
     resolve(e, call.callee, call.arguments, 0, call.target, result);
     return result;
@@ -279,7 +285,6 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
     target.function = best.front().function;
     const FunctionInfo* source = source_of(target.function);
     if (source || order > 0) mentions.push_back({source, callee.span, order, nullptr});
-    if (source) note_ranges(*source, arguments);
     for (size_t i = 0; i < arguments.size(); ++i) {
         const ParameterInfo& parameter = best.front().parameters[i];
         const Candidate* passed = call.arguments[i].passed_as(parameter);
@@ -291,6 +296,7 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
             adopt_literal(*arguments[i], parameter.type);
         }
     }
+    if (source) note_ranges(*source, arguments);
     result = best.front().result;
     return best.front();
 }
@@ -313,8 +319,9 @@ void BodyChecker::write(const Candidate& function, std::vector<ExpressionPtr>& a
     }
     if (choice_depth == 0 || std::ranges::none_of(function.parameters, &ParameterInfo::is_written)) return;
     diagnostics.error(call, "output-parameter",
-                      "a call that writes its arguments cannot stand in ?:, behind && or ||, or in the head of a loop",
-                      "call it in a statement above, or write if");
+                      "a call that writes its arguments cannot stand where it may be left out, or made twice",
+                      "not in ?:, behind && or ||, in the head of a loop, an index of what is written or an argument "
+                      "of a texture: call it in a statement above");
 }
 
 // At a return, or at the end of a function without one.
@@ -343,7 +350,8 @@ void BodyChecker::require_outputs(Span where)
 // Between what the callee's whole numbers lie; what it is called with where it is only passed on, nobody knows.
 void BodyChecker::note_ranges(const FunctionInfo& callee, const std::vector<ExpressionPtr>& arguments)
 {
-    if (is_never_called) return;                    // what is not compiled calls nothing
+    // What is not compiled calls nothing, and the library is shared.
+    if (is_never_called || callee.is_library) return;
     auto& info = const_cast<FunctionInfo&>(callee); // what is found out of it is owned by the program being checked
     info.is_mentioned = true;
     for (size_t i = 0; i < info.parameters.size(); ++i) {

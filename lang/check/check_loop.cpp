@@ -26,6 +26,13 @@ void BodyChecker::add_written(const Expression& e, std::vector<const NameExpress
             for (size_t i = 0; i < std::min(candidate.parameters.size(), call->arguments.size()); ++i)
                 if (auto name = root_of(*call->arguments[i]); name && candidate.parameters[i].is_written())
                     names.push_back(name);
+    auto of_texture = std::get_if<CallExpression>(&e.node);
+    const FunctionInfo* texture = of_texture ? scope.texture(of_texture->callee.text) : nullptr;
+    for (size_t i = 0; texture && i < std::min(of_texture->names.size(), of_texture->arguments.size()); ++i) {
+        const auto output = std::ranges::find(texture->parameters, of_texture->names[i].text, &ParameterInfo::name);
+        auto name = root_of(*of_texture->arguments[i]);
+        if (output != texture->parameters.end() && output->is_written() && name) names.push_back(name);
+    }
     for (const Expression* operand : operands_of(e)) add_written(*operand, names);
 }
 
@@ -246,7 +253,9 @@ void BodyChecker::plan_of_reals(For& loop, LoopPlan made, bool is_upwards, const
     const auto [start, bound, size] = number;
     made.real_start = start;
     made.real_step = step.op == BinaryOp::add ? size : -size;
-    const double farthest = (bound - start) / made.real_step; // in steps
+    double farthest = (bound - start) / made.real_step; // in steps
+    // Rounding decides nothing: a bound that a float of 32 bits would meet is met.
+    if (std::abs(farthest - std::round(farthest)) < 1e-6) farthest = std::round(farthest);
     if ((made.real_step > 0) != is_upwards || !(std::abs(farthest) <= ir::operations_limit)) {
         diagnostics.error(step.value->span, "unbounded-loop",
                           "this step does not lead to the bound in at most " + std::to_string(ir::operations_limit) +

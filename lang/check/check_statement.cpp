@@ -121,12 +121,10 @@ void BodyChecker::check(Span span, Assignment& node)
 
 void BodyChecker::check(Span span, ExpressionStatement& node)
 {
-    auto call = std::get_if<CallExpression>(&node.expression->node);
     const uint32_t reports = diagnostics.reports();
     if (expression(*node.expression).is_error() || in_damaged_body || diagnostics.reports() > reports) return;
-    if (call && writes(call->target.function)) return;
-    diagnostics.warning(span, "useless-statement",
-                        "this value is not used: functions only return values, they change nothing",
+    if (written_by_calls && !written_by_calls->empty()) return;
+    diagnostics.warning(span, "useless-statement", "this value is not used, and computing it changes nothing",
                         "assign it to a variable or leave it out");
 }
 

@@ -129,9 +129,12 @@ void BodyChecker::check_parameter(TextureParameter& tree, CheckedTexture& textur
                                   " = \"dents.png\" }");
         return;
     }
-    BodyChecker outside(context, scope); // where nothing of the texture is known
-    const auto value =
-        tree.value ? outside.check_constant(*tree.value, type, " as the default of " + name) : std::nullopt;
+    // Where nothing of the texture is known, and of a preset in the file that it has it from.
+    const auto constant = [&](Expression& e, const std::string& where) {
+        const bool is_own = !context.scopes || e.span.file >= context.scopes->size();
+        return BodyChecker(context, is_own ? scope : (*context.scopes)[e.span.file]).check_constant(e, type, where);
+    };
+    const auto value = tree.value ? constant(*tree.value, " as the default of " + name) : std::nullopt;
     for (const Expression* e : {tree.value.get(), tree.minimum.get(), tree.maximum.get()})
         if (e && made.unit.empty()) made.unit = unit_in(*e);
     made.value = value.value_or(0);
@@ -144,8 +147,8 @@ void BodyChecker::check_parameter(TextureParameter& tree, CheckedTexture& textur
         diagnostics.error(join(tree.minimum->span, tree.maximum->span), "type-mismatch", "a bool has no range");
         return;
     }
-    const auto minimum = outside.check_constant(*tree.minimum, type, " as the least value of " + name);
-    const auto maximum = outside.check_constant(*tree.maximum, type, " as the greatest value of " + name);
+    const auto minimum = constant(*tree.minimum, " as the least value of " + name);
+    const auto maximum = constant(*tree.maximum, " as the greatest value of " + name);
     if (!minimum || !maximum) return;
     const auto shown = [&](const Expression& e) { return printable(context.sources.text(e.span)); };
     const std::string range = shown(*tree.minimum) + " .. " + shown(*tree.maximum);

@@ -19,14 +19,12 @@ Type BodyChecker::texture_call(Expression& e, CallExpression& call)
                     "only a texture takes arguments by name, and there is no texture " + quoted(call.callee.text),
                     "leave the names out");
     }
-    if (call.target.function != FunctionReference{}) { // checked before: its arguments stand in order
-        for (ExpressionPtr& argument : call.arguments) expression(*argument);
-        return float_type;
-    }
     std::vector<ExpressionPtr> ordered(callee->parameters.size());
     Targets targets(ordered.size());
     bool is_sound = true;
+    ++choice_depth; // arguments are computed in the order of the parameters
     for (size_t i = 0; i < call.arguments.size(); ++i) is_sound &= named_argument(call, *callee, i, ordered, targets);
+    --choice_depth;
     for (size_t i = 0; i < ordered.size(); ++i) {
         if (ordered[i]) continue;
         const ParameterInfo& parameter = callee->parameters[i];

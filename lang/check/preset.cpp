@@ -3,6 +3,7 @@
 #include "lang/check/body_checker.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace haptel::lang {
 
@@ -22,6 +23,7 @@ ExpressionPtr named(const Name& name)
 StatementPtr body_of(const Preset& preset, const std::vector<TextureParameter>& parameters)
 {
     CallExpression call{preset.of, {}};
+    call.is_of_texture = true;
     for (const TextureParameter& parameter : parameters) {
         const Name here{parameter.name.text, preset.of.span};
         call.names.push_back(here);
@@ -79,43 +81,54 @@ void give_defaults(Texture& made, Preset& preset, Diagnostics& diagnostics)
     }
 }
 
+// To those of file i, whose imports have theirs.
+void add_presets(std::vector<CheckFile>& files, size_t i, Diagnostics& diagnostics)
+{
+    std::vector<Texture>& textures = files[i].tree.textures;
+    for (Preset& preset : files[i].tree.presets) {
+        const Texture* of = find_texture(files, files[i], preset.of.text);
+        if (!of) {
+            diagnostics.error(preset.of.span, "unknown-texture",
+                              "there is no texture " + quoted(preset.of.text) + " above or in an imported file",
+                              "a preset stands below the texture or preset that it is of");
+            continue;
+        }
+        Texture made;
+        made.doc = preset.doc.empty() ? of->doc : preset.doc;
+        made.name = preset.name;
+        made.parameters = of->parameters;
+        made.span = preset.span;
+        give_defaults(made, preset, diagnostics);
+        made.body = body_of(preset, made.parameters);
+        Function& function = made.as_function;
+        function.result.base = {"float", preset.name.span};
+        function.name = preset.name;
+        for (const TextureParameter& parameter : made.parameters) {
+            FunctionParameter& one = function.parameters.emplace_back();
+            one.type = parameter.type;
+            one.name = parameter.name;
+            one.passing = parameter.is_output ? Passing::out : Passing::in;
+            one.span = parameter.span;
+        }
+        function.body = body_of(preset, made.parameters);
+        function.span = preset.span;
+        textures.push_back(std::move(made));
+    }
+    std::ranges::stable_sort(textures, {}, [](const Texture& texture) { return texture.span.begin; });
+}
+
 } // namespace
 
 void add_presets(std::vector<CheckFile>& files, Diagnostics& diagnostics)
 {
-    for (size_t i = files.size(); i-- > 0;) { // what is imported stands behind
-        std::vector<Texture>& textures = files[i].tree.textures;
-        for (Preset& preset : files[i].tree.presets) {
-            const Texture* of = find_texture(files, files[i], preset.of.text);
-            if (!of) {
-                diagnostics.error(preset.of.span, "unknown-texture",
-                                  "there is no texture " + quoted(preset.of.text) + " above or in an imported file",
-                                  "a preset stands below the texture or preset that it is of");
-                continue;
-            }
-            Texture made;
-            made.doc = preset.doc.empty() ? of->doc : preset.doc;
-            made.name = preset.name;
-            made.parameters = of->parameters;
-            made.span = preset.span;
-            give_defaults(made, preset, diagnostics);
-            made.body = body_of(preset, made.parameters);
-            Function& function = made.as_function;
-            function.result.base = {"float", preset.name.span};
-            function.name = preset.name;
-            for (const TextureParameter& parameter : made.parameters) {
-                FunctionParameter& one = function.parameters.emplace_back();
-                one.type = parameter.type;
-                one.name = parameter.name;
-                one.passing = parameter.is_output ? Passing::out : Passing::in;
-                one.span = parameter.span;
-            }
-            function.body = body_of(preset, made.parameters);
-            function.span = preset.span;
-            textures.push_back(std::move(made));
-        }
-        std::ranges::stable_sort(textures, {}, [](const Texture& texture) { return texture.span.begin; });
-    }
+    std::vector<bool> is_begun(files.size());
+    const std::function<void(size_t)> add = [&](size_t i) {
+        if (is_begun[i]) return;
+        is_begun[i] = true;
+        for (const uint32_t imported : files[i].imported) add(imported); // of at most 256 files
+        add_presets(files, i, diagnostics);
+    };
+    for (size_t i = 0; i < files.size(); ++i) add(i);
 }
 
 } // namespace haptel::lang

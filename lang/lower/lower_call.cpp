@@ -133,6 +133,8 @@ Values BodyLowering::call(const Expression& e, const CallTarget& target, const s
                                 "calls, ifs and loops nest more than " + std::to_string(depth_max) + " deep here");
         depth = 0; // once is enough
     }
+    for (size_t i = 0; i < arguments.size() && order == 0; ++i)
+        if (parameters[i].is_written()) locate(*arguments[i]);
     Values results = builder.call(function.index, flat);
     const size_t returned = e.type == void_type ? 0 : e.type.components();
     std::span<const Value> written(results.begin() + static_cast<std::ptrdiff_t>(returned), results.end());
@@ -143,6 +145,7 @@ Values BodyLowering::call(const Expression& e, const CallTarget& target, const s
             store(*arguments[i], Values(written.begin(), written.begin() + static_cast<std::ptrdiff_t>(size)));
         written = written.subspan(size);
     }
+    located.clear();
     if (order == 0) results.resize(returned);
     return results;
 }

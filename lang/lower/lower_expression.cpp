@@ -343,10 +343,22 @@ void BodyLowering::hold(const Symbol& local, ir::IntRange range)
 // i32 in [0, size - 1]
 Value BodyLowering::index_within(const Expression& index, uint32_t size)
 {
+    if (const auto known = located.find(&index); known != located.end()) return known->second;
     Value value = expression(index)[0];
     if (builder.type(value) == ir::Type::u32)
         value = builder.operation(Op::u_as_i, {builder.operation(Op::umin, {value, builder.u32(size - 1)})});
     return builder.clamp_index(value, size);
+}
+
+// Where a call writes is known before it is made, whatever it changes.
+void BodyLowering::locate(const Expression& target)
+{
+    const Expression* object = &target;
+    if (auto member = std::get_if<Member>(&object->node)) object = member->object.get();
+    while (auto index = std::get_if<Index>(&object->node)) {
+        located[index->index.get()] = index_within(*index->index, index->object->type.element_count());
+        object = index->object.get();
+    }
 }
 
 Values BodyLowering::lower(const Expression& e, const Index& node)

@@ -4,7 +4,6 @@
 // and the others leave, the rest moves into that arm and no flag is needed: the usual early return.
 #include "lang/lower/lowering.h"
 #include "lang/program/completion.h"
-#include "lang/program/scope.h"
 #include "lang/syntax/operators.h"
 #include "lang/syntax/swizzle.h"
 
@@ -133,8 +132,7 @@ void BodyLowering::statement(const Statement& s, Statements rest)
     } else if (auto assignment = std::get_if<Assignment>(&s.node)) {
         lower(*assignment);
     } else if (auto evaluated = std::get_if<ExpressionStatement>(&s.node)) {
-        auto made = std::get_if<CallExpression>(&evaluated->expression->node);
-        if (made && writes(made->target.function)) expression(*evaluated->expression);
+        if (!s.written.empty()) expression(*evaluated->expression);
     } else if (auto scope = std::get_if<ast::Scope>(&s.node)) {
         sequence(scope->statements);
     } else if (auto branch_node = std::get_if<If>(&s.node)) {
@@ -225,6 +223,10 @@ void BodyLowering::store(const Expression& target, const Values& value)
 void BodyLowering::lower(const For& node)
 {
     const LoopPlan& plan = node.plan;
+    if (!plan.counter) {
+        owner.diagnostics.error(builder.span, "internal-error", "the compiler does not know how often a loop runs");
+        return;
+    }
     const Type type = plan.counter->type;
     if (type == float_type) {
         const Value start = builder.real(plan.real_start), step = builder.real(plan.real_step);

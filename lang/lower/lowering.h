@@ -125,6 +125,7 @@ private:
     ir::Value integer(ir::Op op, ir::Value a, ir::Value b); // signed operation, on the bits where operands are u32
     ir::Value held(ir::Value value, ir::IntRange range);
     ir::Value index_within(const ast::Expression& index, uint32_t size);
+    void locate(const ast::Expression& target);
     Values input(InputName name);
     Values constant(std::span<const ConstantPart> parts, Type type);
     bool too_deep(Span span);
@@ -164,6 +165,7 @@ private:
     std::vector<Values> variables;            // by Symbol::slot, then the four of the flow
     std::vector<FunctionReference> functions; // parameters that are functions, by Symbol::slot
     Values passed_inputs[input_name_count];
+    std::map<const ast::Expression*, ir::Value> located; // indices of what a call is about to write
     Type result_type;
     uint32_t region_depth = 0;
 };

@@ -108,6 +108,7 @@ struct CallExpression {
     std::vector<ExpressionPtr> arguments;
     std::vector<Name> names = {}; // by argument, "depth = 1mm"; no text: it has none. The checker clears them
     CallTarget target = {};       // set by the checker
+    bool is_of_texture = false;   // for certain, though it may have no names
     // What a texture reads instead of an input, "p = q"; set by the checker, out of the arguments.
     std::vector<std::pair<InputName, ExpressionPtr>> inputs = {};
 };

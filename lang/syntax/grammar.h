@@ -159,7 +159,7 @@ private:
     // Small rules that all share, parse_declaration.cpp and parse_facts.cpp
     ast::TypeName type_name();
     void array_suffix(ast::TypeName& type);
-    ast::Name name(std::string_view what); // empty, and reported, where there is none
+    ast::Name name(std::string_view what);     // empty, and reported, where there is none
     ast::Name name_after(ast::TypeName& type); // mends "q vec2"
     std::string doc_before(size_t token_index, std::optional<ir::Facts>* facts);
     ast::ExpressionPtr bound_before(size_t token_index);
@@ -184,6 +184,7 @@ private:
     std::map<std::string_view, Macro> macros; // by name; a name's text belongs to the sources
     const Use* macro_use = nullptr;           // whose value is being read
     size_t macro_tokens = 0;                  // read of all values so far
+    mutable size_t alias_steps = 0;           // from a name to what it stands for; beyond many, it stands for itself
 
     bool has_own_grad = false; // a function of that name stands above
 

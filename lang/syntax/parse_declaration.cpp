@@ -109,6 +109,11 @@ void Grammar::constants(File& result)
     declarations(made);
     if (lost) forget(made);
     for (StatementPtr& statement : made) {
+        if (!std::holds_alternative<Declaration>(statement->node)) {
+            diagnostics.error(statement->span, "assignment-in-expression", "a constant is not assigned to",
+                              "declare each with its own value");
+            continue;
+        }
         Declaration& declaration = std::get<Declaration>(statement->node);
         if (!declaration.initializer && !lost) {
             diagnostics.error(declaration.name.span, "syntax",

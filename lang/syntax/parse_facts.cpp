@@ -61,7 +61,15 @@ ExpressionPtr Grammar::bound_before(size_t token_index)
         const size_t at_word = whole.find_first_not_of(" \t", 3);
         if (at_word == whole.npos || !whole.substr(at_word).starts_with(word)) continue;
         const Span inside{file, line.span.begin + static_cast<uint32_t>(at_word + word.size()), line.span.end};
+        if (whole.size() > at_word + word.size() && whole[at_word + word.size()] != ' ') continue; // "@bounds"
         Grammar reader(sources, file, lex(sources, inside, diagnostics), diagnostics);
+        const auto macro = reader.kind(1) == Token::end ? macros.find(reader.TokenCursor::text()) : macros.end();
+        if (macro != macros.end() && !macro->second.takes_arguments) {
+            const size_t here = position;
+            ExpressionPtr value = read_range({macro->second.first, macro->second.end}, nullptr, "'@bound'");
+            if (!at(Token::end)) position = here;
+            return value;
+        }
         ExpressionPtr bound = reader.expression();
         if (!reader.at(Token::end) && !reader.lost)
             reader.error(reader.span(), "unbounded-loop", "expected a whole number after '@bound'" + reader.found());

@@ -35,6 +35,11 @@ void Grammar::definition()
     made.end = position;
     const Span whole = since(first);
     accept(Token::line_end);
+    if (made.first == made.end && !made.takes_arguments) {
+        macros.erase(word.text);
+        lost = false;
+        return;
+    }
     if (!lost) note_constant(whole, word, made);
     macros.insert_or_assign(sources.text(made.name), std::move(made));
     lost = false;
@@ -60,8 +65,25 @@ void Grammar::note_constant(Span whole, const Name& word, const Macro& macro)
         } while (open > 0 && end < macro.end);
         if (end == macro.end && list.tokens[macro.first + 1].kind == Token::left_paren) type = begins;
     }
-    if (type.empty()) return;
+    // Its parts are numbers; the name means nothing else, nor anything above: a constant is one of the whole file.
+    const auto is_plain = [&](const PlacedToken& token) {
+        const bool is_sign =
+            token.kind == Token::comma || token.kind == Token::minus || opens(token.kind) || closes(token.kind);
+        return is_sign || token.kind == Token::number ||
+               (token.kind == Token::name && is_own_type(sources.text({file, token.begin, token.end})));
+    };
+    const auto tokens = std::span(list.tokens);
+    const auto is_name = [&](const PlacedToken& token) {
+        return token.kind == Token::name && sources.text({file, token.begin, token.end}) == word.text;
+    };
+    const bool is_used_above = std::ranges::any_of(tokens.first(macro.first - 1), is_name);
+    bool is_declared = false; // a name or a type stands before it
+    for (size_t i = macro.end; i + 1 < tokens.size(); ++i)
+        is_declared |= is_name(tokens[i + 1]) && (tokens[i].kind == Token::name || tokens[i].kind == Token::define);
+    if (type.empty() || list.has_conditions || is_used_above || is_declared) return;
+    if (!std::ranges::all_of(tokens.subspan(macro.first, macro.end - macro.first), is_plain)) return;
     const std::string value(sources.text({file, head.begin, list.tokens[macro.end - 1].end}));
+    if (value.find_first_of("\n\r") != value.npos) return;
     const std::string written = "const " + type + " " + word.text + " = " + value + ";";
     diagnostics
         .note(whole, "directive", "'" + word.text + "' is read as if its value stood at each use",
@@ -72,7 +94,7 @@ void Grammar::note_constant(Span whole, const Name& word, const Macro& macro)
 // "#define float3 vec3": another word for one word.
 std::string_view Grammar::alias_of(std::string_view word) const
 {
-    for (size_t steps = 0; steps <= macros.size(); ++steps) {
+    for (size_t steps = 0; steps <= macros.size() && alias_steps < tokens_max; ++steps, ++alias_steps) {
         const auto found = macros.find(word);
         if (found == macros.end() || found->second.takes_arguments || found->second.end != found->second.first + 1)
             break;

@@ -132,6 +132,7 @@ struct FunctionInfo {
     std::vector<Mention> mentions;
     bool is_valid = true;      // false: its head has errors; calls to it are not checked
     bool is_mentioned = false; // called or passed, by what is checked so far
+    bool is_in_circle = false; // of functions that may call each other: see callers_first()
     bool is_texture = false;   // called by names; its outputs are 1 from the start, and may be left out
 };
 

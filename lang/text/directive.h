@@ -15,6 +15,7 @@ namespace haptel::lang {
 class Conditions {
 public:
     void define(std::string_view name) { defined.insert(name); }
+    void undefine(std::string_view name) { defined.erase(name); }
     // What "#ifdef A", "#if !defined(A)", "#if 0" say; nothing: it is something else. `line` without a comment.
     std::optional<bool> chosen(std::string_view word, std::string_view line) const;
 

@@ -148,7 +148,7 @@ private:
                           "expected at most " + std::to_string(tokens_max) +
                               " words, numbers, signs and comments in a program with its imports",
                           "large tables belong into pictures: texture t(image picture)");
-        list = {{}, {}, room, list.has_directives};
+        list = {{}, {}, room, list.has_directives, list.has_conditions};
         at = size();
         return false;
     }
@@ -235,6 +235,7 @@ private:
         const std::string word = "#" + std::string(text.substr(name_begin, at - name_begin));
         if (word == "#define") return definition(where);
         const std::string_view line = rest_of_line();
+        list.has_conditions |= word.starts_with("#if") || word == "#undef";
         if (word == "#ifdef" || word == "#ifndef" || word == "#if") {
             conditions.open.push_back({begin, where.end, choose(where, word, line)});
             if (!conditions.open.back().is_taken) skip_choice();
@@ -245,6 +246,8 @@ private:
                 conditions.open.pop_back();
             else
                 skip_choice(); // what stands above was taken
+        } else if (word == "#undef") {
+            undefinition(where, line);
         } else if (word == "#version" || word == "#extension" || word == "#pragma" || word == "#line") {
             diagnostics.note(where, "directive", "'" + word + "' changes nothing here", "leave the line out").fix =
                 FixIt{span_from(begin), ""};
@@ -294,6 +297,11 @@ private:
             while (at < text.size() && (is_space(text[at]))) ++at;
             const uint32_t begin = at;
             const std::string_view line = rest_of_line();
+            const size_t comment = line.find("/*"), ended = line.rfind("*/");
+            if (comment != line.npos && (ended == line.npos || ended < comment)) {
+                const size_t end = text.find("*/", at);
+                at = end == text.npos ? size() : static_cast<uint32_t>(end + 2);
+            }
             if (!line.starts_with('#')) continue;
             const size_t name = std::min(line.size(), line.find_first_not_of(" \t", 1));
             const std::string_view word = line.substr(name);
@@ -307,6 +315,23 @@ private:
             is_taken = word.starts_with("else") || choose({file, begin, at}, "#if", word.substr(4));
             if (is_taken) return;
         }
+    }
+
+    // "#undef NAME": a #define of nothing.
+    void undefinition(Span where, std::string_view line)
+    {
+        const size_t first = line.find_first_not_of(" \t");
+        if (first == line.npos || !is_name_start(line[first]))
+            return refuse(where, "expected a name after '#undef'", "");
+        size_t length = 1;
+        while (first + length < line.size() && is_name_part(line[first + length])) ++length;
+        conditions.undefine(line.substr(first, length));
+        const uint32_t behind = std::exchange(at, where.end), name = where.end + static_cast<uint32_t>(first);
+        push(Token::define, where.begin);
+        at = name + static_cast<uint32_t>(length);
+        push(Token::name, name);
+        at = behind;
+        push(Token::line_end, at);
     }
 
     // "#define NAME value": the line's own tokens, between two that mark it. Without a value it only tells "#ifdef".

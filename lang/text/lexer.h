@@ -55,6 +55,7 @@ struct TokenList {
     std::vector<DocLine> docs;
     size_t count = 0;            // of tokens, but for the last, and of comments
     bool has_directives = false; // lines that begin with '#': not all of the text is in the tokens
+    bool has_conditions = false; // of them such as choose text
 };
 
 // Stops early once `diagnostics` is full. More than `room` tokens and comments are an error, and none of them is kept.

@@ -141,7 +141,7 @@ private:
     void collect_written(Span where);
     void branch(const ast::If& node);
     void loop(const ast::For& node);
-    void leave(const ast::Return& node);
+    void leave(const ast::Return& node, Span where);
     void body(const ast::Statement& tree, const Variables& start);
     static void merge(Flow& into, const Flow& other);
     void check_outputs();

@@ -73,7 +73,7 @@ void DimensionBody::statement(const Statement& s)
     } else if (auto repeated = std::get_if<For>(&s.node)) {
         loop(*repeated);
     } else if (auto left = std::get_if<Return>(&s.node)) {
-        leave(*left);
+        leave(*left, s.span);
         flow.reset();
     } else {
         const bool ends_turn = std::holds_alternative<Continue>(s.node); // else the loop
@@ -238,10 +238,10 @@ void DimensionBody::check_outputs()
     }
 }
 
-void DimensionBody::leave(const Return& node)
+void DimensionBody::leave(const Return& node, Span where)
 {
     const Dimension found = node.value ? expression(*node.value) : Dimension::any();
-    if (info_of) collect_written(node.value ? node.value->span : Span{});
+    if (info_of) collect_written(node.value ? node.value->span : where);
     if (!node.value) return;
     Dimension& result = instance.result;
     if (outputs) {
