@@ -80,7 +80,7 @@ void Grammar::note_constant(Span whole, const Name& word, const Macro& macro)
     bool is_declared = false; // a name or a type stands before it
     for (size_t i = macro.end; i + 1 < tokens.size(); ++i)
         is_declared |= is_name(tokens[i + 1]) && (tokens[i].kind == Token::name || tokens[i].kind == Token::define);
-    if (type.empty() || list.has_conditions || is_used_above || is_declared) return;
+    if (type.empty() || list.asked.contains(word.text) || is_used_above || is_declared) return;
     if (!std::ranges::all_of(tokens.subspan(macro.first, macro.end - macro.first), is_plain)) return;
     const std::string value(sources.text({file, head.begin, list.tokens[macro.end - 1].end}));
     if (value.find_first_of("\n\r") != value.npos) return;

@@ -148,7 +148,7 @@ private:
                           "expected at most " + std::to_string(tokens_max) +
                               " words, numbers, signs and comments in a program with its imports",
                           "large tables belong into pictures: texture t(image picture)");
-        list = {{}, {}, room, list.has_directives, list.has_conditions};
+        list = {{}, {}, room, list.has_directives, {}};
         at = size();
         return false;
     }
@@ -235,7 +235,7 @@ private:
         const std::string word = "#" + std::string(text.substr(name_begin, at - name_begin));
         if (word == "#define") return definition(where);
         const std::string_view line = rest_of_line();
-        list.has_conditions |= word.starts_with("#if") || word == "#undef";
+        if (word.starts_with("#if") || word == "#elif" || word == "#undef") note_names(line);
         if (word == "#ifdef" || word == "#ifndef" || word == "#if") {
             conditions.open.push_back({begin, where.end, choose(where, word, line)});
             if (!conditions.open.back().is_taken) skip_choice();
@@ -255,6 +255,16 @@ private:
             refuse(where, "Haptel has no '" + word + "'",
                    word == "#include" ? "write import \"file.haptel\"; what it imports must be Haptel too"
                                       : "leave this line out");
+        }
+    }
+
+    void note_names(std::string_view line)
+    {
+        for (size_t i = 0; i < line.size(); ++i) {
+            if (!is_name_start(line[i])) continue;
+            const size_t first = i;
+            while (i < line.size() && is_name_part(line[i])) ++i;
+            list.asked.insert(line.substr(first, i - first));
         }
     }
 
@@ -312,6 +322,7 @@ private:
             }
             bool& is_taken = conditions.open.back().is_taken;
             if (inner > 0 || is_taken || (!word.starts_with("else") && !word.starts_with("elif"))) continue;
+            note_names(line);
             is_taken = word.starts_with("else") || choose({file, begin, at}, "#if", word.substr(4));
             if (is_taken) return;
         }

@@ -6,6 +6,7 @@
 #include "lang/text/limits.h"
 #include "lang/text/source.h"
 
+#include <set>
 #include <string_view>
 #include <vector>
 
@@ -53,9 +54,9 @@ struct DocLine {
 struct TokenList {
     std::vector<PlacedToken> tokens; // ends with Token::end
     std::vector<DocLine> docs;
-    size_t count = 0;            // of tokens, but for the last, and of comments
-    bool has_directives = false; // lines that begin with '#': not all of the text is in the tokens
-    bool has_conditions = false; // of them such as choose text
+    size_t count = 0;                      // of tokens, but for the last, and of comments
+    bool has_directives = false;           // lines that begin with '#': not all of the text is in the tokens
+    std::set<std::string_view> asked = {}; // names in those that choose text
 };
 
 // Stops early once `diagnostics` is full. More than `room` tokens and comments are an error, and none of them is kept.
