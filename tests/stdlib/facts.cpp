@@ -32,8 +32,7 @@ ir::Facts facts_of(const std::string& function, const std::string& call)
     return {};
 }
 
-void check_never_exceeded(const std::string& call, const ir::Facts& facts, double size, int count,
-                          double rounding)
+void check_never_exceeded(const std::string& call, const ir::Facts& facts, double size, int count, double rounding)
 {
     CAPTURE(call);
     const Field field(call);
