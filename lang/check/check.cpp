@@ -178,6 +178,7 @@ public:
 
     void run()
     {
+        add_presets(program.files, diagnostics);
         std::vector<FileScope> scopes;
         const auto count = static_cast<uint32_t>(program.files.size());
         for (uint32_t file = 0; file < count; ++file) {
@@ -189,7 +190,6 @@ public:
             declarations_of(file).unread.merge(program.files[file].tree.unread);
         }
         context.scopes = &scopes;
-        add_presets(program.files, diagnostics);
         // Sizes of arrays in heads of functions are constants, and constants may name functions.
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], false);
         for (uint32_t file = 0; file < count; ++file) check_constants(file, scopes[file]);

@@ -93,6 +93,10 @@ void add_presets(std::vector<CheckFile>& files, size_t i, Diagnostics& diagnosti
                               "a preset stands below the texture or preset that it is of");
             continue;
         }
+        if (of->damage.any) { // told; what the preset would be is not known
+            files[i].tree.unread.insert(preset.name.text);
+            continue;
+        }
         Texture made;
         made.doc = preset.doc.empty() ? of->doc : preset.doc;
         made.name = preset.name;

