@@ -49,6 +49,8 @@ bool converts(const ast::Expression& e, Type wanted);
 void adopt_literal(ast::Expression& e, Type wanted);
 Type operand_type(Type other);  // what a literal beside it is
 std::string zero_of(Type type); // as it is written: "vec2(0.0)"
+// The argument of a call at `where` that is not given.
+ast::ExpressionPtr left_out(Span where, const ParameterInfo& parameter);
 
 // The type of a name in source, or nothing if the name means no type.
 std::optional<Type> type_named(std::string_view name);

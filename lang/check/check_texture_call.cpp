@@ -28,10 +28,7 @@ Type BodyChecker::texture_call(Expression& e, CallExpression& call)
     for (size_t i = 0; i < ordered.size(); ++i) {
         if (ordered[i]) continue;
         const ParameterInfo& parameter = callee->parameters[i];
-        ordered[i] = std::make_unique<Expression>();
-        ordered[i]->span = e.span;
-        ordered[i]->type = parameter.type;
-        ordered[i]->node = LeftOut{&parameter};
+        ordered[i] = left_out(e.span, parameter);
         if (!is_sound || parameter.value || parameter.is_written()) continue;
         diagnostics.error(e.span, "named-argument",
                           "the texture " + quoted(callee->name) + " needs its image " + quoted(parameter.name),

@@ -104,18 +104,8 @@ void add_presets(std::vector<CheckFile>& files, size_t i, Diagnostics& diagnosti
         made.span = preset.span;
         give_defaults(made, preset, diagnostics);
         made.body = body_of(preset, made.parameters);
-        Function& function = made.as_function;
-        function.result.base = {"float", preset.name.span};
-        function.name = preset.name;
-        for (const TextureParameter& parameter : made.parameters) {
-            FunctionParameter& one = function.parameters.emplace_back();
-            one.type = parameter.type;
-            one.name = parameter.name;
-            one.passing = parameter.is_output ? Passing::out : Passing::in;
-            one.span = parameter.span;
-        }
-        function.body = body_of(preset, made.parameters);
-        function.span = preset.span;
+        made.as_function = head_as_function(made);
+        made.as_function.body = body_of(preset, made.parameters);
         textures.push_back(std::move(made));
     }
     std::ranges::stable_sort(textures, {}, [](const Texture& texture) { return texture.span.begin; });

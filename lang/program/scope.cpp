@@ -39,12 +39,6 @@ std::string signature_of(const FunctionInfo& function)
     return text + ')';
 }
 
-bool writes(const FunctionReference& function)
-{
-    auto source = std::get_if<const FunctionInfo*>(&function);
-    return source && std::ranges::any_of((*source)->parameters, &ParameterInfo::is_written);
-}
-
 FunctionInfo* FileScope::texture(std::string_view name) const
 {
     for (const Declarations* layer : layers)

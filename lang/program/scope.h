@@ -46,9 +46,6 @@ std::string to_string(const ParameterInfo& parameter, const std::string& name = 
 // "fbm(vec3,int)": name and types, as overloads are told apart.
 std::string signature_of(const FunctionInfo& function);
 
-// Whether it gives some of its arguments a value.
-bool writes(const FunctionReference& function);
-
 // What one file sees: its own declarations first, then imports, then the library; the language's built-ins last.
 struct FileScope {
     std::vector<const Declarations*> layers; // nearest first

@@ -56,6 +56,23 @@ std::vector<const Expression*> expressions_of(const Statement& s)
     return expressions;
 }
 
+Function head_as_function(const Texture& texture)
+{
+    Function made;
+    made.doc = texture.doc;
+    made.result.base = {"float", texture.name.span};
+    made.name = texture.name;
+    made.span = texture.span;
+    for (const TextureParameter& parameter : texture.parameters) {
+        FunctionParameter& one = made.parameters.emplace_back();
+        one.type = parameter.type;
+        one.name = parameter.name;
+        one.passing = parameter.is_output ? Passing::out : Passing::in;
+        one.span = parameter.span;
+    }
+    return made;
+}
+
 const NameExpression* root_of(const Expression& target)
 {
     const Expression* object = &target;

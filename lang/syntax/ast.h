@@ -272,6 +272,9 @@ struct Preset {
     Span span;
 };
 
+// What other textures call, still without its body.
+Function head_as_function(const Texture& texture);
+
 struct Constant {
     Declaration declaration;
     Span span;

@@ -305,19 +305,8 @@ void Grammar::read_as_function(Texture& texture, size_t body)
 {
     const size_t behind = position;
     position = body;
-    Function& made = texture.as_function;
-    made.doc = texture.doc;
-    made.result.base = {"float", texture.name.span};
-    made.name = texture.name;
-    for (const TextureParameter& parameter : texture.parameters) {
-        FunctionParameter& one = made.parameters.emplace_back();
-        one.type = parameter.type;
-        one.name = parameter.name;
-        one.passing = parameter.is_output ? Passing::out : Passing::in;
-        one.span = parameter.span;
-    }
-    made.body = body_of("the texture '" + made.name.text + "'");
-    made.span = texture.span;
+    texture.as_function = head_as_function(texture);
+    texture.as_function.body = body_of("the texture '" + texture.name.text + "'");
     position = behind;
 }
 

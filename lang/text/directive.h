@@ -1,7 +1,8 @@
 // Lines that begin with '#', as other shading languages write them: which of the text such lines leave out.
 //
-// #define is left to the grammar (parse_macro.cpp), since a value must be an expression here; #ifdef, #ifndef, #if with
-// 0, 1 or defined(NAME), #else and #endif choose text; #version, #extension, #pragma and #line change nothing.
+// #define and #undef are left to the grammar (parse_macro.cpp), since a value must be an expression here; #ifdef,
+// #ifndef, #if with 0, 1 or defined(NAME), #else and #endif choose text; #version, #extension, #pragma and #line change
+// nothing.
 #pragma once
 
 #include <cstdint>
