@@ -1,6 +1,5 @@
 #include "jit/engine/machine_code.h"
 
-#include <llvm/CodeGen/SelectionDAG.h>
 #include <llvm/Passes/PassBuilder.h>
 #include <llvm/Transforms/IPO/AlwaysInliner.h>
 #include <llvm/Transforms/IPO/GlobalDCE.h>
@@ -102,11 +101,6 @@ std::string Compilers::start(const llvm::orc::JITTargetMachineBuilder& host,
     if (!machine)
         return "no code generator for " + builder->getTargetTriple().str() + " " + builder->getCPU() + ": " +
                llvm::toString(machine.takeError());
-    // Makes the types of SelectionDAG's nodes, which LLVM otherwise makes when they are first needed. Objects of the
-    // process are destroyed in the reverse order of their making, exit handlers in between: a thread that an exit
-    // handler ends may use only what was made before that handler was registered. Drafts need no SelectionDAG, so that
-    // the optimiser's thread might be the first to make them.
-    llvm::SelectionDAG(**machine, (*machine)->getOptLevel()).getVTList(llvm::MVT::f64);
     look(**machine);
     give_back(Effort::draft, std::move(*machine));
     return {};

@@ -230,11 +230,11 @@ private:
         return fitting;
     }
 
-    void make_and_publish(const CompiledTextures& compiled)
+    void make_and_publish(const std::shared_ptr<const CompiledTextures>& compiled)
     {
-        std::string said = compiled.rendered();
-        const TextureRequest fitting = request_for(*compiled.program, said);
-        TextureResult result = make_binding(compiled.program, reference.texture, fitting);
+        std::string said = compiled->rendered();
+        const TextureRequest fitting = request_for(*compiled->program, said);
+        TextureResult result = make_binding(program_of(compiled), reference.texture, fitting);
         said += about_file(reference.file, result.diagnostics);
         if (!result.binding) return report(said + about_file(reference.file, "note: the old texture stays"));
         callbacks.publish(std::move(*result.binding));
@@ -255,7 +255,7 @@ private:
         place->watched.insert(compiled->files.begin(), compiled->files.end());
         if (!compiled->program) {
             in_hand = compiled;
-            if (edited && usable) make_and_publish(*usable); // a slider works on while the file is broken
+            if (edited && usable) make_and_publish(usable); // a slider works on while the file is broken
             if (!is_forgiven(compiled->has_finding("unreadable-file"))) report(compiled->rendered());
             return;
         }
@@ -266,7 +266,7 @@ private:
         const bool changed = compiled != in_hand || pictures != pictures_in_hand;
         in_hand = usable = compiled;
         pictures_in_hand = std::move(pictures);
-        if (changed || edited) make_and_publish(*usable);
+        if (changed || edited) make_and_publish(usable);
     }
 
     void failed(std::string_view why) noexcept

@@ -1,76 +1,11 @@
 #include "jit/texture/resolver.h"
 
+#include "jit/texture/background_optimiser.h"
 #include "jit/texture/source_file.h"
-
-#include <chrono>
-#include <condition_variable>
-#include <cstdlib>
-#include <sys/resource.h>
-#include <thread>
-#include <unistd.h>
 
 namespace haptel::jit {
 
 namespace {
-
-using namespace std::chrono_literals;
-
-constexpr auto rest = 200ms; // without a new program: whoever edits has paused
-constexpr int niceness = 10;
-
-// The thread that makes the code of programs in use faster: full effort, after a draft is in the hand. What it makes
-// has the same bits and takes the place of the draft under the feet of its callers, so nobody is told. It is kept on
-// disk, and the next process begins with it. It yields to every other thread, waits until edits have come to rest, and
-// drops programs that nobody holds any more.
-class BackgroundOptimiser {
-public:
-    // The one of this process; it ends with the process, which waits for the program under work.
-    static BackgroundOptimiser& shared()
-    {
-        // Not destroyed, because other threads may add to the last; but stopped before LLVM's own objects go.
-        static auto& optimiser = *new BackgroundOptimiser;
-        return optimiser;
-    }
-
-    void add(const std::shared_ptr<const CompiledProgram>& program)
-    {
-        if (!program || program->is_optimised()) return;
-        const std::lock_guard lock(mutex);
-        waiting.push_back(program);
-        changed.notify_all();
-    }
-
-private:
-    BackgroundOptimiser() : thread([this](const std::stop_token& stop) { run(stop); })
-    {
-        std::atexit([] { shared().thread = {}; });
-    }
-
-    void run(const std::stop_token& stop)
-    {
-        setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), niceness);
-        std::unique_lock lock(mutex);
-        while (changed.wait(lock, stop, [&] { return !waiting.empty(); }) && !stop.stop_requested()) {
-            const size_t before = waiting.size();
-            if (changed.wait_for(lock, stop, rest, [&] { return waiting.size() != before; })) continue;
-            if (stop.stop_requested()) return;
-            const std::weak_ptr<const CompiledProgram> next = waiting.back(); // the newest is the likeliest to be felt
-            waiting.pop_back();
-            lock.unlock();
-            try {
-                if (const auto program = next.lock()) program->optimise();
-            } catch (...) {
-                // No memory for faster code: the draft stays.
-            }
-            lock.lock();
-        }
-    }
-
-    std::mutex mutex;
-    std::condition_variable_any changed;
-    std::vector<std::weak_ptr<const CompiledProgram>> waiting;
-    std::jthread thread;
-};
 
 // Main file and imports have the texts that `compiled` was made from. What could not be read is never current.
 bool is_current(const CompiledTextures& compiled)
@@ -83,24 +18,40 @@ bool is_current(const CompiledTextures& compiled)
     return true;
 }
 
+// The same, which owns the optimiser too: whoever holds a draft gets better code.
+std::shared_ptr<const CompiledTextures> getting_better(const std::shared_ptr<const CompiledTextures>& compiled)
+{
+    if (!compiled->program || compiled->program->is_optimised()) return compiled;
+    struct Held {
+        std::shared_ptr<const CompiledTextures> compiled;
+        std::shared_ptr<BackgroundOptimiser> optimiser;
+    };
+    const auto held = std::make_shared<Held>(compiled, BackgroundOptimiser::shared());
+    held->optimiser->add(compiled->program);
+    return {held, compiled.get()};
+}
+
 } // namespace
+
+std::shared_ptr<const CompiledProgram> program_of(const std::shared_ptr<const CompiledTextures>& compiled)
+{
+    return {compiled, compiled->program.get()};
+}
 
 std::shared_ptr<const CompiledTextures> ProgramCache::load(const std::string& path)
 {
     const std::lock_guard lock(mutex);
     std::shared_ptr<const CompiledTextures>& known = newest[path];
-    if (!known || !is_current(*known)) {
+    if (!known || !is_current(*known))
         known = std::make_shared<CompiledTextures>(compile_texture_file(path, servo_options()));
-        BackgroundOptimiser::shared().add(known->program);
-    }
-    return known;
+    return getting_better(known);
 }
 
 std::shared_ptr<const CompiledTextures> ProgramCache::known(const std::string& path)
 {
     const std::lock_guard lock(mutex);
     const auto found = newest.find(path);
-    return found == newest.end() ? nullptr : found->second;
+    return found == newest.end() ? nullptr : getting_better(found->second);
 }
 
 const std::shared_ptr<ProgramCache>& ProgramCache::shared()
@@ -115,7 +66,7 @@ TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache)
         const TextureReference reference = split_reference(request.reference);
         const auto compiled = cache->load(reference.file);
         if (!compiled->program) return {std::nullopt, compiled->rendered()};
-        TextureResult result = make_binding(compiled->program, reference.texture, request);
+        TextureResult result = make_binding(program_of(compiled), reference.texture, request);
         result.diagnostics = compiled->rendered() + about_file(reference.file, result.diagnostics);
         return result;
     };

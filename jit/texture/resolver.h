@@ -13,6 +13,9 @@ namespace haptel::jit {
 
 class ProgramCache {
 public:
+    // What load() and known() give becomes fast code for as long as somebody holds it, or a binding of program_of() it.
+    // Whoever lets go of the last waits for the program under work, and does so before the process ends.
+
     // The file as it is on disk now: compiled if it or an import of it has changed since it was asked for last. Any
     // thread; one compiles at a time.
     std::shared_ptr<const CompiledTextures> load(const std::string& path);
@@ -27,6 +30,9 @@ private:
     std::mutex mutex;
     std::map<std::string, std::shared_ptr<const CompiledTextures>> newest; // by path
 };
+
+// Owns what load() gave.
+std::shared_ptr<const CompiledProgram> program_of(const std::shared_ptr<const CompiledTextures>& compiled);
 
 // Resolves "PATH.haptel:NAME", or "PATH.haptel" where the file holds one texture. The result's diagnostics start with
 // the file's name; warnings stand beside a binding. Any thread.
