@@ -18,7 +18,8 @@ struct CompileRow {
     uint32_t lines = 0;
     Times front_end;      // text to checked, differentiated, verified IR
     Times warm;           // to code, in a process that has compiled before
-    Times binding;        // what is proven about it over an object of 0.2 m, before a hand gets it
+    Times binding;        // what is proven and found about it over an object of 0.2 m, before a hand gets it
+    Times felt;           // both: from a saved text to what a hand feels
     double first_ms = 0;  // to code, first of all in a fresh process, with nothing on disk
     double primed_ms = 0; // the same where the library's functions are on disk, as after a build
     double cached_ms = 0; // the same where the text was felt before: its own code is on disk, too
@@ -29,8 +30,16 @@ struct CompileRow {
 using FreshProcess =
     std::function<std::optional<double>(const std::string& texture, uint32_t edit, const std::string& cache_folder)>;
 
+struct Text {
+    std::string name, text;
+};
+
 // Interleaved: every texture is measured once per round.
 std::vector<CompileRow> bench_compile(bool quick, const FreshProcess& fresh_process);
+
+// Of somebody's texts, each to its last texture, which returns what is edited; in this process alone. Throws
+// std::runtime_error with what the compiler says of one that does not compile or bind.
+std::vector<CompileRow> bench_edits(const std::vector<Text>& texts, bool quick);
 
 // Compiles one of bench_compile()'s textures, and has its code of full effort kept on disk as a session of exploring
 // does. Milliseconds to the first code; nothing if there is no such texture.

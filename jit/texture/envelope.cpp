@@ -12,8 +12,8 @@ namespace haptel::jit {
 
 namespace {
 
-// Operations in all: 30 to 100 ms, however slow the texture is; and calls, of which a third are of climbs.
-constexpr uint64_t operations_most = 20'000'000, calls_least = 48, calls_most = 6000;
+// Operations in all: 10 to 30 ms, however slow the texture is; and calls, of which a third are of climbs.
+constexpr uint64_t operations_most = 4'000'000, calls_least = 48, calls_most = 6000;
 constexpr size_t climbs_most = 8;       // to each end
 constexpr double first_step = 1.0 / 64; // of the box
 constexpr double after_success = 1.4, after_failure = 0.3;

@@ -31,7 +31,7 @@ struct BenchOptions {
     uint32_t edit = 0;
     // of batch alone
     std::vector<const CLI::Option*> of_batch;
-    std::vector<std::string> paths;
+    std::vector<std::string> paths; // of compile, too
     ParameterTexts parameters;
     std::string precision = "mixed";
     size_t points = 1'000'000;
@@ -49,12 +49,17 @@ struct Figures {
 
 Figures compile_figures(const BenchOptions& options)
 {
-    const std::vector<bench::CompileRow> rows = compile_rows(options.quick);
     Figures figures;
+    const bool are_ours = options.paths.empty();
+    const std::vector<bench::CompileRow> rows =
+        are_ours ? compile_rows(options.quick) : edit_rows(options.paths, options.quick, figures.error);
     for (const bench::CompileRow& row : rows) figures.rows.push_back(to_json(row));
-    figures.more.emplace_back("growth", bench::growth(rows, &bench::CompileRow::front_end));
-    figures.more.emplace_back("growth_to_code", bench::growth(rows, &bench::CompileRow::warm));
     figures.table = to_table(rows);
+    if (are_ours) {
+        figures.more.emplace_back("growth", bench::growth(rows, &bench::CompileRow::front_end));
+        figures.more.emplace_back("growth_to_code", bench::growth(rows, &bench::CompileRow::warm));
+        figures.table += growth_line(rows);
+    }
     figures.csv = to_csv(rows);
     return figures;
 }
@@ -194,12 +199,14 @@ ExitCode run(const BenchOptions& given)
     }
     BenchOptions options = given;
     for (const CLI::Option* option : options.of_batch) {
-        if (options.what == "batch" || option->count() == 0) continue;
-        say_error(fmt::format("{} for haptel bench batch: the others bring their own textures and points",
-                              option->get_positional() ? "texture files are" : option->get_name() + " is"));
+        const bool is_file = option->get_positional();
+        if (options.what == "batch" || (is_file && options.what == "compile") || option->count() == 0) continue;
+        say_error(is_file ? "texture files are for haptel bench batch and compile: the others bring their own"
+                          : fmt::format("{} is for haptel bench batch: the others bring their own points",
+                                        option->get_name()));
         return ExitCode::misuse;
     }
-    if (options.paths.empty()) options.paths = {"stdlib", "examples"};
+    if (options.what == "batch" && options.paths.empty()) options.paths = {"stdlib", "examples"};
     const bench::Machine machine = bench::this_machine();
     const std::string name = fmt::format("{}, {} threads, {}", machine.cpu, machine.cores, machine.isa);
     const Figures figures = options.what == "compile" ? compile_figures(options)
@@ -246,7 +253,10 @@ Command bench_command(CLI::App& app)
         ->check(CLI::IsMember({"compile", "accuracy", "batch", "math", "tick", "scale", "skip"}))
         ->capture_default_str();
     options->of_batch = {
-        command->add_option("paths", options->paths, "batch: texture files, FILE:NAME, or folders [stdlib examples]")
+        command
+            ->add_option("paths", options->paths,
+                         "batch: texture files, FILE:NAME, or folders [stdlib examples]; "
+                         "compile: texture files that are edited [examples, and long texts]")
             ->type_name("PATH"),
         command->add_option("--points", options->points, "batch: number of points")
             ->check(CLI::Range(1, 100'000'000))
@@ -262,6 +272,7 @@ Command bench_command(CLI::App& app)
     command->add_option("--out", options->out, "Folder for WHAT.json, WHAT.csv and pictures")->type_name("DIR");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel bench compile\n"
+                           "  haptel bench compile mine.haptel\n"
                            "  haptel bench accuracy --out figures\n"
                            "  haptel bench batch stdlib examples --set picture=examples/scenes/waves.png\n"
                            "  haptel bench math --out figures\n"

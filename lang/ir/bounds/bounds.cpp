@@ -11,7 +11,6 @@ namespace haptel::ir {
 namespace {
 
 constexpr uint64_t operations_per_evaluation = 1'000'000;
-constexpr uint64_t operations_in_all = 4'000'000; // keeps a reload short, whatever the program
 // Instructions, of the longest programs that are looked at as closely: of longer ones every step costs more, so that
 // fewer are taken.
 constexpr uint64_t usual_extent = 5'000;
@@ -20,7 +19,7 @@ constexpr uint64_t usual_extent = 5'000;
 constexpr double useless = 1e9;
 // Twenty of each side of a place in space: a millionth of the box.
 constexpr int cuts_of_dive = 60;
-constexpr uint64_t operations_of_dive = operations_in_all / 2;
+constexpr uint64_t dives_per_proof = 4; // by operations
 // At which declared facts are tried: enough for what is wrong in a tenth of the box, and a fraction of the time that
 // bounds take.
 constexpr uint32_t points_for_facts = 64;
@@ -39,16 +38,18 @@ enum class Goal : uint8_t { result, variation, no_faults };
 class Bisection {
 public:
     // `result` of the body: 0 is the height, then the outputs.
-    Bisection(const Module& module, const Texture& texture, BoundsBox around, Goal which, size_t result = 0)
+    Bisection(const Module& module, const Texture& texture, BoundsBox around, Goal which, size_t result = 0,
+              uint64_t operations = operations_of_check)
         : evaluator(module, operations_per_evaluation)
         , entry(texture.body)
         , of_result(result)
         , box(std::move(around))
         , goal(which)
+        , operations_of_dive(operations / dives_per_proof)
         , queues(goal == Goal::no_faults ? 1 : 2)
     {
         const uint64_t extent = instructions_reached(module, entry);
-        if (extent > usual_extent) operations_left = operations_in_all * usual_extent / extent;
+        operations_left = extent > usual_extent ? operations * usual_extent / extent : operations;
         std::set<Input> read;
         for_each_instruction(module.functions[entry].body, [&](const Instruction& made) {
             if (auto* input = std::get_if<ReadInput>(&made.kind)) read.insert(input->input);
@@ -108,7 +109,7 @@ public:
     void dive(size_t which, double (&place)[input_count])
     {
         size_t at = next_of(queues[which]);
-        operations_left = std::max(operations_left, operations_of_dive);
+        operations_left = operations_of_dive;
         for (int cuts = 0; cuts < cuts_of_dive && operations_left > 0; ++cuts) {
             if (!halve(at)) break;
             at = pieces.size() - (pieces.end()[-2].bounds[which] > pieces.back().bounds[which] ? 2 : 1);
@@ -144,12 +145,12 @@ private:
     size_t of_result;
     BoundsBox box;
     Goal goal;
+    uint64_t operations_left, operations_of_dive;
     std::vector<Interval*> sides; // of `box` that can be cut
     std::vector<Piece> pieces;
     std::vector<Queue> queues; // by bound
     Variation whole;
     IntervalEvaluator::Findings of_whole;
-    uint64_t operations_left = operations_in_all;
     size_t turn = 0;
     bool is_settled = false;
 
@@ -225,9 +226,9 @@ private:
 };
 
 Interval result_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations,
-                       size_t result, HeightPlaces* places = nullptr)
+                       size_t result, uint64_t operations = operations_of_check, HeightPlaces* places = nullptr)
 {
-    Bisection bisection(module, texture, box, Goal::result, result);
+    Bisection bisection(module, texture, box, Goal::result, result, operations);
     bisection.run(evaluations);
     const Interval bounds{-bisection.bound(1), bisection.bound(0), bisection.may_be_nan()};
     if (places) {
@@ -240,9 +241,9 @@ Interval result_bounds(const Module& module, const Texture& texture, const Bound
 } // namespace
 
 Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations,
-                       HeightPlaces* places)
+                       uint64_t operations, HeightPlaces* places)
 {
-    Interval height = result_bounds(module, texture, box, evaluations, 0, places);
+    Interval height = result_bounds(module, texture, box, evaluations, 0, operations, places);
     if (height.is_empty()) height = {0, 0, true};
     height.may_be_nan |= !height.is_finite();
     if (height.may_be_nan) height = {std::min(height.minimum, 0.0), std::max(height.maximum, 0.0), true};

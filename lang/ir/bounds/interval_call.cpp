@@ -115,8 +115,11 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     if (depth >= depth_max || left == 0) return unknown(function, function.body.yields, span);
     ++depth;
     const size_t count = function.value_types.size();
-    Frame frame{function, std::vector<Interval>(count, no_value), std::vector<Variation>(varying ? count : 0),
-                structure_of(index), tangents_of(index, arguments.variations)};
+    std::vector<Interval> values;
+    if (!spare_values.empty()) values = std::move(spare_values.back()), spare_values.pop_back();
+    values.assign(count, no_value);
+    Frame frame{function, std::move(values), std::vector<Variation>(varying ? count : 0), structure_of(index),
+                varying ? tangents_of(index, arguments.variations) : no_tangents};
     store(frame, function.parameters, arguments);
     const std::optional<Span> outside = user;
     if (function.is_library && !user) user = span;
@@ -124,6 +127,7 @@ IntervalEvaluator::Results IntervalEvaluator::look_inside(uint32_t index, const 
     user = outside;
     --depth;
     Results results = gather(frame, function.body.yields);
+    spare_values.push_back(std::move(frame.values));
     if (function.is_library)
         for (Variation& variation : results.variations) variation.cause = {span, {}, true}, variation.kink = 0;
     return results;

@@ -62,6 +62,7 @@ IntervalEvaluator::Results IntervalEvaluator::run_varying(uint32_t entry, const 
 IntervalEvaluator::Results IntervalEvaluator::gather(const Frame& frame, std::span<const Value> values) const
 {
     Results results;
+    results.values.reserve(values.size());
     for (Value value : values) results.values.push_back(frame.values[value.index]);
     if (varying)
         for (Value value : values) results.variations.push_back(frame.variation(value));

@@ -90,6 +90,8 @@ private:
     Dependences dependences;
     std::map<std::pair<uint32_t, std::vector<bool>>, Activity>
         activities; // by function and which parameters have tangents
+    const Activity no_tangents{0, 0};
+    std::vector<std::vector<Interval>> spare_values; // of frames that are done: calls are many, and short
 
     std::map<uint32_t, bool> short_functions; // asked so far
 

@@ -46,8 +46,35 @@ TEST_CASE("bench compile: rows by length, with machine, commit and flags")
         CHECK(contains(csv, fmt::format("\n{},{},{},", row["texture"].get<std::string>(), row["lines"].get<int>(),
                                         row["front_end_ms"]["median"].get<double>())));
     CHECK(contains(csv.substr(0, csv.find('\n')), ",cached_ms,commit,isa,cpu"));
+    for (const Json& row : json["rows"]) CHECK(row["felt_ms"]["median"] >= row["binding_ms"]["median"]);
     CHECK(run_command("bench nothing").code == 2);
     CHECK(run_command("bench --quick --out /proc/none").code == 1);
+}
+
+TEST_CASE("bench compile: a file of one's own, edited over and over; one that does not compile says why")
+{
+    const Folder folder;
+    folder.write("two.haptel", "texture other() { return 1um; }\n"
+                               "texture mine(float depth = 1um in 0um .. 2um) { return depth * sin(p.x / 1mm); }\n");
+    folder.write("wrong.haptel", "texture wrong() { return dept; }\n");
+    folder.write("slow.haptel", "texture slow() { float h = 0.0; for (int i = 0; i < 1000000; ++i) h += sin(p.x * i); "
+                                "return h * 1um; }\n");
+    const Ran ran = run_command("bench compile --quick --json '" + folder.file("two.haptel") + "'");
+    REQUIRE(ran.code == 0);
+    const Json json = Json::parse(ran.out);
+    REQUIRE(json["rows"].size() == 1);
+    const Json& row = json["rows"][0];
+    CHECK(row["texture"] == "two");
+    CHECK(row["lines"] == 2);
+    CHECK((row["felt_ms"]["median"] > 0 && row["first_ms"].is_null()));
+    CHECK(!json.contains("growth"));
+    for (const char* file : {"wrong.haptel", "slow.haptel", "none.haptel"}) {
+        const Ran bad = run_command("bench compile --quick '" + folder.file(file) + "'");
+        CAPTURE(bad.err);
+        CHECK(bad.code == 1);
+        CHECK(contains(bad.err, file[0] == 'w' ? "dept" : file[0] == 's' ? "per call" : "cannot read"));
+    }
+    CHECK(run_command("bench tick '" + folder.file("two.haptel") + "'").code == 2);
 }
 
 TEST_CASE("bench scale: every axis from its first row on, for every probe, and what a surface costs")

@@ -242,6 +242,26 @@ TEST_CASE("bounds: the slope that is declared bounds the value about the middle 
     CHECK((found.minimum > std::sin(0.4) - 0.2001 && found.maximum < std::sin(0.4) + 0.2001));
 }
 
+TEST_CASE("bounds: fewer operations give wider bounds, that still hold")
+{
+    // x (10 - x), whose factors move together: 0 .. 25 over 0 .. 10
+    const Bounded texture("", "%x = input p_x %ten = real 10 %y = sub %ten, %x %h = mul %x, %y return %h", {0, 10},
+                          {1, 4}, "0");
+    Interval wider{-infinity, infinity};
+    for (uint64_t operations : {1, 100, 1'000, 100'000}) {
+        HeightPlaces places;
+        const Interval found =
+            height_bounds(texture.module, texture.module.textures[0], texture.box, 4096, operations, &places);
+        CAPTURE(operations, found.minimum, found.maximum);
+        CHECK((found.minimum <= 0 && found.maximum >= 25));
+        CHECK((found.minimum >= wider.minimum && found.maximum <= wider.maximum));
+        if (operations == 1) CHECK(found.maximum == 100);
+        if (operations == 100'000) CHECK(found.maximum < 26.5);
+        CHECK((places.highest[0] >= 0 && places.highest[0] <= 10));
+        wider = found;
+    }
+}
+
 TEST_CASE("bounds: what may fault is told with the reason, and nothing of what cannot")
 {
     using Why = Undefined::Why;
