@@ -24,7 +24,7 @@ using ir::Interval;
 constexpr uint32_t evaluations_over_ranges = 16;
 constexpr uint32_t evaluations_over_box = 512;
 // Of intervals, where a hand waits to feel an edit: 15 ms for the proof, and 8 to find where its ends may be. What is
-// felt of 118 public shaders is, but for 6, what a proof of 25 times that gives.
+// felt of 118 public shaders is, but for 6, what a proof of 20 times that gives.
 constexpr uint64_t operations_for_hand = 150'000;
 
 // Three neighbouring inputs (a vector) from `first` on.

@@ -101,7 +101,7 @@ public:
                 const double at = all.minimum + std::fmod(0.5 + k * step, 1.0) * (all.maximum - all.minimum);
                 *sides[i] = {at, at};
             }
-            evaluator.run_varying(entry, box, false);
+            evaluator.run_varying(entry, box, IntervalEvaluator::Sought::curvature);
         }
     }
 
@@ -168,13 +168,17 @@ private:
             value = evaluator.run(entry, {}, &box)[of_result];
             piece.bounds = {value.maximum, -value.minimum};
         } else {
-            const auto [values, variations] =
-                evaluator.run_varying(entry, box, pieces.empty() && goal == Goal::variation);
+            using enum IntervalEvaluator::Sought;
+            const auto [values, variations] = evaluator.run_varying(entry, box,
+                                                                    goal == Goal::no_faults ? slope
+                                                                    : pieces.empty()        ? continuity
+                                                                    : is_wanted(1)          ? curvature
+                                                                                            : slope);
             value = values[0];
             const bool may_fault = variations[0].may_fault || !std::ranges::all_of(values, &Interval::is_finite);
-            piece.bounds = {variations[0].slope, variations[0].curvature};
-            if (goal == Goal::no_faults) piece.bounds = {may_fault ? 1.0 : 0.0};
             if (pieces.empty()) whole = variations[0], of_whole = evaluator.findings();
+            piece.bounds = {variations[0].slope, is_wanted(1) ? variations[0].curvature : whole.curvature};
+            if (goal == Goal::no_faults) piece.bounds = {may_fault ? 1.0 : 0.0};
         }
         operations_left -= std::min(operations_left, evaluator.operations_used() + 1);
         piece.may_be_nan = value.may_be_nan;

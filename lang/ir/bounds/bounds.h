@@ -74,7 +74,7 @@ struct HeightPlaces {
     double lowest[input_count] = {}, highest[input_count] = {};
 };
 // Of intervals, in all, at some 100 ns each: keeps a check short, whatever the program.
-inline constexpr uint64_t operations_of_check = 4'000'000;
+inline constexpr uint64_t operations_of_check = 3'000'000;
 // Its height alone, which is cheaper; and, where asked for, its places.
 Interval height_bounds(const Module& module, const Texture& texture, const BoundsBox& box, uint32_t evaluations = 4096,
                        uint64_t operations = operations_of_check, HeightPlaces* places = nullptr);

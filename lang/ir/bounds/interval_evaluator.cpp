@@ -43,13 +43,14 @@ std::vector<Interval> IntervalEvaluator::run(uint32_t function, std::span<const 
     return values_inside(function, {arguments.begin(), arguments.end()}, {});
 }
 
-IntervalEvaluator::Results IntervalEvaluator::run_varying(uint32_t entry, const BoundsBox& where, bool with_class)
+IntervalEvaluator::Results IntervalEvaluator::run_varying(uint32_t entry, const BoundsBox& where, Sought sought)
 {
     box = &where;
     left = limit;
     varying = true;
     seams.reset();
-    if (with_class) seams.emplace();
+    with_curvature = sought >= Sought::curvature;
+    if (sought == Sought::continuity) seams.emplace();
     noted.undefined.clear();
     noted.believed.clear();
     Results results = look_inside(entry, {}, {});

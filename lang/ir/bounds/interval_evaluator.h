@@ -36,9 +36,11 @@ public:
         std::vector<Interval> values;
         std::vector<Variation> variations;
     };
-    // `with_class`: how smooth results are is looked for, at seams and where arms meet; else they are no smoother than
-    // they are said to be.
-    Results run_varying(uint32_t entry, const BoundsBox& box, bool with_class);
+    // How much of how they vary: each of these, and those before it. Where the class is not sought they are no smoother
+    // than they are said to be; with it, it is looked for at seams and where arms meet. A curvature that is not sought
+    // takes half the time and means nothing.
+    enum class Sought : uint8_t { slope, curvature, continuity };
+    Results run_varying(uint32_t entry, const BoundsBox& box, Sought sought);
     struct Findings {
         std::vector<Undefined> undefined; // met by the last run_varying(), each place once
         std::set<uint32_t> believed;      // functions whose facts it believed although they are not proven
@@ -75,7 +77,7 @@ private:
     const uint64_t limit;
     uint64_t left = 0;
     uint32_t depth = 0; // blocks and calls inside each other
-    bool varying = false;
+    bool varying = false, with_curvature = true;
     PartialRules rules;
     std::optional<Seams> seams; // where the class is asked for
     uint32_t kinks = 0;         // numbered as they are met

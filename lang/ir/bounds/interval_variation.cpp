@@ -141,9 +141,9 @@ Variation IntervalEvaluator::variation_of(Frame& frame, const Instruction& made,
         if (op == Op::spline)
             partials = spline_partials(operands);
         else if (is_of_reals(op_info(op)))
-            partials = rules.of(op, operands, differentiated);
+            partials = rules.of(op, operands, differentiated, with_curvature);
         const std::span<const Variation> all{variations, operands.size()};
-        variation = chain(op, operands, all, partials);
+        variation = chain(op, operands, all, partials, with_curvature);
         const bool is_new = std::ranges::none_of(all, &Variation::may_fault);
         const bool is_part = frame.structure.is_part_of_result[made.results[0].index];
         if (variation.may_fault && is_new && is_part && result.is_finite())

@@ -5,10 +5,11 @@
 #include "lang/ir/op_info.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace haptel::ir {
 
-PartialRules::Rule PartialRules::differentiated(Op op, uint32_t active)
+PartialRules::Rule PartialRules::differentiated(Op op, uint32_t active, bool with_second)
 {
     const uint32_t arity = op_info(op).arity;
     std::vector<uint32_t> directions; // the active operands
@@ -24,24 +25,27 @@ PartialRules::Rule PartialRules::differentiated(Op op, uint32_t active)
     for (size_t d = 0; d < directions.size(); ++d) seeds[directions[d]][d] = Seed::unit;
     Differentiator differentiator(module);
     const Derivative once = differentiator.derivative(itself, seeds);
-    const Derivative twice = differentiator.derivative(once.function, seeds);
+    std::optional<Derivative> twice;
+    if (with_second) twice = differentiator.derivative(once.function, seeds);
 
-    Rule rule{module.functions[twice.function], {}, {}};
+    Rule rule{module.functions[(twice ? *twice : once).function], {}, {}};
     // Results: value, its tangents; then the tangents of the value once more, and those of each tangent.
     auto next = rule.line.body.yields.begin() + 1;
     for (size_t d = 0; d < directions.size(); ++d)
         if (once.exists[0][d]) rule.first.emplace_back(directions[d], *next++);
-    next += std::ranges::count(twice.exists[0], true);
+    if (!twice) return rule;
+    next += std::ranges::count(twice->exists[0], true);
     for (size_t t = 0; t < rule.first.size(); ++t)
         for (size_t d = 0; d < directions.size(); ++d)
-            if (twice.exists[t + 1][d]) rule.second.emplace_back(rule.first[t].first, directions[d], *next++);
+            if (twice->exists[t + 1][d]) rule.second.emplace_back(rule.first[t].first, directions[d], *next++);
     return rule;
 }
 
-Partials PartialRules::of(Op op, std::span<const Interval> operands, uint32_t active)
+Partials PartialRules::of(Op op, std::span<const Interval> operands, uint32_t active, bool with_second)
 {
-    auto known = rules.find({op, active});
-    if (known == rules.end()) known = rules.emplace(std::pair{op, active}, differentiated(op, active)).first;
+    const std::tuple key{op, active, with_second};
+    auto known = rules.find(key);
+    if (known == rules.end()) known = rules.emplace(key, differentiated(op, active, with_second)).first;
     const auto& [line, first, second] = known->second;
 
     values.resize(line.value_types.size());

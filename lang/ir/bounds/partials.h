@@ -5,6 +5,7 @@
 #include "lang/ir/bounds/interval.h"
 
 #include <map>
+#include <tuple>
 
 namespace haptel::ir {
 
@@ -19,8 +20,8 @@ struct Partials {
 class PartialRules {
 public:
     // Of a real operation of reals, with respect to the operands whose bit is set in `active`; the others are left 0.
-    // May be infinite where the true derivative has no bound.
-    Partials of(Op op, std::span<const Interval> operands, uint32_t active);
+    // May be infinite where the true derivative has no bound. The second are left 0 unless they are wanted.
+    Partials of(Op op, std::span<const Interval> operands, uint32_t active, bool with_second);
 
 private:
     struct Rule {
@@ -28,10 +29,10 @@ private:
         std::vector<std::pair<uint32_t, Value>> first;             // operand, where
         std::vector<std::tuple<uint32_t, uint32_t, Value>> second; // operand, operand, where
     };
-    std::map<std::pair<Op, uint32_t>, Rule> rules;
+    std::map<std::tuple<Op, uint32_t, bool>, Rule> rules;
     std::vector<Interval> values; // of one evaluation; kept for its memory
 
-    static Rule differentiated(Op op, uint32_t active);
+    static Rule differentiated(Op op, uint32_t active, bool with_second);
 };
 
 } // namespace haptel::ir

@@ -210,7 +210,7 @@ Variation intersect(const Variation& a, const Variation& b)
 }
 
 Variation chain(Op op, std::span<const Interval> operands, std::span<const Variation> variations,
-                const Partials& partials)
+                const Partials& partials, bool with_curvature)
 {
     Variation made = roughest_of(variations);
     for (size_t i = 0; i < variations.size(); ++i)
@@ -234,9 +234,10 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
         const Variation& a = variations[i];
         if (!a.is_active) continue;
         slope += times(size_of(by.first[i]), a.slope);
-        curvature += times(size_of(by.first[i]), a.curvature);
         for (size_t j = 0; j < axis_count; ++j)
             made.gradient[j] = add(made.gradient[j], multiply(by.first[i], a.gradient[j]));
+        if (!with_curvature) continue;
+        curvature += times(size_of(by.first[i]), a.curvature);
         for (size_t j = 0; j < made.hessian.size(); ++j)
             made.hessian[j] = add(made.hessian[j], multiply(by.first[i], a.hessian[j]));
         for (size_t l = 0; l < variations.size(); ++l) {
@@ -256,7 +257,8 @@ Variation chain(Op op, std::span<const Interval> operands, std::span<const Varia
         const double turns = jacobian_norm(variations);
         slope = std::min(slope, times(turns, steepest));
         const double bend = times(turns * turns, steepest / shortest);
-        curvature = std::min(curvature, bend + times(steepest, norm(variations, &Variation::curvature)));
+        if (with_curvature)
+            curvature = std::min(curvature, bend + times(steepest, norm(variations, &Variation::curvature)));
     }
     made.may_fault |= overflows(by, variations, made);
     made.slope = slope * rounding_up;

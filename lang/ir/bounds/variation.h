@@ -74,9 +74,9 @@ Variation merge(const Variation& a, const Variation& b);
 // Of what is known by two ways.
 Variation intersect(const Variation& a, const Variation& b);
 
-// By the chain rule, of a real operation with these partials at its operands.
+// By the chain rule, of a real operation with these partials at its operands; without its curvature, that is 0.
 Variation chain(Op op, std::span<const Interval> operands, std::span<const Variation> variations,
-                const Partials& partials);
+                const Partials& partials, bool with_curvature);
 
 // By the chain rule, of a function known by its facts: slope and curvature are norms with respect to these arguments.
 Variation chain(const Facts& facts, std::span<const Variation> arguments);
