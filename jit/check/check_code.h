@@ -5,6 +5,8 @@
 #include "jit/check/check_gradient.h"
 #include "jit/check/check_points.h"
 
+#include <functional>
+#include <string>
 #include <string_view>
 
 namespace haptel::jit {
@@ -12,8 +14,13 @@ namespace haptel::jit {
 // Share of the points at which a derivative may disagree: those that met a kink.
 inline constexpr double kinks_share_max = 0.01;
 
-// Adds a failure "what: found, allowed" unless `found` is at most `allowed`.
-void expect_at_most(GradientCheck& check, std::string_view what, double found, double allowed);
+// Adds a failure "what: found, allowed; where" unless `found` is at most `allowed`; `where` is asked only then.
+void expect_at_most(GradientCheck& check, std::string_view what, double found, double allowed,
+                    const std::function<std::string()>& where = {});
+
+// With as few digits as give the same number again, so that `haptel eval --at` sees what was seen.
+std::string shortest(double value);
+std::string listed(const double (&numbers)[3]); // "1,2,3"
 
 // The greater error; one that is not a number counts as the greatest there is.
 double greater(double a, double b);

@@ -10,6 +10,7 @@
 #pragma once
 
 #include "jit/texture/texture.h"
+#include "lang/text/source.h"
 
 #include <cstdint>
 #include <memory>
@@ -27,6 +28,13 @@ struct CheckBox {
 // Points that a fractal of five octaves passes in well under a second.
 inline constexpr uint32_t default_check_points = 300;
 
+// See jit/check/amplified_rounding.h.
+struct AmplifiedRounding {
+    double height = 0, gradient = 0; // what rounding alone makes of them: shares of the largest
+    lang::Span span;                 // of the operation that most of it comes through; in CompiledProgram::sources()
+    bool is_hash_of_sine = false;    // late digits of a sine or cosine are taken there
+};
+
 struct GradientCheck {
     uint32_t points = 0;
     std::optional<double> height_error_oracle;   // max |h - h_oracle| / max |h_oracle|
@@ -39,16 +47,18 @@ struct GradientCheck {
     double loop_integral_m =
         0;                   // largest |closed-loop integral of gradient . dp| over a few circles, quadrature included
     uint64_t not_finite = 0; // faults or values not finite, edge and huge points included
-    uint64_t bounds_exceeded = 0;      // heights, slopes and changes of the gradient outside of the binding's facts
-    uint32_t continuity_measured = 0;  // HAPTEL_CONTINUITY_*: roughest met along short paths; 0: not looked at
-    double worst_point_m[3] = {};      // where the gradient is farthest from the truth
-    std::vector<std::string> failures; // in words; empty: passed
+    uint64_t bounds_exceeded = 0;     // heights, slopes and changes of the gradient outside of the binding's facts
+    uint32_t continuity_measured = 0; // HAPTEL_CONTINUITY_*: roughest met along short paths; 0: not looked at
+    double worst_point_m[3] = {};     // where the gradient is farthest from the truth
+    std::optional<AmplifiedRounding> amplified; // what the errors are of, where that is no fault
+    std::vector<std::string> failures;          // in words, with place and values; empty: passed
 
     bool passed() const { return failures.empty(); }
 };
 
 // Height and gradient error of at most 1e-12 + 8 conditioning, differences that agree as well, at most 1 % of points at
-// kinks, nothing not finite, nothing out of bounds, no rougher class than the facts say. `binding` was made from
+// kinks, nothing not finite, nothing out of bounds, no rougher class than the facts say. Larger errors pass as
+// `amplified` where 8 times as much as the texture makes of its own rounding accounts for them. `binding` was made from
 // `program`, or wraps a texture of the same name and block. Uses all processors.
 GradientCheck check_gradient(const std::shared_ptr<const CompiledProgram>& program, const TextureBinding& binding,
                              const CheckBox& box, uint32_t points = default_check_points, uint64_t seed = 1);

@@ -22,6 +22,13 @@ double distance(const double (&a)[3], const double (&b)[3])
 
 } // namespace
 
+void ShortPaths::Worst::meet(double other, const double (&at_m)[3])
+{
+    if (other <= size) return;
+    size = other;
+    std::copy(at_m, at_m + 3, p_m);
+}
+
 void ShortPaths::follow(uint64_t index, double share, bool by_height_alone)
 {
     const haptel_point first = points.random(2 * index), second = points.random(2 * index + 1);
@@ -36,7 +43,10 @@ ShortPaths::Touch ShortPaths::touch(const double (&p_m)[3])
     Touch touched{points.at(p_m), {}};
     binding.texture->height_gradient(&touched.point, binding.block, &touched.sample);
     const double slope = distance(touched.sample.gradient, {});
-    too_steep += slope > binding.facts.slope_max * (1 + rounding);
+    if (slope > binding.facts.slope_max * (1 + rounding)) {
+        ++too_steep;
+        steepest.meet(slope, p_m);
+    }
     largest_height = std::max(largest_height, std::fabs(touched.sample.height_m));
     largest_gradient = std::max(largest_gradient, slope);
     return touched;
@@ -69,14 +79,21 @@ void ShortPaths::halve(Touch a, Touch b, bool by_height)
     const double left = change(a, b);
     const double size = by_height ? largest_height : largest_gradient;
     if (left > 0.4 * before && left > 100 * rounding * size) {
-        roughest = std::min<uint32_t>(roughest, by_height ? HAPTEL_CONTINUITY_JUMP : HAPTEL_CONTINUITY_C0);
+        const uint32_t met = by_height ? HAPTEL_CONTINUITY_JUMP : HAPTEL_CONTINUITY_C0;
+        if (met < roughest) {
+            roughest = met;
+            std::copy(a.point.p, a.point.p + 3, roughest_p_m);
+        }
         if (by_height && (!highest_jump || left > highest_jump->height_m))
             highest_jump = Jump{left, {a.point.p[0], a.point.p[1], a.point.p[2]}};
     }
     const bool is_promised = binding.facts.continuity == HAPTEL_CONTINUITY_C1;
-    const double reach = distance(a.point.p, b.point.p) * binding.facts.curvature_max_per_m;
-    too_curved += is_promised &&
-                  distance(a.sample.gradient, b.sample.gradient) > reach * (1 + rounding) + rounding * largest_gradient;
+    const double length = distance(a.point.p, b.point.p), turned = distance(a.sample.gradient, b.sample.gradient);
+    const double reach = length * binding.facts.curvature_max_per_m;
+    if (is_promised && turned > reach * (1 + rounding) + rounding * largest_gradient) {
+        ++too_curved;
+        most_curved.meet(turned / length, a.point.p);
+    }
 }
 
 std::optional<Jump> find_jump(const TextureBinding& binding, const CheckBox& box)

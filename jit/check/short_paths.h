@@ -22,8 +22,14 @@ class ShortPaths {
 public:
     ShortPaths(const TextureBinding& texture, const CheckPoints& where) : binding(texture), points(where) {}
 
+    struct Worst {
+        double size = 0, p_m[3] = {};
+        void meet(double other, const double (&at_m)[3]);
+    };
     uint64_t too_steep = 0, too_curved = 0; // places beyond the binding's facts
+    Worst steepest, most_curved;            // of them; per metre the latter
     uint32_t roughest = HAPTEL_CONTINUITY_C1;
+    double roughest_p_m[3] = {};
     std::optional<Jump> highest_jump;
 
     // The path of that number, so long as this share of the way between two random places; and whether by heights

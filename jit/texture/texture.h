@@ -35,6 +35,7 @@ public:
 
     // What the texture was compiled from, for evaluators other than code.
     const ir::Module& module() const { return program->module; }
+    const lang::SourceSet& sources() const { return program->sources; }
     const ir::Texture& source_of(const haptel_texture& texture) const;
 
     const CompileTimes& times() const { return code->times; }

@@ -28,6 +28,14 @@ struct TestOptions {
     std::string junit;
 };
 
+AmplifiedPlace place_of(const lang::SourceSet& sources, const lang::Span& span)
+{
+    const std::string_view text = sources.text(span);
+    const size_t line_end = text.find('\n');
+    return {sources.file(span.file).name, std::string(text.substr(0, line_end)) + (line_end == text.npos ? "" : " ..."),
+            sources.position(span.file, span.begin)};
+}
+
 class TestRun {
 public:
     explicit TestRun(const TestOptions& chosen) : options(chosen)
@@ -65,6 +73,8 @@ void TestRun::test(const TextureTarget& target, const std::shared_ptr<const jit:
         tested.check = jit::check_gradient(program, *bound.binding, box, options.points, options.seed);
     else
         tested.fault = bound.diagnostics;
+    if (tested.check && tested.check->amplified)
+        tested.amplified = place_of(program->sources(), tested.check->amplified->span);
     tested.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report.textures.push_back(std::move(tested));
 }

@@ -10,11 +10,18 @@
 
 namespace haptel::tools {
 
+// Where the texture amplifies its rounding, as its author wrote it.
+struct AmplifiedPlace {
+    std::string file, text; // text: in one line
+    lang::Position at;
+};
+
 struct TestedTexture {
     std::string file, name;                  // name empty: the file did not compile
     std::optional<jit::GradientCheck> check; // none: not reached
     std::string fault;                       // why it was not; empty: it was
     double seconds = 0;
+    std::optional<AmplifiedPlace> amplified = {}; // with check->amplified
 
     bool passed() const { return check && check->passed(); }
 };

@@ -9,6 +9,7 @@
 #include "lang/ir/semantics.h"
 
 #include <span>
+#include <unordered_set>
 #include <vector>
 
 namespace haptel::ir {
@@ -35,6 +36,11 @@ public:
     void watch_decisions(bool on) { watching = on; }
     uint64_t decisions() const { return digest; }
 
+    // Of these operations operands and result are rounded to f64, as code rounds them, while all others keep the digits
+    // of T. Null: of none. They must outlive the runs.
+    using Operations = std::unordered_set<const Instruction*>;
+    void round_to_f64(const Operations* operations) { rounded = operations; }
+
 private:
     struct Frame;
 
@@ -42,6 +48,7 @@ private:
     std::vector<size_t> depths; // by function: slots of its frame and of the deepest chain of calls below it
     std::vector<Slot<T>> slots, results;
     const EntryInputs<T>* entry_inputs = nullptr;
+    const Operations* rounded = nullptr;
     bool watching = false;
     uint64_t digest = 0;
 };

@@ -56,7 +56,14 @@ private:
         const Slot<T>* in[4] = {slots, slots, slots, slots}; // those that it does not take: any
         for (size_t i = 0; i < made.operands.size(); ++i) in[i] = &slot(made.operands[i]);
         Slot<T>& result = slot(made.results[0]);
-        execute(operation.op, result, *in[0], *in[1], *in[2], *in[3]);
+        if (machine.rounded && machine.rounded->contains(&made)) {
+            Slot<T> near[4] = {*in[0], *in[1], *in[2], *in[3]};
+            for (Slot<T>& operand : near) operand.real = T(static_cast<double>(operand.real));
+            execute(operation.op, result, near[0], near[1], near[2], near[3]);
+            result.real = T(static_cast<double>(result.real));
+        } else {
+            execute(operation.op, result, *in[0], *in[1], *in[2], *in[3]);
+        }
         if (!machine.watching) return;
         machine.digest = (machine.digest ^ decision(operation.op, result, *in[0], *in[1])) * 0x9E3779B97F4A7C15u;
         machine.digest ^= machine.digest >> 29;

@@ -95,3 +95,47 @@ TEST_CASE("what fails is exit code 1 and says why")
     CHECK(run_command("test").code == 2);
     CHECK(run_command("test x.haptel --points none").code == 2);
 }
+
+TEST_CASE("a hash of a sine passes and is told, with its place and the cure; columns are explained")
+{
+    const Folder folder;
+    const std::string file =
+        folder.write("hashed.haptel", "float rnd(float n)\n{\n    return fract(sin(n) * 43758.5453);\n}\n"
+                                      "texture hashed() { return 1mm * rnd(floor(p.x / 1mm)); }\n");
+    const Ran ran = run_command("test '" + file + "' --points 100");
+    INFO(ran.out);
+    CHECK(ran.code == 0);
+    CHECK(contains(ran.out, "passed, amplifies rounding"));
+    CHECK(contains(ran.out, "hashed.haptel:3:12: fract(sin(n) * 43758.5453)"));
+    CHECK(contains(ran.out, "hash() of the library"));
+    for (const char* column : {"points", "height", "gradient", "differ.", "condit.", "kinks"})
+        CHECK(contains(ran.out, std::string("\n") + column + " ")); // at the begin of a line of its own
+    const Json json = Json::parse(run_command("test '" + file + "' --points 100 --json").out)["textures"][0];
+    CHECK(json["passed"] == true);
+    CHECK(json["amplified_rounding"]["line"] == 3);
+    CHECK(json["amplified_rounding"]["column"] == 12);
+    CHECK(json["amplified_rounding"]["is_hash_of_sine"] == true);
+    CHECK(json["amplified_rounding"]["height_error"].get<double>() < 1e-10);
+}
+
+TEST_CASE("each figure that fails names its worst point, and eval sees the same there")
+{
+    const Folder folder;
+    const std::string file = folder.write("steep.haptel", "/// @facts slope 0.5, curvature 1, class C1\n"
+                                                          "float f(float x) { return sin(x); }\n"
+                                                          "texture steep() { return 1mm * f(p.x / 1mm); }");
+    const Ran ran = run_command("test '" + file + "' --points 20");
+    CHECK(ran.code == 1);
+    const std::string lead = "slope leaves its bound: ";
+    REQUIRE(contains(ran.out, lead));
+    const std::string line = ran.out.substr(ran.out.find(lead));
+    const size_t at = line.find("--at ") + 5, found = line.find("found ") + 6;
+    REQUIRE(found > at);
+    const std::string place = line.substr(at, line.find(':', at) - at);
+    const double slope = std::stod(line.substr(found));
+    // |cos| of the place, which is at most 1
+    CHECK(slope <= 1);
+    CHECK(slope > 0.99); // of 400 paths with 26 halvings
+    const Json seen = Json::parse(run_command("eval '" + file + ":steep' --json --at " + place).out);
+    CHECK(std::abs(seen["gradient"][0].get<double>()) == slope);
+}
