@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace haptel::tools {
@@ -44,6 +45,8 @@ struct Engine {
     Evaluate evaluate;   // empty: what is wrong has been said
     uint32_t writes = 0; // HAPTEL_WRITES_* of the texture
 };
+
+constexpr std::size_t rows_at_once = 4096;
 
 std::string shortest(double value)
 {
@@ -124,25 +127,73 @@ Engine open_engine(const EvalOptions& options)
     return {make_engine(options.engine, compiled.program, *bound.binding), bound.binding->texture->writes};
 }
 
-// Written by hand because the oracle's numbers have more digits than a JSON library's.
-void print_point(const EvalOptions& options, uint32_t writes, const Evaluated& point)
+struct Output {
+    const char* name;
+    std::string Evaluated::* value;
+};
+
+// Only what the texture writes.
+std::vector<Output> outputs_of(uint32_t writes)
 {
-    std::string outputs; // only what the texture writes
-    const auto add_output = [&](uint32_t bit, const char* name, const std::string& value) {
-        if (writes & bit)
-            outputs += fmt::format(fmt::runtime(options.json ? "  \"{}\": {},\n" : "{} {}\n"), name, value);
-    };
-    add_output(HAPTEL_WRITES_STIFFNESS_SCALE, "stiffness_scale", point.stiffness_scale);
-    add_output(HAPTEL_WRITES_FRICTION_SCALE, "friction_scale", point.friction_scale);
+    std::vector<Output> outputs;
+    if (writes & HAPTEL_WRITES_STIFFNESS_SCALE) outputs.push_back({"stiffness_scale", &Evaluated::stiffness_scale});
+    if (writes & HAPTEL_WRITES_FRICTION_SCALE) outputs.push_back({"friction_scale", &Evaluated::friction_scale});
+    return outputs;
+}
+
+void print_text(uint32_t writes, const Evaluated& point)
+{
+    fmt::print("height_m {}\ngradient {} {} {}\n", point.height_m, point.gradient[0], point.gradient[1],
+               point.gradient[2]);
+    for (const Output& output : outputs_of(writes)) fmt::print("{} {}\n", output.name, point.*output.value);
+    fmt::print("faults {}\n", point.faults);
+}
+
+// Written by hand because the oracle's numbers have more digits than a JSON library's. `indent` stands before each line
+// but the first; `p_m` says which of many points it is.
+void print_json(const EvalOptions& options, uint32_t writes, const Evaluated& point, const char* indent,
+                const std::string& p_m)
+{
+    const auto line = [&](const std::string& text) { fmt::print("{}  {},\n", indent, text); };
+    fmt::print("{{\n");
+    line(fmt::format("\"file\": {}", to_text(options.texture.file)));
+    line(fmt::format("\"name\": {}", to_text(options.texture.name)));
+    line(fmt::format("\"engine\": \"{}\"", options.engine));
+    if (!p_m.empty()) line(fmt::format("\"p_m\": [{}]", p_m));
+    line(fmt::format("\"height_m\": {}", point.height_m));
+    line(fmt::format("\"gradient\": [{}, {}, {}]", point.gradient[0], point.gradient[1], point.gradient[2]));
+    for (const Output& output : outputs_of(writes)) line(fmt::format("\"{}\": {}", output.name, point.*output.value));
+    fmt::print("{0}  \"faults\": {1}\n{0}}}", indent, point.faults);
+}
+
+// A table of points with their values, as a table or as an array; goes on from the first rows.
+void print_table(const EvalOptions& options, const Engine& engine, PointTable& table, std::vector<PointTable::Row> rows)
+{
+    const std::vector<Output> outputs = outputs_of(engine.writes);
     if (!options.json) {
-        fmt::print("height_m {}\ngradient {} {} {}\n{}faults {}\n", point.height_m, point.gradient[0],
-                   point.gradient[1], point.gradient[2], outputs, point.faults);
-        return;
+        fmt::print("{},height_m,gx,gy,gz", table.header());
+        for (const Output& output : outputs) fmt::print(",{}", output.name);
+        fmt::print(",faults\n");
     }
-    fmt::print("{{\n  \"file\": {},\n  \"name\": {},\n  \"engine\": \"{}\",\n  \"height_m\": {},\n"
-               "  \"gradient\": [{}, {}, {}],\n{}  \"faults\": {}\n}}\n",
-               to_text(options.texture.file), to_text(options.texture.name), options.engine, point.height_m,
-               point.gradient[0], point.gradient[1], point.gradient[2], outputs, point.faults);
+    const char* between = "[\n  ";
+    for (; !rows.empty(); rows = table.next(rows_at_once)) {
+        std::vector<haptel_point> points;
+        for (const PointTable::Row& row : rows) points.push_back(point_at(options, row.p_m));
+        const std::vector<Evaluated> found = engine.evaluate(points);
+        for (size_t i = 0; i < found.size(); ++i) {
+            const auto& [height_m, gradient, stiffness_scale, friction_scale, faults] = found[i];
+            if (options.json) {
+                fmt::print("{}", std::exchange(between, ",\n  "));
+                print_json(options, engine.writes, found[i], "  ",
+                           fmt::format("{}, {}, {}", rows[i].p_m.x, rows[i].p_m.y, rows[i].p_m.z));
+                continue;
+            }
+            fmt::print("{},{},{},{},{}", rows[i].text, height_m, gradient[0], gradient[1], gradient[2]);
+            for (const Output& output : outputs) fmt::print(",{}", found[i].*output.value);
+            fmt::print(",{}\n", faults);
+        }
+    }
+    if (options.json) fmt::print("\n]\n");
 }
 
 ExitCode run(const EvalOptions& options)
@@ -152,7 +203,6 @@ ExitCode run(const EvalOptions& options)
                               options.precision, options.engine));
         return ExitCode::misuse;
     }
-    constexpr std::size_t rows_at_once = 4096;
     std::optional<PointTable> table;
     std::vector<PointTable::Row> rows;
     const auto is_sound = [&] {
@@ -165,18 +215,16 @@ ExitCode run(const EvalOptions& options)
     if (!engine.evaluate) return ExitCode::findings;
     if (options.at_m) {
         const haptel_point point = point_at(options, *options.at_m);
-        print_point(options, engine.writes, engine.evaluate({&point, 1})[0]);
+        const Evaluated found = engine.evaluate({&point, 1})[0];
+        if (options.json) {
+            print_json(options, engine.writes, found, "", {});
+            fmt::print("\n");
+        } else {
+            print_text(engine.writes, found);
+        }
         return ExitCode::fine;
     }
-    fmt::print("{},height_m,gx,gy,gz\n", table->header());
-    for (; !rows.empty(); rows = table->next(rows_at_once)) {
-        std::vector<haptel_point> points;
-        for (const PointTable::Row& row : rows) points.push_back(point_at(options, row.p_m));
-        const std::vector<Evaluated> found = engine.evaluate(points);
-        for (std::size_t i = 0; i < found.size(); ++i)
-            fmt::print("{},{},{},{},{}\n", rows[i].text, found[i].height_m, found[i].gradient[0], found[i].gradient[1],
-                       found[i].gradient[2]);
-    }
+    print_table(options, engine, *table, std::move(rows));
     return is_sound() ? ExitCode::fine : ExitCode::findings;
 }
 
@@ -205,10 +253,13 @@ Command eval_command(CLI::App& app)
     CLI::App* command = app.add_subcommand("eval", "Height and gradient of a texture at one point or many");
     add_texture(*command, options->texture);
     auto* where = command->add_option_group("Points");
-    auto* at = add_parsed<glm::dvec3>(
+    add_parsed<glm::dvec3>(
         *where, "--at", "X,Y,Z", parse_point, [options](const glm::dvec3& p_m) { options->at_m = p_m; }, "One point");
     where
-        ->add_option("--points", options->points, "CSV with the columns x,y,z in metres; results go to standard output")
+        ->add_option(
+            "--points", options->points,
+            "CSV with the columns x,y,z: lengths, such as 1mm; bare numbers are metres. The table with further columns "
+            "goes to standard output")
         ->type_name("FILE.csv");
     where->require_option(1);
     add_parameters(*command, options->parameters);
@@ -232,7 +283,7 @@ Command eval_command(CLI::App& app)
             "Precision of the code: f64; mixed: f64 where the place within a cell depends on it, else f32; f32")
         ->check(CLI::IsMember({"f64", "mixed", "f32"}))
         ->capture_default_str();
-    command->add_flag("--json", options->json, "One JSON object on standard output")->needs(at);
+    command->add_flag("--json", options->json, "One JSON object on standard output; with --points an array of them");
     set_examples(*command, "  haptel eval rock.haptel:rock --at 1mm,2mm,0\n"
                            "  haptel eval rock.haptel:rock --at 0,0,0 --set octaves=3 --engine oracle --json\n"
                            "  haptel eval rock.haptel:rock --points scan.csv > scan_with_heights.csv");

@@ -41,6 +41,13 @@ std::string shown(std::string_view text)
     return text.size() > most ? result + "..." : result;
 }
 
+// A length with a mistake in its unit is one, too.
+bool begins_like_number(std::string_view cell)
+{
+    const size_t first = cell.find_first_not_of("+-.");
+    return first != cell.npos && cell[first] >= '0' && cell[first] <= '9';
+}
+
 // A stream without lines may have no end either.
 constexpr size_t longest_line = 1 << 20;
 
@@ -82,7 +89,7 @@ bool PointTable::read_line(Row& row)
     const std::vector<std::string_view> cells = cells_of(text);
     if (head_.empty()) {
         width_ = cells.size();
-        const bool is_header = !parse_number(cells[0]);
+        const bool is_header = !begins_like_number(cells[0]);
         head_ = is_header ? std::string(text) : "x,y,z";
         for (size_t axis = 0; is_header && axis < 3; ++axis) {
             const auto found = std::find(cells.begin(), cells.end(), std::string_view("xyz").substr(axis, 1));
@@ -97,7 +104,7 @@ bool PointTable::read_line(Row& row)
     row.text = text;
     for (int axis = 0; axis < 3; ++axis) {
         const size_t column = columns_[static_cast<size_t>(axis)];
-        const Parsed<double> value = parse_number(column < cells.size() ? cells[column] : std::string_view{});
+        const Parsed<double> value = parse_length(column < cells.size() ? cells[column] : std::string_view{});
         if (!value) {
             error_ = fmt::format("{}:{}: column {}: {}", file_, number_, column + 1, value.error);
             return false;

@@ -1,4 +1,5 @@
-// Points from a CSV file: the columns x, y and z, metres, wherever they stand; what else a row holds is kept as text.
+// Points from a CSV file: the columns x, y and z, lengths ("1mm", or a bare number of metres), wherever they stand;
+// what else a row holds is kept as text.
 #pragma once
 
 #include <glm/glm.hpp>

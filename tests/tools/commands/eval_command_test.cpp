@@ -79,16 +79,16 @@ TEST_CASE("eval adds columns to a table of points")
         return run_command("eval '" + file + ":tilt' --points '" + points + "'");
     };
     CHECK(table("x,y,z\n0.004,0,0\n0,0.002,0\n").out ==
-          "x,y,z,height_m,gx,gy,gz\n0.004,0,0,0.002,0.5,0.5,0\n0,0.002,0,0.001,0.5,0.5,0\n");
+          "x,y,z,height_m,gx,gy,gz,faults\n0.004,0,0,0.002,0.5,0.5,0,0\n0,0.002,0,0.001,0.5,0.5,0,0\n");
     CHECK(table("name,z,y,x\r\na,0,0,0.004\r\n\r\n").out ==
-          "name,z,y,x,height_m,gx,gy,gz\na,0,0,0.004,0.002,0.5,0.5,0\n");
-    CHECK(table("0.004,0,0\n").out == "x,y,z,height_m,gx,gy,gz\n0.004,0,0,0.002,0.5,0.5,0\n");
+          "name,z,y,x,height_m,gx,gy,gz,faults\na,0,0,0.004,0.002,0.5,0.5,0,0\n");
+    CHECK(table("0.004,0,0\n").out == "x,y,z,height_m,gx,gy,gz,faults\n0.004,0,0,0.002,0.5,0.5,0,0\n");
     for (const auto& [csv, message] : std::vector<std::pair<std::string, std::string>>{
              {"x,y\n1,2\n", "points.csv:1: expected the columns x,y,z"},
-             {"x,y,z\n1,2,3\n1,2\n", "points.csv:3: column 3: expected a number"},
+             {"x,y,z\n1,2,3\n1,2\n", "points.csv:3: column 3: expected a length"},
              {"x,y,z\n1,2,many\n", "found 'many'"},
              {"x,y,z\n1,2,3\n1,2,3,4\n", "points.csv:3: expected 3 columns as in the first line, found 4"},
-             {"name,x,y,z\na,1,2,3\n1,2,3\n", "points.csv:3: column 4: expected a number"},
+             {"name,x,y,z\na,1,2,3\n1,2,3\n", "points.csv:3: column 4: expected a length"},
              {"x,y,z,name\n1,2,3\n", "points.csv:2: expected 4 columns as in the first line, found 3"},
              {"1,2,3,4\n1,2,3\n", "points.csv:2: expected 4 columns"},
              {"\x1b[2J\x01" + std::string(5000, 'w') + "\n", "found '?[2J?wwwwwwwww"},
@@ -101,7 +101,8 @@ TEST_CASE("eval adds columns to a table of points")
         CHECK(contains(ran.err, message));
         CHECK(ran.err.size() < 1000);
     }
-    CHECK(table("\xef\xbb\xbfx,y,z\n0.004,0,0\n").out == "x,y,z,height_m,gx,gy,gz\n0.004,0,0,0.002,0.5,0.5,0\n");
+    CHECK(table("\xef\xbb\xbfx,y,z\n0.004,0,0\n").out ==
+          "x,y,z,height_m,gx,gy,gz,faults\n0.004,0,0,0.002,0.5,0.5,0,0\n");
     const Ran wide = table(std::string(2 << 20, '1') + "\n");
     CHECK(wide.code == 1);
     CHECK(contains(wide.err, "longer than any of a table"));
@@ -116,6 +117,37 @@ TEST_CASE("eval adds columns to a table of points")
     }
 }
 
+TEST_CASE("a table's cells may have units, and faults are told for each point")
+{
+    const Folder folder;
+    // infinite at 0, and flat with a fault there
+    const std::string file =
+        folder.write("pole.haptel", "texture pole(out float friction_scale) { friction_scale = p.x / 1mm; return 1um "
+                                    "/ (p.x / 1mm); }");
+    const auto ran = [&](const std::string& csv, const std::string& options) {
+        return run_command("eval '" + file + ":pole' --points '" + folder.write("points.csv", csv) + "'" + options);
+    };
+    CHECK(ran("x,y,z\n1 mm,2cm,-0.5um\n0,0,0\n", "").out ==
+          "x,y,z,height_m,gx,gy,gz,friction_scale,faults\n1 mm,2cm,-0.5um,1e-06,-0.001,0,0,1,0\n0,0,0,0,0,0,0,0,3\n");
+    CHECK(ran("1mm,0,0\n", "").out.starts_with("x,y,z,height_m,gx,gy,gz,friction_scale,faults\n1mm,0,0,1e-06,"));
+    CHECK(contains(ran("1furlong,0,0\n", "").err, "points.csv:1: column 1: unknown unit 'furlong'"));
+    CHECK(contains(ran("x,y,z\n0,0,3in\n", "").err, "points.csv:2: column 3: unknown unit 'in'"));
+
+    for (const std::string engine : {"jit", "interpreter", "oracle"}) {
+        const Json points = json_of(ran("name,x,y,z\na,1mm,2cm,-0.5um\nb,0,0,0\n", " --json --engine " + engine));
+        REQUIRE(points.is_array());
+        REQUIRE(points.size() == 2);
+        CHECK(points[0]["p_m"] == Json({0.001, 0.02, -0.5e-6}));
+        CHECK(points[0]["name"] == "pole");
+        CHECK(std::fabs(points[0]["height_m"].get<double>() - 1e-6) < 1e-20);
+        CHECK(points[0]["friction_scale"] == 1.0);
+        CHECK(points[0]["faults"] == 0);
+        CHECK(points[1]["faults"] == 3);
+        CHECK(points[1]["height_m"] == 0);
+    }
+    CHECK(run_command("eval '" + file + ":pole' --points nowhere.csv --json").code == 1);
+}
+
 TEST_CASE("eval reads a table of any length piece by piece")
 {
     const Folder folder;
@@ -125,10 +157,10 @@ TEST_CASE("eval reads a table of any length piece by piece")
     const Ran whole = run_command("eval " + texture + " --points '" + folder.write("a.csv", csv) + "'");
     CHECK(whole.code == 0);
     CHECK(std::count(whole.out.begin(), whole.out.end(), '\n') == 10'001);
-    CHECK(whole.out.ends_with("\n0.004,0,0,0.002,0.5,0.5,0\n"));
+    CHECK(whole.out.ends_with("\n0.004,0,0,0.002,0.5,0.5,0,0\n"));
     const Ran broken = run_command("eval " + texture + " --points '" + folder.write("b.csv", csv + "1,2\n") + "'");
     CHECK(broken.code == 1);
-    CHECK(contains(broken.err, "b.csv:10002: column 3: expected a number"));
+    CHECK(contains(broken.err, "b.csv:10002: column 3: expected a length"));
 }
 
 TEST_CASE("eval gives many points the numbers of single ones, in each precision")
