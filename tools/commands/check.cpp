@@ -8,6 +8,7 @@
 #include "stdlib/stdlib.h"
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"
+#include "tools/commands/check_watch.h"
 #include "tools/commands/command.h"
 #include "tools/commands/explain.h"
 #include "tools/commands/fixes.h"
@@ -20,6 +21,7 @@
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 
 namespace haptel::tools {
@@ -32,7 +34,7 @@ struct CheckOptions {
     double box_m = 0.2, footprint_m = 0;
     std::optional<double> normal_turn_per_m; // nothing: of a ball that fills the box
     std::optional<double> error_max;         // given: a precision is picked
-    bool strict = false, fix = false, cost = false, json = false;
+    bool strict = false, fix = false, cost = false, json = false, watch = false;
     const CLI::Option* explain = nullptr; // given: nothing is checked, a code is explained
     std::string code;                     // empty: all are listed
 };
@@ -69,6 +71,7 @@ public:
     // --set for a parameter that no texture has: most likely a slip of the pen.
     void report_unknown_parameters();
     CheckReport report;
+    std::set<std::string> files; // that were read, or could not be
 
 private:
     void fix(const std::string& path);
@@ -154,6 +157,7 @@ std::vector<jit::ImageFile> CheckRun::images_of(const std::string& path, const i
         for (const auto& [name, text] : options.parameters) {
             if (name != parameter.name) continue;
             jit::ImageFile read = jit::read_image(text);
+            files.insert(text);
             if (!read.image)
                 say("bad-value", "--set " + name + " for " + texture.name + ": " + read.error, read.hint, path);
             images.back() = std::move(read);
@@ -239,6 +243,8 @@ void CheckRun::check(const std::string& path)
 {
     if (options.fix) fix(path);
     lang::CompileResult result = compile_file(path);
+    files.insert(path);
+    files.insert(result.files.begin(), result.files.end());
     lang::Diagnostics& diagnostics = result.diagnostics;
     if (result.program) {
         const auto& textures = result.program->module.textures;
@@ -294,6 +300,24 @@ void CheckRun::report_unknown_parameters()
     }
 }
 
+struct Outcome {
+    size_t errors;
+    std::set<std::string> files; // that it depends on
+};
+
+// Once, with its report.
+Outcome check_all(const CheckOptions& options)
+{
+    CheckRun checks(options);
+    for (const std::string& path : options.files) checks.check(path);
+    checks.report_unknown_parameters();
+    if (options.json)
+        print_json(checks.report.to_json());
+    else
+        fmt::print("{}", checks.report.to_text());
+    return {checks.report.count(lang::Severity::error), std::move(checks.files)};
+}
+
 ExitCode run(const CheckOptions& options)
 {
     if (options.explain->count() > 0) return explain(options.code, options.json);
@@ -307,15 +331,9 @@ ExitCode run(const CheckOptions& options)
                       " is a scene: haptel explore feels it, and says what is wrong with it");
             return ExitCode::misuse;
         }
-    CheckRun checks(options);
-    for (const std::string& path : options.files) checks.check(path);
-    checks.report_unknown_parameters();
-    const CheckReport& report = checks.report;
-    if (options.json)
-        print_json(report.to_json());
-    else
-        fmt::print("{}", report.to_text());
-    return report.count(lang::Severity::error) > 0 ? ExitCode::findings : ExitCode::fine;
+    if (!options.watch) return check_all(options).errors > 0 ? ExitCode::findings : ExitCode::fine;
+    repeat_at_each_save([&] { return check_all(options).files; });
+    return ExitCode::fine;
 }
 
 } // namespace
@@ -339,7 +357,8 @@ Command check_command(CLI::App& app)
                NumberRange::positive)
         ->type_name("SHARE");
     command->add_flag("--strict", options->strict, "Warnings are errors");
-    command->add_flag("--fix", options->fix, "Apply the proposed fixes to the files");
+    auto* fix = command->add_flag("--fix", options->fix, "Apply the proposed fixes to the files");
+    command->add_flag("--watch", options->watch, "Check again at each save, until Ctrl-C")->excludes(fix);
     options->explain = command->add_option("--explain", options->code, "Explain a code; without CODE list all")
                            ->expected(0, 1)
                            ->type_name("[CODE]");
@@ -350,6 +369,7 @@ Command check_command(CLI::App& app)
                            "  haptel check rock.haptel --box 50mm --set depth=0.1mm --json\n"
                            "  haptel check --max-error 1e-5 rock.haptel\n"
                            "  haptel check --fix rock.haptel\n"
+                           "  haptel check --watch rock.haptel\n"
                            "  haptel check --explain dimension");
     return {command, [options] { return run(*options); }};
 }
