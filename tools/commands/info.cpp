@@ -68,6 +68,14 @@ ExitCode show_all(const InfoOptions& options)
     return ExitCode::fine;
 }
 
+// A doc comment of several lines, all but the first behind `indent`.
+std::string indented(std::string doc, const std::string& indent)
+{
+    for (size_t at = 0; (at = doc.find('\n', at)) != std::string::npos; at += indent.size() + 1)
+        doc.insert(at + 1, indent);
+    return doc;
+}
+
 // Values and ranges as the author wrote them.
 std::string to_text(const lang::SourceSet& sources, const lang::ast::TextureParameter& parameter)
 {
@@ -76,7 +84,7 @@ std::string to_text(const lang::SourceSet& sources, const lang::ast::TexturePara
     if (parameter.value) line += " = " + text(parameter.value);
     if (parameter.minimum && parameter.maximum)
         line += fmt::format(" in {} .. {}", text(parameter.minimum), text(parameter.maximum));
-    if (!parameter.doc.empty()) line += "  // " + parameter.doc;
+    if (!parameter.doc.empty()) line += "  // " + indented(parameter.doc, "    // ");
     return line + "\n";
 }
 
@@ -85,7 +93,7 @@ std::string to_text(const lang::SourceSet& sources, const std::string& head,
                     std::span<const lang::ast::TextureParameter> parameters, const ir::Texture& texture)
 {
     std::string text = head + "\n";
-    if (!texture.doc.empty()) text += "  " + texture.doc + "\n";
+    if (!texture.doc.empty()) text += "  " + indented(texture.doc, "  ") + "\n";
     for (const lang::ast::TextureParameter& parameter : parameters)
         if (!parameter.is_output) text += to_text(sources, parameter);
     const std::vector<std::string> inputs = inputs_of(texture), outputs = outputs_of(texture);

@@ -126,6 +126,21 @@ TEST_CASE("info: the textures of a file, values as written and as numbers")
                    "b.haptel:1:"));
 }
 
+TEST_CASE("info: a doc comment is shown whole, with ranges, dots and further lines")
+{
+    const Folder folder;
+    const std::string doc = "Ripples of 1mm .. 5mm, or ..more, at 0.5.. 2 Hz. Another sentence... (a..b).";
+    const std::string file = folder.write("a.haptel", "/// " + doc +
+                                                          "\n/// From 0 .. 1.\ntexture a(\n    /// 0um .. 200um.\n"
+                                                          "    /// Not more.\n    float d = 60um in 0um .. 200um)\n"
+                                                          "{\n    return d;\n}\n");
+    CHECK(run_command("info '" + file + "'").out == "texture a\n  " + doc +
+                                                        "\n  From 0 .. 1.\n  float d = 60um in 0um .. 200um  "
+                                                        "// 0um .. 200um.\n    // Not more.\n  reads nothing\n");
+    const Json json = Json::parse(run_command("info '" + file + "' --json").out);
+    CHECK(json["textures"][0]["doc"] == doc + "\nFrom 0 .. 1.");
+}
+
 TEST_CASE("info: docs/stdlib.md is what --markdown prints (./dev docs makes it anew), and its pictures are there")
 {
     const std::filesystem::path docs = std::filesystem::path(HAPTEL_SOURCE_DIR) / "docs";
