@@ -106,6 +106,12 @@ LengthUnit length_unit(double size_m)
     return {"nm", 1e9};
 }
 
+std::string length_text(double metres)
+{
+    const LengthUnit unit = length_unit(metres);
+    return fmt::format("{:.3g} {}", metres * unit.per_m, unit.name);
+}
+
 void draw_grid(Picture& picture, const Axes& axes, const AxesStyle& style)
 {
     const Rect& rect = axes.rect;

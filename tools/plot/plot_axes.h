@@ -35,6 +35,7 @@ struct LengthUnit {
     double per_m = 1;
 };
 LengthUnit length_unit(double size_m);
+std::string length_text(double metres); // "12 µm"
 
 // A rectangle of the page with an axis along x (rising to the right) and y (rising to the top).
 struct Axes {

@@ -1,16 +1,31 @@
 #include "tools/plot/plot_grid.h"
 
 #include "tools/output/terminal.h"
+#include "tools/plot/plot_axes.h"
 
 #include <algorithm>
 #include <atomic>
+#include <fmt/format.h>
 #include <thread>
 
 namespace haptel::tools::plot {
 
+namespace {
+
+constexpr uint32_t not_felt = HAPTEL_FAULT_HEIGHT_NOT_FINITE | HAPTEL_FAULT_GRADIENT_NOT_FINITE; // the gradient
+
+} // namespace
+
 double slope_of(const haptel_sample& sample)
 {
     return std::hypot(sample.gradient[0], sample.gradient[1]);
+}
+
+std::string statistics(const Range& height, const Range& slope)
+{
+    const double steepest = std::max(std::abs(slope.low), std::abs(slope.high));
+    return fmt::format("peak to valley {}  ·  rms {}  ·  slope rms {:.3g}, largest {:.3g}",
+                       length_text(height.high - height.low), length_text(height.deviation()), slope.rms(), steepest);
 }
 
 Color lit(const glm::dvec3& normal)
@@ -78,9 +93,12 @@ Grid::Grid(const TextureView& view, int columns, int rows)
         view.samples(points, std::span(samples_).subspan(index(0, row), points.size()));
     });
     for (const haptel_sample& sample : samples_) {
-        height.add(sample.height_m);
-        slope.add(slope_of(sample));
+        if (!(sample.faults & HAPTEL_FAULT_HEIGHT_NOT_FINITE)) height.add(sample.height_m);
+        if (!(sample.faults & not_felt)) slope.add(slope_of(sample));
+        faulty += sample.faults != 0;
+        faults |= sample.faults;
     }
+    faulty /= static_cast<double>(samples_.size());
 }
 
 } // namespace haptel::tools::plot

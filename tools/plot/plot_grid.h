@@ -27,6 +27,9 @@ struct Range {
 
 double slope_of(const haptel_sample& sample);
 
+// "peak to valley 50 µm  ·  rms ...": for a subtitle.
+std::string statistics(const Range& height, const Range& slope);
+
 std::vector<haptel_sample> samples_at(const TextureView& view, std::span<const glm::dvec3> points_m);
 
 // The colour of stone whose outward normal this is (any length), seen from +z and lit from the upper left.
@@ -48,7 +51,9 @@ public:
     const haptel_sample& at(int column, int row) const { return samples_[index(column, row)]; }
     glm::dvec3 point(int column, int row) const;
 
-    Range height, slope;
+    Range height, slope; // where they are no fault
+    double faulty = 0;   // share of the samples with a fault, and
+    uint32_t faults = 0; // all of them
 
 private:
     std::size_t index(int column, int row) const

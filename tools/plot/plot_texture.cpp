@@ -2,9 +2,12 @@
 
 #include "tools/output/terminal.h"
 #include "tools/plot/plot_axes.h"
-#include "tools/plot/plot_ball.h"
+#include "tools/plot/plot_body.h"
 #include "tools/plot/plot_colors.h"
+#include "tools/plot/plot_faults.h"
 #include "tools/plot/plot_grid.h"
+#include "tools/plot/plot_pixels.h"
+#include "tools/plot/plot_section.h"
 #include "tools/plot/plot_spectrum.h"
 
 #include <algorithm>
@@ -25,12 +28,6 @@ Picture new_picture(const TextureView& view)
     return {page, page, view.size_px / page};
 }
 
-std::string length_text(double metres)
-{
-    const LengthUnit unit = length_unit(metres);
-    return fmt::format("{:.3g} {}", metres * unit.per_m, unit.name);
-}
-
 int pixels(const Picture& picture, double points)
 {
     return std::max(1, static_cast<int>(std::lround(points * picture.pixels_per_point())));
@@ -47,50 +44,99 @@ Axes window_axes(const TextureView& view, const Rect& rect)
     return {rect, axis("x", view.center_m.x), axis("y", view.center_m.y)};
 }
 
-std::string statistics(const Range& height, const Range& slope)
+// With its unit. Where the height has no bound, one pole would take all colours: so far from the median as a hand's
+// heights reach then (jit/texture/envelope.h), 16 times as far as a quarter of the places are.
+struct HeightAxis {
+    Axis axis;
+    double per_m; // of its unit
+};
+
+HeightAxis height_axis(const TextureView& view, const Grid& samples, int n)
 {
-    const double steepest = std::max(std::abs(slope.low), std::abs(slope.high));
-    return fmt::format("peak to valley {}  ·  rms {}  ·  slope rms {:.3g}, largest {:.3g}",
-                       length_text(height.high - height.low), length_text(height.deviation()), slope.rms(), steepest);
+    Range shown = samples.height;
+    double beyond = 0;
+    if (!view.is_bounded && shown.count > 0) {
+        std::vector<double> heights_m;
+        for (int row = 0; row < n; ++row)
+            for (int column = 0; column < n; ++column)
+                if (const haptel_sample& sample = samples.at(column, row); sample.faults == 0)
+                    heights_m.push_back(sample.height_m);
+        std::sort(heights_m.begin(), heights_m.end());
+        const double median = heights_m[heights_m.size() / 2];
+        shown.low = std::max(shown.low, median - 16 * (median - heights_m[heights_m.size() / 4]));
+        shown.high = std::min(shown.high, median + 16 * (heights_m[heights_m.size() * 3 / 4] - median));
+        for (const double height_m : heights_m) beyond += height_m < shown.low || height_m > shown.high;
+        beyond /= static_cast<double>(heights_m.size());
+    }
+    if (shown.count == 0) shown.low = shown.high = 0;
+    if (view.say && beyond > 0)
+        view.say(fmt::format("the height has no bound: colours are for {} .. {}, and {:.2g} % of the places are beyond",
+                             length_text(shown.low), length_text(shown.high), 100 * beyond));
+    const LengthUnit unit = length_unit(std::max(std::abs(shown.low), std::abs(shown.high)));
+    Axis axis{fmt::format("height ({})", unit.name), shown.low * unit.per_m, shown.high * unit.per_m};
+    if (!(axis.high > axis.low)) axis = fitted(axis.label, axis.low, axis.high);
+    return {axis, unit.per_m};
+}
+
+// The mean colour of each pixel's samples; hatched where one has a fault.
+template <typename ColorOf>
+Image averaged_image(const Picture& picture, const Canvas& canvas, int each_way, const ColorOf& color_of)
+{
+    Image image(canvas.pixels, canvas.pixels);
+    for_each_pixel(canvas, each_way, [&](const PixelSamples& pixel) {
+        Color mean{0, 0, 0};
+        const auto share = 1 / static_cast<double>(pixel.samples.size());
+        bool is_faulty = false;
+        for (const haptel_sample& sample : pixel.samples) {
+            const Color c = color_of(sample);
+            mean.red += c.red * share, mean.green += c.green * share, mean.blue += c.blue * share;
+            is_faulty = is_faulty || sample.faults != 0;
+        }
+        image.at(pixel.column, pixel.row) = is_faulty ? hatch(picture, pixel.column, pixel.row) : mean;
+    });
+    return image;
 }
 
 Picture draw_height(const TextureView& view)
 {
     Picture picture = new_picture(view);
     const int n = pixels(picture, map_rect.width);
-    const Grid grid_of_samples(view, n, n);
-    const Range& height = grid_of_samples.height;
-    const LengthUnit unit = length_unit(std::max(std::abs(height.low), std::abs(height.high)));
-    Axis axis{fmt::format("height ({})", unit.name), height.low * unit.per_m, height.high * unit.per_m};
-    if (!(axis.high > axis.low)) axis = fitted(axis.label, axis.low, axis.high);
-
-    Image image(n, n);
-    for (int row = 0; row < n; ++row)
-        for (int column = 0; column < n; ++column)
-            image.at(column, row) = viridis(axis.share(grid_of_samples.at(column, row).height_m * unit.per_m));
-    picture.image(map_rect, image);
+    const Grid samples(view, n, n);
+    const auto [axis, per_m] = height_axis(view, samples, n);
+    const Canvas canvas = canvas_of(view, n);
+    const Fineness fine = fineness(canvas, Shown::height);
+    picture.image(map_rect, averaged_image(picture, canvas, fine.each_way, [&](const haptel_sample& sample) {
+                      return viridis(axis.share(sample.height_m * per_m));
+                  }));
     draw_axes(picture, window_axes(view, map_rect));
     draw_color_bar(picture, {map_rect.right() + 10, map_rect.y, 9, map_rect.height}, axis, viridis);
-    draw_title(picture, view.title, "height   " + statistics(height, grid_of_samples.slope));
+    draw_title(picture, view.title,
+               "height   " + statistics(samples.height, samples.slope) + faults_text(samples.faulty));
+    tell_faults(view, samples.faulty, samples.faults);
+    tell_fineness(view, canvas, fine, averaged(fine));
     return picture;
 }
 
-Image relief_of(const Grid& samples, int n, double factor)
+struct Relief {
+    Image image;
+    Grid samples;
+    double factor; // as steep as it is
+};
+
+Relief relief_of(const TextureView& view, const Picture& picture, int n)
 {
-    constexpr int fine = samples_per_pixel;
-    Image image(n, n);
-    for (int row = 0; row < n; ++row)
-        for (int column = 0; column < n; ++column) {
-            Color mean{0, 0, 0};
-            for (int part = 0; part < fine * fine; ++part) {
-                const haptel_sample& sample = samples.at(column * fine + part % fine, row * fine + part / fine);
-                const Color c = lit({-factor * sample.gradient[0], -factor * sample.gradient[1], 1});
-                mean.red += c.red / (fine * fine), mean.green += c.green / (fine * fine);
-                mean.blue += c.blue / (fine * fine);
-            }
-            image.at(column, row) = mean;
-        }
-    return image;
+    Grid samples(view, n * samples_per_pixel, n * samples_per_pixel);
+    const double factor = exaggeration_for(samples.slope.rms());
+    const Canvas canvas = canvas_of(view, n);
+    const Fineness fine = fineness(canvas, Shown::gradient);
+    tell_faults(view, samples.faulty, samples.faults);
+    tell_fineness(view, canvas, fine, averaged(fine));
+    const int each_way = std::max(fine.each_way, samples_per_pixel);
+    return {averaged_image(picture, canvas, each_way,
+                           [&](const haptel_sample& sample) {
+                               return lit({-factor * sample.gradient[0], -factor * sample.gradient[1], 1});
+                           }),
+            std::move(samples), factor};
 }
 
 Picture draw_shaded(const TextureView& view)
@@ -98,69 +144,19 @@ Picture draw_shaded(const TextureView& view)
     Picture picture = new_picture(view);
     constexpr double side = 400;
     const Rect rect{60, 58, side, side};
-    const int n = pixels(picture, side);
-    const Grid samples(view, n * samples_per_pixel, n * samples_per_pixel);
-    const double factor = exaggeration_for(samples.slope.rms());
-    picture.image(rect, relief_of(samples, n, factor));
+    const auto [image, samples, factor] = relief_of(view, picture, pixels(picture, side));
+    picture.image(rect, image);
     draw_axes(picture, window_axes(view, rect));
     const std::string relief = factor == 1 ? "relief to scale" : fmt::format("relief {:g} times as steep", factor);
-    draw_title(picture, view.title, relief + "   " + statistics(samples.height, samples.slope));
+    draw_title(picture, view.title,
+               relief + "   " + statistics(samples.height, samples.slope) + faults_text(samples.faulty));
     return picture;
 }
 
 Picture draw_relief(const TextureView& view)
 {
     Picture picture = new_picture(view);
-    const Grid samples(view, view.size_px * samples_per_pixel, view.size_px * samples_per_pixel);
-    picture.image({0, 0, page, page}, relief_of(samples, view.size_px, exaggeration_for(samples.slope.rms())));
-    return picture;
-}
-
-Picture draw_section(const TextureView& view)
-{
-    Picture picture = new_picture(view);
-    constexpr int count = 4000;
-    std::vector<double> x_m, height_m, slope;
-    std::vector<glm::dvec3> points_m;
-    for (int i = 0; i <= count; ++i) {
-        const double offset_m = (static_cast<double>(i) / count - 0.5) * view.window_m;
-        points_m.push_back(view.center_m + glm::dvec3(offset_m, 0, 0));
-        x_m.push_back(view.center_m.x + offset_m);
-    }
-    Range heights, slopes;
-    for (const haptel_sample& sample : samples_at(view, points_m)) {
-        height_m.push_back(sample.height_m);
-        slope.push_back(sample.gradient[0]);
-        heights.add(sample.height_m);
-        slopes.add(sample.gradient[0]);
-    }
-    const LengthUnit unit = length_unit(std::max(std::abs(heights.low), std::abs(heights.high)));
-    const Axes window = window_axes(view, {});
-    const LengthUnit along = length_unit(view.window_m);
-    const Axes upper{
-        {66, 58, 424, 196},
-        window.x,
-        fitted(fmt::format("height ({})", unit.name), heights.low * unit.per_m, heights.high * unit.per_m)};
-    const Axes lower{{66, 270, 424, 196}, window.x, fitted("slope dh/dx", slopes.low, slopes.high)};
-
-    const auto draw = [&](const Axes& axes, const std::vector<double>& values, double per_unit, const Color& color,
-                          bool x_labels) {
-        AxesStyle style;
-        style.x_labels = x_labels;
-        draw_grid(picture, axes, style);
-        std::vector<Point> points;
-        for (std::size_t i = 0; i < values.size(); ++i)
-            points.push_back(axes.at(x_m[i] * along.per_m, values[i] * per_unit));
-        picture.begin_clip(axes.rect);
-        picture.polyline(points, color, 1.2);
-        picture.end_clip();
-        draw_axes(picture, axes, style);
-    };
-    draw(upper, height_m, unit.per_m, accent, false);
-    draw(lower, slope, 1, accent_2, true);
-    draw_title(picture, view.title,
-               fmt::format("section at y = {:.4g} {}   {}", view.center_m.y * along.per_m, along.name,
-                           statistics(heights, slopes)));
+    picture.image({0, 0, page, page}, relief_of(view, picture, view.size_px).image);
     return picture;
 }
 
@@ -263,7 +259,8 @@ constexpr TextureKind kinds[] = {
     {"shaded", "relief, lit from the upper left", draw_shaded},
     {"relief", "the same from edge to edge, without axes and words", draw_relief},
     {"ball", "relief of a ball as wide as the window, for textures that read center, extent, n or uv", draw_ball},
-    {"section", "height and slope along x", draw_section},
+    {"cylinder", "the same on an upright cylinder as wide and as high as the window", draw_cylinder},
+    {"section", "height and slope along x, or along --section or --direction", draw_section},
     {"spectrum", "amplitude against wavelength", draw_spectrum},
     {"gradient-error", "error of the compiled gradient against the 113-bit oracle", draw_gradient_error},
 };

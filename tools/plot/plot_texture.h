@@ -6,9 +6,11 @@
 
 #include <functional>
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace haptel::tools::plot {
 
@@ -18,8 +20,11 @@ struct TextureView {
     std::function<void(std::span<const haptel_point>, std::span<haptel_sample>)> samples; // any thread
     std::function<glm::dvec3(const glm::dvec3&)> true_gradient; // by an oracle; for gradient-error alone
     glm::dvec3 center_m{0};
-    double window_m = 0.02; // side of the square
-    int size_px = 512;      // of the picture, each way
+    double window_m = 0.02;                                     // side of the square
+    int size_px = 512;                                          // of the picture, each way
+    bool is_bounded = true;                                     // the height is: else colours leave poles out
+    std::optional<std::pair<glm::dvec3, glm::dvec3>> section_m; // its ends; none: along x, all of the window
+    std::function<void(const std::string&)> say;                // what a picture cannot show; may be empty
 };
 
 struct TextureKind {
@@ -32,7 +37,8 @@ struct TextureKind {
 // shaded:         relief lit from the upper left, from the exact gradient
 // relief:         the same from edge to edge, without axes and words
 // ball:           the texture on a ball as wide as the window, for what asks for its object or its normal
-// section:        height and slope along the line through the centre parallel to x
+// cylinder:       the same on an upright cylinder
+// section:        height and slope along a line
 // spectrum:       amplitude against wavelength, along x and along y
 // gradient-error: log10 of |g - g_oracle| / max |g_oracle|
 std::span<const TextureKind> texture_kinds();

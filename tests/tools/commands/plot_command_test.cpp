@@ -16,13 +16,15 @@ TEST_CASE("plot draws every kind of picture in the size asked for")
 {
     const Folder folder;
     const std::string texture = folder.write("bumps.haptel", bumps) + ":bumps";
-    for (const std::string kind : {"height", "shaded", "relief", "section", "spectrum", "gradient-error"}) {
+    for (const std::string kind :
+         {"height", "shaded", "relief", "ball", "cylinder", "section", "spectrum", "gradient-error"}) {
         const std::string picture = folder.file(kind + ".png");
         const Ran ran =
             run_command("plot " + texture + " --kind " + kind + " --out " + picture + " --size 256 --window 10mm");
         INFO(ran.err);
         CHECK(ran.code == 0);
         CHECK(ran.out.empty());
+        CHECK(ran.err.empty());
         CHECK(png_size(picture) == std::pair<uint32_t, uint32_t>(256, 256));
     }
 }
@@ -42,6 +44,61 @@ TEST_CASE("parameters, window and place change the picture")
     CHECK(plain != drawn("--window 15mm"));
     CHECK(plain != drawn("--at 1mm,0,0"));
     CHECK(plain != drawn("--kind height"));
+}
+
+TEST_CASE("plot says what a picture cannot show: what is finer than its pixels, faults, heights without a bound")
+{
+    const Folder folder;
+    const std::string file =
+        folder.write("hard.haptel", "texture fine() { return 1um * sinturn(p.x / 20um) * sinturn(p.y / 30um); }\n"
+                                    "texture half() { return 1mm * sqrt(p.x / 1mm); }\n"
+                                    "texture steep() { return 1mm * sqrt(abs(p.x / 1mm)); }\n"
+                                    "texture pole() { return 1um / (p.x / 1mm) + 0.0001 * p.y; }\n");
+    const auto said = [&](const std::string& arguments) {
+        const Ran ran = run_command("plot " + file + arguments + " --size 128 --out " + folder.file("x.png"));
+        CHECK(ran.code == 0);
+        return ran.err;
+    };
+    for (const std::string kind : {"height", "shaded", "relief", "ball", "cylinder"}) {
+        CAPTURE(kind);
+        CHECK(contains(said(":fine --kind " + kind), " samples averaged per pixel; zoom with --window "));
+        // Half of a ball as of a square lies at x < 0, where a root has no value.
+        CHECK(contains(said(":half --kind " + kind),
+                       "hard.haptel: faults at 50 % of the places, hatched: the height is not "
+                       "finite there and counts as 0\n"));
+    }
+    CHECK(contains(said(":fine --kind section --at 0,5um,0"), "each pixel shows the range of "));
+    CHECK(said(":fine --section 0,-1mm,0 0,1mm,0").empty()); // sin(x) is 0 there, and only changes across
+    CHECK(said(":fine --kind height --window 0.3mm").empty());
+    CHECK(contains(said(":half --section -1mm,0,0 4mm,0,0"), "faults at 20 % of the places"));
+    CHECK(said(":half --section 1mm,0,0 4mm,0,0").empty());
+    // 1 / x is beyond 16 times the distance of a quarter of the places where |x| is below about 1 of 10 mm.
+    CHECK(contains(said(":pole --kind height"), "the height has no bound: colours are for -"));
+    CHECK(!contains(said(":steep --kind height"), "no bound"));
+}
+
+TEST_CASE("a section goes through any two points, or along any direction")
+{
+    const Folder folder;
+    const std::string texture = folder.write("bumps.haptel", bumps) + ":bumps";
+    const auto drawn = [&](const std::string& arguments) {
+        const std::string picture = folder.file("x.png");
+        CHECK(run_command("plot " + texture + " --out " + picture + " --size 128 " + arguments).code == 0);
+        return read_file(picture);
+    };
+    const std::string across = drawn("--section -10mm,-10mm,0 10mm,10mm,0");
+    CHECK(across == drawn("--section -10mm,-10mm,0 10mm,10mm,0 --kind section"));
+    CHECK(across != drawn("--section -10mm,10mm,0 10mm,-10mm,0"));
+    CHECK(across != drawn("--kind section"));
+    CHECK(drawn("--direction 3,0,0 --window 4mm --at 1mm,0.5mm,0") == drawn("--section -1mm,0.5mm,0 3mm,0.5mm,0"));
+    CHECK(drawn("--direction 0,0,1").size() > 100);
+    for (const std::string arguments :
+         {"--section 0,0,0", "--section 0,0,0 0,0,0", "--section 0,0 1,1", "--direction 0,0,0", "--direction 1,1",
+          "--section 0,0,0 1,0,0 --direction 1,0,0", "--section 0,0,0 1,0,0 --kind height",
+          "--direction 1,0,0 --kind relief"}) {
+        CAPTURE(arguments);
+        CHECK(run_command("plot " + texture + " --out " + folder.file("y.png") + " " + arguments).code == 2);
+    }
 }
 
 TEST_CASE("plot says what is wrong: 1 for findings, 2 for misuse")
