@@ -24,7 +24,7 @@ bool has_textures(const std::string& file)
 
 } // namespace
 
-std::vector<TextureTarget> texture_targets(const std::vector<std::string>& paths)
+std::vector<TextureTarget> texture_targets(const std::vector<std::string>& paths, bool of_functions_too)
 {
     std::vector<TextureTarget> targets;
     for (const std::string& path : paths) {
@@ -41,7 +41,7 @@ std::vector<TextureTarget> texture_targets(const std::vector<std::string>& paths
             if (entry->path().extension() == ".haptel" && entry->is_regular_file(error))
                 found.insert({entry->path(), {}});
         for (const TextureTarget& target : found)
-            if (has_textures(target.file)) targets.push_back(target);
+            if (of_functions_too || has_textures(target.file)) targets.push_back(target);
     }
     return targets;
 }

@@ -17,7 +17,7 @@ struct TextureTarget {
 };
 
 // Folders stand for the texture files in them, at any depth, by name. Files of functions alone, which are for others to
-// import, are left out.
-std::vector<TextureTarget> texture_targets(const std::vector<std::string>& paths);
+// import, are left out where they are not wanted.
+std::vector<TextureTarget> texture_targets(const std::vector<std::string>& paths, bool of_functions_too = false);
 
 } // namespace haptel::tools

@@ -5,6 +5,7 @@
 #include "tools/arguments/texture_files.h"
 #include "tools/commands/command.h"
 #include "tools/output/terminal.h"
+#include "tools/report/suggested_facts.h"
 #include "tools/report/test_report.h"
 
 #include <algorithm>
@@ -13,6 +14,8 @@
 #include <fmt/ranges.h>
 #include <fstream>
 #include <memory>
+#include <tuple>
+#include <utility>
 
 namespace haptel::tools {
 
@@ -26,6 +29,8 @@ struct TestOptions {
     uint64_t seed = 1;
     bool json = false;
     std::string junit;
+    bool suggest_facts = false;
+    std::pair<double, double> domain = {-8, 8}; // of a function's first argument
 };
 
 AmplifiedPlace place_of(const lang::SourceSet& sources, const lang::Span& span)
@@ -94,6 +99,28 @@ void TestRun::test(const TextureTarget& target)
         if (texture.height_gradient) test(target, compiled.program, texture.name);
 }
 
+ExitCode suggest(const TestOptions& options, bool has_points)
+{
+    SuggestionOptions how;
+    std::tie(how.least, how.greatest) = options.domain;
+    how.box_m = options.box_m, how.footprint_m = options.footprint_m;
+    how.seed = options.seed, how.values = options.parameters;
+    if (has_points) how.points = options.points;
+    bool is_any_measured = false;
+    Json all = Json::array();
+    for (const TextureTarget& target : texture_targets(options.paths, true))
+        for (const Suggestion& one : suggest_facts(target.file, target.texture, how)) {
+            is_any_measured = is_any_measured || one.skipped.empty();
+            if (options.json)
+                all.push_back(one.to_json());
+            else
+                fmt::print("{}\n", one.text());
+        }
+    if (options.json) print_json({{"suggestions", std::move(all)}});
+    if (!is_any_measured) say_error("nothing was measured in " + fmt::format("{}", fmt::join(options.paths, ", ")));
+    return is_any_measured ? ExitCode::fine : ExitCode::findings;
+}
+
 ExitCode run(const TestOptions& options)
 {
     TestRun tests(options);
@@ -136,16 +163,34 @@ Command test_command(CLI::App& app)
     add_length(*command, "--box", options->box_m, "Side of the cube of test points round the origin [50mm]");
     add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
                NumberRange::not_negative);
-    command->add_option("--points", options->points, "Points per texture")
-        ->check(CLI::Range(1, 10'000'000))
-        ->capture_default_str();
+    auto* points = command
+                       ->add_option("--points", options->points,
+                                    "Points per texture; where a search begins, with --suggest-facts [20000]")
+                       ->check(CLI::Range(1, 10'000'000))
+                       ->capture_default_str();
     command->add_option("--seed", options->seed, "Seed of the points")->capture_default_str();
     command->add_flag("--json", options->json, "One JSON object on standard output");
     command->add_option("--junit", options->junit, "Report for continuous integration")->type_name("FILE");
+    auto* suggesting =
+        command->add_flag("--suggest-facts", options->suggest_facts,
+                          "Measure range, slope, curvature and class of functions and textures, and print "
+                          "them as a doc comment, to be confirmed: nothing is proven");
+    command
+        ->add_option("--domain", options->domain,
+                     "With --suggest-facts: components of a function's first argument lie between [-8 8]")
+        ->type_name("LOW HIGH")
+        ->needs(suggesting);
     set_examples(*command, "  haptel test rock.haptel\n"
                            "  haptel test stdlib examples --junit report.xml\n"
-                           "  haptel test rock.haptel:rock --points 10000 --box 0.2m --json");
-    return {command, [options] { return run(*options); }};
+                           "  haptel test rock.haptel:rock --points 10000 --box 0.2m --json\n"
+                           "  haptel test --suggest-facts grain.haptel:rings --domain -2 2");
+    return {command, [options, points] {
+                if (!(options->domain.first < options->domain.second)) {
+                    say_error("--domain needs the lesser number first");
+                    return ExitCode::misuse;
+                }
+                return options->suggest_facts ? suggest(*options, points->count() > 0) : run(*options);
+            }};
 }
 
 } // namespace haptel::tools

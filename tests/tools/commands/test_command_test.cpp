@@ -2,7 +2,11 @@
 #include "tests/support/catch.h"
 #include "tests/tools/commands/run_command.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 using namespace haptel::test;
 using Json = nlohmann::json;
@@ -138,4 +142,100 @@ TEST_CASE("each figure that fails names its worst point, and eval sees the same 
     CHECK(slope > 0.99); // of 400 paths with 26 halvings
     const Json seen = Json::parse(run_command("eval '" + file + ":steep' --json --at " + place).out);
     CHECK(std::abs(seen["gradient"][0].get<double>()) == slope);
+}
+
+TEST_CASE("suggested facts are no less than the closed form, and check takes them as they are pasted")
+{
+    struct Known {
+        std::string function;
+        double low, high, slope, curvature;
+        std::string continuity;
+    };
+    constexpr double pi = 3.141592653589793, e = 2.718281828459045;
+    const double ln2 = std::log(2.0);
+    for (const Known& known : std::vector<Known>{
+             {"float f(float x) { return sinturn(fract(x)); }", -1, 1, 2 * pi, 4 * pi * pi, "C1"},
+             {"float f(vec2 q) { return sin(3.0 * q.x) + sin(3.0 * q.y); }", -2, 2, 3 * std::sqrt(2.0), 9, "C1"},
+             {"float f(vec3 q) { return 0.25 * exp2(-dot(q, q)); }", 0, 0.25, 0.25 * std::sqrt(2 * ln2 / e), 0.5 * ln2,
+              "C1"},
+             {"float f(vecN q) { return cos(q.x); }", -1, 1, 1, 1, "C1"},
+             {"vec2 f(float x) { return vec2(sin(x), 2.0 * cos(x)); }", -2, 2, 2, 2, "C1"},
+             {"float f(float x) { return abs(x - floor(x) - 0.5); }", 0, 0.5, 1, 0, "C0"},
+             // with 3 standing behind a and 0.5 behind b
+             {"float f(float x, float a, float b = 0.5) { return a * sin(x) + b; }", -2.5, 3.5, 3, 3, "C1"}}) {
+        INFO(known.function);
+        const Folder folder;
+        const std::string texture = "\ntexture t() { return 0.1mm * f(" +
+                                    std::string(contains(known.function, "vec3")    ? "p / 1mm"
+                                                : contains(known.function, "vecN")  ? "p.xz / 1mm"
+                                                : contains(known.function, "(vec2") ? "p.xy / 1mm"
+                                                                                    : "p.x / 1mm") +
+                                    (contains(known.function, "float a") ? ", 3.0)" : ")") +
+                                    (contains(known.function, "vec2 f") ? ".y; }\n" : "; }\n");
+        const std::string file = folder.write("f.haptel", known.function + texture);
+        const Ran ran = run_command("test '" + file + ":f' --suggest-facts --domain -4 4 --set a=3.0");
+        INFO(ran.out << ran.err);
+        REQUIRE(ran.code == 0);
+        REQUIRE(contains(ran.out, "to be confirmed.)\n/// @facts value "));
+        double low = 0, high = 0, slope = 0, curvature = 0;
+        char continuity[8] = "";
+        REQUIRE(std::sscanf(ran.out.c_str() + ran.out.find("value "),
+                            "value %lf .. %lf, slope %lf, curvature %lf, class %7s", &low, &high, &slope, &curvature,
+                            continuity) == 5);
+        // Outward, by less than a digit of four.
+        const double largest = std::max(std::abs(known.low), known.high);
+        const auto is_above = [](double suggested, double truth, double size) {
+            return suggested >= truth && suggested <= truth + 2e-3 * size + 1e-9;
+        };
+        CHECK(is_above(high, known.high, largest));
+        CHECK(is_above(-low, -known.low, largest));
+        CHECK(is_above(slope, known.slope, known.slope));
+        CHECK(is_above(curvature, known.curvature, known.curvature));
+        CHECK(continuity == known.continuity);
+
+        const std::string pasted = ran.out.substr(0, ran.out.find("\n", ran.out.find("@facts")) + 1);
+        folder.write("f.haptel", pasted + known.function + texture);
+        const Ran check = run_command("check '" + file + "' --json");
+        INFO(check.err);
+        CHECK(check.code == 0);
+        const Json json = Json::parse(check.out);
+        for (const Json& finding : json["diagnostics"]) CHECK(finding["severity"] == "note");
+        CHECK(json["textures"][0]["declared"] == Json::array({"f"}));
+        CHECK(run_command("test '" + file + "'").code == 0);
+    }
+}
+
+TEST_CASE("what cannot be measured is said; textures are measured, and JSON has the numbers")
+{
+    const Folder folder;
+    const std::string file =
+        folder.write("m.haptel", "float cell(ivec2 c) { return 1.0; }\n"
+                                 "float sized(vec2 q, float size) { return sin(q.x / size); }\n"
+                                 "float twice(float g(float), float x) { return g(g(x)); }\n"
+                                 "void turn(inout vec2 q) { q = q.yx; }\n"
+                                 "float never(float x) { return sqrt(-1.0 - x * x); }\n"
+                                 "texture wave(float depth = 10um) { return depth * sinturn(p.x / 2mm); }\n");
+    const Ran ran = run_command("test '" + file + "' --suggest-facts --set depth=20um --box 20mm");
+    INFO(ran.out << ran.err);
+    CHECK(ran.code == 0);
+    CHECK(contains(ran.out, "// float cell(ivec2 c): not measured: its first argument is none of"));
+    CHECK(contains(
+        ran.out,
+        "// float sized(vec2 q, float size): not measured: further arguments have no value: --set size=VALUE"));
+    CHECK(contains(ran.out, "twice"));
+    CHECK(contains(ran.out, "turn"));
+    CHECK(contains(ran.out, "// float never(float x): not measured: it is finite nowhere over -8 .. 8"));
+    // 20 um, of 2 mm: its slope is 20e-6 * 2 pi / 2e-3 = 0.0628318, its curvature 197.39
+    CHECK(contains(ran.out,
+                   "/// @facts value -2e-05 .. 2e-05, slope 0.06284, curvature 197.4, class C1\n// texture wave"));
+    const Json json = Json::parse(run_command("test '" + file + ":wave' --suggest-facts --json").out)["suggestions"];
+    REQUIRE(json.size() == 1);
+    CHECK(std::abs(json[0]["value_maximum"].get<double>() - 10e-6) < 1e-12);
+    CHECK(json[0]["skipped"].is_null());
+    CHECK(run_command("test '" + file + ":cell' --suggest-facts").code == 1);
+    CHECK(run_command("test '" + file + "' --suggest-facts --domain 2 1").code == 2);
+    CHECK(run_command("test '" + file + "' --domain 1 2").code == 2);
+    CHECK(
+        run_command("test '" + folder.write("b.haptel", "float f(float x) { return y; }") + "' --suggest-facts").code ==
+        1);
 }
