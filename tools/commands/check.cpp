@@ -229,7 +229,12 @@ void CheckRun::pick_precision(CheckedTexture& checked)
         say("no-code", checked.texture->name + " cannot be measured: " + checked.precision->choice.error, "",
             checked.file);
         checked.precision.reset();
-    } else if (!checked.precision->is_met()) {
+        return;
+    }
+    if (checked.precision->takes_f64())
+        checked.precision->amplified =
+            find_amplified(checked.file, checked.texture->name, request_for(*checked.texture));
+    if (!checked.precision->is_met()) {
         say("not-close-enough",
             fmt::format("no precision of {} keeps the gradient within {:g} of its largest: {}", checked.texture->name,
                         *options.error_max, checked.precision->closest()),

@@ -33,14 +33,6 @@ struct TestOptions {
     std::pair<double, double> domain = {-8, 8}; // of a function's first argument
 };
 
-AmplifiedPlace place_of(const lang::SourceSet& sources, const lang::Span& span)
-{
-    const std::string_view text = sources.text(span);
-    const size_t line_end = text.find('\n');
-    return {sources.file(span.file).name, std::string(text.substr(0, line_end)) + (line_end == text.npos ? "" : " ..."),
-            sources.position(span.file, span.begin)};
-}
-
 class TestRun {
 public:
     explicit TestRun(const TestOptions& chosen) : options(chosen)
@@ -79,7 +71,7 @@ void TestRun::test(const TextureTarget& target, const std::shared_ptr<const jit:
     else
         tested.fault = bound.diagnostics;
     if (tested.check && tested.check->amplified)
-        tested.amplified = place_of(program->sources(), tested.check->amplified->span);
+        tested.amplified = place_of(*tested.check->amplified, program->sources());
     tested.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     report.textures.push_back(std::move(tested));
 }

@@ -1,5 +1,6 @@
 #include "tools/report/check_precision.h"
 
+#include "jit/texture/texture.h"
 #include "tools/arguments/precisions.h"
 
 #include <algorithm>
@@ -39,12 +40,35 @@ bool CheckedPrecision::is_met() const
     return for_one(*this) != nullptr;
 }
 
+bool CheckedPrecision::takes_f64() const
+{
+    const PrecisionFigures* picked = for_many(*this);
+    return !picked || picked->precision == jit::Precision::f64;
+}
+
 std::string CheckedPrecision::closest() const
 {
     const auto best = std::min_element(
         choice.figures.begin(), choice.figures.end(),
         [](const PrecisionFigures& a, const PrecisionFigures& b) { return a.gradient_error < b.gradient_error; });
     return fmt::format("{} is off by {:.2g}", name_of(&*best), best->gradient_error);
+}
+
+std::optional<AmplifiedPlace> find_amplified(const std::string& file, const std::string& texture,
+                                             const TextureRequest& request)
+{
+    jit::TextureOptions compile;
+    compile.only_texture = texture;
+    compile.entries = jit::Entries::height_gradient;
+    const auto program = jit::compile_texture_file(file, compile).program;
+    if (!program) return std::nullopt;
+    const TextureResult bound = jit::make_binding(program, texture, request, jit::For::figures);
+    if (!bound.binding) return std::nullopt;
+    jit::CheckBox box;
+    std::copy(request.box_minimum_m, request.box_minimum_m + 3, box.minimum_m);
+    std::copy(request.box_maximum_m, request.box_maximum_m + 3, box.maximum_m);
+    const auto found = jit::check_gradient(program, *bound.binding, box).amplified;
+    return found ? std::optional(place_of(*found, program->sources())) : std::nullopt;
 }
 
 Json precision_json(const CheckedPrecision& checked)
@@ -59,6 +83,7 @@ Json precision_json(const CheckedPrecision& checked)
     return {{"error_max", checked.error_max},
             {"one_point", name_or_null(for_one(checked))},
             {"many_points", name_or_null(for_many(checked))},
+            {"amplified_rounding", checked.amplified ? Json(checked.amplified->where()) : Json(nullptr)},
             {"measured", std::move(measured)}};
 }
 
@@ -73,6 +98,9 @@ std::string precision_text(const CheckedPrecision& checked)
                         "each of many\n",
                         name_of(&figures), figures.gradient_error, figures.height_error, figures.one_point_ns,
                         figures.many_points_ns);
+    if (checked.amplified)
+        text += fmt::format("    rounding is amplified at {}\n    = hint: {}\n",
+                            lang::printable(checked.amplified->where()), checked.amplified->hint());
     return text;
 }
 

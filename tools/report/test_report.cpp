@@ -36,15 +36,10 @@ std::vector<std::string> remarks(const TestedTexture& texture)
     const AmplifiedPlace& place = *texture.amplified;
     const jit::AmplifiedRounding& found = *texture.check->amplified;
     std::vector<std::string> lines;
-    lines.push_back(
-        fmt::format("rounding is amplified at {}:{}:{}: {}", place.file, place.at.line, place.at.column, place.text));
+    lines.push_back("rounding is amplified at " + place.where());
     lines.push_back(fmt::format("  by it alone the height is off by {:.1e}, the gradient by {:.1e} of the largest",
                                 found.height, found.gradient));
-    lines.push_back(found.is_hash_of_sine
-                        ? "  = hint: late digits of a sine are others in every precision, so f32 feels another "
-                          "surface; hash() of the library is the same in all"
-                        : "  = hint: few digits of a large number stand behind its point: keep it small, or take "
-                          "hash() of the library where a random number is wanted");
+    lines.push_back("  = hint: " + place.hint());
     return lines;
 }
 
@@ -59,7 +54,7 @@ Json amplified_json(const TestedTexture& texture)
             {"text", place.text},
             {"height_error", tools::finite_or_null(found.height)},
             {"gradient_error", tools::finite_or_null(found.gradient)},
-            {"is_hash_of_sine", found.is_hash_of_sine}};
+            {"is_hash_of_sine", place.is_hash_of_sine}};
 }
 
 std::string figure(const std::optional<double>& value)

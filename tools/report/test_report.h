@@ -3,18 +3,13 @@
 
 #include "jit/check/check_gradient.h"
 #include "tools/output/json.h"
+#include "tools/report/amplified_place.h"
 
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace haptel::tools {
-
-// Where the texture amplifies its rounding, as its author wrote it.
-struct AmplifiedPlace {
-    std::string file, text; // text: in one line
-    lang::Position at;
-};
 
 struct TestedTexture {
     std::string file, name;                  // name empty: the file did not compile

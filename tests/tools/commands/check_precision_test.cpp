@@ -117,3 +117,29 @@ TEST_CASE("check --max-error: what is no share is misuse, and said in words")
     CHECK(run_command("check '" + file + "' --normal-turn=-1").code == 2);
     CHECK(run_command("check '" + file + "' --normal-turn nan").code == 2);
 }
+
+TEST_CASE("check --max-error: where only f64 is close enough because of a hash of a sine, it is named")
+{
+    const Folder folder;
+    const auto checked = [&](const std::string& hash, const std::string& options) {
+        const std::string file =
+            folder.write("cells.haptel", "float of_cell(float n)\n{\n    return " + hash +
+                                             ";\n}\ntexture cells() { return 1mm * of_cell(floor(p.x / "
+                                             "1mm)) * sinturn(p.x / 1mm); }\n");
+        return run_command("check '" + file + "' --max-error 1e-5" + options);
+    };
+    const std::string sine = "fract(sin(n) * 43758.5453)";
+    const Ran named = checked(sine, "");
+    INFO(named.out << named.err);
+    CHECK(named.code == 0);
+    CHECK(contains(named.out, "precision  f64 for one point, f64 for many"));
+    CHECK(contains(named.out, "rounding is amplified at " + folder.file("cells.haptel") + ":3:12: " + sine + "\n"));
+    CHECK(contains(named.out, "hash() of the library is the same in all"));
+    const auto json = [&](const std::string& hash) {
+        return Json::parse(checked(hash, " --json").out)["textures"][0]["precision"];
+    };
+    CHECK(json(sine)["amplified_rounding"] == folder.file("cells.haptel") + ":3:12: " + sine);
+    const Json mended = json("hash(int(n))");
+    CHECK(mended["amplified_rounding"].is_null());
+    CHECK(mended["many_points"] != "f64"); // which is what naming it is for
+}
