@@ -167,7 +167,7 @@ Command plot_command(CLI::App& app)
                 "Draw a section between two points, which may lie anywhere")
             ->expected(2)
             ->delimiter(' ')
-            ->type_name("X,Y,Z X,Y,Z");
+            ->type_name("X,Y,Z");
     command
         ->add_option_function<std::string>(
             "--direction", [options](const std::string& text) { set_direction(*options, text); },

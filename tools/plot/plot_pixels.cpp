@@ -99,14 +99,15 @@ std::string averaged(const Fineness& fine)
     return fmt::format("{} samples averaged per pixel", fine.each_way * fine.each_way);
 }
 
-void tell_fineness(const TextureView& view, const Canvas& canvas, const Fineness& fine, const std::string& done)
+void tell_fineness(const TextureView& view, const Canvas& canvas, const Fineness& fine, const std::string& done,
+                   std::string_view pixels)
 {
     if (!view.say || fine.each_way <= samples_per_pixel) return;
     // Four pixels to a wave, by a length of one digit.
     const double shows_m = fine.feature_m / 4 * canvas.pixels;
     const double digit_m = std::pow(10, std::floor(std::log10(shows_m)));
-    view.say(fmt::format("features of {}{} are finer than two pixels of {}: {}; zoom with {} to see them",
-                         fine.each_way < samples_most ? "" : "at most ", length_text(fine.feature_m),
+    view.say(fmt::format("features of {}{} are finer than two {} of {}: {}; zoom with {} to see them",
+                         fine.each_way < samples_most ? "" : "at most ", length_text(fine.feature_m), pixels,
                          length_text(canvas.pixel_m()), done,
                          (view.section_m ? "a --section of " : "--window ") +
                              fmt::format("{:g}mm", 1e3 * digit_m * std::max(std::floor(shows_m / digit_m), 1.0))));

@@ -11,6 +11,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 
 namespace haptel::tools::plot {
 
@@ -39,7 +40,8 @@ inline constexpr int samples_most = 16; // each way: 256 to a pixel are seconds,
 Fineness fineness(const Canvas& canvas, Shown what);
 
 // One line to whoever looks, where features are finer than two pixels: how fine, what was done, and what shows them.
-void tell_fineness(const TextureView& view, const Canvas& canvas, const Fineness& fine, const std::string& done);
+void tell_fineness(const TextureView& view, const Canvas& canvas, const Fineness& fine, const std::string& done,
+                   std::string_view pixels = "pixels");
 std::string averaged(const Fineness& fine); // "64 samples averaged per pixel"
 
 // Calls `draw` for each pixel, by rows from the top, on all of the machine's processors: with its samples, and with how

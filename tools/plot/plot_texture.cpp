@@ -178,6 +178,9 @@ Picture draw_spectrum(const TextureView& view)
         return spectrum_of(heights_m, view.window_m);
     };
     const Spectrum spectra[] = {along(0), along(1)};
+    const Canvas sampled = canvas_of(view, static_cast<int>(length));
+    tell_fineness(view, sampled, fineness(sampled, Shown::height), "they show as longer waves, which are not there",
+                  "samples");
     const double low_per_m = spectra[0].frequency_per_m.front(), high_per_m = spectra[0].frequency_per_m.back();
 
     double largest_m = 0;

@@ -70,6 +70,9 @@ TEST_CASE("plot says what a picture cannot show: what is finer than its pixels, 
     CHECK(contains(said(":fine --kind section --at 0,5um,0"), "each pixel shows the range of "));
     CHECK(said(":fine --section 0,-1mm,0 0,1mm,0").empty()); // sin(x) is 0 there, and only changes across
     CHECK(said(":fine --kind height --window 0.3mm").empty());
+    CHECK(contains(said(":fine --kind spectrum --window 0.2m"),
+                   "finer than two samples of 97.7 µm: they show as longer"));
+    CHECK(said(":fine --kind spectrum --window 5mm").empty());
     CHECK(contains(said(":half --section -1mm,0,0 4mm,0,0"), "faults at 20 % of the places"));
     CHECK(said(":half --section 1mm,0,0 4mm,0,0").empty());
     // 1 / x is beyond 16 times the distance of a quarter of the places where |x| is below about 1 of 10 mm.
