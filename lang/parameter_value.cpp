@@ -1,7 +1,9 @@
 #include "lang/parameter_value.h"
 
+#include "lang/text/near_name.h"
 #include "lang/text/number.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 
@@ -59,6 +61,20 @@ ParameterValue read_real(std::string_view text, double value, const Number& numb
     return read;
 }
 
+// Of a parameter whose values have names. A number does as well.
+ParameterValue read_choice(std::string_view text, const ir::Parameter& parameter)
+{
+    const std::vector<std::string>& choices = parameter.choices;
+    const auto named = std::ranges::find(choices, text);
+    if (named != choices.end()) return {static_cast<double>(named - choices.begin())};
+    std::string all;
+    for (size_t i = 0; i < choices.size(); ++i)
+        all += (i == 0 ? "" : i + 1 < choices.size() ? ", " : " or ") + choices[i];
+    const NearName near = near_name(text, {choices.begin(), choices.end()});
+    return fail("expected " + all + ", found '" + printable(text) + "'",
+                near.name.empty() ? "" : "did you mean '" + std::string(near.name) + "'?");
+}
+
 } // namespace
 
 ParameterValue parse_value(std::string_view text, const ir::Parameter& parameter)
@@ -69,6 +85,8 @@ ParameterValue parse_value(std::string_view text, const ir::Parameter& parameter
     if (parameter.type == ir::Type::boolean)
         return text == "true" || text == "false" ? ParameterValue{text == "true" ? 1.0 : 0.0}
                                                  : fail("expected true or false, found '" + printable(text) + "'");
+    const bool is_number = !text.empty() && std::string_view("+-0123456789").find(text[0]) != std::string_view::npos;
+    if (!is_number && !parameter.choices.empty()) return read_choice(text, parameter);
     const bool has_sign = !text.empty() && (text[0] == '-' || text[0] == '+');
     std::string digits(text.substr(has_sign));
     const size_t blank = digits.find_first_of(" \t"); // "60 um"

@@ -1,4 +1,5 @@
-// A texture parameter's value as scenes, sliders and command lines write it: "60um", "-5", "true". Bare numbers are SI.
+// A texture parameter's value as scenes, sliders and command lines write it: "60um", "-5", "true", and the names of
+// choices. Bare numbers are SI.
 #pragma once
 
 #include "lang/ir/ir.h"

@@ -65,12 +65,18 @@ CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, s
     parameters.reserve(module().textures.size());
     for (const ir::Texture& texture : module().textures) {
         std::vector<haptel_parameter>& list = parameters.emplace_back();
-        for (const ir::Parameter& parameter : texture.parameters) list.push_back(described(parameter));
+        std::vector<const char* const*>& names = choices.emplace_back();
+        for (const ir::Parameter& parameter : texture.parameters) {
+            list.push_back(described(parameter));
+            std::vector<const char*>& named = choice_names.emplace_back();
+            for (const std::string& choice : parameter.choices) named.push_back(choice.c_str());
+            names.push_back(named.empty() ? nullptr : named.data());
+        }
         table.push_back({HAPTEL_ABI_VERSION, sizeof(haptel_texture), texture.reads, texture.writes, texture.block_size,
                          static_cast<uint32_t>(list.size()), texture.name.c_str(), list.data(),
                          facts_over_ranges(module(), texture, has_facts), code->entry(texture.name),
                          code->entry(texture.name + with_gradient), code->batch_entry(texture.name + of_many),
-                         code->batch_entry(texture.name + with_gradient + of_many)});
+                         code->batch_entry(texture.name + with_gradient + of_many), names.data()});
     }
 }
 

@@ -10,6 +10,7 @@
 #include "lang/compile.h"
 
 #include <algorithm>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <span>
@@ -50,6 +51,8 @@ private:
     std::vector<EntryPoint> entries;
     std::shared_ptr<const Code> code;
     std::vector<std::vector<haptel_parameter>> parameters; // by texture
+    std::vector<std::vector<const char* const*>> choices;  // likewise, by parameter; they point into
+    std::deque<std::vector<const char*>> choice_names;
     std::vector<haptel_texture> table;
 };
 

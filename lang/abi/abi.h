@@ -134,6 +134,7 @@ typedef struct {
     haptel_entry* height;          /* height_m and faults only; 0: not compiled */
     haptel_entry* height_gradient; /* the same height, bit for bit, and the gradient; 0: not compiled */
     haptel_batch_entry *height_batch, *height_gradient_batch; /* of many points; 0: not compiled */
+    const char* const* const* choices; /* by parameter: names of its values 0 .. maximum, 0 where they have none */
 } haptel_texture;
 
 #ifdef __cplusplus

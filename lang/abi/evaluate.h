@@ -7,6 +7,7 @@
 #include "lang/abi/texture_binding.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <span>
 
@@ -57,7 +58,7 @@ inline void evaluate(const TextureBinding& binding, std::span<const haptel_point
                      std::span<haptel_sample> samples)
 {
     const haptel_texture& texture = *binding.texture;
-    if (texture.size < sizeof(haptel_texture) || !texture.height_gradient_batch) {
+    if (texture.size < offsetof(haptel_texture, choices) || !texture.height_gradient_batch) {
         for (std::size_t i = 0; i < points.size(); ++i) texture.height_gradient(&points[i], binding.block, &samples[i]);
         return;
     }

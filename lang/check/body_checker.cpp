@@ -29,8 +29,16 @@ Symbol* BodyChecker::find_local(std::string_view name) const
     return found == by_name.end() || found->second.empty() ? nullptr : found->second.back();
 }
 
+const Symbol* BodyChecker::find_choice(std::string_view name) const
+{
+    if (!choices) return nullptr;
+    const auto found = choices->constants.find(name);
+    return found == choices->constants.end() ? nullptr : found->second;
+}
+
 const Symbol* BodyChecker::find(std::string_view name) const
 {
+    if (const Symbol* choice = find_choice(name)) return choice;
     if (const Symbol* local = find_local(name)) return local;
     for (const Declarations* layer : scope.layers)
         if (auto found = layer->constants.find(name); found != layer->constants.end()) return found->second;
@@ -41,7 +49,7 @@ const Symbol* BodyChecker::find(std::string_view name) const
 
 void BodyChecker::mark_read(std::string_view name)
 {
-    if (Symbol* local = find_local(name)) local->is_read = true;
+    if (Symbol* local = find_choice(name) ? nullptr : find_local(name)) local->is_read = true;
 }
 
 Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
@@ -121,11 +129,15 @@ void BodyChecker::report_unknown_name(Span span, const std::string& name)
         for (const Declarations* layer : scope.layers)
             for (const auto& [constant, symbol] : layer->constants) names.push_back(constant);
         for (const Symbol* input : context.inputs) names.push_back(input->name);
+        if (choices)
+            for (const Name& choice : *choices->names) names.push_back(choice.text);
         near = near_name(name, names);
     }
     // Most likely what declares it could not be read.
     if (in_damaged_body && near.name.empty()) return diagnostics.count_consequence();
-    propose(report(), span, near);
+    Diagnostic& reported = report();
+    if (choices) reported.hint = "expected " + list_of(*choices->names);
+    propose(reported, span, near);
     mark_read(near.name); // if it was meant, it is read
 }
 
@@ -176,6 +188,7 @@ void BodyChecker::check_function(Function& tree, FunctionInfo& info)
             if (parameter.is_written()) must_be_written.push_back(&symbol);
             symbol.is_read = parameter.is_written();
             if (parameter.type == image_type) symbol.read_only = "it is an image";
+            if (parameter.choices) declare_choices(*parameter.choices->names);
         }
         parameter.symbol = &symbol;
     }

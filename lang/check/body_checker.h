@@ -40,6 +40,9 @@ inline std::string quoted(std::string_view text)
     return "'" + std::string(text) + "'";
 }
 
+// "english, running or stack"
+std::string list_of(const std::vector<ast::Name>& names);
+
 // What was most likely meant by the name in `span`: as a hint, and as a fix where that is certain.
 void propose(Diagnostic& reported, Span span, const NearName& near, bool fits = true);
 void propose(Diagnostic& reported, Span span, const ForeignWord& word);
@@ -91,6 +94,8 @@ private:
     // ---- textures
     void check_output(ast::TextureParameter& tree, CheckedTexture& texture);
     void check_parameter(ast::TextureParameter& tree, CheckedTexture& texture);
+    const Choices* choices_of(const std::vector<ast::Name>& names);
+    void declare_choices(const std::vector<ast::Name>& names);
     std::optional<double> check_constant(ast::Expression& e, Type type, const std::string& where);
 
     struct Variable {
@@ -116,6 +121,7 @@ private:
     void close_scope();
     Symbol& declare(const ast::Name& name, SymbolKind kind, Type type);
     Symbol* find_local(std::string_view name) const;
+    const Symbol* find_choice(std::string_view name) const;
     const Symbol* find(std::string_view name) const;
     void mark_read(std::string_view name);
     bool may_be_unread(const std::string& name) const; // declared in text that could not be read
@@ -215,6 +221,7 @@ private:
     Diagnostics& diagnostics;
     const FileScope& scope;
     std::set<std::string, std::less<>> unknown_names; // each is reported once
+    const Choices* choices = nullptr;                 // one of which is expected where the text is read; null: none is
     const ast::Damage* damage = nullptr;              // of the body
     bool in_damaged_body = false; // a syntax error was reported inside: what may follow from it is better not said
 

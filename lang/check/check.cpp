@@ -153,6 +153,17 @@ void check_call_graph(CheckedProgram& program, Diagnostics& diagnostics)
     }
 }
 
+// Null: there are not too many.
+const TextureParameter* first_too_many(const Texture& tree)
+{
+    size_t numbers = 0;
+    for (const TextureParameter& parameter : tree.parameters) {
+        numbers += 1 + parameter.choices.size();
+        if (numbers > parameters_max) return &parameter;
+    }
+    return nullptr;
+}
+
 class ProgramChecker {
 public:
     // `own_library`, where this is the library itself: what its files declare together.
@@ -300,7 +311,7 @@ private:
     void declare_textures(uint32_t file, const FileScope& scope)
     {
         for (Texture& tree : program.files[file].tree.textures) {
-            if (diagnostics.full() || tree.parameters.size() > parameters_max) return;
+            if (diagnostics.full() || first_too_many(tree)) return;
             if (!tree.as_function.body) declarations_of(file).unread.insert(tree.name.text); // told
             if (!tree.as_function.body || declarations_of(file).textures.contains(tree.name.text)) continue;
             CheckedTexture texture;
@@ -331,6 +342,7 @@ private:
                 else if (is_integer(made.type))
                     made.value_parts = {static_cast<uint32_t>(static_cast<int64_t>(checked->value))};
                 if (is_integer(made.type)) made.held = checked->symbol->range;
+                made.choices = checked->choices;
                 ++checked;
             }
             declarations_of(file).textures.emplace(info.name, &info);
@@ -392,9 +404,10 @@ private:
                     .error(tree.name.span, "duplicate-texture",
                            "two textures of this file are called " + quoted(tree.name.text))
                     .related.push_back({twin->second->name.span, "the first is here"});
-            if (tree.parameters.size() > parameters_max) {
-                diagnostics.error(tree.parameters[parameters_max].name.span, "too-large",
-                                  "expected at most " + std::to_string(parameters_max) + " parameters of a texture");
+            if (const TextureParameter* const beyond = first_too_many(tree)) {
+                diagnostics.error(beyond->name.span, "too-large",
+                                  "expected at most " + std::to_string(parameters_max) +
+                                      " parameters and choices of a texture");
                 continue;
             }
             CheckedTexture texture;

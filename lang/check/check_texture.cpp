@@ -32,6 +32,52 @@ std::string unit_in(const Expression& e)
 
 } // namespace
 
+std::string list_of(const std::vector<Name>& names)
+{
+    std::string list;
+    for (size_t i = 0; i < names.size(); ++i)
+        list += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + printable(names[i].text);
+    return list;
+}
+
+namespace {
+
+void make_choice(Symbol& symbol, uint32_t value)
+{
+    symbol.kind = SymbolKind::constant;
+    symbol.type = int_type;
+    symbol.value = {value};
+    symbol.range = ir::IntRange{value, value};
+    symbol.is_choice = symbol.is_read = true;
+    symbol.read_only = "it is the name of a choice";
+}
+
+} // namespace
+
+// As constants of the innermost scope. Two lists may have a name in common that stands for the same in both.
+void BodyChecker::declare_choices(const std::vector<Name>& names)
+{
+    for (uint32_t i = 0; i < names.size(); ++i) {
+        const Symbol* known = find_local(names[i].text);
+        const bool is_shared = known && known->is_choice && known->value == std::vector<ConstantPart>{i};
+        if (!is_shared) make_choice(declare(names[i], SymbolKind::constant, int_type), i);
+    }
+}
+
+// For where one of them is expected and nothing is declared. Of two of one name, which is told, the first.
+const Choices* BodyChecker::choices_of(const std::vector<Name>& names)
+{
+    Choices& made = context.program.choices.emplace_back(Choices{&names});
+    for (uint32_t i = 0; i < names.size(); ++i) {
+        Symbol& symbol = context.program.symbols.emplace_back();
+        symbol.name = names[i].text;
+        symbol.span = names[i].span;
+        make_choice(symbol, i);
+        made.constants.emplace(symbol.name, &symbol);
+    }
+    return &made;
+}
+
 // Of what is around the body.
 void BodyChecker::check_parameters(Texture& tree, CheckedTexture& texture)
 {
@@ -76,8 +122,11 @@ void BodyChecker::check_output(TextureParameter& tree, CheckedTexture& texture)
         diagnostics.error(tree.type.base.span, "type-mismatch", "an output is a float", names);
         is_sound = false;
     }
-    if (tree.value || tree.minimum) {
-        diagnostics.error((tree.value ? tree.value : tree.minimum)->span, "output-default",
+    if (tree.value || tree.minimum || !tree.choices.empty()) {
+        const Span given = tree.value     ? tree.value->span
+                           : tree.minimum ? tree.minimum->span
+                                          : tree.choices.front().span;
+        diagnostics.error(given, "output-default",
                           "an output has neither default nor range, expected ',' or ')' behind its name",
                           "it is 1 until the body assigns it: " + tree.name.text + " = ...;");
         is_sound = false;
@@ -114,6 +163,11 @@ void BodyChecker::check_parameter(TextureParameter& tree, CheckedTexture& textur
                           !type.is_scalar() ? "take the components as parameters of their own" : "");
         type = Type::error();
     }
+    if (!tree.choices.empty() && !type.is_error() && type != int_type) {
+        diagnostics.error(join(tree.choices.front().span, tree.choices.back().span), "choices",
+                          "choices are for an int, found " + to_string(type), "they are 0, 1, 2 ... by other names");
+        type = int_type; // as it was meant
+    }
     Symbol& symbol = declare(tree.name, SymbolKind::texture_parameter, type);
     symbol.slot = static_cast<uint32_t>(texture.parameters.size());
     symbol.read_only = "it is a parameter of the texture";
@@ -130,9 +184,12 @@ void BodyChecker::check_parameter(TextureParameter& tree, CheckedTexture& textur
         return;
     }
     // Where nothing of the texture is known, and of a preset in the file that it has it from.
+    if (!tree.choices.empty()) made.choices = choices_of(tree.choices);
     const auto constant = [&](Expression& e, const std::string& where) {
         const bool is_own = !context.scopes || e.span.file >= context.scopes->size();
-        return BodyChecker(context, is_own ? scope : (*context.scopes)[e.span.file]).check_constant(e, type, where);
+        BodyChecker around(context, is_own ? scope : (*context.scopes)[e.span.file]);
+        around.choices = made.choices;
+        return around.check_constant(e, type, where);
     };
     const auto value = tree.value ? constant(*tree.value, " as the default of " + name) : std::nullopt;
     for (const Expression* e : {tree.value.get(), tree.minimum.get(), tree.maximum.get()})
@@ -141,6 +198,18 @@ void BodyChecker::check_parameter(TextureParameter& tree, CheckedTexture& textur
     if (!std::isfinite(made.value)) {
         diagnostics.error(tree.value->span, "not-finite", "the default of " + name + " is not a finite number");
         made.value = 0;
+    }
+    if (made.choices) {
+        declare_choices(tree.choices);
+        const auto last = static_cast<int64_t>(tree.choices.size()) - 1;
+        made.minimum = 0;
+        made.maximum = static_cast<double>(last);
+        symbol.range = ir::IntRange{0, last};
+        if (value && (made.value < made.minimum || made.value > made.maximum))
+            diagnostics.error(tree.value->span, "default-out-of-range",
+                              "the default " + printable(context.sources.text(tree.value->span)) + " of " + name +
+                                  " is none of its choices, 0 .. " + std::to_string(last),
+                              "expected " + list_of(tree.choices));
     }
     if (!tree.minimum || !tree.maximum) return;
     if (type == bool_type) {

@@ -92,7 +92,9 @@ bool BodyChecker::named_argument(CallExpression& call, const FunctionInfo& calle
                         "expected a float for the output " + quoted(name.text) + ", found " +
                             to_string(argument->type)) == float_type;
     } else {
+        const Choices* const around = std::exchange(choices, parameter->choices);
         expression(*argument);
+        choices = around;
         require(*argument, parameter->type, " for " + quoted(name.text));
     }
     ordered[at] = std::move(argument);

@@ -169,7 +169,8 @@ struct Parameter {
     Type type = Type::real;
     double value = 0, minimum = 0, maximum = 0; // minimum == -inf, maximum == +inf where the author gave no range
     uint32_t offset = 0;
-    Span span;
+    Span span = {};
+    std::vector<std::string> choices = {}; // names of the values 0 .. maximum of an i32; empty: it has none
 };
 
 // A texture and its entry functions. An entry has no parameters; it reads inputs and block.

@@ -36,6 +36,7 @@ void lay_out(ir::Texture& made, const CheckedTexture& texture)
         place.maximum = parameter.maximum;
         place.offset = aligned(end, size_in_block(place.type));
         place.span = parameter.tree->span;
+        for (const ast::Name& choice : parameter.tree->choices) place.choices.push_back(choice.text);
         end = place.offset + size_in_block(place.type);
     }
     made.block_size = aligned(end, alignof(double));

@@ -22,8 +22,9 @@ struct CheckFile {
 struct CheckedParameter {
     const Symbol* symbol = nullptr;
     const ast::TextureParameter* tree = nullptr;
-    std::string unit; // SI: "m", "rad", "s", "Hz"; empty: a plain number
-    double value = 0; // SI; int, uint and bool as numbers
+    const Choices* choices = nullptr; // null: it has none
+    std::string unit;                 // SI: "m", "rad", "s", "Hz"; empty: a plain number
+    double value = 0;                 // SI; int, uint and bool as numbers
     double minimum = -std::numeric_limits<double>::infinity();
     double maximum = std::numeric_limits<double>::infinity();
 };
@@ -48,6 +49,7 @@ struct CheckedProgram {
     std::vector<CheckFile> files;                  // by Span::file; without those of the library
     std::deque<Symbol> symbols;
     std::deque<FunctionInfo> functions;
+    std::deque<Choices> choices;
     std::vector<CheckedTexture> textures; // of file 0, in source order
 };
 

@@ -250,7 +250,8 @@ struct TextureParameter {
     bool is_output = false; // "out float stiffness_scale"
     // Default and range, which a preset of the texture has too; the range may be absent.
     std::shared_ptr<Expression> value, minimum, maximum;
-    Span span;
+    std::vector<Name> choices = {}; // in the place of a range: names of 0, 1, 2 ...
+    Span span = {};
 };
 
 struct Texture {

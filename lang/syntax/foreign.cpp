@@ -106,7 +106,8 @@ constexpr ForeignWord meanings[] = {
 
     {declaration, "struct class union typedef", "",
      "there are no structures; pass the values one by one or in a vector"},
-    {declaration, "enum", "", "write constants: const int ROUGH = 1;"},
+    {declaration, "enum", "",
+     "write constants, const int ROUGH = 1;, or name a parameter's values: int finish = fine in {fine, rough}"},
     {declaration, "uniform attribute", "",
      "what an application or a slider sets is a parameter of the texture: texture name(float pitch = 1mm)"},
     {declaration, "varying", "", "the point of contact is p, its normal n, its mesh coordinates uv"},

@@ -45,6 +45,8 @@ private:
     void read_as_function(ast::Texture& texture, size_t body);
     void preset(ast::File& result, ast::Texture head, Span first);
     ast::TextureParameter texture_parameter();
+    void range_of(ast::TextureParameter& parameter);
+    void choices_of(ast::TextureParameter& parameter);
     void constants(ast::File& result);
     void function_or_variable(ast::File& result);
     bool takes_any_size() const;
@@ -79,6 +81,7 @@ private:
     bool ends_parameter(Span opener);
     bool next_parameter();
     void find_next_parameter(size_t first_position);
+    bool at_choices() const;
     void find_body();
     bool body_follows() const;
     bool statements_follow() const;

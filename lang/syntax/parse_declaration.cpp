@@ -310,7 +310,7 @@ void Grammar::read_as_function(Texture& texture, size_t body)
     position = behind;
 }
 
-// texture_parameter = ["out"] type name ["=" expression ["in" binary ".." binary]]
+// texture_parameter = ["out"] type name ["=" expression ["in" (binary ".." binary | choices)]]
 TextureParameter Grammar::texture_parameter()
 {
     TextureParameter parameter;
@@ -331,33 +331,56 @@ TextureParameter Grammar::texture_parameter()
         parameter.value = expression();
     } else if (needs_default && !lost) {
         parameter.value = unknown(parameter.name.span);
-        if (is_type_word(parameter.type.base.text)) { // else enough is said
+        if (const std::string& type = parameter.type.base.text; is_type_word(type)) { // else enough is said
             diagnostics.error(parameter.name.span, "missing-default",
                               "the parameter '" + parameter.name.text + "' needs a default value",
-                              "for example " + parameter.type.base.text + " " + parameter.name.text +
-                                  " = 1.0 in 0.0 .. 10.0");
+                              "for example " + type + " " + parameter.name.text + " = 1.0 in 0.0 .. 10.0");
             lost = !at(Token::kw_in) && !at(Token::comma) && !at(Token::right_paren); // "float depth 1mm"
         }
     }
     read_misspelt_in();
-    if (!lost && accept(Token::kw_in)) {
-        if (at(Token::left_bracket))
-            bracketed_range(parameter);
-        else
-            parameter.minimum = binary(1);
-        if (parameter.maximum) {
-            // told
-        } else if (!lost && at(Token::dot_dot)) {
-            advance();
-            parameter.maximum = binary(1);
-        } else {
-            error(span(), "range", "expected '..' and the upper end of the range" + found(),
-                  "a range is written 0.2mm .. 5mm");
-        }
-        if (!parameter.maximum) parameter.maximum = unknown(previous_span());
-    }
+    if (!lost && accept(Token::kw_in)) at_choices() ? choices_of(parameter) : range_of(parameter);
     parameter.span = since(first);
     return parameter;
+}
+
+// Behind "in".
+void Grammar::range_of(TextureParameter& parameter)
+{
+    if (at(Token::left_bracket))
+        bracketed_range(parameter);
+    else
+        parameter.minimum = binary(1);
+    if (parameter.maximum) return; // told
+    if (!lost && at(Token::dot_dot)) {
+        advance();
+        parameter.maximum = binary(1);
+    } else {
+        error(span(), "range", "expected '..' and the upper end of the range" + found(),
+              "a range is written 0.2mm .. 5mm");
+    }
+    if (!parameter.maximum) parameter.maximum = unknown(previous_span());
+}
+
+// choices = "{" name {"," name} [","] "}"
+void Grammar::choices_of(TextureParameter& parameter)
+{
+    const Span opener = span();
+    do {
+        advance();
+        if (at(Token::right_brace) && !parameter.choices.empty()) break;
+        if (!at(Token::name)) {
+            error(span(), "choices", "expected the name of a choice" + found(),
+                  "choices are names, the first is 0: in {smooth, ribbed}");
+            break;
+        }
+        parameter.choices.push_back({std::string(text()), span()});
+        advance();
+    } while (at(Token::comma));
+    if (at(Token::assign))
+        error(span(), "choices", "expected ',' or '}' behind the name of a choice" + found(),
+              "choices count from 0 and have no other numbers");
+    close(Token::right_brace, opener, true);
 }
 
 } // namespace haptel::lang

@@ -43,6 +43,7 @@ void Grammar::forget(TextureParameter& parameter)
     if (!parameter.is_output) parameter.value = unknown(parameter.span);
     parameter.minimum = nullptr;
     parameter.maximum = nullptr;
+    parameter.choices.clear();
     if (parameter.type.base.text == "image") parameter.type = {};
 }
 
@@ -85,12 +86,22 @@ bool Grammar::next_parameter()
 void Grammar::find_next_parameter(size_t first_position)
 {
     uint32_t open = 0;
-    for (; !at(Token::end) && !at_texture_or_import() && !at(Token::left_brace) && !at(Token::semicolon); advance()) {
+    for (; !at(Token::end) && !at_texture_or_import() && !at(Token::semicolon); advance()) {
+        if (at(Token::left_brace) && !at_choices()) break;
+        if (at(Token::left_brace)) skip_braces();
         if (open == 0 && (at(Token::comma) || at(Token::right_paren))) break;
         if (at(Token::left_paren)) ++open;
         if (at(Token::right_paren)) --open;
     }
     note_unread(first_position);
+}
+
+// Whether a '{' behind "in" begins names of choices. A body has a ';' before its first '}', or as far as one looks.
+bool Grammar::at_choices() const
+{
+    if (!at(Token::left_brace) || previous_kind() != Token::kw_in) return false;
+    const Token stop = kind(first_ahead({Token::right_brace, Token::semicolon, Token::end}));
+    return stop != Token::semicolon && stop != Token::end;
 }
 
 // The head could not be read: to the '{' of the body.
@@ -100,6 +111,7 @@ void Grammar::find_body()
     while (!at(Token::left_brace) && !at(Token::end) && !at_texture_or_import()) {
         if (at(Token::semicolon) && kind(1) != Token::left_brace) break;
         advance();
+        if (at_choices()) skip_braces();
     }
     note_unread(first_position);
 }

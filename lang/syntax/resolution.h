@@ -6,8 +6,10 @@
 #include "lang/text/source.h"
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -16,6 +18,7 @@ namespace haptel::lang {
 namespace ast {
 struct Function;
 struct Expression;
+struct Name;
 } // namespace ast
 
 struct BuiltinOverload;
@@ -38,6 +41,13 @@ enum class SymbolKind : uint8_t {
     function,          // parameter that is a function, known when its owner is lowered; `slot` counts such parameters
 };
 
+// The names of the values 0, 1, 2 ... of a texture's parameter, for where one of them is expected. Owned by
+// CheckedProgram.
+struct Choices {
+    const std::vector<ast::Name>* names = nullptr;
+    std::map<std::string_view, const Symbol*> constants = {}; // by name
+};
+
 // What a function does with its argument: read it, give it a value, or both. What it writes is a result of the call.
 enum class Passing : uint8_t { in, out, inout };
 
@@ -54,6 +64,7 @@ struct ParameterInfo {
     std::vector<ConstantPart> value_parts = {};
     std::optional<ir::IntRange> range = {}; // of a whole number, over all calls seen so far; nothing: none
     std::optional<ir::IntRange> held = {};  // that of a texture's parameter, within which it is held
+    const Choices* choices = nullptr;       // of a texture's parameter; null: its values have no names
     bool operator==(const ParameterInfo& other) const
     {
         return type == other.type && is_function == other.is_function && signature == other.signature;
@@ -75,6 +86,7 @@ struct Symbol {
     const char* read_only = nullptr;       // why it cannot be assigned to, as a clause; null: it can
     bool is_parameter = false;             // of a function or texture, for messages
     bool is_read = false;
+    bool is_choice = false;      // a constant that names a value of a texture's parameter
     uint64_t parts_assigned = 0; // behind its declaration, by text read so far or by a loop round it; see parts_of()
 };
 

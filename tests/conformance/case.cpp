@@ -55,7 +55,8 @@ bool read_word(Evaluation& into, const std::string& name, const std::string& val
     double number = 0;
     if (name.starts_with("set.")) {
         into.parameters.emplace_back(name.substr(4), value);
-        return read_number(value, number);
+        const bool is_choice = value.find_first_not_of("abcdefghijklmnopqrstuvwxyz_") == value.npos;
+        return is_choice ? !value.empty() : read_number(value, number);
     }
     const std::pair<std::string_view, std::pair<double*, size_t>> given[] = {
         {"p", {into.point.p, 3}},

@@ -41,7 +41,7 @@ struct Evaluation {
     std::string line; // as written
     haptel_point point{};
     haptel_block_head head{};
-    std::vector<std::pair<std::string, std::string>> parameters; // name, plain number
+    std::vector<std::pair<std::string, std::string>> parameters; // name, plain number or choice
 
     std::optional<double> height, stiffness, friction;
     std::optional<std::array<double, 3>> gradient;

@@ -47,6 +47,14 @@ ir::Slot<T> slot(ir::Type type, double value)
     return {T(value)};
 }
 
+// As a case sets it: a choice by its name.
+double number_of(const ir::Parameter& parameter, const std::string& text)
+{
+    const auto choice = std::ranges::find(parameter.choices, text);
+    return choice == parameter.choices.end() ? std::stod(text)
+                                             : static_cast<double>(choice - parameter.choices.begin());
+}
+
 template <typename T>
 Outcome evaluated(const ir::Module& module, const Evaluation& at)
 {
@@ -61,7 +69,7 @@ Outcome evaluated(const ir::Module& module, const Evaluation& at)
     for (const ir::Parameter& parameter : texture.parameters) {
         double value = parameter.value;
         for (const auto& [name, text] : at.parameters)
-            if (name == parameter.name) value = std::stod(text);
+            if (name == parameter.name) value = number_of(parameter, text);
         inputs.parameters.push_back(slot<T>(parameter.type, value));
     }
     const auto real = [](const ir::Scalar<T>& result) { return static_cast<double>(std::get<T>(result)); };

@@ -56,6 +56,16 @@ TEST_CASE("work: what many constants read of a table is not made anew for each")
     CHECK(growth(exponents, 500) < 2.5);
 }
 
+TEST_CASE("work: a call looks up the choice that it gives among all, and makes none anew")
+{
+    const auto calls = [](size_t count) {
+        return "texture wall(int bond = c0 in {" + numbered(count, [](auto i) { return "c" + i + ","; }) +
+               "}) { return 1mm * bond; }\ntexture t() { float h = 0.0;" + repeated(count, "h += wall(bond = c7);") +
+               " return h; }";
+    };
+    CHECK(growth(calls, 400) < 2.5);
+}
+
 TEST_CASE("work: the type of many names is read once")
 {
     const auto names = [](const std::string& before, const std::string& after) {
@@ -194,6 +204,12 @@ TEST_CASE("limits: what is too much is refused at its place, and what is at the 
     };
     CHECK(refusal(sliders(1000)) == "");
     CHECK(refusal(sliders(20'000)) == "1001:7 too-large\n");
+    const auto choices = [](size_t count) {
+        return "texture t(int a = 0 in {" + numbered(count, [](auto i) { return "c" + i + ","; }) +
+               "}) { return 1mm * a; }";
+    };
+    CHECK(refusal(choices(999)) == "");
+    CHECK(refusal(choices(1000)) == "1:15 too-large\n");
 
     const auto variables = [](size_t count) {
         return "texture t() {\n" + numbered(count, [](auto i) { return "float a" + i + " = 1.0;\n"; }) +

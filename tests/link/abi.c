@@ -54,5 +54,7 @@ int main(void)
     expect("haptel_texture.facts", 40, offsetof(haptel_texture, facts));
     expect("haptel_texture.height", 80, offsetof(haptel_texture, height));
     expect("haptel_texture.height_gradient", 88, offsetof(haptel_texture, height_gradient));
+    expect("haptel_texture.height_gradient_batch", 104, offsetof(haptel_texture, height_gradient_batch));
+    expect("haptel_texture.choices", 112, offsetof(haptel_texture, choices));
     return wrong;
 }

@@ -84,6 +84,11 @@ std::string to_text(const lang::SourceSet& sources, const lang::ast::TexturePara
     if (parameter.value) line += " = " + text(parameter.value);
     if (parameter.minimum && parameter.maximum)
         line += fmt::format(" in {} .. {}", text(parameter.minimum), text(parameter.maximum));
+    if (!parameter.choices.empty()) {
+        std::vector<std::string> names;
+        for (const lang::ast::Name& choice : parameter.choices) names.push_back(choice.text);
+        line += fmt::format(" in {{{}}}", fmt::join(names, ", "));
+    }
     if (!parameter.doc.empty()) line += "  // " + indented(parameter.doc, "    // ");
     return line + "\n";
 }

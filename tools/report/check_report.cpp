@@ -43,6 +43,7 @@ Json to_json(const ir::Parameter& parameter)
             {"default", number_of(parameter, parameter.value)},
             {"minimum", number_of(parameter, parameter.minimum)},
             {"maximum", number_of(parameter, parameter.maximum)},
+            {"choices", parameter.choices},
             {"unit", parameter.unit},
             {"doc", parameter.doc}};
 }

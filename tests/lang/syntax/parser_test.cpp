@@ -99,6 +99,7 @@ texture brushed(
     float pitch = 0.8mm in 0.2mm .. 5mm,
     int octaves = 4 in 1..8, // not documented
     bool rough = true,
+    int edge = ridge in {flat, ridge,},
     out float stiffness_scale)
 {
     return pitch;
@@ -116,6 +117,7 @@ texture brushed "Long irregular grooves,|  as left by a brush."
   float pitch = 0.8mm in 0.2mm .. 5mm "Distance of grooves."
   int octaves = 4 in 1 .. 8
   bool rough = true
+  int edge = ridge in {flat, ridge}
   out float stiffness_scale
   {(return pitch)}
 )");

@@ -179,7 +179,9 @@ std::string tree_text(const File& file)
                     parameter.name.text;
             if (parameter.value) text += " = " + tree_text(*parameter.value);
             if (parameter.minimum) text += " in " + tree_text(*parameter.minimum) + " .. " + maybe(parameter.maximum);
-            text += doc_text(parameter.doc) + "\n";
+            for (const Name& choice : parameter.choices)
+                text += (&choice == parameter.choices.data() ? " in {" : ", ") + choice.text;
+            text += (parameter.choices.empty() ? "" : "}") + doc_text(parameter.doc) + "\n";
         }
         text += "  " + maybe(texture.body) + "\n";
     }

@@ -41,8 +41,8 @@ TEST_CASE("check: a sound file is exit code 0, its textures are described")
     CHECK(texture["doc"] == "Waves.");
     CHECK(texture["inputs"] == Json::array({"p"}));
     REQUIRE(texture["parameters"].size() == 4);
-    const Json pitch = {{"name", "pitch"},  {"type", "float"}, {"default", 0.002},        {"minimum", 0.001},
-                        {"maximum", 0.005}, {"unit", "m"},     {"doc", "Crest to crest."}};
+    const Json pitch = {{"name", "pitch"},  {"type", "float"},          {"default", 0.002}, {"minimum", 0.001},
+                        {"maximum", 0.005}, {"choices", Json::array()}, {"unit", "m"},      {"doc", "Crest to crest."}};
     CHECK(texture["parameters"][0] == pitch);
     CHECK(texture["parameters"][2]["type"] == "int");
     CHECK(texture["parameters"][2]["default"].is_number_integer());

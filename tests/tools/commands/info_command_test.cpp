@@ -141,6 +141,27 @@ TEST_CASE("info: a doc comment is shown whole, with ranges, dots and further lin
     CHECK(json["textures"][0]["doc"] == doc + "\nFrom 0 .. 1.");
 }
 
+TEST_CASE("info: choices, as written and as a list, and a value by its name")
+{
+    const Folder folder;
+    const std::string file = folder.write(
+        "w.haptel", "texture wall(int bond = stack in {running, stack}) { return bond == stack ? 3mm : 4mm; }\n");
+    CHECK(run_command("info '" + file + "'").out ==
+          "texture wall\n  int bond = stack in {running, stack}\n  reads nothing\n");
+    const Json parameters = Json::parse(run_command("info '" + file + "' --json").out)["textures"][0]["parameters"];
+    REQUIRE(parameters.size() == 1);
+    CHECK(parameters[0]["choices"] == Json::array({"running", "stack"}));
+    CHECK(parameters[0]["default"] == 1);
+    CHECK(parameters[0]["maximum"] == 1);
+    const std::string eval = "eval '" + file + ":wall' --at 0,0,0 --json ";
+    CHECK(Json::parse(run_command(eval).out)["height_m"] == 0.003);
+    CHECK(Json::parse(run_command(eval + "--set bond=running").out)["height_m"] == 0.004);
+    const Ran wrong = run_command(eval + "--set bond=runing");
+    CHECK(wrong.code == 1);
+    CHECK(contains(wrong.err, "expected running or stack, found 'runing'"));
+    CHECK(contains(wrong.err, "did you mean 'running'?"));
+}
+
 TEST_CASE("info: docs/stdlib.md is what --markdown prints (./dev docs makes it anew), and its pictures are there")
 {
     const std::filesystem::path docs = std::filesystem::path(HAPTEL_SOURCE_DIR) / "docs";
