@@ -100,4 +100,53 @@ ParameterValue parse_value(std::string_view text, const ir::Parameter& parameter
                                             : read_whole(text, value, number, parameter);
 }
 
+std::span<const ir::Parameter> parameters_called(std::string_view name, const ir::Texture& texture)
+{
+    const auto is_called = [&](const ir::Parameter& parameter) {
+        const std::string_view whole = parameter.name;
+        return whole == name || (whole.starts_with(name) && whole.substr(name.size()).starts_with('.'));
+    };
+    const auto first = std::ranges::find_if(texture.parameters, is_called);
+    return {first, std::find_if_not(first, texture.parameters.end(), is_called)};
+}
+
+ParameterValues parse_values(std::string_view name, std::string_view text, const ir::Texture& texture)
+{
+    ParameterValues read{parameters_called(name, texture)};
+    const size_t count = read.parameters.size();
+    if (count == 1) read.values = {parse_value(text, read.parameters[0])};
+    if (count <= 1) return read;
+    std::vector<std::string_view> parts;
+    for (size_t begin = 0; begin <= text.size(); begin += parts.back().size() + 1)
+        parts.push_back(text.substr(begin, text.find(',', begin) - begin));
+    if (parts.size() != count) {
+        std::string example;
+        for (const ir::Parameter& parameter : read.parameters)
+            example += (example.empty() ? "" : ", ") + shortest(parameter.value);
+        read.values = {fail("expected " + std::to_string(count) + " numbers, found '" + printable(text) + "'",
+                            "write them with commas between: " + example)};
+        return read;
+    }
+    for (size_t i = 0; i < count; ++i) {
+        ParameterValue value = parse_value(parts[i], read.parameters[i]);
+        if (!value.error.empty()) {
+            read.values = {std::move(value)};
+            return read;
+        }
+        read.values.push_back(std::move(value));
+    }
+    return read;
+}
+
+std::vector<std::string> parameter_names(const ir::Texture& texture)
+{
+    std::vector<std::string> names;
+    for (const ir::Parameter& parameter : texture.parameters) {
+        const std::string whole = parameter.name.substr(0, parameter.name.find('.'));
+        if (whole != parameter.name && std::ranges::find(names, whole) == names.end()) names.push_back(whole);
+        names.push_back(parameter.name);
+    }
+    return names;
+}
+
 } // namespace haptel::lang

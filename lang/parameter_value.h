@@ -4,8 +4,10 @@
 
 #include "lang/ir/ir.h"
 
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace haptel::lang {
 
@@ -19,5 +21,16 @@ struct ParameterValue {
 // `text` is any bytes; blanks around it do not count. A real number may lie outside its range, which is for sliders; a
 // whole number may not, because loops and tables rely on it.
 ParameterValue parse_value(std::string_view text, const ir::Parameter& parameter);
+
+// Of all that a name sets: a parameter, a component "size.x", or as "size" every component, in the text "21cm, 7cm".
+struct ParameterValues {
+    std::span<const ir::Parameter> parameters; // of the texture, one behind the other; none: nothing has this name
+    std::vector<ParameterValue> values = {};   // one for each; after a mistake one alone, which says what is wrong
+};
+ParameterValues parse_values(std::string_view name, std::string_view text, const ir::Texture& texture);
+std::span<const ir::Parameter> parameters_called(std::string_view name, const ir::Texture& texture);
+
+// Every name that sets something, "size" before "size.x".
+std::vector<std::string> parameter_names(const ir::Texture& texture);
 
 } // namespace haptel::lang

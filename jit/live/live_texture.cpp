@@ -216,12 +216,12 @@ private:
         TextureRequest fitting = request;
         const haptel_texture* texture = program.find(reference.texture);
         if (!texture) return fitting; // make_binding says so
-        const std::vector<ir::Parameter>& known = program.source_of(*texture).parameters;
+        const ir::Texture& source = program.source_of(*texture);
         std::erase_if(fitting.parameters, [&](const auto& parameter) {
             const auto& [name, value] = parameter;
-            const auto found = std::ranges::find(known, name, &ir::Parameter::name);
+            const lang::ParameterValues read = lang::parse_values(name, value, source);
             const std::string fault =
-                found == known.end() ? "there is no such parameter now" : lang::parse_value(value, *found).error;
+                read.parameters.empty() ? "there is no such parameter now" : read.values.front().error;
             if (!fault.empty())
                 notes += lang::printable(reference.file) + ": note: the value " + lang::printable(value) + " of '" +
                          lang::printable(name) + "' is set aside: " + fault + "\n";

@@ -44,23 +44,26 @@ private:
     }
 };
 
-template <typename Items>
-std::string list_of(const Items& items)
+std::vector<std::string> names_of(std::span<const haptel_texture> textures)
+{
+    std::vector<std::string> names;
+    for (const haptel_texture& texture : textures) names.emplace_back(texture.name);
+    return names;
+}
+
+std::string list_of(const std::vector<std::string>& names)
 {
     std::string list;
-    for (const auto& item : items) list += (list.empty() ? "" : ", ") + std::string(item.name);
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
     return list;
 }
 
-template <typename Items>
-std::string did_you_mean(std::string_view name, const Items& items, const std::string& kind)
+std::string did_you_mean(std::string_view name, const std::vector<std::string>& names, const std::string& kind)
 {
-    std::vector<std::string_view> names;
-    for (const auto& item : items) names.push_back(item.name);
     if (names.empty()) return "it has none";
-    const std::string_view nearest = near_name(name, names).name;
+    const std::string_view nearest = near_name(name, {names.begin(), names.end()}).name;
     if (!nearest.empty()) return "did you mean '" + std::string(nearest) + "'?";
-    return "it has the " + kind + " " + list_of(items);
+    return "it has the " + kind + " " + list_of(names);
 }
 
 void report_no_texture(const CompiledProgram& program, std::string_view name, Findings& findings)
@@ -68,16 +71,17 @@ void report_no_texture(const CompiledProgram& program, std::string_view name, Fi
     const std::span<const haptel_texture> textures = program.textures();
     if (!name.empty())
         findings.error("this file has no texture '" + lang::printable(name) + "'",
-                       did_you_mean(name, textures, "textures"));
+                       did_you_mean(name, names_of(textures), "textures"));
     else if (textures.empty())
         findings.error("this file has no texture");
     else
-        findings.error("which texture of this file is meant?", "it has " + list_of(textures) + ": write FILE:NAME");
+        findings.error("which texture of this file is meant?",
+                       "it has " + list_of(names_of(textures)) + ": write FILE:NAME");
 }
 
-std::string place_of(const ir::Parameter& parameter, const ir::Texture& texture)
+std::string place_of(std::string_view name, const ir::Texture& texture)
 {
-    return "parameter '" + parameter.name + "' of texture '" + texture.name + "'";
+    return "parameter '" + std::string(name) + "' of texture '" + texture.name + "'";
 }
 
 // By Texture::parameters: the defaults, then what the request says. An image without a picture is flat, which is worth
@@ -87,26 +91,27 @@ std::vector<Argument> arguments_of(const ir::Texture& texture, const TextureRequ
     std::vector<Argument> arguments;
     for (const ir::Parameter& parameter : texture.parameters) arguments.push_back({parameter.value, nullptr});
     for (const auto& [name, text] : request.parameters) {
-        const auto found = std::ranges::find(texture.parameters, name, &ir::Parameter::name);
-        if (found == texture.parameters.end()) {
+        const auto [set, values] = lang::parse_values(name, text, texture);
+        if (set.empty()) {
             findings.error("texture '" + texture.name + "' has no parameter '" + lang::printable(name) + "'",
-                           did_you_mean(name, texture.parameters, "parameters"));
+                           did_you_mean(name, lang::parameter_names(texture), "parameters"));
             continue;
         }
-        const std::string of = place_of(*found, texture) + ": ";
-        const lang::ParameterValue parsed = lang::parse_value(text, *found);
-        if (!parsed.error.empty()) findings.error(of + parsed.error, parsed.hint);
-        if (!parsed.warning.empty())
-            findings.remark("warning: " + of + parsed.warning, "it is taken as it is: is the unit meant?");
-        ImageFile read;
-        if (found->type == ir::Type::image) read = read_image(text, request.folder);
-        if (!read.error.empty()) findings.error(of + read.error, read.hint);
-        arguments[static_cast<size_t>(found - texture.parameters.begin())] = {parsed.value, std::move(read.image),
-                                                                              lang::printable(text), read.grain};
+        const std::string of = place_of(name, texture) + ": ";
+        for (size_t i = 0; i < values.size(); ++i) {
+            if (!values[i].error.empty()) findings.error(of + values[i].error, values[i].hint);
+            if (!values[i].warning.empty())
+                findings.remark("warning: " + of + values[i].warning, "it is taken as it is: is the unit meant?");
+            ImageFile read;
+            if (set[i].type == ir::Type::image) read = read_image(text, request.folder);
+            if (!read.error.empty()) findings.error(of + read.error, read.hint);
+            arguments[static_cast<size_t>(&set[i] - texture.parameters.data())] = {
+                values[i].value, std::move(read.image), lang::printable(text), read.grain};
+        }
     }
     for (size_t i = 0; i < arguments.size(); ++i)
         if (texture.parameters[i].type == ir::Type::image && arguments[i].file.empty())
-            findings.remark("warning: " + place_of(texture.parameters[i], texture) +
+            findings.remark("warning: " + place_of(texture.parameters[i].name, texture) +
                                 " has no picture and is flat, 0 everywhere",
                             "name a file: " + texture.parameters[i].name + " = \"dents.png\"");
     return arguments;
@@ -128,7 +133,7 @@ void note_grain(const ir::Texture& texture, const std::vector<Argument>& argumen
         const double white_m = std::max(std::fabs(white.height_max_m - black.height_max_m),
                                         std::fabs(white.height_min_m - black.height_min_m));
         for (const GrainNote& said : grain_notes(argument.grain, argument.file, white_m))
-            findings.remark("note: " + place_of(texture.parameters[i], texture) + ": " + said.message, said.hint);
+            findings.remark("note: " + place_of(texture.parameters[i].name, texture) + ": " + said.message, said.hint);
     }
 }
 

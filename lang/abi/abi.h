@@ -91,6 +91,9 @@ typedef struct {
     uint32_t operations_max; /* worst case per call; 0: not counted */
 } haptel_facts;
 
+/* A number or an image. The components of a vector `size` are parameters of their own, size.x, size.y, one behind the
+ * other.
+ */
 typedef struct {
     const char *name, *unit, *doc;
     uint32_t type, offset;          /* offset in bytes from the start of the block */

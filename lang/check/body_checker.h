@@ -96,7 +96,9 @@ private:
     void check_parameter(ast::TextureParameter& tree, CheckedTexture& texture);
     const Choices* choices_of(const std::vector<ast::Name>& names);
     void declare_choices(const std::vector<ast::Name>& names);
-    std::optional<double> check_constant(ast::Expression& e, Type type, const std::string& where);
+    std::vector<double> check_constant(ast::Expression& e, Type type, const std::string& where, bool is_range);
+    bool check_range(const ast::TextureParameter& tree, CheckedParameter& made, bool has_value,
+                     const std::vector<double>& minimum, const std::vector<double>& maximum);
 
     struct Variable {
         uint64_t assigned = 0; // a bit per component; of an array, per element

@@ -158,7 +158,8 @@ const TextureParameter* first_too_many(const Texture& tree)
 {
     size_t numbers = 0;
     for (const TextureParameter& parameter : tree.parameters) {
-        numbers += 1 + parameter.choices.size();
+        const auto type = type_named(parameter.type.base.text);
+        numbers += (type ? std::max(type->components(), 1u) : 1) + parameter.choices.size();
         if (numbers > parameters_max) return &parameter;
     }
     return nullptr;
@@ -335,12 +336,13 @@ private:
                 }
                 made.type = checked->symbol->type;
                 made.value = parameter.value.get();
-                if (made.type == float_type)
-                    made.value_parts = {checked->value};
-                else if (made.type == bool_type)
-                    made.value_parts = {checked->value != 0};
-                else if (is_integer(made.type))
-                    made.value_parts = {static_cast<uint32_t>(static_cast<int64_t>(checked->value))};
+                for (const CheckedParameter::Component& component : checked->components)
+                    if (made.type.scalar == Scalar::float_)
+                        made.value_parts.emplace_back(component.value);
+                    else if (made.type == bool_type)
+                        made.value_parts.emplace_back(component.value != 0);
+                    else if (is_integer(made.type))
+                        made.value_parts.emplace_back(static_cast<uint32_t>(static_cast<int64_t>(component.value)));
                 if (is_integer(made.type)) made.held = checked->symbol->range;
                 made.choices = checked->choices;
                 ++checked;
@@ -407,7 +409,7 @@ private:
             if (const TextureParameter* const beyond = first_too_many(tree)) {
                 diagnostics.error(beyond->name.span, "too-large",
                                   "expected at most " + std::to_string(parameters_max) +
-                                      " parameters and choices of a texture");
+                                      " numbers and choices as parameters of a texture");
                 continue;
             }
             CheckedTexture texture;

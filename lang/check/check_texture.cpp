@@ -24,7 +24,9 @@ std::string unit_in(const Expression& e)
 {
     if (auto literal = std::get_if<NumberLiteral>(&e.node)) return std::string(si_unit(literal->unit));
     std::string unit;
-    if (std::holds_alternative<Unary>(e.node) || std::holds_alternative<Chain>(e.node))
+    const auto call = std::get_if<CallExpression>(&e.node); // vec2(21cm, 7cm)
+    if (std::holds_alternative<Unary>(e.node) || std::holds_alternative<Chain>(e.node) ||
+        (call && call->target.is_constructor))
         for (const Expression* operand : operands_of(e))
             if (unit.empty()) unit = unit_in(*operand);
     return unit;
@@ -137,28 +139,35 @@ void BodyChecker::check_output(TextureParameter& tree, CheckedTexture& texture)
     if (is_sound) texture.outputs.push_back({&symbol, output->writes});
 }
 
-// A constant number or bool outside of any body; nothing once a mistake was reported.
-std::optional<double> BodyChecker::check_constant(Expression& e, Type type, const std::string& where)
+// The components of a constant outside of any body; none once a mistake was reported. The end of a vector's range may
+// be one number for all of them.
+std::vector<double> BodyChecker::check_constant(Expression& e, Type type, const std::string& where, bool is_range)
 {
     const uint32_t reports = diagnostics.reports();
     expression(e);
-    require(e, type, where);
-    if (diagnostics.reports() != reports) return std::nullopt;
+    const Type wanted = is_range && type.is_vector() && e.type.is_scalar() ? float_type : type;
+    require(e, wanted, where);
+    if (diagnostics.reports() != reports) return {};
     if (const Expression* culprit = first_not_constant(e)) {
         diagnostics.error(culprit->span, "not-constant", "expected a value known when the texture is compiled" + where,
                           "literals, global constants and built-in functions of them are");
-        return std::nullopt;
+        return {};
     }
-    return as_number(context.constants.value(e, type).front(), type);
+    std::vector<double> numbers;
+    for (const ConstantPart& part : context.constants.value(e, wanted)) numbers.push_back(as_number(part, wanted));
+    numbers.resize(type.components(), numbers.front());
+    return numbers;
 }
 
 void BodyChecker::check_parameter(TextureParameter& tree, CheckedTexture& texture)
 {
     const std::string name = quoted(tree.name.text);
     Type type = resolve_type(context, tree.type);
-    if (!type.is_error() && (!type.is_scalar() || type == void_type || tree.type.is_array)) {
+    const bool is_vector = type.is_vector() && type.scalar == Scalar::float_;
+    const bool may_be_set = (type.is_scalar() && type != void_type) || is_vector;
+    if (!type.is_error() && (!may_be_set || tree.type.is_array)) {
         diagnostics.error(tree.type.base.span, "type-mismatch",
-                          "a parameter of a texture is a float, int, uint, bool or image, found " +
+                          "a parameter of a texture is a float, int, uint, bool, vec2, vec3, vec4 or image, found " +
                               (tree.type.is_array ? "a table" : to_string(type)),
                           !type.is_scalar() ? "take the components as parameters of their own" : "");
         type = Type::error();
@@ -169,12 +178,15 @@ void BodyChecker::check_parameter(TextureParameter& tree, CheckedTexture& textur
         type = int_type; // as it was meant
     }
     Symbol& symbol = declare(tree.name, SymbolKind::texture_parameter, type);
-    symbol.slot = static_cast<uint32_t>(texture.parameters.size());
+    symbol.slot = texture.parameters.empty() ? 0
+                                             : texture.parameters.back().symbol->slot +
+                                                   static_cast<uint32_t>(texture.parameters.back().components.size());
     symbol.read_only = "it is a parameter of the texture";
     symbol.is_parameter = true;
     CheckedParameter& made = texture.parameters.emplace_back();
     made.tree = &tree;
     made.symbol = &symbol;
+    made.components.resize(type.is_vector() ? type.size : 1);
     if (type == image_type) {
         const Expression* given = tree.value ? tree.value.get() : tree.minimum.get();
         if (given)
@@ -185,27 +197,29 @@ void BodyChecker::check_parameter(TextureParameter& tree, CheckedTexture& textur
     }
     // Where nothing of the texture is known, and of a preset in the file that it has it from.
     if (!tree.choices.empty()) made.choices = choices_of(tree.choices);
-    const auto constant = [&](Expression& e, const std::string& where) {
+    const auto constant = [&](Expression& e, const std::string& where, bool is_range = false) {
         const bool is_own = !context.scopes || e.span.file >= context.scopes->size();
         BodyChecker around(context, is_own ? scope : (*context.scopes)[e.span.file]);
         around.choices = made.choices;
-        return around.check_constant(e, type, where);
+        return around.check_constant(e, type, where, is_range);
     };
-    const auto value = tree.value ? constant(*tree.value, " as the default of " + name) : std::nullopt;
+    const std::vector<double> value =
+        tree.value ? constant(*tree.value, " as the default of " + name) : std::vector<double>{};
     for (const Expression* e : {tree.value.get(), tree.minimum.get(), tree.maximum.get()})
         if (e && made.unit.empty()) made.unit = unit_in(*e);
-    made.value = value.value_or(0);
-    if (!std::isfinite(made.value)) {
+    const bool is_finite = std::ranges::all_of(value, [](double number) { return std::isfinite(number); });
+    if (!is_finite)
         diagnostics.error(tree.value->span, "not-finite", "the default of " + name + " is not a finite number");
-        made.value = 0;
-    }
+    const bool has_value = !value.empty() && is_finite;
+    for (size_t i = 0; has_value && i < value.size(); ++i) made.components[i].value = value[i];
     if (made.choices) {
         declare_choices(tree.choices);
         const auto last = static_cast<int64_t>(tree.choices.size()) - 1;
-        made.minimum = 0;
-        made.maximum = static_cast<double>(last);
+        CheckedParameter::Component& only = made.components.front();
+        only.minimum = 0;
+        only.maximum = static_cast<double>(last);
         symbol.range = ir::IntRange{0, last};
-        if (value && (made.value < made.minimum || made.value > made.maximum))
+        if (has_value && (only.value < only.minimum || only.value > only.maximum))
             diagnostics.error(tree.value->span, "default-out-of-range",
                               "the default " + printable(context.sources.text(tree.value->span)) + " of " + name +
                                   " is none of its choices, 0 .. " + std::to_string(last),
@@ -216,22 +230,40 @@ void BodyChecker::check_parameter(TextureParameter& tree, CheckedTexture& textur
         diagnostics.error(join(tree.minimum->span, tree.maximum->span), "type-mismatch", "a bool has no range");
         return;
     }
-    const auto minimum = constant(*tree.minimum, " as the least value of " + name);
-    const auto maximum = constant(*tree.maximum, " as the greatest value of " + name);
-    if (!minimum || !maximum) return;
+    const std::vector<double> minimum = constant(*tree.minimum, " as the least value of " + name, true);
+    const std::vector<double> maximum = constant(*tree.maximum, " as the greatest value of " + name, true);
+    if (minimum.empty() || maximum.empty()) return;
+    if (check_range(tree, made, has_value, minimum, maximum) && is_integer(type))
+        symbol.range = ir::IntRange{static_cast<int64_t>(minimum[0]), static_cast<int64_t>(maximum[0])};
+}
+
+// The range that was read, for each component. False if it is none.
+bool BodyChecker::check_range(const TextureParameter& tree, CheckedParameter& made, bool has_value,
+                              const std::vector<double>& minimum, const std::vector<double>& maximum)
+{
     const auto shown = [&](const Expression& e) { return printable(context.sources.text(e.span)); };
-    const std::string range = shown(*tree.minimum) + " .. " + shown(*tree.maximum);
-    if (!(*minimum <= *maximum)) {
-        diagnostics.error(join(tree.minimum->span, tree.maximum->span), "empty-range",
-                          "the range " + range + " of " + name + " is empty, expected the lesser value first");
-        return;
-    }
-    made.minimum = *minimum;
-    made.maximum = *maximum;
-    if (is_integer(type)) symbol.range = ir::IntRange{static_cast<int64_t>(*minimum), static_cast<int64_t>(*maximum)};
-    if (value && (made.value < made.minimum || made.value > made.maximum))
+    const std::string name = quoted(tree.name.text), range = shown(*tree.minimum) + " .. " + shown(*tree.maximum);
+    const auto of_component = [&](size_t i) {
+        return minimum.size() > 1 ? std::string(" in its component ") + "xyzw"[i] : "";
+    };
+    for (size_t i = 0; i < minimum.size(); ++i)
+        if (!(minimum[i] <= maximum[i])) {
+            diagnostics.error(join(tree.minimum->span, tree.maximum->span), "empty-range",
+                              "the range " + range + " of " + name + " is empty" + of_component(i) +
+                                  ", expected the lesser value first");
+            return false;
+        }
+    for (size_t i = 0; i < minimum.size(); ++i) {
+        CheckedParameter::Component& component = made.components[i];
+        component.minimum = minimum[i];
+        component.maximum = maximum[i];
+        if (!has_value || (component.value >= minimum[i] && component.value <= maximum[i])) continue;
         diagnostics.error(tree.value->span, "default-out-of-range",
-                          "the default " + shown(*tree.value) + " of " + name + " is outside of its range " + range);
+                          "the default " + shown(*tree.value) + " of " + name + " is outside of its range " + range +
+                              of_component(i));
+        has_value = false; // told
+    }
+    return true;
 }
 
 } // namespace haptel::lang

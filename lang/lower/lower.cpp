@@ -26,18 +26,21 @@ void lay_out(ir::Texture& made, const CheckedTexture& texture)
 {
     uint32_t end = sizeof(haptel_block_head);
     for (const CheckedParameter& parameter : texture.parameters) {
-        ir::Parameter& place = made.parameters.emplace_back();
-        place.name = parameter.tree->name.text;
-        place.unit = parameter.unit;
-        place.doc = parameter.tree->doc;
-        place.type = ir_type(parameter.symbol->type);
-        place.value = parameter.value;
-        place.minimum = parameter.minimum;
-        place.maximum = parameter.maximum;
-        place.offset = aligned(end, size_in_block(place.type));
-        place.span = parameter.tree->span;
-        for (const ast::Name& choice : parameter.tree->choices) place.choices.push_back(choice.text);
-        end = place.offset + size_in_block(place.type);
+        const size_t count = parameter.components.size();
+        for (size_t i = 0; i < count; ++i) {
+            ir::Parameter& place = made.parameters.emplace_back();
+            place.name = parameter.tree->name.text + (count > 1 ? std::string(".") + "xyzw"[i] : "");
+            place.unit = parameter.unit;
+            place.doc = parameter.tree->doc;
+            place.type = ir_type(parameter.symbol->type);
+            place.value = parameter.components[i].value;
+            place.minimum = parameter.components[i].minimum;
+            place.maximum = parameter.components[i].maximum;
+            place.offset = aligned(end, size_in_block(place.type));
+            place.span = parameter.tree->span;
+            for (const ast::Name& choice : parameter.tree->choices) place.choices.push_back(choice.text);
+            end = place.offset + size_in_block(place.type);
+        }
     }
     made.block_size = aligned(end, alignof(double));
 }

@@ -144,9 +144,11 @@ Values BodyLowering::lower(const Expression& e, const NameExpression& node)
     case SymbolKind::table: return constant(symbol.value, symbol.type);
     case SymbolKind::input: return input(symbol.input);
     case SymbolKind::texture_parameter: {
-        Value value = builder.texture_parameter(symbol.slot, ir_type(symbol.type));
-        if (symbol.range) value = held(value, *symbol.range); // whatever the block holds
-        return {value};
+        Values values;
+        for (uint32_t i = 0; i < symbol.type.components(); ++i)
+            values.push_back(builder.texture_parameter(symbol.slot + i, ir_type(symbol.type)));
+        if (symbol.range) values[0] = held(values[0], *symbol.range); // whatever the block holds
+        return values;
     }
     case SymbolKind::function: break;
     }

@@ -20,13 +20,17 @@ struct CheckFile {
 };
 
 struct CheckedParameter {
+    // Who sets it sets numbers: a vector is as many parameters as it has components.
+    struct Component {
+        double value = 0; // SI; int, uint and bool as numbers
+        double minimum = -std::numeric_limits<double>::infinity();
+        double maximum = std::numeric_limits<double>::infinity();
+    };
     const Symbol* symbol = nullptr;
     const ast::TextureParameter* tree = nullptr;
-    const Choices* choices = nullptr; // null: it has none
-    std::string unit;                 // SI: "m", "rad", "s", "Hz"; empty: a plain number
-    double value = 0;                 // SI; int, uint and bool as numbers
-    double minimum = -std::numeric_limits<double>::infinity();
-    double maximum = std::numeric_limits<double>::infinity();
+    const Choices* choices = nullptr;  // null: it has none
+    std::string unit;                  // SI: "m", "rad", "s", "Hz"; empty: a plain number
+    std::vector<Component> components; // one, but for vectors
 };
 
 // "out float stiffness_scale": a variable of the body that is 1 until the body assigns it.

@@ -332,9 +332,10 @@ TextureParameter Grammar::texture_parameter()
     } else if (needs_default && !lost) {
         parameter.value = unknown(parameter.name.span);
         if (const std::string& type = parameter.type.base.text; is_type_word(type)) { // else enough is said
+            const std::string one = type.starts_with("vec") ? type + "(1.0)" : "1.0";
             diagnostics.error(parameter.name.span, "missing-default",
                               "the parameter '" + parameter.name.text + "' needs a default value",
-                              "for example " + type + " " + parameter.name.text + " = 1.0 in 0.0 .. 10.0");
+                              "for example " + type + " " + parameter.name.text + " = " + one + " in 0.0 .. 10.0");
             lost = !at(Token::kw_in) && !at(Token::comma) && !at(Token::right_paren); // "float depth 1mm"
         }
     }

@@ -36,7 +36,7 @@ enum class SymbolKind : uint8_t {
     local,             // variable, value parameter of a function, loop counter
     constant,          // `const` whose value is known; `value` holds it
     table,             // constant table; `value` holds the cells, component after component
-    texture_parameter, // `slot` is its index in the texture
+    texture_parameter, // `slot` is its index in the texture, that of its first component
     input,             // `input` says which
     function,          // parameter that is a function, known when its owner is lowered; `slot` counts such parameters
 };

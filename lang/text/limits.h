@@ -16,8 +16,8 @@ constexpr size_t word_bytes_max = 4096;
 constexpr size_t textures_max = 1'000; // of a file: each is differentiated, and bounded by `check`
 // Functions of one name in one file: every call looks at all of them.
 constexpr size_t overloads_max = 256;
-// Of a function, in numbers; of a texture, in parameters and names of choices. What depends on which of them takes a
-// bit for each value.
+// Of a function or a texture, in numbers, with the names of choices. What depends on which of them takes a bit for
+// each value.
 constexpr size_t parameters_max = 1'000;
 // Variables of one body: every `if` and `for` asks what each of them is behind it.
 constexpr size_t variables_max = 1'000;

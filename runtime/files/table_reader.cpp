@@ -275,14 +275,26 @@ std::vector<std::pair<std::string, std::string>> TableReader::values_as_written(
                                             std::string(key) + "`, found " + kind_of(*node));
         return values;
     }
+    const auto as_written = [](const toml::node& value) -> std::optional<std::string> {
+        if (value.is_string()) return *value.value<std::string>();
+        if (value.is_number() || value.is_boolean()) return kind_of(value);
+        return std::nullopt;
+    };
     for (const auto& [name, value] : *table) {
-        if (value.is_string())
-            values.emplace_back(name.str(), *value.value<std::string>());
-        else if (value.is_number() || value.is_boolean())
-            values.emplace_back(name.str(), kind_of(value));
+        std::optional<std::string> text = as_written(value);
+        if (const toml::array* list = value.as_array(); list && list->size() > 1) { // of a vector
+            text = "";
+            for (const toml::node& one : *list) {
+                const std::optional<std::string> part = text ? as_written(one) : std::nullopt;
+                text = part ? std::optional(*text + (&one == &list->front() ? "" : ", ") + *part) : std::nullopt;
+            }
+        }
+        if (text)
+            values.emplace_back(name.str(), std::move(*text));
         else
-            messages_.error(value.source(), "expected a number, true, false or text for parameter `" +
-                                                std::string(name.str()) + "`, found " + kind_of(value));
+            messages_.error(value.source(),
+                            "expected a number, true, false, text or, for a vector, a list of numbers for parameter `" +
+                                std::string(name.str()) + "`, found " + kind_of(value));
     }
     return values;
 }

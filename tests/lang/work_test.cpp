@@ -210,6 +210,12 @@ TEST_CASE("limits: what is too much is refused at its place, and what is at the 
     };
     CHECK(refusal(choices(999)) == "");
     CHECK(refusal(choices(1000)) == "1:15 too-large\n");
+    const auto vectors = [](size_t count) {
+        return "texture t(" + numbered(count, [](auto i) { return "vec4 a" + i + " = vec4(1.0),\n"; }) +
+               ") { return 1mm * a0.x; }";
+    };
+    CHECK(refusal(vectors(250)) == "");
+    CHECK(refusal(vectors(251)) == "251:6 too-large\n");
 
     const auto variables = [](size_t count) {
         return "texture t() {\n" + numbered(count, [](auto i) { return "float a" + i + " = 1.0;\n"; }) +

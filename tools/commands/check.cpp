@@ -130,19 +130,18 @@ void CheckRun::fix(const std::string& path)
 std::vector<double> CheckRun::values_of(const std::string& path, const ir::Texture& texture)
 {
     std::vector<double> values;
-    for (const ir::Parameter& parameter : texture.parameters) {
-        double& value = values.emplace_back(parameter.value);
-        parameter_names.push_back(parameter.name);
-        for (size_t i = 0; i < options.parameters.size(); ++i) {
-            const auto& [name, text] = options.parameters[i];
-            if (name != parameter.name) continue;
-            is_set[i] = true;
-            const lang::ParameterValue parsed = lang::parse_value(text, parameter);
-            if (parsed.error.empty())
-                value = parsed.value;
+    for (const ir::Parameter& parameter : texture.parameters) values.push_back(parameter.value);
+    std::ranges::move(lang::parameter_names(texture), std::back_inserter(parameter_names));
+    for (size_t i = 0; i < options.parameters.size(); ++i) {
+        const auto& [name, text] = options.parameters[i];
+        const auto [set, read] = lang::parse_values(name, text, texture);
+        if (set.empty()) continue;
+        is_set[i] = true;
+        for (size_t k = 0; k < read.size(); ++k)
+            if (read[k].error.empty())
+                values[static_cast<size_t>(&set[k] - texture.parameters.data())] = read[k].value;
             else
-                say("bad-value", "--set " + name + " for " + texture.name + ": " + parsed.error, parsed.hint, path);
-        }
+                say("bad-value", "--set " + name + " for " + texture.name + ": " + read[k].error, read[k].hint, path);
     }
     return values;
 }
@@ -204,8 +203,7 @@ TextureRequest CheckRun::request_for(const ir::Texture& texture) const
     request.footprint_m = options.footprint_m;
     request.normal_turn_max_per_m = report.normal_turn_per_m;
     for (const auto& value : options.parameters)
-        for (const ir::Parameter& parameter : texture.parameters)
-            if (value.first == parameter.name) request.parameters.push_back(value);
+        if (!lang::parameters_called(value.first, texture).empty()) request.parameters.push_back(value);
     return request;
 }
 

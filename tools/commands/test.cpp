@@ -1,5 +1,6 @@
 // haptel test: is every texture's gradient the gradient of its height, to rounding?
 #include "jit/check/check_gradient.h"
+#include "lang/parameter_value.h"
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"
 #include "tools/arguments/texture_files.h"
@@ -61,9 +62,9 @@ void TestRun::test(const TextureTarget& target, const std::shared_ptr<const jit:
 {
     TestedTexture tested{target.file, name, {}, {}, 0};
     request.parameters.clear(); // each texture takes the values whose names it has
-    for (const ir::Parameter& parameter : program->source_of(*program->find(name)).parameters)
-        for (const auto& value : options.parameters)
-            if (value.first == parameter.name) request.parameters.push_back(value);
+    const ir::Texture& source = program->source_of(*program->find(name));
+    for (const auto& value : options.parameters)
+        if (!lang::parameters_called(value.first, source).empty()) request.parameters.push_back(value);
     const auto start = std::chrono::steady_clock::now();
     const TextureResult bound = jit::make_binding(program, name, request, jit::For::figures);
     if (bound.binding)

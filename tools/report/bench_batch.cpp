@@ -1,5 +1,6 @@
 #include "tools/report/bench_batch.h"
 
+#include "lang/parameter_value.h"
 #include "tools/arguments/texture_files.h"
 
 #include <algorithm>
@@ -30,8 +31,8 @@ BatchTextures batch_textures(const std::vector<std::string>& paths, const Parame
             if (!texture.height_batch || !texture.height_gradient_batch) continue;
             request.parameters.clear(); // each texture takes the values whose names it has
             for (const auto& value : parameters)
-                for (uint32_t i = 0; i < texture.parameter_count; ++i)
-                    if (value.first == texture.parameters[i].name) request.parameters.push_back(value);
+                if (!lang::parameters_called(value.first, compiled.program->source_of(texture)).empty())
+                    request.parameters.push_back(value);
             const TextureResult bound = jit::make_binding(compiled.program, texture.name, request, jit::For::figures);
             if (bound.binding)
                 found.textures.push_back({std::filesystem::path(target.file).filename().string() + ":" + texture.name,

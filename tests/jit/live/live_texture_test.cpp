@@ -276,6 +276,29 @@ TEST_CASE("values survive a reload by name and type, and sliders need no compile
     CHECK(follower.comes_to(42)); // of the last texture that compiled
 }
 
+TEST_CASE("a vector is set as a whole and by its components, a choice by its name, as long as they are there")
+{
+    const test::Folder folder;
+    folder.write("t.haptel", constant("1"));
+    Follower follower(folder);
+    const std::string shown = " { return bond == stack ? size.y : size.x; }";
+    folder.write("t.haptel", "texture t(int bond = running in {running, stack}, vec2 size = vec2(7um, 8um))" + shown);
+    CHECK(follower.comes_to(7));
+    follower.texture->set_parameter("size", "9um, 10um");
+    CHECK(follower.comes_to(9));
+    follower.texture->set_parameter("bond", "stack");
+    CHECK(follower.comes_to(10));
+    follower.texture->set_parameter("size.y", "11um");
+    CHECK(follower.comes_to(11));
+    folder.write("t.haptel", "texture t(int bond = none in {none, stack}, vec3 size = vec3(5um, 6um, 7um))" + shown);
+    CHECK(follower.says("9um, 10um of 'size' is set aside: expected 3 numbers"));
+    CHECK(follower.comes_to(11));
+    folder.write("t.haptel", "texture t(int bond = running in {running, english}, vec2 size = vec2(7um, 8um)) { return "
+                             "bond == english ? size.y : size.x; }");
+    CHECK(follower.comes_to(9));
+    CHECK(follower.says("stack of 'bond' is set aside: expected running or english"));
+}
+
 TEST_CASE("an exception in a client is told, and the compile thread goes on with it and the others")
 {
     const test::Folder folder, other_folder;

@@ -91,6 +91,75 @@ TEST_CASE("height and gradient are the closed form's, and parameters come from t
     check(0.001, 1e-5, 1, 1, 0);
 }
 
+TEST_CASE("vectors and choices: by name, as the C interface lists them, and as a closed form")
+{
+    const auto program =
+        compiled("texture wall(float a = 2.0, vec2 size = vec2(21cm, 7cm) in 1cm .. 50cm, int bond = stack "
+                 "in {running, english, stack}, vec3 q = vec3(1.0, 2.0, 3.0) in vec3(0.0) .. vec3(1.0, "
+                 "5.0, 9.0)) { return 1m * (a * p.x / size.x + p.y / size.y + dot(q, vec3(1.0, 10.0, "
+                 "100.0)) + (bond == english ? 1000.0 : bond == stack ? 2000.0 : 0.0)); }");
+    const haptel_texture& texture = program->textures()[0];
+    std::string listed;
+    for (uint32_t i = 0; i < texture.parameter_count; ++i) {
+        listed += std::string(texture.parameters[i].name) + " " + std::to_string(texture.parameters[i].type) + ", ";
+        CHECK((texture.choices[i] != nullptr) == (std::string(texture.parameters[i].name) == "bond"));
+    }
+    CHECK(listed == "a 0, size.x 0, size.y 0, bond 1, q.x 0, q.y 0, q.z 0, ");
+    CHECK(std::string(texture.choices[3][0]) == "running");
+    CHECK(std::string(texture.choices[3][1]) == "english");
+    CHECK(std::string(texture.choices[3][2]) == "stack");
+    CHECK(
+        (texture.parameters[3].value == 2 && texture.parameters[3].minimum == 0 && texture.parameters[3].maximum == 2));
+    CHECK((texture.parameters[6].minimum == 0 && texture.parameters[6].maximum == 9));
+
+    TextureRequest request = request_over(0.05);
+    const auto check = [&](double sx, double sy, double bond, double q) {
+        const TextureResult bound = jit::make_binding(program, "wall", request);
+        INFO(bound.diagnostics);
+        REQUIRE(bound.binding);
+        const haptel_sample sample = sample_at(*bound.binding, {0.01, 0.02, 0});
+        CHECK(std::fabs(sample.height_m - (2 * 0.01 / sx + 0.02 / sy + q + 1000 * bond)) <= 1e-12 * (q + 1000 * bond));
+        CHECK(std::fabs(sample.gradient[0] - 2 / sx) <= 1e-14 * 2 / sx);
+        CHECK(std::fabs(sample.gradient[1] - 1 / sy) <= 1e-14 * 1 / sy);
+    };
+    check(0.21, 0.07, 2, 321);
+    request.parameters = {{"size", "10cm, 5cm"}, {"bond", "english"}, {"q.y", "4"}};
+    check(0.1, 0.05, 1, 341);
+    request.parameters = {{"size.x", "10cm"}, {"bond", "running"}, {"q", "0.5, 0, 0"}};
+    check(0.1, 0.07, 0, 0.5);
+    request.parameters = {
+        {"size.x", "10cm"}, {"size", "20cm, 20cm"}, {"size.y", "10cm"}, {"bond", "1"}}; // in their order
+    check(0.2, 0.1, 1, 321);
+
+    const auto refusal = [&](const std::string& name, const std::string& text) {
+        request.parameters = {{name, text}};
+        return jit::make_binding(program, "wall", request).diagnostics;
+    };
+    CHECK(refusal("bond", "englsh") == "error: parameter 'bond' of texture 'wall': expected running, english or stack, "
+                                       "found 'englsh'\n  hint: did you mean 'english'?\n");
+    CHECK(refusal("size", "1cm") ==
+          "error: parameter 'size' of texture 'wall': expected 2 numbers, found '1cm'\n  hint: "
+          "write them with commas between: 0.21, 0.07\n");
+    CHECK(refusal("sise", "1cm, 1cm") ==
+          "error: texture 'wall' has no parameter 'sise'\n  hint: did you mean 'size'?\n");
+    CHECK(refusal("weight", "1") == "error: texture 'wall' has no parameter 'weight'\n  hint: it has the parameters a, "
+                                    "size, size.x, size.y, bond, q, q.x, q.y, q.z\n");
+}
+
+TEST_CASE("vectors and choices: bounds over their ranges are those of a closed form")
+{
+    jit::TextureOptions options;
+    options.facts_over_ranges = true;
+    const auto made =
+        jit::compile_texture("texture t(vec2 size = vec2(2mm) in vec2(1mm, 2mm) .. vec2(3mm, 5mm), int bond = "
+                             "b in {a, b, c}) { return size.x - size.y + 1m * bond; }",
+                             options);
+    REQUIRE(made.program);
+    const haptel_facts& facts = made.program->textures()[0].facts;
+    CHECK(std::fabs(facts.height_min_m - (0.001 - 0.005)) <= 1e-12);
+    CHECK(std::fabs(facts.height_max_m - (2 + 0.003 - 0.002)) <= 1e-12);
+}
+
 TEST_CASE("material outputs: code, interpreter and closed form agree; the height is that of the texture without them")
 {
     const std::string body = "friction_scale = 1.0 + 0.5 * sin(p.x / 1mm); if (p.y > 0.0) stiffness_scale = 1.0 / p.z; "

@@ -78,8 +78,9 @@ TEST_CASE("format: parameters of a texture one per line, ranges below one anothe
                              "    return depth * fbm(p / pitch, octaves);\n"
                              "}\n";
     CHECK(formatted(text) == text);
-    CHECK(formatted("texture t(int a=x in{x,y ,z,}){return a*1mm;}") ==
-          "texture t(int a = x in {x, y, z,})\n{\n    return a * 1mm;\n}\n");
+    CHECK(
+        formatted("texture t(int a=x in{x,y ,z,},vec2 b=vec2(1mm,2mm)in vec2(0mm)..3mm){return a*b.x;}") ==
+        "texture t(int a = x in {x, y, z,}, vec2 b = vec2(1mm, 2mm) in vec2(0mm) .. 3mm)\n{\n    return a * b.x;\n}\n");
     CHECK(formatted("texture t(float depth = 60um in 0um..200um) { return depth; }") ==
           "texture t(float depth = 60um in 0um .. 200um)\n{\n    return depth;\n}\n");
 }

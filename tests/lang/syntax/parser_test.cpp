@@ -100,6 +100,7 @@ texture brushed(
     int octaves = 4 in 1..8, // not documented
     bool rough = true,
     int edge = ridge in {flat, ridge,},
+    vec2 size = vec2(1, 2) in vec2(0) .. 3.0,
     out float stiffness_scale)
 {
     return pitch;
@@ -118,6 +119,7 @@ texture brushed "Long irregular grooves,|  as left by a brush."
   int octaves = 4 in 1 .. 8
   bool rough = true
   int edge = ridge in {flat, ridge}
+  vec2 size = (call vec2 1 2) in (call vec2 0) .. 3.0
   out float stiffness_scale
   {(return pitch)}
 )");

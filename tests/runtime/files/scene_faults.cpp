@@ -107,7 +107,13 @@ TEST_CASE("what is wrong with a scene is said where it is, all at once")
         {"[[object]]\nshape = \"plane\"\nparameters = { a = 1 }\n",
          "scene.toml:3:14: error: `parameters` belong to a `texture`, but this object has none\n"},
         {"[[object]]\nshape = \"plane\"\ntexture = \"a.haptel:b\"\nparameters = { a = [1] }\n",
-         "scene.toml:4:20: error: expected a number, true, false or text for parameter `a`, found a list\n"},
+         "scene.toml:4:20: error: expected a number, true, false, text or, for a vector, a list of numbers for "
+         "parameter "
+         "`a`, found a list\n"},
+        {"[[object]]\nshape = \"plane\"\ntexture = \"a.haptel:b\"\nparameters = { a = [1, [2]] }\n",
+         "scene.toml:4:20: error: expected a number, true, false, text or, for a vector, a list of numbers for "
+         "parameter "
+         "`a`, found a list\n"},
         {"[[object]]\nshape = \"plane\"\ntexture = \"rock.haptel\"\n",
          "scene.toml:3:11: error: expected a file, a colon and the name of a texture in it, such as "
          "\"rock.haptel:rock\", found \"rock.haptel\"\n"},

@@ -69,7 +69,7 @@ damping_n_s_per_m = 2.5
 static_friction = 0.5
 dynamic_friction = 0.25
 texture = "sub/rock.haptel:rock"
-parameters = { depth = "60um", octaves = 5, sharp = true, gain = 0.5 }
+parameters = { depth = "60um", octaves = 5, sharp = true, gain = 0.5, size = ["21cm", 0.07], edge = "round" }
 [[object]]
 shape = "icosphere"
 )",
@@ -113,8 +113,12 @@ shape = "icosphere"
 
     REQUIRE(texture);
     CHECK(texture->reference == (folder.path / "sub/rock.haptel").string() + ":rock");
-    CHECK(texture->parameters == std::vector<std::pair<std::string, std::string>>{
-                                     {"depth", "60um"}, {"gain", "0.5"}, {"octaves", "5"}, {"sharp", "true"}});
+    CHECK(texture->parameters == std::vector<std::pair<std::string, std::string>>{{"depth", "60um"},
+                                                                                  {"edge", "round"},
+                                                                                  {"gain", "0.5"},
+                                                                                  {"octaves", "5"},
+                                                                                  {"sharp", "true"},
+                                                                                  {"size", "21cm, 0.07"}});
     CHECK(std::abs(texture->box_maximum_m[0] - 0.04) < 1e-9);
     CHECK(texture->footprint_m == 2 * 0.5 / 2000);
     CHECK(triangle.request->reference == texture->reference);

@@ -5,6 +5,7 @@
 #include "tests/tools/commands/run_command.h"
 #include "tools/output/json.h"
 
+#include <cmath>
 #include <set>
 #include <sstream>
 
@@ -141,25 +142,42 @@ TEST_CASE("info: a doc comment is shown whole, with ranges, dots and further lin
     CHECK(json["textures"][0]["doc"] == doc + "\nFrom 0 .. 1.");
 }
 
-TEST_CASE("info: choices, as written and as a list, and a value by its name")
+TEST_CASE("info: choices and vectors, as written and by components")
 {
     const Folder folder;
     const std::string file = folder.write(
-        "w.haptel", "texture wall(int bond = stack in {running, stack}) { return bond == stack ? 3mm : 4mm; }\n");
+        "w.haptel",
+        "texture wall(int bond = stack in {running, stack}, vec2 size = vec2(2cm, 1cm) in 1cm .. 5cm) { return "
+        "bond == stack ? 0.1 * size.x : 0.1 * size.y; }\n");
     CHECK(run_command("info '" + file + "'").out ==
-          "texture wall\n  int bond = stack in {running, stack}\n  reads nothing\n");
+          "texture wall\n  int bond = stack in {running, stack}\n  vec2 size = vec2(2cm, 1cm) in 1cm .. 5cm\n  reads "
+          "nothing\n");
     const Json parameters = Json::parse(run_command("info '" + file + "' --json").out)["textures"][0]["parameters"];
-    REQUIRE(parameters.size() == 1);
+    REQUIRE(parameters.size() == 3);
     CHECK(parameters[0]["choices"] == Json::array({"running", "stack"}));
     CHECK(parameters[0]["default"] == 1);
     CHECK(parameters[0]["maximum"] == 1);
+    CHECK(parameters[1]["name"] == "size.x");
+    CHECK(parameters[2]["name"] == "size.y");
+    CHECK(parameters[2]["default"] == 0.01);
+    CHECK(parameters[2]["maximum"] == 0.05);
+    CHECK(parameters[2]["choices"].empty());
+    // Of one tenth of a side: 3 cm is 3 mm high.
     const std::string eval = "eval '" + file + ":wall' --at 0,0,0 --json ";
-    CHECK(Json::parse(run_command(eval).out)["height_m"] == 0.003);
-    CHECK(Json::parse(run_command(eval + "--set bond=running").out)["height_m"] == 0.004);
+    CHECK(Json::parse(run_command(eval + "--set size=3cm,4cm").out)["height_m"] == 0.1 * 0.03);
+    CHECK(Json::parse(run_command(eval + "--set size=3cm,4cm --set bond=running").out)["height_m"] == 0.1 * 0.04);
+    CHECK(Json::parse(run_command(eval + "--set size.x=3cm").out)["height_m"] == 0.1 * 0.03);
     const Ran wrong = run_command(eval + "--set bond=runing");
     CHECK(wrong.code == 1);
     CHECK(contains(wrong.err, "expected running or stack, found 'runing'"));
     CHECK(contains(wrong.err, "did you mean 'running'?"));
+    const Json checked =
+        Json::parse(run_command("check --json --set size=3cm,4cm --set bond=running '" + file + "'").out);
+    CHECK(checked["diagnostics"].empty());
+    CHECK(std::abs(checked["textures"][0]["height_m"]["maximum"].get<double>() - 0.004) <= 1e-15);
+    CHECK(std::abs(checked["textures"][0]["over_ranges"]["height_m"]["maximum"].get<double>() - 0.005) <= 1e-15);
+    CHECK(std::abs(checked["textures"][0]["over_ranges"]["height_m"]["minimum"].get<double>() - 0.001) <= 1e-15);
+    CHECK(run_command("check --set bond=rock --set size=1cm '" + file + "'").code == 1);
 }
 
 TEST_CASE("info: docs/stdlib.md is what --markdown prints (./dev docs makes it anew), and its pictures are there")
