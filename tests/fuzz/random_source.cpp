@@ -25,15 +25,18 @@ public:
         line("float across(float f(vecN), const vecN v) { vecN w = vecN(0.5) - v; return f(w) - 0.5 * f(v); }");
         for (int i = static_cast<int>(below(4)); i > 0; --i) function();
         has_output = below(3) == 0;
-        line("texture t(float a = 0.7 in 0.1 .. 2.0, int k = 3 in 1 .. 5, bool b = true, uint m = 2 in 0 .. 4" +
+        line("texture t(float a = 0.7 in 0.1 .. 2.0, int k = 3 in 1 .. 5, bool b = true, uint m = 2 in 0 .. 4,");
+        line("    int e = ribbed in {plain, ribbed, dotted}, vec2 s = vec2(0.3, -1.7) in -2.0 .. 2.0,");
+        line("    vec3 r = vec3(0.5, 1.5, HALF) in vec3(0.1) .. vec3(1.0, 2.0, 4.0)" +
              std::string(has_output ? ", out float friction_scale)\n{" : ",)\n{"));
         ++indent;
         line("vec3 q = p / 1m;");
-        scope = {{"q", Kind::vec3, true},    {"a", Kind::real, false},  {"k", Kind::whole, false},
-                 {"b", Kind::truth, false},  {"m", Kind::word, false},  {"n", Kind::vec3, false},
-                 {"uv", Kind::vec2, false},  {"C1", Kind::real, false}, {"C2", Kind::real, false},
-                 {"FEW", Kind::whole, false}};
-        few = {"k", "FEW", "int(m)", "k - 1"};
+        scope = {{"q", Kind::vec3, true},     {"a", Kind::real, false},  {"k", Kind::whole, false},
+                 {"b", Kind::truth, false},   {"m", Kind::word, false},  {"n", Kind::vec3, false},
+                 {"uv", Kind::vec2, false},   {"C1", Kind::real, false}, {"C2", Kind::real, false},
+                 {"FEW", Kind::whole, false}, {"e", Kind::whole, false}, {"dotted", Kind::whole, false},
+                 {"s", Kind::vec2, false},    {"r", Kind::vec3, false}};
+        few = {"k", "FEW", "int(m)", "k - 1", "e", "dotted - e"};
         if (has_output) {
             line("friction_scale = 1.0 + abs(" + tame(2) + ");");
             scope.push_back({"friction_scale", Kind::real, true});
