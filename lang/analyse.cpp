@@ -1,5 +1,6 @@
 #include "lang/analyse.h"
 
+#include "lang/abi/outputs.h"
 #include "lang/ir/op_info.h"
 
 #include <algorithm>
@@ -173,23 +174,25 @@ bool report_jump(const ir::Texture& texture, const ir::Cause& cause, const std::
 // A scale that is no number, or would pull instead of push, counts as 1: no author means that.
 void report_scales(const ir::Texture& texture, std::span<const ir::Interval> scales, Diagnostics& diagnostics)
 {
-    constexpr const char* names[] = {"stiffness_scale", "friction_scale"}; // by bit
     size_t next = 0;
-    for (uint32_t bit = 0; bit < std::size(names); ++bit) {
-        if (!(texture.writes >> bit & 1)) continue;
-        const Span span = texture.output_spans[next];
-        const ir::Interval& scale = scales[next++];
-        const bool is_negative = scale.is_finite(); // else that is worse
-        if (is_negative && scale.minimum >= 0) continue;
-        const std::string what = scale.is_empty() ? "is not a number" : "lies in " + shown(scale);
-        diagnostics.warning(
-            span, "scale",
-            std::string(names[bit]) + " of '" + texture.name + "' may be " + (is_negative ? "negative" : "not finite") +
-                ": it " + what,
-            is_negative ? "keep it at 0 or above, with max(x, 0.0) or clamp(); where it is negative it counts as 1"
-                        : "keep it bounded, with clamp(), or its divisors away from 0; where it is not finite it "
-                          "counts as 1");
-    }
+    for_each_output(texture.writes, [&](const OutputInfo& output, size_t first) {
+        const Span span = texture.output_spans[next++];
+        for (size_t i = 0; i < output.components; ++i) {
+            const ir::Interval& scale = scales[first + i];
+            const bool is_negative = scale.is_finite(); // else that is worse
+            if (is_negative && (scale.minimum >= 0 || !output.is_scale)) continue;
+            const std::string what = scale.is_empty() ? "is not a number" : "lies in " + shown(scale);
+            const std::string counts = std::string(" it counts as ") + (output.value == 0 ? "0" : "1");
+            diagnostics.warning(
+                span, "scale",
+                component_name(output, i) + " of '" + texture.name + "' may be " +
+                    (is_negative ? "negative" : "not finite") + ": it " + what,
+                is_negative
+                    ? "keep it at 0 or above, with max(x, 0.0) or clamp(); where it is negative" + counts
+                    : "keep it bounded, with clamp(), or its divisors away from 0; where it is not finite" + counts);
+            return;
+        }
+    });
 }
 
 } // namespace

@@ -2,9 +2,9 @@
 #pragma once
 
 #include "jit/texture/texture.h"
+#include "lang/abi/outputs.h"
 #include "lang/ir/run/interpret.h"
 
-#include <array>
 #include <cstring>
 
 namespace haptel::jit {
@@ -44,16 +44,11 @@ void set_block(ir::EntryInputs<T>& inputs, const ir::Texture& texture, const voi
     }
 }
 
-// Material outputs of a height_gradient entry, 1 where the texture does not write them: {stiffness, friction}.
+// Results of a height_gradient entry that are material outputs, component by component of those that it writes.
 template <typename Results>
 auto material_outputs(const ir::Texture& texture, const Results& results)
 {
-    using Real = std::decay_t<decltype(results[0].real)>;
-    std::array<Real, 2> outputs{Real(1), Real(1)};
-    size_t next = 5;
-    for (size_t bit = 0; bit < outputs.size(); ++bit)
-        if (texture.writes >> bit & 1) outputs[bit] = results[next++].real;
-    return outputs;
+    return results.subspan(5, output_components(texture.writes));
 }
 
 // The texture of a binding of this program.

@@ -19,9 +19,8 @@ OracleSample sample_of(InterpretedTexture<ir::Quad>& interpreted, const haptel_p
         sample.gradient_digits[i] = results[1 + i].real.str(digits);
     }
     sample.faults = results[4].bits;
-    const auto outputs = material_outputs(interpreted.texture, results);
-    sample.stiffness_digits = outputs[0].str(digits);
-    sample.friction_digits = outputs[1].str(digits);
+    for (const auto& output : material_outputs(interpreted.texture, results))
+        sample.output_digits.push_back(output.real.str(digits));
     return sample;
 }
 
@@ -38,8 +37,15 @@ haptel_sample interpret_sample(const CompiledProgram& program, const TextureBind
 {
     InterpretedTexture<double> interpreted(program, binding);
     const auto results = interpreted.height_gradient(point);
-    const auto [stiffness, friction] = material_outputs(interpreted.texture, results);
-    return {results[0].real, {results[1].real, results[2].real, results[3].real}, stiffness, friction, results[4].bits};
+    haptel_sample sample = blank_sample;
+    sample.height_m = results[0].real;
+    for (size_t i = 0; i < 3; ++i) sample.gradient[i] = results[1 + i].real;
+    sample.faults = results[4].bits;
+    const auto outputs = material_outputs(interpreted.texture, results);
+    for_each_output(interpreted.texture.writes, [&](const OutputInfo& output, size_t first) {
+        for (size_t i = 0; i < output.components; ++i) components_of(sample, output)[i] = outputs[first + i].real;
+    });
+    return sample;
 }
 
 } // namespace haptel::jit

@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace haptel::jit {
 
@@ -14,7 +15,7 @@ struct OracleSample {
     double height_m = 0, gradient[3] = {}; // rounded to nearest
     uint32_t faults = 0;
     std::string height_digits, gradient_digits[3]; // 36 significant digits, in decimal; metres, metres per metre
-    std::string stiffness_digits, friction_digits; // the material outputs; "1" where the texture has none
+    std::vector<std::string> output_digits;        // of the material outputs that it writes, component by component
 };
 
 // For one thread.

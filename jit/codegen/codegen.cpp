@@ -3,7 +3,7 @@
 #include "jit/codegen/codegen_function.h"
 #include "jit/codegen/codegen_math.h"
 #include "jit/codegen/kernels.h"
-#include "lang/abi/abi.h"
+#include "lang/abi/outputs.h"
 
 #include <cstddef>
 #include <optional>
@@ -17,7 +17,8 @@ using llvm::Value;
 // A number of the sample: where it stands in haptel_sample and in haptel_samples, and which result of the entry it is.
 struct Output {
     size_t offset, array_offset;
-    std::optional<size_t> yield; // none: 1
+    std::optional<size_t> yield; // none: `value`
+    double value = 1;
 };
 
 // `faults_alone`: the result that holds the faults of the height alone, the last.
@@ -31,12 +32,12 @@ std::vector<Output> outputs_of(const EntryPoint& entry, size_t faults_alone)
         outputs.push_back({offsetof(haptel_sample, gradient) + i * sizeof(double),
                            offsetof(haptel_samples, gradient) + i * sizeof(double*), 1 + i});
     size_t next = 5;
-    const auto written = [&](uint32_t bit) {
-        return entry.texture->writes >> bit & 1 ? std::optional(next++) : std::nullopt;
-    };
-    outputs.push_back(
-        {offsetof(haptel_sample, stiffness_scale), offsetof(haptel_samples, stiffness_scale), written(0)});
-    outputs.push_back({offsetof(haptel_sample, friction_scale), offsetof(haptel_samples, friction_scale), written(1)});
+    for (const OutputInfo& info : output_table) {
+        const bool is_written = entry.texture->writes & info.writes;
+        for (size_t i = 0; i < info.components; ++i)
+            outputs.push_back({info.offset + i * sizeof(double), info.array_offset + i * sizeof(double*),
+                               is_written ? std::optional(next++) : std::nullopt, info.value});
+    }
     return outputs;
 }
 
@@ -105,7 +106,8 @@ void write_entry(ModuleEmitter& module, const EntryPoint& entry)
         FunctionEmitter emitter(module, builder, forms, {points, block, entry.texture, first, is_there});
         const Values yields = emitter.body(std::vector<Form>(source.body.yields.size(), {.in_lanes = is_batch}));
         for (const Output& output : outputs) {
-            Value* const result = output.yield ? yields[*output.yield] : llvm::ConstantFP::get(yields[0]->getType(), 1);
+            Value* const result =
+                output.yield ? yields[*output.yield] : llvm::ConstantFP::get(yields[0]->getType(), output.value);
             if (is_batch)
                 store_lanes(builder, result, at_offset(builder, samples, output.array_offset), first, is_there);
             else

@@ -1,6 +1,7 @@
 #include "jit/texture/envelope.h"
 
 #include "jit/texture/object_points.h"
+#include "lang/abi/outputs.h"
 
 #include <algorithm>
 #include <cmath>
@@ -103,7 +104,7 @@ private:
 
     haptel_sample sample(const haptel_point& point)
     {
-        haptel_sample result = {0, {0, 0, 0}, 1, 1, 0};
+        haptel_sample result = blank_sample;
         binding.texture->height_gradient(&point, binding.block, &result);
         found.minimum_m = std::min(found.minimum_m, result.height_m);
         found.maximum_m = std::max(found.maximum_m, result.height_m);

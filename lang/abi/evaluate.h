@@ -4,6 +4,7 @@
 // spared the sorting.
 #pragma once
 
+#include "lang/abi/outputs.h"
 #include "lang/abi/texture_binding.h"
 
 #include <algorithm>
@@ -38,17 +39,35 @@ public:
         haptel_points from;
         static_assert(sizeof from == sizeof arrays);
         std::memcpy(&from, arrays, sizeof from);
-        const haptel_samples to{outputs[0], {outputs[1], outputs[2], outputs[3]}, outputs[4], outputs[5], faults};
+        haptel_samples to{};
+        to.height_m = outputs[0];
+        for (std::size_t i = 0; i < 3; ++i) to.gradient[i] = outputs[1 + i];
+        to.faults = faults;
+        for_each_output(all_outputs, [&](const OutputInfo& output, std::size_t first) {
+            char* const place = reinterpret_cast<char*>(&to) + output.array_offset;
+            for (std::size_t i = 0; i < output.components; ++i) {
+                double* const array = outputs[4 + first + i];
+                std::memcpy(place + i * sizeof array, &array, sizeof array);
+            }
+        });
         entry(&from, count, block, &to);
     }
     haptel_sample sample(std::size_t i) const
     {
-        return {outputs[0][i], {outputs[1][i], outputs[2][i], outputs[3][i]}, outputs[4][i], outputs[5][i], faults[i]};
+        haptel_sample one = blank_sample;
+        one.height_m = outputs[0][i];
+        for (std::size_t axis = 0; axis < 3; ++axis) one.gradient[axis] = outputs[1 + axis][i];
+        one.faults = faults[i];
+        for_each_output(all_outputs, [&](const OutputInfo& output, std::size_t first) {
+            for (std::size_t k = 0; k < output.components; ++k)
+                components_of(one, output)[k] = outputs[4 + first + k][i];
+        });
+        return one;
     }
 
 private:
     static constexpr std::size_t reals = sizeof(haptel_point) / sizeof(double);
-    double inputs[reals][most], outputs[6][most];
+    double inputs[reals][most], outputs[4 + output_components_max][most];
     uint32_t faults[most];
 };
 

@@ -332,6 +332,8 @@ private:
                 made.type = float_type;
                 if (parameter.is_output) {
                     made.passing = Passing::out;
+                    if (const OutputInfo* output = find_output(made.name))
+                        made.type = vec(static_cast<uint8_t>(output->components));
                     continue;
                 }
                 made.type = checked->symbol->type;

@@ -1,5 +1,5 @@
 // Textures: their parameters, which are the numbers that applications and sliders set, and the material outputs.
-#include "lang/abi/abi.h"
+#include "lang/abi/outputs.h"
 #include "lang/check/body_checker.h"
 #include "lang/text/number.h"
 
@@ -12,12 +12,34 @@ using namespace ast;
 
 namespace {
 
-struct OutputName {
-    std::string_view name;
-    uint32_t writes;
-};
-constexpr OutputName output_names[] = {{"stiffness_scale", HAPTEL_WRITES_STIFFNESS_SCALE},
-                                       {"friction_scale", HAPTEL_WRITES_FRICTION_SCALE}};
+// 'out float a', 'out float b' and 'out vec3 c'
+std::string all_declarations()
+{
+    std::string all;
+    for (const OutputInfo& output : output_table) {
+        if (!all.empty()) all += &output == std::end(output_table) - 1 ? " and " : ", ";
+        all += "'out " + std::string(output.components == 1 ? "float " : "vec3 ") + std::string(output.name) + "'";
+    }
+    return all;
+}
+
+std::vector<std::string_view> all_names()
+{
+    std::vector<std::string_view> all;
+    for (const OutputInfo& output : output_table) all.push_back(output.name);
+    return all;
+}
+
+Type type_of(const OutputInfo& output)
+{
+    return vec(static_cast<uint8_t>(output.components));
+}
+
+// Where the body does not assign it.
+std::string shown_value(const OutputInfo& output)
+{
+    return output.value == 0 ? "0" : "1";
+}
 
 // SI unit of the first literal that has one.
 std::string unit_in(const Expression& e)
@@ -95,12 +117,13 @@ void BodyChecker::check_parameters(Texture& tree, CheckedTexture& texture)
 void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
 {
     check_parameters(tree, texture);
-    std::ranges::sort(texture.outputs, {}, &CheckedOutput::writes);
+    std::ranges::sort(texture.outputs, {}, &CheckedOutput::info); // they stand in the table by bit
     whole_body(tree.body, tree.name, float_type, "texture", tree.damage);
     for (const CheckedOutput& output : texture.outputs)
         if (output.symbol->parts_assigned == 0 && !context.is_library && !in_damaged_body)
             diagnostics.warning(output.symbol->span, "unassigned-output",
-                                "output " + quoted(output.symbol->name) + " is never assigned: it is always 1",
+                                "output " + quoted(output.symbol->name) + " is never assigned: it is always " +
+                                    shown_value(*output.info),
                                 "assign it in the body or leave it out");
     close_scope();
     texture.slot_count = slot_count;
@@ -109,34 +132,39 @@ void BodyChecker::check_texture(Texture& tree, CheckedTexture& texture)
 
 void BodyChecker::check_output(TextureParameter& tree, CheckedTexture& texture)
 {
-    constexpr const char* names = "a texture may write 'out float stiffness_scale' and 'out float friction_scale'";
-    const auto output = std::ranges::find(output_names, tree.name.text, &OutputName::name);
-    bool is_sound = output != std::end(output_names);
+    const OutputInfo* const output = find_output(tree.name.text);
+    bool is_sound = output != nullptr;
+    const std::string names = "a texture may write " + all_declarations();
     if (!is_sound) {
         Diagnostic& reported =
             diagnostics.error(tree.name.span, "unknown-output", "unknown output " + quoted(tree.name.text), names);
-        const NearName near = near_name(tree.name.text, {output_names[0].name, output_names[1].name});
+        const NearName near = near_name(tree.name.text, all_names());
         propose(reported, tree.name.span, near);
         unknown_names.emplace(near.name); // where it is meant it is not news
     }
     const Type type = resolve_type(context, tree.type);
-    if (!type.is_error() && (type != float_type || tree.type.is_array)) {
-        diagnostics.error(tree.type.base.span, "type-mismatch", "an output is a float", names);
+    const Type wanted = output ? type_of(*output) : float_type;
+    if (!type.is_error() && (type != wanted || tree.type.is_array)) {
+        diagnostics.error(tree.type.base.span, "type-mismatch",
+                          wanted == float_type ? "an output is a float"
+                                               : quoted(tree.name.text) + " is a " + to_string(wanted),
+                          names);
         is_sound = false;
     }
     if (tree.value || tree.minimum || !tree.choices.empty()) {
         const Span given = tree.value     ? tree.value->span
                            : tree.minimum ? tree.minimum->span
                                           : tree.choices.front().span;
-        diagnostics.error(given, "output-default",
-                          "an output has neither default nor range, expected ',' or ')' behind its name",
-                          "it is 1 until the body assigns it: " + tree.name.text + " = ...;");
+        diagnostics.error(
+            given, "output-default", "an output has neither default nor range, expected ',' or ')' behind its name",
+            (output ? "it is " + shown_value(*output) + " until the body assigns it: " : "assign it in the body: ") +
+                tree.name.text + " = ...;");
         is_sound = false;
     }
-    Symbol& symbol = declare(tree.name, SymbolKind::local, is_sound ? float_type : Type::error());
-    flow.variables[symbol.slot].assigned = all_parts; // 1 from the start
+    Symbol& symbol = declare(tree.name, SymbolKind::local, is_sound ? wanted : Type::error());
+    flow.variables[symbol.slot].assigned = all_parts; // from the start
     symbol.is_read = true;                            // by whoever called
-    if (is_sound) texture.outputs.push_back({&symbol, output->writes});
+    if (is_sound) texture.outputs.push_back({&symbol, output});
 }
 
 // The components of a constant outside of any body; none once a mistake was reported. The end of a vector's range may

@@ -1,12 +1,11 @@
 #include "lang/ir/verify.h"
 
-#include "lang/abi/abi.h"
+#include "lang/abi/outputs.h"
 #include "lang/ir/cost.h"
 #include "lang/ir/int_range.h"
 #include "lang/ir/op_info.h"
 
 #include <algorithm>
-#include <bit>
 
 namespace haptel::ir {
 namespace {
@@ -256,11 +255,10 @@ std::string verify(const Module& module)
 
     for (const Texture& texture : module.textures) {
         if (std::string problem = check_block(texture); !problem.empty()) return problem;
-        if (texture.writes & ~(HAPTEL_WRITES_STIFFNESS_SCALE | HAPTEL_WRITES_FRICTION_SCALE))
-            return "texture \"" + texture.name + "\" writes outputs that do not exist";
+        if (texture.writes & ~all_outputs) return "texture \"" + texture.name + "\" writes outputs that do not exist";
         const Type real = Type::real, faults = Type::u32;
         std::vector<Type> body{real}, gradient{real, real, real, real, faults};
-        body.resize(body.size() + static_cast<size_t>(std::popcount(texture.writes)), real);
+        body.resize(body.size() + output_components(texture.writes), real);
         gradient.insert(gradient.end(), body.begin() + 1, body.end());
         gradient.push_back(faults);
         const std::pair<uint32_t, std::vector<Type>> entries[] = {

@@ -67,12 +67,15 @@ void ModuleLowering::texture(const CheckedTexture& texture)
 
     BodyLowering body(*this, unique(made.name), texture.slot_count);
     for (const CheckedOutput& output : texture.outputs) {
-        body.variable(*output.symbol) = {body.builder.real(1)};
-        made.writes |= output.writes;
+        body.variable(*output.symbol) = Values(output.info->components, body.builder.real(output.info->value));
+        made.writes |= output.info->writes;
         made.output_spans.push_back(output.symbol->span);
     }
     Values results = body.whole_body(*texture.tree->body, float_type);
-    for (const CheckedOutput& output : texture.outputs) results.push_back(body.variable(*output.symbol)[0]);
+    for (const CheckedOutput& output : texture.outputs) {
+        const Values& components = body.variable(*output.symbol);
+        results.insert(results.end(), components.begin(), components.end());
+    }
     made.body = body.builder.finish(results);
     if (diagnostics.has_errors()) return;
 

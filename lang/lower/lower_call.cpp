@@ -1,5 +1,5 @@
 // Calls, and the functions they reach.
-#include "lang/abi/abi.h"
+#include "lang/abi/outputs.h"
 #include "lang/ir/op_info.h"
 #include "lang/lower/lowering.h"
 #include "lang/program/scope.h"
@@ -206,7 +206,8 @@ LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector
     for (ir::Facts& facts : function.facts) facts.proven = info.is_library;
     for (const ParameterInfo& parameter : info.parameters)
         if (parameter.passing == Passing::out && parameter.symbol && info.is_texture)
-            body.variable(*parameter.symbol) = {body.builder.real(1)};
+            body.variable(*parameter.symbol) =
+                Values(parameter.type.components(), body.builder.real(find_output(parameter.name)->value));
         else if (parameter.passing == Passing::out && parameter.symbol)
             body.clear(*parameter.symbol);
         else if (parameter.held && parameter.symbol)

@@ -1,6 +1,7 @@
 // A program whose every name has a meaning: what the checker makes and lowering reads.
 #pragma once
 
+#include "lang/abi/outputs.h"
 #include "lang/syntax/ast.h"
 
 #include <deque>
@@ -33,10 +34,10 @@ struct CheckedParameter {
     std::vector<Component> components; // one, but for vectors
 };
 
-// "out float stiffness_scale": a variable of the body that is 1 until the body assigns it.
+// "out float stiffness_scale": a variable of the body that has the table's value until the body assigns it.
 struct CheckedOutput {
     const Symbol* symbol = nullptr;
-    uint32_t writes = 0; // its bit, HAPTEL_WRITES_*
+    const OutputInfo* info = nullptr;
 };
 
 struct CheckedTexture {

@@ -1,11 +1,13 @@
 #include "runtime/texture/surface_texture.h"
 
+#include "lang/abi/outputs.h"
 #include "runtime/geometry/finite.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 namespace haptel::runtime {
 
@@ -56,16 +58,18 @@ void distrust(haptel_sample& sample)
     if (!finite(gradient)) sample.faults |= HAPTEL_FAULT_GRADIENT_NOT_FINITE;
     if (!height_ok || !finite(gradient))
         for (double& g : sample.gradient) g = 0;
-    for (double* scale : {&sample.stiffness_scale, &sample.friction_scale})
-        if (!std::isfinite(*scale) || *scale < 0) {
-            *scale = 1;
-            sample.faults |= HAPTEL_FAULT_OUTPUT_NOT_FINITE;
-        }
+    for (const OutputInfo& output : output_table) {
+        const std::span components(components_of(sample, output), output.components);
+        if (std::ranges::all_of(components, [&](double x) { return std::isfinite(x) && (x >= 0 || !output.is_scale); }))
+            continue;
+        std::ranges::fill(components, output.value);
+        sample.faults |= HAPTEL_FAULT_OUTPUT_NOT_FINITE;
+    }
 }
 
 haptel_sample evaluate(const TextureBinding& binding, const haptel_point& point)
 {
-    haptel_sample sample = {0, {0, 0, 0}, 1, 1, 0};
+    haptel_sample sample = blank_sample;
     binding.texture->height_gradient(&point, binding.block, &sample);
     distrust(sample);
     return sample;

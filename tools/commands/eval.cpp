@@ -1,6 +1,7 @@
 // haptel eval: height and gradient of a texture at points, by any engine.
 #include "jit/check/oracle.h"
 #include "lang/abi/evaluate.h"
+#include "lang/abi/outputs.h"
 #include "tools/arguments/precisions.h"
 #include "tools/arguments/texture_argument.h"
 #include "tools/commands/command.h"
@@ -35,7 +36,8 @@ struct EvalOptions {
 
 // What one engine says of one point: numbers as they are to be printed.
 struct Evaluated {
-    std::string height_m, gradient[3], stiffness_scale, friction_scale;
+    std::string height_m, gradient[3];
+    std::vector<std::string> outputs; // that the texture writes, component by component
     uint32_t faults = 0;
 };
 
@@ -53,28 +55,33 @@ std::string shortest(double value)
     return fmt::format("{}", value);
 }
 
-Evaluated shown(const haptel_sample& sample)
+Evaluated shown(const haptel_sample& sample, uint32_t writes)
 {
-    return {shortest(sample.height_m),
-            {shortest(sample.gradient[0]), shortest(sample.gradient[1]), shortest(sample.gradient[2])},
-            shortest(sample.stiffness_scale),
-            shortest(sample.friction_scale),
-            sample.faults};
+    Evaluated point{shortest(sample.height_m),
+                    {shortest(sample.gradient[0]), shortest(sample.gradient[1]), shortest(sample.gradient[2])},
+                    {},
+                    sample.faults};
+    for_each_output(writes, [&](const OutputInfo& output, size_t) {
+        for (size_t i = 0; i < output.components; ++i)
+            point.outputs.push_back(shortest(components_of(sample, output)[i]));
+    });
+    return point;
 }
 
-Evaluated shown(const jit::OracleSample& sample)
+Evaluated shown(const jit::OracleSample& sample, uint32_t)
 {
     const auto& g = sample.gradient_digits;
-    return {sample.height_digits, {g[0], g[1], g[2]}, sample.stiffness_digits, sample.friction_digits, sample.faults};
+    return {sample.height_digits, {g[0], g[1], g[2]}, sample.output_digits, sample.faults};
 }
 
 Evaluate make_engine(const std::string& name, const std::shared_ptr<const jit::CompiledProgram>& program,
                      const TextureBinding& binding)
 {
-    const auto one_by_one = [](auto sample) {
-        return [sample](std::span<const haptel_point> points) {
+    const uint32_t writes = binding.texture->writes;
+    const auto one_by_one = [writes](auto sample) {
+        return [sample, writes](std::span<const haptel_point> points) {
             std::vector<Evaluated> found;
-            for (const haptel_point& point : points) found.push_back(shown(sample(point)));
+            for (const haptel_point& point : points) found.push_back(shown(sample(point), writes));
             return found;
         };
     };
@@ -88,7 +95,7 @@ Evaluate make_engine(const std::string& name, const std::shared_ptr<const jit::C
         std::vector<haptel_sample> samples(points.size());
         evaluate(binding, points, samples);
         std::vector<Evaluated> found;
-        for (const haptel_sample& sample : samples) found.push_back(shown(sample));
+        for (const haptel_sample& sample : samples) found.push_back(shown(sample, writes));
         return found;
     };
 }
@@ -128,24 +135,30 @@ Engine open_engine(const EvalOptions& options)
 }
 
 struct Output {
-    const char* name;
-    std::string Evaluated::* value;
+    const OutputInfo* info;
+    size_t first; // of its components, in Evaluated::outputs
 };
 
 // Only what the texture writes.
 std::vector<Output> outputs_of(uint32_t writes)
 {
     std::vector<Output> outputs;
-    if (writes & HAPTEL_WRITES_STIFFNESS_SCALE) outputs.push_back({"stiffness_scale", &Evaluated::stiffness_scale});
-    if (writes & HAPTEL_WRITES_FRICTION_SCALE) outputs.push_back({"friction_scale", &Evaluated::friction_scale});
+    for_each_output(writes, [&](const OutputInfo& output, size_t first) { outputs.push_back({&output, first}); });
     return outputs;
+}
+
+std::string joined(const Evaluated& point, const Output& output, const char* between)
+{
+    const std::span<const std::string> values(&point.outputs[output.first], output.info->components);
+    return fmt::format("{}", fmt::join(values, between));
 }
 
 void print_text(uint32_t writes, const Evaluated& point)
 {
     fmt::print("height_m {}\ngradient {} {} {}\n", point.height_m, point.gradient[0], point.gradient[1],
                point.gradient[2]);
-    for (const Output& output : outputs_of(writes)) fmt::print("{} {}\n", output.name, point.*output.value);
+    for (const Output& output : outputs_of(writes))
+        fmt::print("{} {}\n", output.info->name, joined(point, output, " "));
     fmt::print("faults {}\n", point.faults);
 }
 
@@ -162,7 +175,10 @@ void print_json(const EvalOptions& options, uint32_t writes, const Evaluated& po
     if (!p_m.empty()) line(fmt::format("\"p_m\": [{}]", p_m));
     line(fmt::format("\"height_m\": {}", point.height_m));
     line(fmt::format("\"gradient\": [{}, {}, {}]", point.gradient[0], point.gradient[1], point.gradient[2]));
-    for (const Output& output : outputs_of(writes)) line(fmt::format("\"{}\": {}", output.name, point.*output.value));
+    for (const Output& output : outputs_of(writes)) {
+        const std::string values = joined(point, output, ", ");
+        line(fmt::format("\"{}\": {}", output.info->name, output.info->components > 1 ? "[" + values + "]" : values));
+    }
     fmt::print("{0}  \"faults\": {1}\n{0}}}", indent, point.faults);
 }
 
@@ -172,7 +188,11 @@ void print_table(const EvalOptions& options, const Engine& engine, PointTable& t
     const std::vector<Output> outputs = outputs_of(engine.writes);
     if (!options.json) {
         fmt::print("{},height_m,gx,gy,gz", table.header());
-        for (const Output& output : outputs) fmt::print(",{}", output.name);
+        for (const Output& output : outputs) {
+            if (output.info->components == 1) fmt::print(",{}", output.info->name);
+            for (size_t i = 0; i < output.info->components && output.info->components > 1; ++i)
+                fmt::print(",{}.{}", output.info->name, "xyz"[i]);
+        }
         fmt::print(",faults\n");
     }
     const char* between = "[\n  ";
@@ -181,7 +201,7 @@ void print_table(const EvalOptions& options, const Engine& engine, PointTable& t
         for (const PointTable::Row& row : rows) points.push_back(point_at(options, row.p_m));
         const std::vector<Evaluated> found = engine.evaluate(points);
         for (size_t i = 0; i < found.size(); ++i) {
-            const auto& [height_m, gradient, stiffness_scale, friction_scale, faults] = found[i];
+            const auto& [height_m, gradient, written, faults] = found[i];
             if (options.json) {
                 fmt::print("{}", std::exchange(between, ",\n  "));
                 print_json(options, engine.writes, found[i], "  ",
@@ -189,7 +209,7 @@ void print_table(const EvalOptions& options, const Engine& engine, PointTable& t
                 continue;
             }
             fmt::print("{},{},{},{},{}", rows[i].text, height_m, gradient[0], gradient[1], gradient[2]);
-            for (const Output& output : outputs) fmt::print(",{}", found[i].*output.value);
+            for (const std::string& value : written) fmt::print(",{}", value);
             fmt::print(",{}\n", faults);
         }
     }

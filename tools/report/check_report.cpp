@@ -1,6 +1,6 @@
 #include "tools/report/check_report.h"
 
-#include "lang/abi/abi.h"
+#include "lang/abi/outputs.h"
 #include "lang/ir/cost.h"
 #include "lang/ir/verify.h"
 #include "tools/report/check_cost.h"
@@ -94,11 +94,21 @@ uint64_t operations_of(const CheckedTexture& checked)
     return ir::operations_max(checked.program->module, checked.texture->height_gradient);
 }
 
+// By number of the component.
+std::vector<std::string> output_components_of(const ir::Texture& texture)
+{
+    std::vector<std::string> names;
+    for_each_output(texture.writes, [&](const OutputInfo& output, size_t) {
+        for (size_t i = 0; i < output.components; ++i) names.push_back(component_name(output, i));
+    });
+    return names;
+}
+
 // "stiffness_scale": {"minimum", "maximum", "over_ranges": {"minimum", "maximum"}}
 Json ranges_of(const CheckedTexture& checked)
 {
     Json ranges = Json::object();
-    const std::vector<std::string> names = outputs_of(*checked.texture);
+    const std::vector<std::string> names = output_components_of(*checked.texture);
     for (size_t i = 0; i < names.size(); ++i) {
         ranges[names[i]] = to_json(checked.analysis.outputs[i]);
         ranges[names[i]]["over_ranges"] = to_json(checked.analysis.outputs_over_ranges[i]);
@@ -193,8 +203,7 @@ std::vector<std::string> inputs_of(const ir::Texture& texture)
 std::vector<std::string> outputs_of(const ir::Texture& texture)
 {
     std::vector<std::string> written;
-    if (texture.writes & HAPTEL_WRITES_STIFFNESS_SCALE) written.emplace_back("stiffness_scale");
-    if (texture.writes & HAPTEL_WRITES_FRICTION_SCALE) written.emplace_back("friction_scale");
+    for_each_output(texture.writes, [&](const OutputInfo& output, size_t) { written.emplace_back(output.name); });
     return written;
 }
 
@@ -257,7 +266,8 @@ std::string CheckReport::to_text() const
     std::string text;
     for (const CheckedTexture& checked : textures) {
         const ir::TextureBounds &here = checked.analysis.at_values, &ranges = checked.analysis.over_ranges;
-        const std::vector<std::string> inputs = inputs_of(*checked.texture), outputs = outputs_of(*checked.texture);
+        const std::vector<std::string> inputs = inputs_of(*checked.texture), outputs = outputs_of(*checked.texture),
+                                       components = output_components_of(*checked.texture);
         text += fmt::format("{}:{} in a cube of {} (and over the ranges of its parameters)\n", checked.file,
                             checked.texture->name, shown_length(box_m));
         text += fmt::format("  height     {} ({})\n", shown_range(here.height, shown_length),
@@ -272,8 +282,8 @@ std::string CheckReport::to_text() const
             text += fmt::format("  curvature  {}\n",
                                 shown_bounds(here.curvature_max_per_m,
                                              has_curvature(ranges) ? ranges.curvature_max_per_m : infinity, " /m"));
-        for (size_t i = 0; i < outputs.size(); ++i)
-            text += fmt::format("  {} {} ({})\n", outputs[i], shown_range(checked.analysis.outputs[i], shown_scale),
+        for (size_t i = 0; i < components.size(); ++i)
+            text += fmt::format("  {} {} ({})\n", components[i], shown_range(checked.analysis.outputs[i], shown_scale),
                                 shown_range(checked.analysis.outputs_over_ranges[i], shown_scale));
         if (!checked.any_picture.empty())
             text += fmt::format("  picture    any, no file is set: --set {}=FILE\n",

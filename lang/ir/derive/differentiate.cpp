@@ -1,6 +1,6 @@
 #include "lang/ir/derive/differentiate.h"
 
-#include "lang/abi/abi.h"
+#include "lang/abi/outputs.h"
 #include "lang/ir/derive/derivative_emitter.h"
 
 #include <algorithm>
@@ -193,15 +193,20 @@ uint32_t Differentiator::entry(const Texture& texture, size_t directions, const 
     for (Value component : gradient) results.push_back(select(all_fine, component, zero));
     Value faults = either(height_fault, fault_unless(gradient_is_fine, HAPTEL_FAULT_GRADIENT_NOT_FINITE));
 
-    // An output that is not finite or below 0 is 1 and a fault: a scale that would pull where a surface pushes is no
-    // scale.
+    // An output that is not finite, and a scale below 0, is what it is where nobody assigns it, and a fault: a scale
+    // that would pull where a surface pushes is no scale.
     std::vector<Value> outputs;
-    for (Value yield : yields.subspan(1)) {
-        const Value output = emitter.primal(yield), is_number = is_finite(output);
-        const Value is_fine = both(is_number, builder.operation(Op::le, {builder.real(0), output}));
-        outputs.push_back(select(is_fine, output, builder.real(1)));
+    for_each_output(texture.writes, [&](const OutputInfo& output, size_t first) {
+        Value is_fine{};
+        for (size_t i = 0; i < output.components; ++i) {
+            const Value component = emitter.primal(yields[1 + first + i]), is_number = is_finite(component);
+            is_fine = i == 0 ? is_number : both(is_fine, is_number);
+            if (output.is_scale) is_fine = both(is_fine, builder.operation(Op::le, {builder.real(0), component}));
+        }
+        for (size_t i = 0; i < output.components; ++i)
+            outputs.push_back(select(is_fine, emitter.primal(yields[1 + first + i]), builder.real(output.value)));
         faults = either(faults, fault_unless(is_fine, HAPTEL_FAULT_OUTPUT_NOT_FINITE));
-    }
+    });
     results.push_back(faults);
     results.insert(results.end(), outputs.begin(), outputs.end());
     results.push_back(height_fault);
