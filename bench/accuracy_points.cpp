@@ -1,5 +1,7 @@
 #include "bench/accuracy_points.h"
 
+#include "lang/abi/outputs.h"
+
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -37,7 +39,11 @@ void Points::evaluate(haptel_batch_entry* entry, const void* block, size_t first
 
 haptel_sample Points::sample(size_t i) const
 {
-    return {numbers[0][i], {numbers[1][i], numbers[2][i], numbers[3][i]}, 1, 1, faults[i]};
+    haptel_sample one = blank_sample;
+    one.height_m = numbers[0][i];
+    for (size_t axis = 0; axis < 3; ++axis) one.gradient[axis] = numbers[1 + axis][i];
+    one.faults = faults[i];
+    return one;
 }
 
 Truth::Truth(const jit::CompiledTextures& exact, const TextureBinding& binding, const Points& points)

@@ -66,7 +66,7 @@ void set_times(std::vector<PrecisionFigures>& figures, const std::vector<Texture
     for (size_t round = 0; round < rounds; ++round)
         for (size_t i = 0; i < figures.size(); ++i) {
             const haptel_texture& texture = *bindings[i].texture;
-            haptel_sample sample{};
+            haptel_sample sample = blank_sample;
             one[i].push_back(nanoseconds_per_point(points_timed / 8, [&] {
                 for (size_t k = 0; k < points_timed / 8; ++k) {
                     haptel_point point = some[k];
@@ -74,8 +74,9 @@ void set_times(std::vector<PrecisionFigures>& figures, const std::vector<Texture
                     texture.height_gradient(&point, bindings[i].block, &sample);
                 }
             }));
-            many[i].push_back(nanoseconds_per_point(
-                points_timed, [&] { arrays->run(texture.height_gradient_batch, points_timed, bindings[i].block); }));
+            many[i].push_back(nanoseconds_per_point(points_timed, [&] {
+                arrays->run(texture.height_gradient_batch, points_timed, bindings[i].block, texture.writes);
+            }));
         }
     for (size_t i = 0; i < figures.size(); ++i) {
         figures[i].one_point_ns = median(one[i]);

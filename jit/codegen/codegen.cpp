@@ -34,6 +34,7 @@ std::vector<Output> outputs_of(const EntryPoint& entry, size_t faults_alone)
     size_t next = 5;
     for (const OutputInfo& info : output_table) {
         const bool is_written = entry.texture->writes & info.writes;
+        if (!is_written && !(info.writes & outputs_always_written)) continue;
         for (size_t i = 0; i < info.components; ++i)
             outputs.push_back({info.offset + i * sizeof(double), info.array_offset + i * sizeof(double*),
                                is_written ? std::optional(next++) : std::nullopt, info.value});

@@ -28,13 +28,19 @@ enum {
 };
 
 /* Bits of haptel_texture::writes: outputs beyond height and gradient. */
-enum { HAPTEL_WRITES_STIFFNESS_SCALE = 1u << 0, HAPTEL_WRITES_FRICTION_SCALE = 1u << 1 };
+enum {
+    HAPTEL_WRITES_STIFFNESS_SCALE = 1u << 0,
+    HAPTEL_WRITES_FRICTION_SCALE = 1u << 1,
+    HAPTEL_WRITES_STATIC_FRICTION_SCALE = 1u << 2,
+    HAPTEL_WRITES_DYNAMIC_FRICTION_SCALE = 1u << 3,
+    HAPTEL_WRITES_DAMPING_SCALE = 1u << 4
+};
 
 /* Bits of haptel_sample::faults. */
 enum {
     HAPTEL_FAULT_HEIGHT_NOT_FINITE = 1u << 0,   /* height and gradient were set to 0 */
     HAPTEL_FAULT_GRADIENT_NOT_FINITE = 1u << 1, /* gradient was set to 0 */
-    HAPTEL_FAULT_OUTPUT_NOT_FINITE = 1u << 2    /* a material output was set to 1 */
+    HAPTEL_FAULT_OUTPUT_NOT_FINITE = 1u << 2    /* a material output was set to what it is where none is written */
 };
 
 /* haptel_parameter::type */
@@ -80,6 +86,8 @@ typedef struct {
     double stiffness_scale; /* 1 unless the texture says otherwise */
     double friction_scale;  /* 1 unless the texture says otherwise */
     uint32_t faults;
+    /* From here on an entry writes only what `writes` names: a caller whose sample ends above may call it otherwise. */
+    double static_friction_scale, dynamic_friction_scale, damping_scale;
 } haptel_sample;
 
 /* Proven bounds over a box and a set of parameter values. Infinity: unbounded or not found. */
@@ -120,6 +128,7 @@ typedef struct {
 typedef struct {
     double *height_m, *gradient[3], *stiffness_scale, *friction_scale;
     uint32_t* faults;
+    double *static_friction_scale, *dynamic_friction_scale, *damping_scale; /* as in haptel_sample */
 } haptel_samples;
 
 /* Each sample is that of the entry for one point, bit for bit. */

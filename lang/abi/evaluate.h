@@ -32,8 +32,10 @@ public:
                 std::memcpy(&inputs[real][i], place, sizeof(double));
         }
     }
-    void run(haptel_batch_entry* entry, std::size_t count, const void* block)
+    // `writes`: HAPTEL_WRITES_* of the texture.
+    void run(haptel_batch_entry* entry, std::size_t count, const void* block, uint32_t writes)
     {
+        written = writes | outputs_always_written;
         const double* arrays[reals];
         for (std::size_t i = 0; i < reals; ++i) arrays[i] = inputs[i];
         haptel_points from;
@@ -43,7 +45,7 @@ public:
         to.height_m = outputs[0];
         for (std::size_t i = 0; i < 3; ++i) to.gradient[i] = outputs[1 + i];
         to.faults = faults;
-        for_each_output(all_outputs, [&](const OutputInfo& output, std::size_t first) {
+        for_each_output(written, [&](const OutputInfo& output, std::size_t first) {
             char* const place = reinterpret_cast<char*>(&to) + output.array_offset;
             for (std::size_t i = 0; i < output.components; ++i) {
                 double* const array = outputs[4 + first + i];
@@ -58,7 +60,7 @@ public:
         one.height_m = outputs[0][i];
         for (std::size_t axis = 0; axis < 3; ++axis) one.gradient[axis] = outputs[1 + axis][i];
         one.faults = faults[i];
-        for_each_output(all_outputs, [&](const OutputInfo& output, std::size_t first) {
+        for_each_output(written, [&](const OutputInfo& output, std::size_t first) {
             for (std::size_t k = 0; k < output.components; ++k)
                 components_of(one, output)[k] = outputs[4 + first + k][i];
         });
@@ -68,7 +70,7 @@ public:
 private:
     static constexpr std::size_t reals = sizeof(haptel_point) / sizeof(double);
     double inputs[reals][most], outputs[4 + output_components_max][most];
-    uint32_t faults[most];
+    uint32_t faults[most], written = 0;
 };
 
 // samples[i] becomes what height_gradient says of points[i], bit for bit; as many samples as points. Several threads
@@ -78,7 +80,10 @@ inline void evaluate(const TextureBinding& binding, std::span<const haptel_point
 {
     const haptel_texture& texture = *binding.texture;
     if (texture.size < offsetof(haptel_texture, choices) || !texture.height_gradient_batch) {
-        for (std::size_t i = 0; i < points.size(); ++i) texture.height_gradient(&points[i], binding.block, &samples[i]);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            samples[i] = blank_sample;
+            texture.height_gradient(&points[i], binding.block, &samples[i]);
+        }
         return;
     }
     constexpr std::size_t group = 256; // fits the nearest cache
@@ -86,7 +91,7 @@ inline void evaluate(const TextureBinding& binding, std::span<const haptel_point
     for (std::size_t first = 0; first < points.size(); first += group) {
         const std::span<const haptel_point> some = points.subspan(first, std::min(group, points.size() - first));
         arrays.set(some, texture.reads);
-        arrays.run(texture.height_gradient_batch, some.size(), binding.block);
+        arrays.run(texture.height_gradient_batch, some.size(), binding.block, texture.writes);
         for (std::size_t i = 0; i < some.size(); ++i) samples[first + i] = arrays.sample(i);
     }
 }

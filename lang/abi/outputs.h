@@ -30,9 +30,19 @@ inline constexpr OutputInfo output_table[] = {
      offsetof(haptel_samples, stiffness_scale), "times the object's stiffness"},
     {"friction_scale", HAPTEL_WRITES_FRICTION_SCALE, 1, 1, true, offsetof(haptel_sample, friction_scale),
      offsetof(haptel_samples, friction_scale), "times both friction coefficients of the object"},
+    {"static_friction_scale", HAPTEL_WRITES_STATIC_FRICTION_SCALE, 1, 1, true,
+     offsetof(haptel_sample, static_friction_scale), offsetof(haptel_samples, static_friction_scale),
+     "times the object's static friction, beside friction_scale"},
+    {"dynamic_friction_scale", HAPTEL_WRITES_DYNAMIC_FRICTION_SCALE, 1, 1, true,
+     offsetof(haptel_sample, dynamic_friction_scale), offsetof(haptel_samples, dynamic_friction_scale),
+     "times the object's dynamic friction, beside friction_scale"},
+    {"damping_scale", HAPTEL_WRITES_DAMPING_SCALE, 1, 1, true, offsetof(haptel_sample, damping_scale),
+     offsetof(haptel_samples, damping_scale), "times the object's damping"},
 };
 
 inline constexpr uint32_t all_outputs = (1u << std::size(output_table)) - 1;
+// Those that every entry writes, whether its texture does or not.
+inline constexpr uint32_t outputs_always_written = HAPTEL_WRITES_STIFFNESS_SCALE | HAPTEL_WRITES_FRICTION_SCALE;
 inline constexpr std::size_t output_components_max = [] {
     std::size_t count = 0;
     for (const OutputInfo& output : output_table) count += output.components;
@@ -84,6 +94,6 @@ inline const double* components_of(const haptel_sample& sample, const OutputInfo
 }
 
 // What a sample is before a texture writes to it.
-inline constexpr haptel_sample blank_sample = {0, {0, 0, 0}, 1, 1, 0};
+inline constexpr haptel_sample blank_sample = {0, {0, 0, 0}, 1, 1, 0, 1, 1, 1};
 
 } // namespace haptel

@@ -122,9 +122,9 @@ private:
     struct ObjectForce {
         glm::dvec3 force_n{0}; // world frame
         double height_m = 0;
-        // What the texture leaves of the friction coefficients: its own scale, times the share of the depth below the
+        // What the texture leaves of the friction coefficients: its own scales, times the share of the depth below the
         // base surface that is also below the texture.
-        double friction_share = 0;
+        double static_share = 0, dynamic_share = 0;
         double surface_j = 0, held_j = 0; // in the spring of the surface, and with that of friction
         uint32_t faults = 0;
         bool textured = false, band_limited = false; // a texture was evaluated, with less detail than it has
@@ -177,7 +177,7 @@ private:
                                const Contact& contact) const noexcept;
     ObjectForce force_at(const Foot& foot, const Body& body, Touched& touched, const Placement& placement,
                          const Contact& contact) noexcept;
-    double damping_n(const Body& body, const Material& material, const Placement& placement, const Contact& contact,
+    double damping_n(const Body& body, double n_s_per_m, const Placement& placement, const Contact& contact,
                      const glm::dvec3& normal, double depth_m, double stiffness_n_per_m) const noexcept;
     double work_j(const OnHand& on_hand, const DevicePose& from, const DevicePose& to) const noexcept;
     void limit_and_send(TickResult& result, double lever_m, double left_work_j) noexcept;

@@ -98,7 +98,7 @@ void Renderer::render_object(Body& body, std::span<const Contact> contacts, cons
         if (!contact.by_shaft) {
             const Material& material = touched.object->material;
             MeanFriction& end = contact.along == 0 ? body.tip_friction : body.tail_friction;
-            end.add({material.static_friction * force.friction_share, material.dynamic_friction * force.friction_share},
+            end.add({material.static_friction * force.static_share, material.dynamic_friction * force.dynamic_share},
                     material.stiffness_n_per_m * contact.depth_m);
         }
         if (&contact != rows.data()) continue;
@@ -124,9 +124,8 @@ bool Renderer::feels_in_air(const Body& body, const DevicePose& pose) noexcept
 }
 
 // Along the normal, where the stylus touches; never more than the spring pulls back.
-double Renderer::damping_n(const Body& body, const Material& material, const Placement& placement,
-                           const Contact& contact, const glm::dvec3& normal, double depth_m,
-                           double stiffness_n_per_m) const noexcept
+double Renderer::damping_n(const Body& body, double n_s_per_m, const Placement& placement, const Contact& contact,
+                           const glm::dvec3& normal, double depth_m, double stiffness_n_per_m) const noexcept
 {
     const auto in_object = [&](const HandVelocity& own, const HandVelocity& world) {
         return body.motion ? own.m_per_s() : placement.direction_to_object(world.m_per_s());
@@ -134,8 +133,8 @@ double Renderer::damping_n(const Body& body, const Material& material, const Pla
     glm::dvec3 velocity = in_object(body.velocity, velocity_);
     if (contact.along > 0) velocity += contact.along * (in_object(body.tail_velocity, tail_velocity_) - velocity);
     const double scale = hand_.workspace.scale;
-    const double damping = material.damping_n_s_per_m / scale * -glm::dot(velocity, normal) *
-                           std::min(1.0, depth_m / (scale * full_damping_depth_m));
+    const double damping =
+        n_s_per_m / scale * -glm::dot(velocity, normal) * std::min(1.0, depth_m / (scale * full_damping_depth_m));
     return std::max(damping, -stiffness_n_per_m * depth_m);
 }
 
@@ -145,7 +144,8 @@ Renderer::ObjectForce Renderer::force_by_shaft(const Body& body, const Material&
 {
     ObjectForce result;
     const double stiffness = material.stiffness_n_per_m / hand_.workspace.scale;
-    const double damping = damping_n(body, material, placement, contact, contact.normal, contact.depth_m, stiffness);
+    const double damping =
+        damping_n(body, material.damping_n_s_per_m, placement, contact, contact.normal, contact.depth_m, stiffness);
     result.force_n = placement.direction_to_world((stiffness * contact.depth_m + damping) * contact.normal);
     result.held_j = stiffness * contact.depth_m * contact.depth_m / 2;
     return result;
@@ -182,7 +182,8 @@ void Renderer::ObjectForce::mix_in(const ObjectForce& other, double share, const
     surface_j = std::lerp(surface_j, other.surface_j, share);
     held_j = std::lerp(held_j, other.held_j, share);
     height_m = std::lerp(height_m, other.height_m, share);
-    friction_share = std::lerp(friction_share, other.friction_share, share);
+    static_share = std::lerp(static_share, other.static_share, share);
+    dynamic_share = std::lerp(dynamic_share, other.dynamic_share, share);
     faults |= other.faults;
     textured |= other.textured;
     band_limited |= other.band_limited;
@@ -220,14 +221,15 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
 
     result.height_m = texture.height_m;
     result.faults = texture.faults;
-    result.friction_share =
-        contact.depth_m > 0 ? texture.friction_scale * std::min(1.0, elastic.depth_m / contact.depth_m) : 0.0;
+    const double below = contact.depth_m > 0 ? std::min(1.0, elastic.depth_m / contact.depth_m) : 0.0;
+    result.static_share = texture.static_friction_scale * below;
+    result.dynamic_share = texture.dynamic_friction_scale * below;
     if (elastic.depth_m == 0) return result; // below the base surface, but not yet below the texture
 
     result.surface_j = felt_stiffness * elastic.depth_m * elastic.depth_m / 2;
     result.held_j = result.surface_j + felt_stiffness * glm::dot(contact.lag_m, contact.lag_m) / 2;
-    const double damping =
-        damping_n(body, object.material, placement, contact, foot.normal, elastic.depth_m, felt_stiffness);
+    const double damping = damping_n(body, object.material.damping_n_s_per_m * texture.damping_scale, placement,
+                                     contact, foot.normal, elastic.depth_m, felt_stiffness);
     result.force_n =
         placement.direction_to_world(elastic.force_n + felt_stiffness * contact.lag_m + damping * foot.normal);
     return result;

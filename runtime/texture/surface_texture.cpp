@@ -43,12 +43,12 @@ bool take_in(haptel_point& point, const SurfacePoint& at, uint32_t reads)
 
 // Bindings are made by code that is not ours: the guarantees of abi.h are checked again at the last door before the
 // motors.
-void distrust(haptel_sample& sample)
+void distrust(haptel_sample& sample, uint32_t writes)
 {
     glm::dvec3 gradient(sample.gradient[0], sample.gradient[1], sample.gradient[2]);
     const double sum = sample.height_m + gradient.x + gradient.y + gradient.z; // finite if they are not too large
-    if (std::isfinite(sum + sample.stiffness_scale + sample.friction_scale) && sample.stiffness_scale >= 0 &&
-        sample.friction_scale >= 0)
+    if (!(writes & ~outputs_always_written) && std::isfinite(sum + sample.stiffness_scale + sample.friction_scale) &&
+        sample.stiffness_scale >= 0 && sample.friction_scale >= 0)
         return;
     const bool height_ok = std::isfinite(sample.height_m);
     if (!height_ok) {
@@ -71,7 +71,7 @@ haptel_sample evaluate(const TextureBinding& binding, const haptel_point& point)
 {
     haptel_sample sample = blank_sample;
     binding.texture->height_gradient(&point, binding.block, &sample);
-    distrust(sample);
+    distrust(sample, binding.texture->writes);
     return sample;
 }
 
@@ -83,7 +83,9 @@ TextureSample felt_within(const TextureBinding& binding, const haptel_sample& sa
     result.raised_m = std::max(0.0, sample.height_m - std::min(0.0, binding.facts.height_min_m));
     result.gradient = {sample.gradient[0], sample.gradient[1], sample.gradient[2]};
     result.stiffness_scale = sample.stiffness_scale;
-    result.friction_scale = sample.friction_scale;
+    result.static_friction_scale = sample.friction_scale * sample.static_friction_scale;
+    result.dynamic_friction_scale = sample.friction_scale * sample.dynamic_friction_scale;
+    result.damping_scale = sample.damping_scale;
     result.faults = sample.faults;
     if (sample.height_m - binding.facts.height_max_m > bound_slack_m) {
         result.gradient = glm::dvec3(0);
@@ -162,7 +164,9 @@ TextureSample mixed(const TextureSample& from, const TextureSample& to, double s
             .raised_m = mix(from.raised_m, to.raised_m),
             .gradient = mix(from.gradient, to.gradient),
             .stiffness_scale = mix(from.stiffness_scale, to.stiffness_scale),
-            .friction_scale = mix(from.friction_scale, to.friction_scale),
+            .static_friction_scale = mix(from.static_friction_scale, to.static_friction_scale),
+            .dynamic_friction_scale = mix(from.dynamic_friction_scale, to.dynamic_friction_scale),
+            .damping_scale = mix(from.damping_scale, to.damping_scale),
             .faults = from.faults | to.faults};
 }
 

@@ -37,7 +37,7 @@ struct TextureSample {
     double envelope_m = 0;  // height - h_max, <= 0
     double raised_m = 0;    // height - min(h_min, 0), >= 0: as published where that is never below 0
     glm::dvec3 gradient{0}; // dh/dp, metres per metre: what of it is along the surface counts
-    double stiffness_scale = 1, friction_scale = 1;
+    double stiffness_scale = 1, static_friction_scale = 1, dynamic_friction_scale = 1, damping_scale = 1;
     uint32_t faults = 0; // HAPTEL_FAULT_* and the bits above
 };
 

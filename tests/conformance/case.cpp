@@ -74,17 +74,23 @@ bool read_word(Evaluation& into, const std::string& name, const std::string& val
     for (const auto& [word, place] : given)
         if (name == word) return read_numbers(value, place.first, place.second);
     if (name == "gradient") return read_numbers(value, into.gradient.emplace().data(), 3);
+    if (const OutputInfo* output = find_output(name.starts_with("out.") ? name.substr(4)
+                                               : name == "stiffness"    ? "stiffness_scale"
+                                               : name == "friction"     ? "friction_scale"
+                                                                        : "")) {
+        std::vector<double> components(output->components);
+        const bool is_read = read_numbers(value, components.data(), components.size());
+        into.outputs.emplace_back(output->name, std::move(components));
+        return is_read;
+    }
     if (!read_number(value, number)) return false;
     if (name == "faults") {
         into.faults = static_cast<uint32_t>(number);
         return true;
     }
-    std::optional<double>* expected = name == "height"      ? &into.height
-                                      : name == "stiffness" ? &into.stiffness
-                                      : name == "friction"  ? &into.friction
-                                                            : nullptr;
-    if (expected) *expected = number;
-    return expected != nullptr;
+    if (name != "height") return false;
+    into.height = number;
+    return true;
 }
 
 Evaluation evaluation_in(const std::string& text, std::string& malformed)

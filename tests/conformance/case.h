@@ -8,9 +8,9 @@
 //   //= p=1,2,0 set.depth=0.001 height=0.25 gradient=0,0.5,0
 //
 // is a value of the last texture, in SI units: what is given (p n uv time center extent footprint n_dp uv_dp set.NAME),
-// then what must come out (height gradient faults stiffness friction) to `within=` relative (1e-14); a 0 must be
-// exactly 0, and -0 that; oracle=0 leaves out the oracle, which overflows later. What is not expected is not looked at,
-// but faults are 0 unless told otherwise.
+// then what must come out (height gradient faults stiffness friction, and out.NAME of any output) to `within=` relative
+// (1e-14); a 0 must be exactly 0, and -0 that; oracle=0 leaves out the oracle, which overflows later. What is not
+// expected is not looked at, but faults are 0 unless told otherwise.
 //
 //   //@ bounds     the findings of the analysis of bounds are expected too
 //   //@ strict     warnings are errors
@@ -18,7 +18,7 @@
 //   //--- lib.haptel    from here on the text of a file that may be imported under this name
 #pragma once
 
-#include "lang/abi/abi.h"
+#include "lang/abi/outputs.h"
 #include "lang/compile.h"
 
 #include <array>
@@ -43,7 +43,8 @@ struct Evaluation {
     haptel_block_head head{};
     std::vector<std::pair<std::string, std::string>> parameters; // name, plain number or choice
 
-    std::optional<double> height, stiffness, friction;
+    std::optional<double> height;
+    std::vector<std::pair<std::string, std::vector<double>>> outputs; // name, components
     std::optional<std::array<double, 3>> gradient;
     uint32_t faults = 0;
     double within = 1e-14;
@@ -70,7 +71,7 @@ struct Outcome {
     double height = 0;
     std::array<double, 3> gradient{};
     uint32_t faults = 0;
-    double stiffness = 1, friction = 1;
+    haptel_sample sample = blank_sample; // its outputs; the rest is above
 };
 // Likewise; `engine` says who found it.
 std::string value_differences(const Evaluation& expected, const std::string& engine, const Outcome& found);

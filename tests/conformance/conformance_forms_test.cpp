@@ -38,7 +38,7 @@ struct Program {
 
 haptel_sample sample(const TextureBinding& binding, const haptel_point& point)
 {
-    haptel_sample both{}, alone{};
+    haptel_sample both = blank_sample, alone{};
     binding.texture->height_gradient(&point, binding.block, &both);
     binding.texture->height(&point, binding.block, &alone);
     CHECK(same(both.height_m, alone.height_m));

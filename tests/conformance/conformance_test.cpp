@@ -78,9 +78,10 @@ Outcome evaluated(const ir::Module& module, const Evaluation& at)
     outcome.height = real(results[0]);
     for (size_t i = 0; i < 3; ++i) outcome.gradient[i] = real(results[1 + i]);
     outcome.faults = std::get<uint32_t>(results[4]);
-    size_t next = 5;
-    if (texture.writes & HAPTEL_WRITES_STIFFNESS_SCALE) outcome.stiffness = real(results[next++]);
-    if (texture.writes & HAPTEL_WRITES_FRICTION_SCALE) outcome.friction = real(results[next++]);
+    for_each_output(texture.writes, [&](const OutputInfo& output, size_t first) {
+        for (size_t i = 0; i < output.components; ++i)
+            components_of(outcome.sample, output)[i] = real(results[5 + first + i]);
+    });
     return outcome;
 }
 

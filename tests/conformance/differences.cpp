@@ -51,14 +51,15 @@ std::string finding_differences(const Case& wanted, const CompileResult& result)
 std::string value_differences(const Evaluation& expected, const std::string& engine, const Outcome& found)
 {
     std::string differences;
-    const auto compare = [&](const char* name, double is, double should) {
+    const auto compare = [&](const std::string& name, double is, double should) {
         if (!agrees(is, should, expected.within))
             differences += engine + ": expected " + name + " " + shown(should) + ", found " + shown(is) + ": " +
                            expected.line + "\n";
     };
     if (expected.height) compare("height", found.height, *expected.height);
-    if (expected.stiffness) compare("stiffness", found.stiffness, *expected.stiffness);
-    if (expected.friction) compare("friction", found.friction, *expected.friction);
+    for (const auto& [name, components] : expected.outputs)
+        for (size_t i = 0; i < components.size(); ++i)
+            compare(name, components_of(found.sample, *find_output(name))[i], components[i]);
     for (size_t i = 0; expected.gradient && i < 3; ++i) compare("gradient", found.gradient[i], (*expected.gradient)[i]);
     compare("faults", found.faults, expected.faults);
     return differences;

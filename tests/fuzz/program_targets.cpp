@@ -189,7 +189,9 @@ struct Lanes {
         std::memcpy(&points, arrays, sizeof points);
         std::vector<double> found[4];
         for (auto& numbers : found) numbers.resize(expected.size());
-        haptel_samples samples{found[0].data(), {found[1].data(), found[2].data(), found[3].data()}, {}, {}, {}};
+        haptel_samples samples{};
+        samples.height_m = found[0].data();
+        for (size_t i = 0; i < 3; ++i) samples.gradient[i] = found[1 + i].data();
         entry(&points, expected.size(), block, &samples);
         for (size_t i = 0; i < expected.size(); ++i)
             for (size_t j = 0; j < 4; ++j)

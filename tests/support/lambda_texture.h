@@ -1,6 +1,7 @@
 // Textures made of C++ functions, so that the runtime is tested without a compiler.
 #pragma once
 
+#include "lang/abi/outputs.h"
 #include "lang/abi/texture_binding.h"
 
 #include <glm/glm.hpp>
@@ -18,7 +19,7 @@ using HeightFunction = std::function<double(const haptel_point&, glm::dvec3& gra
 inline constexpr uint32_t reads_everything =
     HAPTEL_READS_POINT | HAPTEL_READS_NORMAL | HAPTEL_READS_UV | HAPTEL_READS_TIME;
 
-// Writes the whole sample, which comes with material scales of 1 and the rest 0.
+// Writes the whole sample, which comes blank (outputs.h).
 using SampleFunction = std::function<void(const haptel_point&, haptel_sample&)>;
 
 // A binding of the function, whose height is promised to stay within [minimum, maximum].
@@ -40,11 +41,11 @@ inline TextureBinding sample_lambda(SampleFunction function, double minimum_m, d
     owner->texture.abi = HAPTEL_ABI_VERSION;
     owner->texture.size = sizeof(haptel_texture);
     owner->texture.reads = reads;
-    owner->texture.writes = HAPTEL_WRITES_STIFFNESS_SCALE | HAPTEL_WRITES_FRICTION_SCALE;
+    owner->texture.writes = all_outputs;
     owner->texture.block_size = sizeof(Block);
     owner->texture.name = "lambda";
     owner->texture.height_gradient = [](const haptel_point* point, const void* block, haptel_sample* sample) {
-        *sample = {0, {0, 0, 0}, 1, 1, 0};
+        *sample = blank_sample;
         (*static_cast<const Block*>(block)->function)(*point, *sample);
     };
 

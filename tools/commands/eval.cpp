@@ -188,11 +188,8 @@ void print_table(const EvalOptions& options, const Engine& engine, PointTable& t
     const std::vector<Output> outputs = outputs_of(engine.writes);
     if (!options.json) {
         fmt::print("{},height_m,gx,gy,gz", table.header());
-        for (const Output& output : outputs) {
-            if (output.info->components == 1) fmt::print(",{}", output.info->name);
-            for (size_t i = 0; i < output.info->components && output.info->components > 1; ++i)
-                fmt::print(",{}.{}", output.info->name, "xyz"[i]);
-        }
+        for (const Output& output : outputs)
+            for (size_t i = 0; i < output.info->components; ++i) fmt::print(",{}", component_name(*output.info, i));
         fmt::print(",faults\n");
     }
     const char* between = "[\n  ";

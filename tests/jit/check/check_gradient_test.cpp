@@ -1,5 +1,6 @@
 // The check that finds wrong gradients: it must pass what is right and fail what is wrong by little.
 #include "jit/check/check_gradient.h"
+#include "lang/abi/outputs.h"
 #include "tests/jit/codegen/samples.h"
 
 #include <cmath>
@@ -126,7 +127,9 @@ TEST_CASE("a wrong gradient of a texture without source fails, a right one passe
     const haptel_block_head block{};
     TextureBinding binding{nullptr, &texture, &block, {-1, 1, 1, 1, 0, 0}};
     const auto sine = [](const haptel_point* at, const void*, haptel_sample* sample) {
-        *sample = {1e-4 * std::sin(at->p[0] / 1e-3), {0.1 * std::cos(at->p[0] / 1e-3), 0, 0}, 1, 1, 0};
+        *sample = blank_sample;
+        sample->height_m = 1e-4 * std::sin(at->p[0] / 1e-3);
+        sample->gradient[0] = 0.1 * std::cos(at->p[0] / 1e-3);
     };
     texture.height_gradient = sine;
     const jit::GradientCheck right = jit::check_gradient(binding, {});
@@ -134,7 +137,9 @@ TEST_CASE("a wrong gradient of a texture without source fails, a right one passe
     CHECK(right.passed());
     CHECK_FALSE(right.gradient_error_oracle);
     texture.height_gradient = [](const haptel_point* at, const void*, haptel_sample* sample) {
-        *sample = {1e-4 * std::sin(at->p[0] / 1e-3), {0.1001 * std::cos(at->p[0] / 1e-3), 0, 0}, 1, 1, 0};
+        *sample = blank_sample;
+        sample->height_m = 1e-4 * std::sin(at->p[0] / 1e-3);
+        sample->gradient[0] = 0.1001 * std::cos(at->p[0] / 1e-3);
     };
     const jit::GradientCheck wrong = jit::check_gradient(binding, {});
     CHECK_FALSE(wrong.passed());

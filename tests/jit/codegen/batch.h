@@ -1,9 +1,10 @@
 // Points side by side, as a batch entry takes them.
 #pragma once
 
-#include "lang/abi/abi.h"
+#include "lang/abi/outputs.h"
 #include "tests/jit/codegen/engines.h"
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -22,19 +23,34 @@ struct Batch {
         for (size_t j = 0; j < inputs.size(); ++j) arrays[j] = inputs[j].data();
         static_assert(sizeof points == sizeof arrays);
         std::memcpy(&points, arrays, sizeof points);
-        samples = {outputs[0].data(),
-                   {outputs[1].data(), outputs[2].data(), outputs[3].data()},
-                   outputs[4].data(),
-                   outputs[5].data(),
-                   faults.data()};
+        samples.height_m = outputs[0].data();
+        for (size_t i = 0; i < 3; ++i) samples.gradient[i] = outputs[1 + i].data();
+        samples.faults = faults.data();
+        for_each_output(all_outputs, [&](const OutputInfo& output, size_t first) {
+            for (size_t i = 0; i < output.components; ++i) {
+                std::vector<double>& array = outputs[4 + first + i];
+                std::fill(array.begin(), array.end(), output.value);
+                double* const start = array.data();
+                std::memcpy(reinterpret_cast<char*>(&samples) + output.array_offset + i * sizeof start, &start,
+                            sizeof start);
+            }
+        });
     }
     haptel_sample sample(size_t i) const
     {
-        return {outputs[0][i], {outputs[1][i], outputs[2][i], outputs[3][i]}, outputs[4][i], outputs[5][i], faults[i]};
+        haptel_sample one = blank_sample;
+        one.height_m = outputs[0][i];
+        for (size_t axis = 0; axis < 3; ++axis) one.gradient[axis] = outputs[1 + axis][i];
+        one.faults = faults[i];
+        for_each_output(all_outputs, [&](const OutputInfo& output, size_t first) {
+            for (size_t k = 0; k < output.components; ++k) components_of(one, output)[k] = outputs[4 + first + k][i];
+        });
+        return one;
     }
 
     size_t count;
-    std::vector<std::vector<double>> inputs, outputs = std::vector(6, std::vector<double>(count));
+    std::vector<std::vector<double>> inputs,
+        outputs = std::vector(4 + output_components_max, std::vector<double>(count));
     std::vector<uint32_t> faults = std::vector<uint32_t>(count);
     haptel_points points{};
     haptel_samples samples{};
@@ -42,8 +58,10 @@ struct Batch {
 
 inline bool same(const haptel_sample& a, const haptel_sample& b)
 {
-    bool equal = a.faults == b.faults && same(a.height_m, b.height_m) && same(a.stiffness_scale, b.stiffness_scale) &&
-                 same(a.friction_scale, b.friction_scale);
+    bool equal = a.faults == b.faults && same(a.height_m, b.height_m);
+    for (const OutputInfo& output : output_table)
+        for (size_t i = 0; i < output.components; ++i)
+            equal = equal && same(components_of(a, output)[i], components_of(b, output)[i]);
     for (size_t i = 0; i < 3; ++i) equal = equal && same(a.gradient[i], b.gradient[i]);
     return equal;
 }

@@ -50,11 +50,12 @@ TEST_CASE("batches of every texture of the library and of the examples have the 
             const std::vector<haptel_point> points = random_points(203, random);
             Batch batch(points), heights(points);
             texture.height_gradient_batch(&batch.points, batch.count, result.binding->block, &batch.samples);
-            heights.samples = {heights.outputs[0].data(), {}, nullptr, nullptr, nullptr};
+            heights.samples = {};
+            heights.samples.height_m = heights.outputs[0].data();
             texture.height_batch(&heights.points, heights.count, result.binding->block, &heights.samples);
             size_t different = 0;
             for (size_t i = 0; i < points.size(); ++i) {
-                haptel_sample one{};
+                haptel_sample one = blank_sample;
                 texture.height_gradient(&points[i], result.binding->block, &one);
                 different += !same(one, batch.sample(i)) || !test::same(one.height_m, heights.outputs[0][i]);
             }
@@ -86,7 +87,7 @@ TEST_CASE("reals to whole numbers: lanes saturate as one point does, in every pr
             texture.height_gradient_batch(&batch.points, batch.count, &block, &batch.samples);
             for (size_t i = 0; i < points.size(); ++i) {
                 INFO(expression << " of " << points[i].p[0] << " in precision " << int(precision));
-                haptel_sample one{};
+                haptel_sample one = blank_sample;
                 texture.height_gradient(&points[i], &block, &one);
                 CHECK(same(one, batch.sample(i)));
                 const bool is_signed = expression[6] == 'i';
@@ -130,7 +131,7 @@ TEST_CASE("reals to whole numbers: what is too large becomes the greatest there 
                 const int64_t whole = x >= double(most) ? most : x <= double(least) ? least : int64_t(x);
                 const int64_t shown =
                     is_signed ? (whole > 0 ? whole - 2147483520 : whole + 2147483520) : (whole & 4095);
-                haptel_sample one{};
+                haptel_sample one = blank_sample;
                 texture.height_gradient(&points[i], &block, &one);
                 INFO(texture.name << " of " << x << " in precision " << int(precision));
                 CHECK(one.height_m == double(shown));

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "jit/texture/texture.h"
+#include "lang/abi/outputs.h"
 #include "tests/jit/codegen/engines.h"
 
 #include <array>
@@ -34,7 +35,7 @@ inline haptel_sample sample_at(const TextureBinding& binding, const std::array<d
     haptel_point point{};
     std::copy(p_m.begin(), p_m.end(), point.p);
     point.n[2] = 1;
-    haptel_sample sample{};
+    haptel_sample sample = blank_sample;
     binding.texture->height_gradient(&point, binding.block, &sample);
     return sample;
 }

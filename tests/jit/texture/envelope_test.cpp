@@ -38,7 +38,7 @@ haptel_point random_point(std::mt19937_64& random, double side_m)
 
 double height_at(const TextureBinding& binding, const haptel_point& point)
 {
-    haptel_sample sample{0, {0, 0, 0}, 1, 1, 0};
+    haptel_sample sample = blank_sample;
     binding.texture->height_gradient(&point, binding.block, &sample);
     return sample.height_m;
 }

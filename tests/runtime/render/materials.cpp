@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
+#include <vector>
 
 using namespace haptel;
 using namespace haptel::runtime;
@@ -77,6 +79,113 @@ TEST_CASE("sticking friction holds up to the texture's share of the static coeff
         CHECK(largest_n <= mu_static * value * stiffness * depth_m + 1e-8);
         CHECK(largest_n >= mu_static * value * stiffness * depth_m - stiffness * step_m - 1e-8);
     }
+}
+
+TEST_CASE("static and dynamic friction have scales of their own, and dynamic friction is held at most static")
+{
+    constexpr double depth_m = 1e-3, step_m = 1e-6, of_both = 0.5;
+    for (const auto& [rest, slide] : {std::pair(2.0, 0.5), {1.0, 0.0}, {3.0, 1.5}, {0.5, 4.0}, {0.0, 1.0}}) {
+        Scene scene = bare_scene(plane_mesh(), sample_lambda(
+                                                   [rest, slide](const haptel_point&, haptel_sample& sample) {
+                                                       sample.friction_scale = of_both;
+                                                       sample.static_friction_scale = rest;
+                                                       sample.dynamic_friction_scale = slide;
+                                                   },
+                                                   0, 0, HAPTEL_READS_POINT));
+        scene.objects[0].material = {stiffness, 0, mu_static, mu_dynamic};
+        Renderer renderer(shared(std::move(scene)));
+        press(renderer, 0, depth_m);
+        double largest_n = 0;
+        dvec3 force(0);
+        for (int i = 0; i < 3000; ++i) {
+            force = renderer.tick(at(i * step_m, 0, -depth_m)).force_n;
+            largest_n = std::max(largest_n, -force.x);
+        }
+        const double sticks_n = mu_static * of_both * rest * stiffness * depth_m,
+                     slides_n = std::min(mu_dynamic * of_both * slide * stiffness * depth_m, sticks_n);
+        CAPTURE(rest, slide, largest_n);
+        CHECK(largest_n <= sticks_n + 1e-8);
+        CHECK(largest_n >= sticks_n - stiffness * step_m - 1e-8);
+        CHECK(std::abs(force.x + slides_n) < 1e-8);
+    }
+}
+
+// b s v d / 1 mm while pressing at the speed v, with the scale s of the place; where the hand leaves it is held back by
+// no more than the spring.
+TEST_CASE("damping is the object's times the texture's, and takes energy on closed paths wherever it changes")
+{
+    constexpr double b = 4, speed_m_per_s = 0.05;
+    const auto scale = [](double x) { return 1 + std::sin(x / 1e-3); };
+    const auto damped_scene = [&] {
+        Scene scene = bare_scene(
+            plane_mesh(),
+            sample_lambda([=](const haptel_point& at, haptel_sample& sample) { sample.damping_scale = scale(at.p[0]); },
+                          0, 0, HAPTEL_READS_POINT));
+        scene.objects[0].material = {stiffness, b, 0, 0};
+        return scene;
+    };
+    for (const double x : {-0.011, 0.0, 0.0047, 0.0013}) {
+        Renderer renderer(shared(damped_scene()));
+        for (int i = 0; i < 200; ++i) {
+            const double z = 5e-3 - i * 1e-3 * speed_m_per_s;
+            const dvec3 force = renderer.tick(at(x, 0, z)).force_n;
+            if (z < -1e-6 && i > 110) // its speed is known
+                CHECK(std::abs(force.z - stiffness * -z - b * scale(x) * speed_m_per_s * std::min(1.0, -z / 1e-3)) <
+                      1e-8);
+        }
+    }
+    Renderer renderer(shared(damped_scene()));
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> phase(0, 2 * std::numbers::pi);
+    for (int loop = 0; loop < 20; ++loop) {
+        const double first = phase(random), second = phase(random);
+        const auto place = [&](int i) {
+            const double t = 2 * std::numbers::pi * i / 2000.0;
+            return dvec3(4e-3 * std::sin(t + first), 3e-3 * std::sin(2 * t + second), -1e-3 + 0.9e-3 * std::cos(3 * t));
+        };
+        renderer.tick(at(0, 0, 1e-3));
+        for (int i = -20; i < 0; ++i) renderer.tick({place(i), place(i)});
+        double given_j = 0;
+        dvec3 before = renderer.tick({place(0), place(0)}).force_n;
+        for (int i = 1; i <= 2000; ++i) {
+            const dvec3 force = renderer.tick({place(i), place(i)}).force_n;
+            given_j += 0.5 * glm::dot(force + before, place(i) - place(i - 1));
+            before = force;
+        }
+        CHECK(given_j < -1e-7);
+    }
+}
+
+TEST_CASE(
+    "a scale that is no number or below 0 counts as 1 and is told, one that is huge makes no force that is not finite")
+{
+    constexpr double huge = 1e308;
+    for (const double value : {std::nan(""), HUGE_VAL, -1.0, huge})
+        for (double haptel_sample::* scale :
+             {&haptel_sample::stiffness_scale, &haptel_sample::friction_scale, &haptel_sample::static_friction_scale,
+              &haptel_sample::dynamic_friction_scale, &haptel_sample::damping_scale}) {
+            const auto felt = [&](bool spoilt) {
+                Scene scene = bare_scene(plane_mesh(), sample_lambda(
+                                                           [=](const haptel_point&, haptel_sample& sample) {
+                                                               if (spoilt) sample.*scale = value;
+                                                           },
+                                                           0, 0, HAPTEL_READS_POINT));
+                scene.objects[0].material = {stiffness, 3, mu_static, mu_dynamic};
+                Renderer renderer(shared(std::move(scene)));
+                std::vector<TickResult> results;
+                for (int i = 0; i < 300; ++i)
+                    results.push_back(renderer.tick(at(i * 1e-5, 0, -1e-3 + 1.5e-3 * std::cos(i / 15.0))));
+                return results;
+            };
+            const std::vector<TickResult> sound = felt(false), found = felt(true);
+            uint32_t faults = 0;
+            for (size_t i = 0; i < found.size(); ++i) {
+                CHECK(finite(found[i].force_n));
+                if (value != huge) CHECK(found[i].force_n == sound[i].force_n);
+                faults |= found[i].faults;
+            }
+            CHECK(((faults & HAPTEL_FAULT_OUTPUT_NOT_FINITE) != 0) == (value != huge));
+        }
 }
 
 TEST_CASE("stiffness is the object's times the texture's, for normal and sideways force alike")

@@ -15,7 +15,8 @@ constexpr double slope = 0.3;
 
 void ramp(const haptel_point* point, const void*, haptel_sample* sample)
 {
-    *sample = {slope * point->p[0], {slope, 0, 0}, 1, 1, 0};
+    sample->height_m = slope * point->p[0];
+    sample->gradient[0] = slope;
 }
 
 TextureBinding ramp_texture()
