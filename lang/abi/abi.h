@@ -33,7 +33,9 @@ enum {
     HAPTEL_WRITES_FRICTION_SCALE = 1u << 1,
     HAPTEL_WRITES_STATIC_FRICTION_SCALE = 1u << 2,
     HAPTEL_WRITES_DYNAMIC_FRICTION_SCALE = 1u << 3,
-    HAPTEL_WRITES_DAMPING_SCALE = 1u << 4
+    HAPTEL_WRITES_DAMPING_SCALE = 1u << 4,
+    HAPTEL_WRITES_FRICTION_DIRECTION = 1u << 5,
+    HAPTEL_WRITES_FRICTION_ALONG_SCALE = 1u << 6
 };
 
 /* Bits of haptel_sample::faults. */
@@ -88,6 +90,8 @@ typedef struct {
     uint32_t faults;
     /* From here on an entry writes only what `writes` names: a caller whose sample ends above may call it otherwise. */
     double static_friction_scale, dynamic_friction_scale, damping_scale;
+    double friction_along_scale;  /* friction along the direction over that across it */
+    double friction_direction[3]; /* of any length; only its part along the surface counts. Zero: none */
 } haptel_sample;
 
 /* Proven bounds over a box and a set of parameter values. Infinity: unbounded or not found. */
@@ -128,7 +132,9 @@ typedef struct {
 typedef struct {
     double *height_m, *gradient[3], *stiffness_scale, *friction_scale;
     uint32_t* faults;
-    double *static_friction_scale, *dynamic_friction_scale, *damping_scale; /* as in haptel_sample */
+    /* As in haptel_sample. */
+    double *static_friction_scale, *dynamic_friction_scale, *damping_scale, *friction_along_scale,
+        *friction_direction[3];
 } haptel_samples;
 
 /* Each sample is that of the entry for one point, bit for bit. */

@@ -38,6 +38,11 @@ inline constexpr OutputInfo output_table[] = {
      "times the object's dynamic friction, beside friction_scale"},
     {"damping_scale", HAPTEL_WRITES_DAMPING_SCALE, 1, 1, true, offsetof(haptel_sample, damping_scale),
      offsetof(haptel_samples, damping_scale), "times the object's damping"},
+    {"friction_direction", HAPTEL_WRITES_FRICTION_DIRECTION, 3, 0, false, offsetof(haptel_sample, friction_direction),
+     offsetof(haptel_samples, friction_direction), "where friction is friction_along_scale times that across it"},
+    {"friction_along_scale", HAPTEL_WRITES_FRICTION_ALONG_SCALE, 1, 1, true,
+     offsetof(haptel_sample, friction_along_scale), offsetof(haptel_samples, friction_along_scale),
+     "friction along friction_direction over that across it"},
 };
 
 inline constexpr uint32_t all_outputs = (1u << std::size(output_table)) - 1;
@@ -94,6 +99,6 @@ inline const double* components_of(const haptel_sample& sample, const OutputInfo
 }
 
 // What a sample is before a texture writes to it.
-inline constexpr haptel_sample blank_sample = {0, {0, 0, 0}, 1, 1, 0, 1, 1, 1};
+inline constexpr haptel_sample blank_sample = {0, {0, 0, 0}, 1, 1, 0, 1, 1, 1, 1, {0, 0, 0}};
 
 } // namespace haptel

@@ -12,13 +12,19 @@ using namespace ast;
 
 namespace {
 
+// 'out float friction_scale'
+std::string declaration_of(const OutputInfo& output)
+{
+    return "'out " + std::string(output.components == 1 ? "float " : "vec3 ") + std::string(output.name) + "'";
+}
+
 // 'out float a', 'out float b' and 'out vec3 c'
 std::string all_declarations()
 {
     std::string all;
     for (const OutputInfo& output : output_table) {
         if (!all.empty()) all += &output == std::end(output_table) - 1 ? " and " : ", ";
-        all += "'out " + std::string(output.components == 1 ? "float " : "vec3 ") + std::string(output.name) + "'";
+        all += declaration_of(output);
     }
     return all;
 }
@@ -134,10 +140,10 @@ void BodyChecker::check_output(TextureParameter& tree, CheckedTexture& texture)
 {
     const OutputInfo* const output = find_output(tree.name.text);
     bool is_sound = output != nullptr;
-    const std::string names = "a texture may write " + all_declarations();
     if (!is_sound) {
         Diagnostic& reported =
-            diagnostics.error(tree.name.span, "unknown-output", "unknown output " + quoted(tree.name.text), names);
+            diagnostics.error(tree.name.span, "unknown-output", "unknown output " + quoted(tree.name.text),
+                              "a texture may write " + all_declarations());
         const NearName near = near_name(tree.name.text, all_names());
         propose(reported, tree.name.span, near);
         unknown_names.emplace(near.name); // where it is meant it is not news
@@ -148,7 +154,7 @@ void BodyChecker::check_output(TextureParameter& tree, CheckedTexture& texture)
         diagnostics.error(tree.type.base.span, "type-mismatch",
                           wanted == float_type ? "an output is a float"
                                                : quoted(tree.name.text) + " is a " + to_string(wanted),
-                          names);
+                          output ? "write " + declaration_of(*output) : "");
         is_sound = false;
     }
     if (tree.value || tree.minimum || !tree.choices.empty()) {

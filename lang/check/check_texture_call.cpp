@@ -87,10 +87,10 @@ bool BodyChecker::named_argument(CallExpression& call, const FunctionInfo& calle
     if (parameter->is_written()) {
         targets[at] = target_of(*argument, "for an output");
         if (!targets[at]->symbol) return false;
-        if (argument->type != float_type)
+        if (argument->type != parameter->type)
             return fail(argument->span, "type-mismatch",
-                        "expected a float for the output " + quoted(name.text) + ", found " +
-                            to_string(argument->type)) == float_type;
+                        "expected a " + to_string(parameter->type) + " for the output " + quoted(name.text) +
+                            ", found " + to_string(argument->type)) == float_type;
     } else {
         const Choices* const around = std::exchange(choices, parameter->choices);
         expression(*argument);

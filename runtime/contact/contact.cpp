@@ -9,7 +9,7 @@ WalkFriction checked(const Friction& friction) noexcept
 {
     const auto coefficient = [](double mu) { return mu > 0 && std::isfinite(mu) ? mu : 0.0; };
     const double rest = coefficient(friction.static_coefficient);
-    return {rest, std::min(coefficient(friction.dynamic_coefficient), rest)};
+    return {rest, std::min(coefficient(friction.dynamic_coefficient), rest), friction.grain};
 }
 
 bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const WalkFriction& friction) noexcept
@@ -21,14 +21,20 @@ bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const Wal
         pressed_m += contact.pressed_m;
         lag_m += contact.lag_m;
     }
-    const double least = sticks_again * friction.dynamic_coefficient;
-    if (glm::dot(lag_m, way_m) <= 0) // farther away, as while it slides
-        return glm::dot(lag_m, lag_m) >= least * pressed_m * (least * pressed_m);
-    const double length_m = glm::length(push_m);
-    if (!(length_m > 0)) return false;
-    const glm::dvec3 normal = push_m / length_m;
-    const auto across = [&](const glm::dvec3& v) { return v - glm::dot(v, normal) * normal; };
-    const glm::dvec3 from_m = -across(lag_m), along_m = across(way_m); // of the hand, seen from the proxy
+    const double least = sticks_again * friction.dynamic_coefficient, length_m = glm::length(push_m);
+    const glm::dvec3 normal = length_m > 0 ? push_m / length_m : glm::dvec3(0);
+    glm::dvec3 from_m, along_m;                      // of the hand, seen from the proxy
+    if (friction.grain.is_there() && length_m > 0) { // where the ellipse is a disc
+        const FrictionEllipse ellipse(friction.grain, normal);
+        from_m = -ellipse.as_in_disc(lag_m), along_m = ellipse.as_in_disc(way_m);
+        if (glm::dot(from_m, along_m) >= 0) return glm::dot(from_m, from_m) >= least * pressed_m * (least * pressed_m);
+    } else {
+        if (glm::dot(lag_m, way_m) <= 0) // farther away, as while it slides
+            return glm::dot(lag_m, lag_m) >= least * pressed_m * (least * pressed_m);
+        if (!(length_m > 0)) return false;
+        const auto across = [&](const glm::dvec3& v) { return v - glm::dot(v, normal) * normal; };
+        from_m = -across(lag_m), along_m = across(way_m);
+    }
     const double square = glm::dot(along_m, along_m);
     const double share =
         square > 0 ? glm::clamp(-glm::dot(from_m, along_m) / square, 0.0, 1.0) : 0.0; // where it is nearest

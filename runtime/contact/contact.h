@@ -10,9 +10,11 @@
 
 namespace haptel::runtime {
 
-// Coulomb friction coefficients, no unit; negative or not finite counts as 0, dynamic is held at most static.
+// Coulomb friction coefficients, no unit; negative or not finite counts as 0, dynamic is held at most static. Both are
+// those across the grain, where there is one.
 struct Friction {
     double static_coefficient = 0, dynamic_coefficient = 0;
+    Grain grain = {}; // in the space of what is touched
 
     bool operator==(const Friction&) const = default;
 };

@@ -56,8 +56,7 @@ FrictionEllipse::FrictionEllipse(const Grain& grain, const glm::dvec3& normal) n
     const double uu = glm::dot(u, of_u), uv = glm::dot(u, of_v), vv = glm::dot(v, of_v);
     const double half = 0.5 * (uu - vv), root = std::sqrt(half * half + uv * uv);
     axis_[0] = u;
-    if (root > 0)
-        axis_[0] = glm::normalize(half > 0 ? (half + root) * u + uv * v : uv * u + (root - half) * v);
+    if (root > 0) axis_[0] = glm::normalize(half > 0 ? (half + root) * u + uv * v : uv * u + (root - half) * v);
     axis_[1] = glm::cross(normal, axis_[0]);
     scale_[0] = std::clamp(1 + 0.5 * (uu + vv) + root, least_grain, most_grain);
     scale_[1] = std::clamp(1 + 0.5 * (uu + vv) - root, least_grain, most_grain);

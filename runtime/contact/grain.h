@@ -22,7 +22,8 @@ struct Grain {
     bool is_there() const { return *this != Grain(); }
 };
 
-// Beyond these friction along the grain is as good as none, or as good as a rail: 1/1024 of 1 N is less than hands feel.
+// Beyond these friction along the grain is as good as none, or as good as a rail: 1/1024 of 1 N is less than hands
+// feel.
 inline constexpr double least_grain = 1.0 / 1024, most_grain = 1024;
 
 // Of what faces along the unit `normal`, with the part of `direction` across it, of any length. None where that is
@@ -52,8 +53,8 @@ private:
     double scale_[2];
 };
 
-// Where in the disc |m| <= most the form sum of gives[i] m[i]^2 / 2 + ways[i] m[i] is least; each gives > 0. Returns the
-// multiplier by which the edge holds it, 0 inside: gives[i] m[i] + ways[i] = -multiplier m[i].
+// Where in the disc |m| <= most the form sum of gives[i] m[i]^2 / 2 + ways[i] m[i] is least; each gives > 0. Returns
+// the multiplier by which the edge holds it, 0 inside: gives[i] m[i] + ways[i] = -multiplier m[i].
 double least_in_disc(const double (&gives)[2], const double (&ways)[2], double most, double (&m)[2]) noexcept;
 
 } // namespace haptel::runtime

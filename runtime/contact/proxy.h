@@ -1,6 +1,7 @@
 // The proxy's state between ticks and the walk that moves it over the surface. Lattice units.
 #pragma once
 
+#include "runtime/contact/grain.h"
 #include "runtime/surface/collision.h"
 #include "runtime/surface/surface.h"
 
@@ -26,6 +27,7 @@ struct Proxy {
 // Coulomb coefficients, checked: 0 <= dynamic <= static, finite.
 struct WalkFriction {
     double static_coefficient = 0, dynamic_coefficient = 0;
+    Grain grain = {};
 };
 
 // In one tick; the walk goes on in the next.

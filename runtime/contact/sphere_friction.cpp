@@ -2,6 +2,7 @@
 #include "runtime/contact/sphere_contact.h"
 
 #include <algorithm>
+#include <optional>
 
 namespace haptel::runtime {
 
@@ -38,17 +39,26 @@ SphereContact::Held SphereContact::rub(double step_max, Stride& last, bool is_la
         const bool is_down = gap <= touching_gap;
         const glm::dvec3 down = is_down ? glm::dvec3(0) : glm::dot(way, normal) * normal, along = way - down;
         const double length = glm::length(along);
-        if (const double left = length - friction_.dynamic_coefficient * held.pushes();
+        const auto ellipse =
+            friction_.grain.is_there() ? std::optional(FrictionEllipse(friction_.grain, normal)) : std::nullopt;
+        // Of its way, where the ellipse is a disc: in its direction friction bears so much more or less.
+        const double eased = ellipse && length > 0 ? length / ellipse->size(along) : 1.0;
+        if (const double left = length - eased * friction_.dynamic_coefficient * held.pushes();
             left < -distance_rounding && last.further != glm::dvec3(0)) { // it went too far: between there and here
             proxy_.at = last.from + last.left / (last.left - left) * last.further;
             last = {.went_back = true};
             pass();
             return held;
         }
-        const double share = share_past(length, held.pushes());
+        double share = share_past(length, eased * held.pushes());
+        glm::dvec3 slip = share * along;
+        if (ellipse && share > 0) {
+            slip = along - ellipse->nearest(along, friction_.dynamic_coefficient * held.pushes());
+            share = glm::length(slip) / length;
+        }
         rests_ = share == 0 && is_down && turn == 0; // else planes are seen from elsewhere
         if (share == 0 && is_down) return held;
-        const glm::dvec3 next = down + share * along;
+        const glm::dvec3 next = down + slip;
         const double left = step_max - gone;
         last.from = proxy_.at, last.left = share * length, last.went_back = false;
         glm::dvec3 step = turn == 0 && !is_point_ && !is_last && share > 0 ? further(held, next, last) : next;
@@ -70,7 +80,7 @@ SphereContact::Held SphereContact::rub(double step_max, Stride& last, bool is_la
 // Of a way along what bears it by so much, the share that friction leaves. 0: it holds.
 double SphereContact::share_past(double way, double pressed) noexcept
 {
-    const auto [rest, slide] = friction_;
+    const double rest = friction_.static_coefficient, slide = friction_.dynamic_coefficient;
     const double remaining = way - slide * pressed;
     const bool rounding = remaining <= std::max(distance_rounding, settled * slide * pressed);
     if (way <= (proxy_.sliding ? slide : rest) * pressed || (rounding && slide > 0)) return 0;

@@ -10,9 +10,6 @@ namespace haptel::runtime {
 
 namespace {
 
-constexpr int friction_steps_max = 24;
-constexpr double cone_slack = 1e-12; // of the limit
-
 // Less than any lever leaves: where an end cannot move at all, rounding must not choose its friction.
 constexpr double least_give = 1e-9;
 
@@ -27,6 +24,8 @@ void EndFriction::take_hold(bool of_sides) noexcept
     if (!touches) lag = glm::dvec3(0);
     sticks = of_sides && drags() && !slips;
     limit_before_ = limit_;
+    ellipse.reset();
+    if (drags() && friction.grain.is_there()) ellipse.emplace(friction.grain, normal);
 }
 
 double EndFriction::follow(const glm::dvec3& aim, const glm::dvec3& held, const glm::dmat3& give) noexcept
@@ -35,7 +34,7 @@ double EndFriction::follow(const glm::dvec3& aim, const glm::dvec3& held, const 
     const double found = coefficient() * bears * glm::clamp(height - unfelt, 0.0, deepest);
     if (sticks) {
         lag = at - aim - height * normal;
-        if (glm::length(lag) <= found && height <= deepest) return 0;
+        if (size(lag) <= found && height <= deepest) return 0;
         lag = glm::dvec3(0);
         sticks = false;
         slips = slides = true;
@@ -61,45 +60,36 @@ double EndFriction::limited(double found) noexcept
     return limit_;
 }
 
-// The lag of an end that without friction would go by `way`. Of the disc of all that are no longer than `most` it is
-// the one for which way + give lag = -slip lag, where slip >= 0, and 0 inside of the disc: an end slips against its
-// friction or not at all. That is where a quadratic form is least in the disc: along the axes of `give` one equation
-// for the slip is left, solved as in More and Sorensen 1983, Computing a trust region step, algorithm 3.2. Returns
-// whether the end slips.
+// The lag of an end that without friction would go by `way`. Of the disc of all that are no longer than `most`, or of
+// the ellipse, it is the one where the quadratic form lag . give lag / 2 + way . lag is least: there way + give lag is
+// 0 inside, and on the edge it points inward at a right angle to that, so that an end slips against its friction or not
+// at all. Where there is a grain the plane is stretched so that the ellipse is a disc. Returns whether the end slips.
 bool EndFriction::oppose(const glm::dvec3& way, const glm::dmat3& give, double most) noexcept
 {
     lag = glm::dvec3(0);
     if (!(most > 0)) return true;
     const glm::dvec3 off = std::fabs(normal.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
-    const glm::dvec3 u = glm::normalize(glm::cross(normal, off)), v = glm::cross(normal, u);
+    const glm::dvec3 of_plane = glm::normalize(glm::cross(normal, off));
+    const glm::dvec3 u = ellipse ? ellipse->half_axis(0) : of_plane,
+                     v = ellipse ? ellipse->half_axis(1) : glm::cross(normal, of_plane);
     const double uu = glm::dot(u, give * u), uv = glm::dot(u, give * v), vv = glm::dot(v, give * v);
     const double half = 0.5 * (uu - vv), root = std::sqrt(half * half + uv * uv);
     glm::dvec3 axis[2] = {u, v};
-    if (root > 0) {
+    if (root > 0 && ellipse) {
+        const glm::dvec2 first = glm::normalize(half > 0 ? glm::dvec2(half + root, uv) : glm::dvec2(uv, root - half));
+        axis[0] = first.x * u + first.y * v;
+        axis[1] = first.x * v - first.y * u;
+    } else if (root > 0) {
         axis[0] = glm::normalize(half > 0 ? (half + root) * u + uv * v : uv * u + (root - half) * v);
         axis[1] = glm::cross(normal, axis[0]);
     }
     const double gives[2] = {std::max(least_give, 0.5 * (uu + vv) + root),
                              std::max(least_give, 0.5 * (uu + vv) - root)};
     const double ways[2] = {glm::dot(way, axis[0]), glm::dot(way, axis[1])};
-
-    // At most what it will be, and just that where both axes give alike.
-    double slip = std::max(0.0, std::sqrt(ways[0] * ways[0] + ways[1] * ways[1]) / most - gives[0]);
-    for (int i = 0; i < 2; ++i) slip = std::max(slip, std::fabs(ways[i]) / most - gives[i]);
-    for (int step = 0; step < friction_steps_max; ++step) {
-        double square = 0, slope = 0;
-        lag = glm::dvec3(0);
-        for (int i = 0; i < 2; ++i) {
-            if (ways[i] == 0) continue;
-            const double along = -ways[i] / (gives[i] + slip);
-            lag += along * axis[i];
-            square += along * along;
-            slope += along * along / (gives[i] + slip);
-        }
-        const double length = std::sqrt(square);
-        if (!(length > (1 + cone_slack) * most)) break;
-        slip += square / slope * (length / most - 1);
-    }
+    double along[2];
+    const double slip = least_in_disc(gives, ways, most, along);
+    for (int i = 0; i < 2; ++i)
+        if (ways[i] != 0) lag += along[i] * axis[i];
     return slip > 0;
 }
 

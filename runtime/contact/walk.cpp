@@ -1,4 +1,5 @@
 #include "runtime/contact/contact.h"
+#include "runtime/contact/grain_pull.h"
 #include "runtime/contact/proxy.h"
 #include "runtime/surface/corner.h"
 
@@ -59,6 +60,8 @@ private:
 
     Step leave(const StartsOn& start, const glm::dvec3& offset);
     double share_past_friction(double way, double depth);
+    bool slips_into(const SideEdge& to) const;
+    Step slide_over_grain(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge);
     double pressed_at_edge(uint32_t face, uint32_t edge, uint32_t side) const;
     Step slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge);
     Step go_within(uint32_t face, uint32_t side, const glm::dvec3& target, uint32_t from_edge, uint32_t or_edge);
@@ -179,14 +182,27 @@ Walk::Step Walk::from_edge()
     const glm::dvec3 to_hand = hand_ - proxy_.at;
     const double pull_here = glm::dot(to_hand, glm::normalize(inward(face, edge)));
     const double pull_there = glm::dot(to_hand, glm::normalize(inward(link.face(), link.edge())));
-    if (std::max(pull_here, pull_there) > 0) {
+    // Over a grain it may leave an edge along which it is pulled, by a lattice unit's rounding.
+    if (std::max(pull_here, pull_there) > (friction_.grain.is_there() ? -1 : 0)) {
         const SideEdge to = pull_here >= pull_there ? SideEdge(face, edge, proxy_.side) : link;
         const glm::dvec3 normal = surface_.facet_normal(to.face(), to.side());
         if (glm::dot(hand_ - vertex(face, edge), normal) >= lift_off) return leave_edge(face, edge, link);
+        const SideEdge other = pull_here >= pull_there ? link : SideEdge(face, edge, proxy_.side);
+        if (friction_.grain.is_there() && !slips_into(to) && slips_into(other))
+            return slide(other.face(), other.side(), other.edge(), 3);
         return slide(to.face(), to.side(), to.edge(), 3);
     }
     if (free_of_edge(face, edge, proxy_.side)) return leave_edge(face, edge, link);
     return slide_along(face, edge, proxy_.side);
+}
+
+// Over a grain it need not go to where the hand is.
+bool Walk::slips_into(const SideEdge& to) const
+{
+    if (glm::dot(hand_ - vertex(to.face(), to.edge()), surface_.facet_normal(to.face(), to.side())) >= lift_off)
+        return false;
+    const GrainPull pull(surface_, proxy_.at, hand_, friction_, to.face(), to.side());
+    return glm::dot(pull.slip(), inward(to.face(), to.edge())) > 0;
 }
 
 // The hand is in the free wedge of the edge. The way starts above both faces if that is near, which suits any
@@ -252,6 +268,16 @@ Walk::Step Walk::from_vertex()
     }
     if (nearest.edge == NearestInFan::into_sector) {
         if (glm::dot(to_hand, surface_.facet_normal(face, side)) >= lift_off) return leave(here, glm::dvec3(0));
+        if (friction_.grain.is_there()) {
+            // As without friction, but for a hand that is by what friction holds nearer.
+            const glm::dvec3 held = GrainPull(surface_, proxy_.at, hand_, friction_, face, side).held();
+            NearestInFan there;
+            each_fan([&](const Sector& start) { there.consider(surface_, start, to_hand - held); });
+            if (there.way <= departure) return Step::stop;
+            const auto [into, at, of] = there.sector;
+            const bool is_below = glm::dot(to_hand, surface_.facet_normal(into, of)) < 0;
+            return is_below ? slide(into, of, at, previous(at)) : slide_along(face, corner, side);
+        }
         return nearest.way > departure ? slide(face, side, corner, previous(corner)) : Step::stop;
     }
     if (free_of_edge(face, nearest.edge, side)) return leave(here, glm::dvec3(0));
@@ -292,6 +318,7 @@ double Walk::share_past_friction(double way, double depth)
 // not crossed again (3: none).
 Walk::Step Walk::slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge)
 {
+    if (friction_.grain.is_there()) return slide_over_grain(face, side, from_edge, or_edge);
     const glm::dvec3 normal = surface_.facet_normal(face, side);
     const double height = glm::dot(hand_ - vertex(face, 0), normal);
     const glm::dvec3 way = hand_ - height * normal - proxy_.at;
@@ -301,6 +328,29 @@ Walk::Step Walk::slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_
     proxy_.side = side;
     if (share == 0) return Step::stop;
     return go_within(face, side, proxy_.at + share * way, from_edge, or_edge);
+}
+
+// As slide, past an ellipse of friction. A slip that leads out by an edge that is not crossed again goes along it.
+Walk::Step Walk::slide_over_grain(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge)
+{
+    const GrainPull pull(surface_, proxy_.at, hand_, friction_, face, side);
+    proxy_.pressed = pull.depth();
+    proxy_.on = Proxy::On::face;
+    proxy_.face = face;
+    proxy_.side = side;
+    if (!proxy_.sliding && !moved_ && pull.is_held(friction_.static_coefficient)) return Step::stop;
+    glm::dvec3 slip = pull.slip();
+    for (const uint32_t edge : {from_edge, or_edge}) {
+        if (edge > 2) continue;
+        const glm::dvec3 in = inward(face, edge);
+        slip -= std::min(0.0, glm::dot(in, slip)) / glm::dot(in, in) * in;
+    }
+    const bool rounding = glm::length(slip) <= 1; // lattice unit
+    if (rounding && friction_.dynamic_coefficient > 0) return Step::stop;
+    if (from_edge < 3 && glm::dot(inward(face, from_edge), slip) < -glm::length(inward(face, from_edge)))
+        return Step::stop; // in a corner, out by one edge where it goes along the other
+    moved_ = moved_ || !rounding;
+    return go_within(face, side, proxy_.at + slip, from_edge, or_edge);
 }
 
 // Over the face to the target in its plane, at most to its edges.
@@ -347,7 +397,15 @@ Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
     const double length = glm::length(along);
     const double here = glm::dot(proxy_.at - begin, along) / length;
     const double way = glm::dot(hand_ - begin, along) / length - here;
-    const double share = share_past_friction(std::abs(way), pressed_at_edge(face, edge, side));
+    const double pressed = pressed_at_edge(face, edge, side);
+    double eased = 1; // in this direction friction bears so much more or less
+    if (friction_.grain.is_there()) {
+        const glm::dvec3 push = glm::cross(along, glm::cross(begin - hand_, along));
+        if (const double across = glm::length(push); across > 0)
+            eased = length / FrictionEllipse(friction_.grain, push / across).size(along);
+    }
+    const double share = share_past_friction(std::abs(way), eased * pressed);
+    proxy_.pressed = pressed;
     proxy_.on = Proxy::On::edge;
     proxy_.face = face;
     proxy_.side = side;

@@ -100,8 +100,13 @@ void MeanFriction::add(const Friction& friction, double push_n) noexcept
     if (!(push_n > 0)) return;
     pushing_n += push_n;
     const double share = push_n / pushing_n;
+    const double own = friction.static_coefficient + friction.dynamic_coefficient;
     mean.static_coefficient += share * (friction.static_coefficient - mean.static_coefficient);
     mean.dynamic_coefficient += share * (friction.dynamic_coefficient - mean.dynamic_coefficient);
+    // A grain is the more the harder what has it holds.
+    if (const double all = mean.static_coefficient + mean.dynamic_coefficient;
+        all > 0 && (friction.grain.is_there() || mean.grain.is_there()))
+        mean.grain = mixed(mean.grain, friction.grain, std::min(1.0, share * own / all));
 }
 
 Contact on_part(const Contact& contact, const Surface& joined, const SceneObject& part) noexcept

@@ -47,7 +47,8 @@ std::vector<BodyObjects> bodies_of(const Scene& scene);
 BoundingSphere bounding_sphere_of(const Scene& scene, const BodyObjects& objects, double probe_radius_m);
 
 // The friction at one end of the probe that touches several objects: the mean of their coefficients, weighted by the
-// force of each, so that it changes without a step when the probe slides through a crease from one to the other.
+// force of each, and of their grains, weighted by what friction holds there, so that it changes without a step when the
+// probe slides through a crease from one to the other.
 struct MeanFriction {
     Friction mean;
     double pushing_n = 0;

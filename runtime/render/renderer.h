@@ -125,6 +125,7 @@ private:
         // What the texture leaves of the friction coefficients: its own scales, times the share of the depth below the
         // base surface that is also below the texture.
         double static_share = 0, dynamic_share = 0;
+        Grain grain;                      // of the friction, object space
         double surface_j = 0, held_j = 0; // in the spring of the surface, and with that of friction
         uint32_t faults = 0;
         bool textured = false, band_limited = false; // a texture was evaluated, with less detail than it has

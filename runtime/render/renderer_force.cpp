@@ -98,7 +98,9 @@ void Renderer::render_object(Body& body, std::span<const Contact> contacts, cons
         if (!contact.by_shaft) {
             const Material& material = touched.object->material;
             MeanFriction& end = contact.along == 0 ? body.tip_friction : body.tail_friction;
-            end.add({material.static_friction * force.static_share, material.dynamic_friction * force.dynamic_share},
+            if (body.objects.joined && force.grain.is_there()) force.grain = turned(force.grain, placement.rotation);
+            end.add({material.static_friction * force.static_share, material.dynamic_friction * force.dynamic_share,
+                     force.grain},
                     material.stiffness_n_per_m * contact.depth_m);
         }
         if (&contact != rows.data()) continue;
@@ -184,6 +186,7 @@ void Renderer::ObjectForce::mix_in(const ObjectForce& other, double share, const
     height_m = std::lerp(height_m, other.height_m, share);
     static_share = std::lerp(static_share, other.static_share, share);
     dynamic_share = std::lerp(dynamic_share, other.dynamic_share, share);
+    grain = mixed(grain, other.grain, share);
     faults |= other.faults;
     textured |= other.textured;
     band_limited |= other.band_limited;
@@ -204,6 +207,7 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     const Shaded read{all || (reads & HAPTEL_READS_NORMAL), all || (reads & HAPTEL_READS_UV)};
     result.unmapped = (turns && !read.normal_dp) || (drawn && !read.uv);
     SurfacePoint at{foot.at_m, {}, time_s()};
+    at.shading.normal = foot.normal;
     if (read.normal_dp || read.uv) at.shading = shade(surface, foot.face, foot.side, foot.barycentric, read);
     if (contact.on_crease) {
         at.shading.normal = contact.normal;
@@ -224,6 +228,7 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     const double below = contact.depth_m > 0 ? std::min(1.0, elastic.depth_m / contact.depth_m) : 0.0;
     result.static_share = texture.static_friction_scale * below;
     result.dynamic_share = texture.dynamic_friction_scale * below;
+    result.grain = texture.grain;
     if (elastic.depth_m == 0) return result; // below the base surface, but not yet below the texture
 
     result.surface_j = felt_stiffness * elastic.depth_m * elastic.depth_m / 2;

@@ -75,7 +75,7 @@ haptel_sample evaluate(const TextureBinding& binding, const haptel_point& point)
     return sample;
 }
 
-TextureSample felt_within(const TextureBinding& binding, const haptel_sample& sample)
+TextureSample felt_within(const TextureBinding& binding, const haptel_sample& sample, const glm::dvec3& normal)
 {
     TextureSample result;
     result.height_m = sample.height_m;
@@ -87,6 +87,10 @@ TextureSample felt_within(const TextureBinding& binding, const haptel_sample& sa
     result.dynamic_friction_scale = sample.friction_scale * sample.dynamic_friction_scale;
     result.damping_scale = sample.damping_scale;
     result.faults = sample.faults;
+    if (binding.texture->writes & HAPTEL_WRITES_FRICTION_DIRECTION) {
+        const auto& d = sample.friction_direction;
+        result.grain = grain_along({d[0], d[1], d[2]}, sample.friction_along_scale, normal);
+    }
     if (sample.height_m - binding.facts.height_max_m > bound_slack_m) {
         result.gradient = glm::dvec3(0);
         result.faults |= fault_height_above_bound;
@@ -127,10 +131,11 @@ haptel_sample bent_on_shoulder(const TextureBinding& binding, haptel_sample samp
     return sample;
 }
 
-TextureSample felt(const TextureBinding& binding, const haptel_sample& sample)
+TextureSample felt(const TextureBinding& binding, const haptel_sample& sample, const glm::dvec3& normal)
 {
-    if (is_on_shoulder(binding, sample.height_m)) return felt_within(binding, bent_on_shoulder(binding, sample));
-    return felt_within(binding, sample);
+    if (is_on_shoulder(binding, sample.height_m))
+        return felt_within(binding, bent_on_shoulder(binding, sample), normal);
+    return felt_within(binding, sample, normal);
 }
 
 } // namespace
@@ -140,7 +145,7 @@ TextureSample sample_texture(const TextureBinding& binding, const SurfacePoint& 
     if (!binding.texture) return {};
     haptel_point point = {};
     take_in(point, at, binding.texture->reads);
-    return felt(binding, evaluate(binding, point));
+    return felt(binding, evaluate(binding, point), at.shading.normal);
 }
 
 TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at, LastSample& last) noexcept
@@ -151,7 +156,7 @@ TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at
         const bool is_new = last.serial != serial;
         if (is_new) last = {.serial = serial};
         if (take_in(last.point, at, binding.texture->reads) || is_new) last.sample = evaluate(binding, last.point);
-        to = felt(binding, last.sample);
+        to = felt(binding, last.sample, at.shading.normal);
     }
     return reader.fading() ? mixed(sample_texture(reader.from().binding, at), to, reader.weight()) : to;
 }
@@ -167,6 +172,7 @@ TextureSample mixed(const TextureSample& from, const TextureSample& to, double s
             .static_friction_scale = mix(from.static_friction_scale, to.static_friction_scale),
             .dynamic_friction_scale = mix(from.dynamic_friction_scale, to.dynamic_friction_scale),
             .damping_scale = mix(from.damping_scale, to.damping_scale),
+            .grain = mixed(from.grain, to.grain, share),
             .faults = from.faults | to.faults};
 }
 

@@ -10,6 +10,7 @@
 
 #include "lang/abi/abi.h"
 #include "lang/abi/texture_binding.h"
+#include "runtime/contact/grain.h"
 #include "runtime/texture/shading.h"
 #include "runtime/texture/texture_slot.h"
 
@@ -25,7 +26,8 @@ enum : uint32_t {
     fault_height_bent = 1u << 9         // the height is beyond what was found of the texture; felt bent by a shoulder
 };
 
-// Where a texture is evaluated, object space. What the texture does not read need not be filled, but for the normal.
+// Where a texture is evaluated, object space. What the texture does not read need not be filled, but for the normal,
+// which says where the surface is that a direction of friction lies in.
 struct SurfacePoint {
     glm::dvec3 p_m{0};
     Shading shading;
@@ -38,6 +40,7 @@ struct TextureSample {
     double raised_m = 0;    // height - min(h_min, 0), >= 0: as published where that is never below 0
     glm::dvec3 gradient{0}; // dh/dp, metres per metre: what of it is along the surface counts
     double stiffness_scale = 1, static_friction_scale = 1, dynamic_friction_scale = 1, damping_scale = 1;
+    Grain grain;         // of the friction, in the plane of the point's normal; object space
     uint32_t faults = 0; // HAPTEL_FAULT_* and the bits above
 };
 

@@ -45,6 +45,13 @@ int main(void)
     expect("haptel_sample.stiffness_scale", 32, offsetof(haptel_sample, stiffness_scale));
     expect("haptel_sample.friction_scale", 40, offsetof(haptel_sample, friction_scale));
     expect("haptel_sample.faults", 48, offsetof(haptel_sample, faults));
+    expect("haptel_sample.static_friction_scale", 56, offsetof(haptel_sample, static_friction_scale));
+    expect("haptel_sample.dynamic_friction_scale", 64, offsetof(haptel_sample, dynamic_friction_scale));
+    expect("haptel_sample.damping_scale", 72, offsetof(haptel_sample, damping_scale));
+    expect("haptel_sample.friction_along_scale", 80, offsetof(haptel_sample, friction_along_scale));
+    expect("haptel_sample.friction_direction", 88, offsetof(haptel_sample, friction_direction));
+    expect("haptel_samples.faults", 48, offsetof(haptel_samples, faults));
+    expect("haptel_samples.friction_direction", 88, offsetof(haptel_samples, friction_direction));
     expect("haptel_block_head.extent", 24, offsetof(haptel_block_head, extent));
     expect("haptel_block_head.footprint_m", 48, offsetof(haptel_block_head, footprint_m));
     expect("haptel_block_head", 56, sizeof(haptel_block_head));

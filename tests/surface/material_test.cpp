@@ -1,6 +1,8 @@
 // Material outputs of compiled textures reach the hand.
 #include "tests/surface/textured.h"
 
+#include <glm/gtc/constants.hpp>
+
 #include <cmath>
 
 using namespace haptel;
@@ -32,6 +34,38 @@ texture taped(float grip = 2.5 in 1 .. 4, out float friction_scale, out float st
         CHECK(std::abs(force.z - (on_tape ? 0.6 : 1.0)) < 1e-8);
         CHECK(std::abs(force.x + 0.2 * (on_tape ? 3 : 1) * force.z) < 1e-8);
         renderer.tick(at(start, 0, 2e-3));
+    }
+}
+
+TEST_CASE("a texture brushes a plate: friction along its grain, across it and aslant is that of the ellipse")
+{
+    const auto program = compiled(R"(
+texture metal(out vec3 friction_direction, out float friction_along_scale)
+{
+    friction_direction = vec3(2.0, 0.0, 0.0);
+    friction_along_scale = 0.4;
+    return 0um * p.x / 1m;
+}
+texture plate(float rough = 1.5 in 1 .. 4, out vec3 friction_direction, out float friction_along_scale, out float friction_scale)
+{
+    friction_scale = rough;
+    return metal(friction_direction = friction_direction, friction_along_scale = friction_along_scale);
+})");
+    constexpr double depth_m = 1e-3, mu = 0.2 * 1.5;
+    for (const double angle : {0.0, 0.25 * glm::pi<double>(), 0.5 * glm::pi<double>(), 2.0}) {
+        Scene scene = tests::bare_scene(tests::plane_mesh());
+        SceneObject& object = scene.objects[0];
+        object.material = {1000, 0, 0.4, 0.2};
+        object.texture = std::make_shared<TextureSlot>(bound_for(program, "plate", *object.surface));
+        Renderer renderer(tests::shared(std::move(scene)));
+        const glm::dvec3 v(std::cos(angle), std::sin(angle), 0);
+        glm::dvec3 force(0);
+        for (int i = -20; i < 2000; ++i)
+            force = renderer.tick(at(i * 5e-6 * v.x, i * 5e-6 * v.y, i < 0 ? 1e-3 : -depth_m)).force_n;
+        const double length = std::hypot(0.4 * v.x, v.y);
+        CHECK(std::abs(force.z - 1) < 1e-8);
+        CHECK(std::abs(force.x + mu * 0.16 * v.x / length) < 1e-6);
+        CHECK(std::abs(force.y + mu * v.y / length) < 1e-6);
     }
 }
 

@@ -33,7 +33,8 @@ void DimensionBody::texture(const CheckedTexture& texture)
     outputs = &texture.outputs;
     Variables start(texture.slot_count);
     for (const CheckedOutput& output : texture.outputs)
-        start[output.symbol->slot] = {{Dimension::plain(), output.symbol->span}};
+        start[output.symbol->slot] = {
+            {output.info->is_scale ? Dimension::plain() : Dimension::any(), output.symbol->span}};
     for (const CheckedParameter& parameter : texture.parameters)
         owner.symbols.insert_or_assign(parameter.symbol, this->parameter(parameter));
     body(*texture.tree->body, start);
@@ -229,6 +230,7 @@ void DimensionBody::settle(Variables& learnt, Variables& at_head)
 void DimensionBody::check_outputs()
 {
     for (const CheckedOutput& output : *outputs) {
+        if (!output.info->is_scale) continue; // of a direction the length means nothing
         Variable& variable = (*flow)[output.symbol->slot];
         const Origin& wrong = join(variable.first.dimension, Dimension::plain()) ? variable.other : variable.first;
         if (wrong.dimension.is_any()) continue;
