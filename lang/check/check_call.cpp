@@ -301,6 +301,21 @@ std::vector<Candidate> BodyChecker::functions_called(const std::string& name)
     return {Candidate(*local)};
 }
 
+// "sin(p.x / 1,5mm)": the number that was meant; empty: none.
+static std::string decimal_comma(const SourceSet& sources, std::span<const ExpressionPtr> arguments)
+{
+    for (size_t i = 0; i + 1 < arguments.size(); ++i) {
+        const Span behind = arguments[i + 1]->span;
+        if (!std::holds_alternative<NumberLiteral>(arguments[i + 1]->node) ||
+            behind.begin != arguments[i]->span.end + 1)
+            continue;
+        const std::string_view before = sources.text(arguments[i]->span);
+        const size_t digits = before.find_last_not_of("0123456789") + 1;
+        if (digits < before.size()) return std::string(before.substr(digits)) + "." + std::string(sources.text(behind));
+    }
+    return {};
+}
+
 // As exact as can be: the argument that is wrong if only one function can be meant, else what there is.
 void BodyChecker::report_no_match(const Call& call, const std::vector<Candidate>& candidates)
 {
@@ -317,10 +332,11 @@ void BodyChecker::report_no_match(const Call& call, const std::vector<Candidate>
         std::string numbers;
         for (size_t count : counts)
             numbers += (numbers.empty() ? "" : count == *counts.rbegin() ? " or " : ", ") + std::to_string(count);
+        const std::string meant = decimal_comma(context.sources, std::get<CallExpression>(call.tree.node).arguments);
         diagnostics.error(call.tree.span, "wrong-argument-count",
                           name + " takes " + numbers + (*counts.rbegin() == 1 ? " argument" : " arguments") +
                               ", found " + std::to_string(call.arguments.size()),
-                          listed(candidates));
+                          meant.empty() ? listed(candidates) : "decimals stand behind a point: write " + meant);
         return;
     }
     for (size_t i = 0; i < call.arguments.size() && same_count.size() == 1; ++i) {

@@ -277,6 +277,11 @@ void BodyChecker::warn_of_whole_division(const Expression& dividend, const Chain
         return literal && (e.type == int_type || e.type == uint_type) ? literal : nullptr;
     };
     const NumberLiteral *a = whole(dividend), *b = whole(*link.operand);
+    const Type by = link.operand->type;
+    if (link.op == BinaryOp::divide && a && a->integer == 1 && !b && (by == int_type || by == uint_type)) // "1 / i"
+        diagnostics.warning(join(dividend.span, link.operand->span), "whole-division",
+                            "whole numbers are divided without a rest: this is 0 beyond 1",
+                            "write 1.0 / " + printable(context.sources.text(link.operand->span)));
     if (link.op != BinaryOp::divide || !a || !b || b->integer == 0 || a->integer % b->integer == 0) return;
     diagnostics.warning(join(dividend.span, link.operand->span), "whole-division",
                         "whole numbers are divided without a rest: this is " + std::to_string(a->integer / b->integer),

@@ -42,6 +42,9 @@ constexpr ForeignWord meanings[] = {
     {type, "sampler2D Texture2D", "image", "an image is a parameter of a texture: texture t(image picture)", false},
     {type, "fn func function def", "",
      "a function begins with the type of its result: float f(vec3 q) { return ...; }"},
+    {type, "string", "",
+     "a picture is a parameter of its own type, image picture; a choice is an int whose values have names: int kind = "
+     "fine in {fine, coarse}"},
 
     {function, "lerp", "mix", "write mix"},
     {function, "frac", "fract", "write fract"},
@@ -94,6 +97,8 @@ constexpr ForeignWord meanings[] = {
     {name, "fragCoord gl_FragCoord", "", "the point of contact is p, the mesh coordinates are uv"},
     {name, "gl_FragColor fragColor Ci", "", "a texture returns its height: return 1mm;"},
     {name, "iTime", "time", "the time is time, in seconds"},
+    {name, "iResolution iMouse iFrame", "",
+     "there is no screen: the point of contact is p, in metres, and mesh coordinates uv go from 0 to 1"},
 
     {qualifier, "static inline invariant flat", "", leave_out},
     {qualifier, "constexpr", "const", "write const"},

@@ -142,6 +142,9 @@ private:
     void foreign_statement(const ForeignWord& word, Statements& into);
     void read_misspelt_keyword();
     void read_misspelt_in();
+    void skip_metadata();
+    void read_type_behind_name(bool is_told);
+    bool skip_word_of_function();
     void read_foreign_operator();
     bool read_foreign_else();
     ast::ExpressionPtr parted_number(Span number);
@@ -189,7 +192,9 @@ private:
     size_t macro_tokens = 0;                  // read of all values so far
     mutable size_t alias_steps = 0;           // from a name to what it stands for; beyond many, it stands for itself
 
-    bool has_own_grad = false; // a function of that name stands above
+    bool has_own_grad = false;       // a function of that name stands above
+    uint32_t told_type = UINT32_MAX; // where a type begins of which enough is said
+    bool are_types_behind = false;   // in the head of this function, and that is told
 
     // Of the function or texture that is being read:
     std::string_view one_size;                 // what `any_size` stands for; empty: nothing

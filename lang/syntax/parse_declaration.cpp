@@ -48,12 +48,13 @@ TypeName Grammar::type_name()
     type.base = name("of a type");
     if (type.base.text.empty()) return type;
     if (const ForeignWord* foreign = foreign_word(ForeignKind::type, type.base.text)) {
-        Diagnostic& reported = diagnostics.error(type.base.span, "foreign-word",
-                                                 "'" + type.base.text + "' is not a type of Haptel", foreign->hint);
-        if (!foreign->replacement.empty()) {
-            if (foreign->is_exact) reported.fix = FixIt{type.base.span, std::string(foreign->replacement)};
-            type.base.text = foreign->replacement;
+        if (type.base.span.begin != told_type) {
+            Diagnostic& reported = diagnostics.error(type.base.span, "foreign-word",
+                                                     "'" + type.base.text + "' is not a type of Haptel", foreign->hint);
+            if (!foreign->replacement.empty() && foreign->is_exact)
+                reported.fix = FixIt{type.base.span, std::string(foreign->replacement)};
         }
+        if (!foreign->replacement.empty()) type.base.text = foreign->replacement;
     }
     skip_type_arguments();
     array_suffix(type);
@@ -186,6 +187,7 @@ void Grammar::function(File& result)
 {
     Function made;
     const size_t first_token = position;
+    are_types_behind = skip_word_of_function();
     made.result = type_name();
     const Span first = made.result.base.span;
     if (made.result.base.text.empty()) stand_again();
@@ -200,6 +202,8 @@ void Grammar::function(File& result)
         parameters(made.parameters, &Grammar::function_parameter, false);
     }
     is_head_damaged |= lost;
+    if (are_types_behind && at(Token::arrow) && kind(1) == Token::name) advance(2);
+    are_types_behind = false;
     if (at(Token::semicolon) && !lost) {
         advance();
         diagnostics
@@ -230,6 +234,7 @@ FunctionParameter Grammar::function_parameter()
     } else {
         accept(Token::kw_in); // as GLSL writes it
     }
+    read_type_behind_name(are_types_behind);
     parameter.type = type_name();
     if (lost) return parameter;
     parameter.name = name_after(parameter.type);
@@ -327,7 +332,10 @@ TextureParameter Grammar::texture_parameter()
     if (parameter.name.text.empty()) return parameter;
     array_suffix(parameter.type);
     const bool needs_default = !parameter.is_output && parameter.type.base.text != "image";
-    if (accept(Token::assign)) {
+    if (at(Token::assign) && kind(1) == Token::string && parameter.type.base.text == "string") { // told
+        advance(2);
+        parameter.value = unknown(previous_span());
+    } else if (accept(Token::assign)) {
         parameter.value = expression();
     } else if (needs_default && !lost) {
         parameter.value = unknown(parameter.name.span);
@@ -339,6 +347,7 @@ TextureParameter Grammar::texture_parameter()
             lost = !at(Token::kw_in) && !at(Token::comma) && !at(Token::right_paren); // "float depth 1mm"
         }
     }
+    skip_metadata();
     read_misspelt_in();
     if (!lost && accept(Token::kw_in)) at_choices() ? choices_of(parameter) : range_of(parameter);
     parameter.span = since(first);

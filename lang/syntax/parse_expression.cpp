@@ -13,7 +13,10 @@ using namespace ast;
 ExpressionPtr Grammar::expression()
 {
     ExpressionPtr result = conditional();
-    if (at(Token::assign) && !lost) {
+    if (at(Token::assign) && kind(1) == Token::greater && !lost) {
+        error(join(span(), span(1)), "foreign-word", "there are no functions without a name in Haptel",
+              "write a function, and pass its name: float wave(vec3 q) { return ...; } ... fbm(wave, q, 4)");
+    } else if (at(Token::assign) && !lost) {
         error(span(), "assignment-in-expression", "expected the end of the expression, found '='",
               "to compare, write '=='; an assignment is a statement of its own");
     }
@@ -86,7 +89,8 @@ ExpressionPtr Grammar::postfix()
     ExpressionPtr object = primary();
     Nesting nesting(*this, 0);
     bool is_member = false; // as it stands, not in parentheses
-    while (at(Token::dot) || at(Token::left_bracket) || at(Token::left_paren) || at(Token::arrow)) {
+    while (at(Token::dot) || (at(Token::left_bracket) && kind(1) != Token::left_bracket) || at(Token::left_paren) ||
+           at(Token::arrow)) {
         nesting.deepen(Nesting::bracket);
         if (at(Token::left_bracket)) {
             const Span opener = span();

@@ -72,15 +72,62 @@ void Grammar::read_misspelt_keyword()
     list.tokens[position].kind = then;
 }
 
-// "float depth = 1mm if 0mm .. 2mm": behind the default.
+// "float depth = 1mm if 0mm .. 2mm", ": 0mm .. 2mm": behind the default.
 void Grammar::read_misspelt_in()
 {
+    if (at(Token::colon) && (kind(1) == Token::number || kind(1) == Token::minus) && !lost) {
+        slip(span(), "syntax", "expected 'in', ',' or ')'" + found(), "a range is written in 0.2mm .. 5mm").fix =
+            FixIt{span(), "in"};
+        list.tokens[position].kind = Token::kw_in;
+        return;
+    }
     const bool is_word = (at(Token::name) && !is_type_word(text())) || at(Token::kw_if);
     if (lost || !is_word || near_name(text(), {"in"}).name.empty()) return;
     const Span word = span();
     list.tokens[position].kind = Token::kw_in;
     error(word, "syntax", "expected 'in', ',' or ')'" + found(), "did you mean 'in'?").fix = FixIt{word, "in"};
     lost = false;
+}
+
+// "[[ float min = 0 ]]", as in OSL: behind the default.
+void Grammar::skip_metadata()
+{
+    if (!at(Token::left_bracket) || kind(1) != Token::left_bracket || lost) return;
+    const Span first = span();
+    while (!at(Token::end) && !at(Token::left_brace) && !(at(Token::right_bracket) && kind(1) == Token::right_bracket))
+        advance();
+    if (!at(Token::right_bracket)) return;
+    advance(2);
+    slip(since(first), "foreign-word", "there are no [[ ]] in Haptel",
+         "a range stands behind the default, in 0mm .. 5mm, and what a parameter means in a comment before it, ///");
+}
+
+// "x: f32", "var x: f32": from now on "f32 x".
+void Grammar::read_type_behind_name(bool is_told)
+{
+    const size_t word = text() == "var" || text() == "let" ? 1 : 0;
+    if (kind(word) != Token::name || kind(word + 1) != Token::colon || kind(word + 2) != Token::name) return;
+    const ForeignWord* foreign = foreign_word(ForeignKind::type, text(word + 2));
+    const std::string meant(foreign && !foreign->replacement.empty() ? foreign->replacement : text(word + 2));
+    const std::string written = meant + " " + std::string(text(word));
+    const Span whole = join(span(), span(word + 2));
+    if (!is_told) slip(whole, "foreign-word", "the type comes first", "write " + written).fix = FixIt{whole, written};
+    told_type = span(word + 2).begin;
+    const auto here = list.tokens.begin() + static_cast<std::ptrdiff_t>(position + word);
+    const bool has_arguments = kind(word + 3) == Token::less && kind(word + 5) == Token::greater; // "vec3<f32>"
+    std::rotate(here, here + 1, here + (has_arguments ? 6 : 3));
+    advance(word + 1);
+}
+
+// "fn f(x: f32) -> f32", "function float f(float x)": before the result. Whether types stand behind names.
+bool Grammar::skip_word_of_function()
+{
+    const ForeignWord* word = foreign_word(ForeignKind::type, text());
+    if (!word || word != foreign_word(ForeignKind::type, "fn") || kind(1) != Token::name) return false;
+    if (kind(2) != Token::name) return true;
+    slip(span(), "foreign-word", not_in_haptel(), word->hint).fix = FixIt{{file, span().begin, span(1).begin}, ""};
+    advance();
+    return false;
 }
 
 // "a and b"; nothing but an operator can stand here.

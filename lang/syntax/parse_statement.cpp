@@ -104,6 +104,11 @@ StatementPtr Grammar::single_statement(std::string_view after)
 {
     const Span first = span();
     if (at(Token::left_brace)) return block();
+    if (at(Token::semicolon) && !lost) {
+        Diagnostic& reported = diagnostics.warning(first, "empty-body", "nothing stands after " + std::string(after),
+                                                   "leave this ';' out, or write {} where nothing is meant");
+        if (kind(1) == Token::left_brace) reported.fix = FixIt{first, ""};
+    }
     if (at(Token::right_brace) || at(Token::end)) {
         error(first, "syntax", "expected a statement after " + std::string(after) + found());
         return make_statement(first, Scope{});
@@ -332,6 +337,7 @@ void Grammar::declaration_list(Statements& into)
 {
     const Span first = span();
     const bool is_const = accept(Token::kw_const);
+    read_type_behind_name(false);
     TypeName type = type_name();
     do {
         const Span begin = into.empty() ? first : span();

@@ -28,6 +28,12 @@ File Grammar::parse_file()
         result.unread.merge(unread);
         result.lacks_functions = true;
     };
+    const auto skip = [&](std::string message, std::string_view hint) { // what it declares may be used below
+        const size_t from = position;
+        skip_foreign_declaration(std::move(message), hint);
+        note_unread(from);
+        result.unread.merge(unread);
+    };
     while (!at(Token::end)) {
         begin_declaration();
         const size_t first_position = position;
@@ -43,10 +49,14 @@ File Grammar::parse_file()
         } else if (at(Token::kw_texture)) {
             texture(result);
         } else if ((at(Token::kw_in) || at(Token::kw_out)) && kind(1) == Token::name) {
-            skip_foreign_declaration("a file has no inputs and outputs of its own",
-                                     at(Token::kw_in)
-                                         ? "the point of contact is p, its normal n, its mesh coordinates uv"
-                                         : "a texture returns its height: return 1mm;");
+            skip("a file has no inputs and outputs of its own",
+                 at(Token::kw_in) ? "the point of contact is p, its normal n, its mesh coordinates uv"
+                                  : "a texture returns its height: return 1mm;");
+        } else if (const ForeignWord* word = at(Token::name) ? foreign_word(ForeignKind::declaration, text()) : nullptr;
+                   word && word->replacement.empty()) {
+            skip(not_in_haptel(), word->hint);
+        } else if (text() == "void" && text(1) == "main" && kind(2) == Token::left_paren) {
+            skip("a file of Haptel has no main()", "write texture name() { return ...; }: it returns the height at p");
         } else {
             strayed = !at(Token::name) || !top_level_name(result);
         }
@@ -95,11 +105,7 @@ void Grammar::report_stray(File& result)
 // A name at the top: a function's type; or a slip. False if nothing at all can begin like this.
 bool Grammar::top_level_name(File& result)
 {
-    const ForeignWord* foreign = foreign_word(ForeignKind::declaration, text());
-    if (foreign && foreign->replacement.empty()) {
-        skip_foreign_declaration(not_in_haptel(), foreign->hint);
-        return true;
-    }
+    const ForeignWord* foreign = foreign_word(ForeignKind::declaration, text()); // read as another word
     std::string_view guess =
         is_type_word(text()) ? std::string_view{} : near_name(text(), {"texture", "import", "const"}).name;
     if (foreign) guess = foreign->replacement;

@@ -240,6 +240,22 @@ void DimensionBody::check_outputs()
     }
 }
 
+// "depth" of "depth * sin(q)", if the parameter is a plain number: its default may lack a unit. Null: none.
+static const Symbol* plain_factor(const Expression& e, const auto& dimension_of)
+{
+    if (const auto* name = std::get_if<NameExpression>(&e.node)) {
+        const Symbol* symbol = name->symbol;
+        const bool is_parameter = symbol && symbol->kind == SymbolKind::texture_parameter && symbol->type == float_type;
+        return is_parameter && dimension_of(*symbol).is_plain() ? symbol : nullptr;
+    }
+    const auto* product = std::get_if<Chain>(&e.node);
+    if (!product || product->rest.front().op != BinaryOp::multiply) return nullptr;
+    const Symbol* found = plain_factor(*product->first, dimension_of);
+    for (const Chain::Link& link : product->rest)
+        if (!found && link.op == BinaryOp::multiply) found = plain_factor(*link.operand, dimension_of);
+    return found;
+}
+
 void DimensionBody::leave(const Return& node, Span where)
 {
     const Dimension found = node.value ? expression(*node.value) : Dimension::any();
@@ -248,10 +264,18 @@ void DimensionBody::leave(const Return& node, Span where)
     Dimension& result = instance.result;
     if (outputs) {
         check_outputs();
-        const std::string advice = found.is_plain() ? ": multiply by a depth" : "";
-        if (!join(found, Dimension::length()))
-            report(node.value->span, "a texture returns a length, got " + description(found) + advice,
-                   {found.is_plain() ? "for example 50um * (...)" : ""});
+        if (join(found, Dimension::length())) return;
+        const Symbol* factor =
+            found.is_plain()
+                ? plain_factor(*node.value, [&](const Symbol& symbol) { return read(symbol, node.value->span); })
+                : nullptr;
+        const std::string advice = !found.is_plain() ? ""
+                                   : factor          ? ": give '" + factor->name + "' the unit that is meant"
+                                                     : ": multiply by a depth";
+        report(node.value->span, "a texture returns a length, got " + description(found) + advice,
+               {!found.is_plain() ? ""
+                : factor          ? "for example float " + factor->name + " = 50um in 0um .. 100um"
+                                  : "for example 50um * (...)"});
     } else if (const auto both = join(result, found)) {
         if (result.is_any()) returned_at = node.value->span;
         result = *both;

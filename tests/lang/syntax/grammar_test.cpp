@@ -95,7 +95,7 @@ TEST_CASE("grammar: what it derives, the parser accepts")
         Diagnostics diagnostics;
         parse(sources, file, diagnostics);
         INFO(text);
-        REQUIRE(rendered(diagnostics, sources) == "");
+        if (diagnostics.has_errors()) FAIL(rendered(diagnostics, sources)); // empty bodies are warned of
         if (round % 5 == 0) check_format(text, grammar);
     }
     for (const std::string& rule : grammar.rules()) CHECK(used.count(rule) == 1);
