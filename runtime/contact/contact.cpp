@@ -23,8 +23,8 @@ bool slides_on(std::span<const Contact> held, const glm::dvec3& way_m, const Wal
     }
     const double least = sticks_again * friction.dynamic_coefficient, length_m = glm::length(push_m);
     const glm::dvec3 normal = length_m > 0 ? push_m / length_m : glm::dvec3(0);
-    glm::dvec3 from_m, along_m;                      // of the hand, seen from the proxy
-    if (friction.grain.is_there() && length_m > 0) { // where the ellipse is a disc
+    glm::dvec3 from_m, along_m;                    // of the hand, seen from the proxy
+    if (friction.grain.is_there && length_m > 0) { // where the ellipse is a disc
         const FrictionEllipse ellipse(friction.grain, normal);
         from_m = -ellipse.as_in_disc(lag_m), along_m = ellipse.as_in_disc(way_m);
         if (glm::dot(from_m, along_m) >= 0) return glm::dot(from_m, from_m) >= least * pressed_m * (least * pressed_m);

@@ -15,7 +15,7 @@ constexpr double along_normal = 1e-9;
 
 glm::dvec3 times(const Grain& grain, const glm::dvec3& v)
 {
-    const auto& [d, m] = grain;
+    const glm::dvec3 &d = grain.diagonal, &m = grain.mixed;
     return {d.x * v.x + m.z * v.y + m.y * v.z, m.z * v.x + d.y * v.y + m.x * v.z, m.y * v.x + m.x * v.y + d.z * v.z};
 }
 
@@ -32,12 +32,14 @@ Grain grain_along(const glm::dvec3& direction, double scale, const glm::dvec3& n
     if (!(length > along_normal * glm::length(unscaled))) return {};
     const glm::dvec3 e = within / length;
     const double more = std::clamp(scale, least_grain, most_grain) - 1;
-    return {more * e * e, more * glm::dvec3(e.y * e.z, e.z * e.x, e.x * e.y)};
+    if (more == 0) return {};
+    return {true, more * e * e, more * glm::dvec3(e.y * e.z, e.z * e.x, e.x * e.y)};
 }
 
 Grain mixed(const Grain& from, const Grain& to, double share) noexcept
 {
-    return {from.diagonal + share * (to.diagonal - from.diagonal), from.mixed + share * (to.mixed - from.mixed)};
+    if (!from.is_there && !to.is_there) return {};
+    return {true, from.diagonal + share * (to.diagonal - from.diagonal), from.mixed + share * (to.mixed - from.mixed)};
 }
 
 Grain turned(const Grain& grain, const glm::dmat3& rotation) noexcept
@@ -45,7 +47,7 @@ Grain turned(const Grain& grain, const glm::dmat3& rotation) noexcept
     const glm::dmat3 back = glm::transpose(rotation);
     glm::dmat3 columns;
     for (int i = 0; i < 3; ++i) columns[i] = rotation * times(grain, back[i]);
-    return {{columns[0].x, columns[1].y, columns[2].z}, {columns[1].z, columns[2].x, columns[0].y}};
+    return {grain.is_there, {columns[0].x, columns[1].y, columns[2].z}, {columns[1].z, columns[2].x, columns[0].y}};
 }
 
 FrictionEllipse::FrictionEllipse(const Grain& grain, const glm::dvec3& normal) noexcept

@@ -16,10 +16,13 @@ namespace haptel::runtime {
 // the unit vector e that is s times that across. A direction and its opposite are one, and means of several are means
 // of their tensors: two grains that cross are no grain.
 struct Grain {
+    bool is_there = false;            // else the rest is 0, and nobody looks at it
     glm::dvec3 diagonal{0}, mixed{0}; // xx yy zz, yz zx xy
 
-    bool operator==(const Grain&) const = default;
-    bool is_there() const { return *this != Grain(); }
+    bool operator==(const Grain& other) const
+    {
+        return is_there == other.is_there && (!is_there || (diagonal == other.diagonal && mixed == other.mixed));
+    }
 };
 
 // Beyond these friction along the grain is as good as none, or as good as a rail: 1/1024 of 1 N is less than hands

@@ -39,8 +39,9 @@ SphereContact::Held SphereContact::rub(double step_max, Stride& last, bool is_la
         const bool is_down = gap <= touching_gap;
         const glm::dvec3 down = is_down ? glm::dvec3(0) : glm::dot(way, normal) * normal, along = way - down;
         const double length = glm::length(along);
-        const auto ellipse =
-            friction_.grain.is_there() ? std::optional(FrictionEllipse(friction_.grain, normal)) : std::nullopt;
+        std::optional<FrictionEllipse> ellipse;
+        if (friction_.grain.is_there) [[unlikely]]
+            ellipse.emplace(friction_.grain, normal);
         // Of its way, where the ellipse is a disc: in its direction friction bears so much more or less.
         const double eased = ellipse && length > 0 ? length / ellipse->size(along) : 1.0;
         if (const double left = length - eased * friction_.dynamic_coefficient * held.pushes();

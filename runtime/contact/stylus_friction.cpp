@@ -25,7 +25,7 @@ void EndFriction::take_hold(bool of_sides) noexcept
     sticks = of_sides && drags() && !slips;
     limit_before_ = limit_;
     ellipse.reset();
-    if (drags() && friction.grain.is_there()) ellipse.emplace(friction.grain, normal);
+    if (drags() && friction.grain.is_there) ellipse.emplace(friction.grain, normal);
 }
 
 double EndFriction::follow(const glm::dvec3& aim, const glm::dvec3& held, const glm::dmat3& give) noexcept

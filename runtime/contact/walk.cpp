@@ -183,12 +183,12 @@ Walk::Step Walk::from_edge()
     const double pull_here = glm::dot(to_hand, glm::normalize(inward(face, edge)));
     const double pull_there = glm::dot(to_hand, glm::normalize(inward(link.face(), link.edge())));
     // Over a grain it may leave an edge along which it is pulled, by a lattice unit's rounding.
-    if (std::max(pull_here, pull_there) > (friction_.grain.is_there() ? -1 : 0)) {
+    if (std::max(pull_here, pull_there) > (friction_.grain.is_there ? -1 : 0)) {
         const SideEdge to = pull_here >= pull_there ? SideEdge(face, edge, proxy_.side) : link;
         const glm::dvec3 normal = surface_.facet_normal(to.face(), to.side());
         if (glm::dot(hand_ - vertex(face, edge), normal) >= lift_off) return leave_edge(face, edge, link);
         const SideEdge other = pull_here >= pull_there ? link : SideEdge(face, edge, proxy_.side);
-        if (friction_.grain.is_there() && !slips_into(to) && slips_into(other))
+        if (friction_.grain.is_there && !slips_into(to) && slips_into(other))
             return slide(other.face(), other.side(), other.edge(), 3);
         return slide(to.face(), to.side(), to.edge(), 3);
     }
@@ -268,7 +268,7 @@ Walk::Step Walk::from_vertex()
     }
     if (nearest.edge == NearestInFan::into_sector) {
         if (glm::dot(to_hand, surface_.facet_normal(face, side)) >= lift_off) return leave(here, glm::dvec3(0));
-        if (friction_.grain.is_there()) {
+        if (friction_.grain.is_there) {
             // As without friction, but for a hand that is by what friction holds nearer.
             const glm::dvec3 held = GrainPull(surface_, proxy_.at, hand_, friction_, face, side).held();
             NearestInFan there;
@@ -318,7 +318,7 @@ double Walk::share_past_friction(double way, double depth)
 // not crossed again (3: none).
 Walk::Step Walk::slide(uint32_t face, uint32_t side, uint32_t from_edge, uint32_t or_edge)
 {
-    if (friction_.grain.is_there()) return slide_over_grain(face, side, from_edge, or_edge);
+    if (friction_.grain.is_there) return slide_over_grain(face, side, from_edge, or_edge);
     const glm::dvec3 normal = surface_.facet_normal(face, side);
     const double height = glm::dot(hand_ - vertex(face, 0), normal);
     const glm::dvec3 way = hand_ - height * normal - proxy_.at;
@@ -399,7 +399,7 @@ Walk::Step Walk::slide_along(uint32_t face, uint32_t edge, uint32_t side)
     const double way = glm::dot(hand_ - begin, along) / length - here;
     const double pressed = pressed_at_edge(face, edge, side);
     double eased = 1; // in this direction friction bears so much more or less
-    if (friction_.grain.is_there()) {
+    if (friction_.grain.is_there) {
         const glm::dvec3 push = glm::cross(along, glm::cross(begin - hand_, along));
         if (const double across = glm::length(push); across > 0)
             eased = length / FrictionEllipse(friction_.grain, push / across).size(along);

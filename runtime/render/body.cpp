@@ -105,7 +105,7 @@ void MeanFriction::add(const Friction& friction, double push_n) noexcept
     mean.dynamic_coefficient += share * (friction.dynamic_coefficient - mean.dynamic_coefficient);
     // A grain is the more the harder what has it holds.
     if (const double all = mean.static_coefficient + mean.dynamic_coefficient;
-        all > 0 && (friction.grain.is_there() || mean.grain.is_there()))
+        all > 0 && (friction.grain.is_there || mean.grain.is_there))
         mean.grain = mixed(mean.grain, friction.grain, std::min(1.0, share * own / all));
 }
 

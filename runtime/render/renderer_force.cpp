@@ -98,7 +98,7 @@ void Renderer::render_object(Body& body, std::span<const Contact> contacts, cons
         if (!contact.by_shaft) {
             const Material& material = touched.object->material;
             MeanFriction& end = contact.along == 0 ? body.tip_friction : body.tail_friction;
-            if (body.objects.joined && force.grain.is_there()) force.grain = turned(force.grain, placement.rotation);
+            if (body.objects.joined && force.grain.is_there) force.grain = turned(force.grain, placement.rotation);
             end.add({material.static_friction * force.static_share, material.dynamic_friction * force.dynamic_share,
                      force.grain},
                     material.stiffness_n_per_m * contact.depth_m);

@@ -147,9 +147,9 @@ TEST_CASE("what friction with a grain holds is the nearest of an ellipse, and no
     CHECK(grain_along({1, 2, 0}, 3, up) == grain_along({-1, -2, 0}, 3, up));
     CHECK(glm::distance(grain_along({1, 2, 0}, 3, up).mixed, grain_along({1, 2, 7}, 3, up).mixed) < 1e-14);
     for (const dvec3& none : {dvec3(0), 5.0 * up, dvec3(std::nan(""), 1, 0), dvec3(HUGE_VAL, 0, 0)})
-        CHECK(!grain_along(none, 3, up).is_there());
-    CHECK(!grain_along({1, 2, 0}, 1, up).is_there());
-    CHECK(!grain_along({1, 2, 0}, std::nan(""), up).is_there());
+        CHECK(!grain_along(none, 3, up).is_there);
+    CHECK(!grain_along({1, 2, 0}, 1, up).is_there);
+    CHECK(!grain_along({1, 2, 0}, std::nan(""), up).is_there);
     const FrictionEllipse crossed(mixed(grain_along({1, 0, 0}, 3, up), grain_along({0, 1, 0}, 3, up), 0.5), up);
     for (int i = 0; i < 12; ++i) CHECK(std::abs(crossed.size(towards(i)) - 0.5) < 1e-12); // twice as much, any way
     const glm::dmat3 quarter(dvec3(0, 1, 0), dvec3(-1, 0, 0), up);

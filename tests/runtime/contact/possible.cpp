@@ -225,7 +225,7 @@ TEST_CASE("every step of the proxy is possible, on any mesh")
         for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}, grained}) {
             const auto surface = surface_of(mesh);
             const Verdict verdict = judge(surface, tries(1000), 17, friction);
-            CAPTURE(name, friction.static_coefficient, friction.grain.is_there(), verdict);
+            CAPTURE(name, friction.static_coefficient, friction.grain.is_there, verdict);
             CHECK(verdict.impossible == 0);
             CHECK(verdict.differing == 0);
             CHECK(verdict.cut <= (surface->is_clean() ? 0u : 1u)); // a ball: after a jump, in a thousand ticks
