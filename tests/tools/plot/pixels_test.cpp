@@ -1,4 +1,5 @@
 // What a pixel shows, of waves whose length and mean are known.
+#include "lang/abi/outputs.h"
 #include "tests/support/catch.h"
 #include "tools/plot/plot_grid.h"
 #include "tools/plot/plot_pixels.h"
@@ -27,7 +28,10 @@ TextureView waves(double length_m, double height_m)
         for (size_t i = 0; i < points.size(); ++i) {
             const double k = two_pi / length_m, phase = k * (0.8 * points[i].p[0] + 0.6 * points[i].p[1]);
             const double slope = height_m * k * std::cos(phase);
-            samples[i] = {1e-3 + height_m * std::sin(phase), {0.8 * slope, 0.6 * slope, 0}, 1, 1, 0};
+            samples[i] = blank_sample;
+            samples[i].height_m = 1e-3 + height_m * std::sin(phase);
+            samples[i].gradient[0] = 0.8 * slope;
+            samples[i].gradient[1] = 0.6 * slope;
         }
     };
     return view;
