@@ -1,4 +1,5 @@
 // What stands at the top of a file: imports, constants, functions, textures; and the small rules that all share.
+#include "lang/abi/outputs.h"
 #include "lang/syntax/grammar.h"
 
 #include <algorithm>
@@ -337,6 +338,12 @@ TextureParameter Grammar::texture_parameter()
         parameter.value = unknown(previous_span());
     } else if (accept(Token::assign)) {
         parameter.value = expression();
+    } else if (needs_default && !lost && find_output(parameter.name.text)) {
+        parameter.is_output = true;
+        diagnostics.error(parameter.name.span, "missing-default",
+                          "the parameter '" + parameter.name.text +
+                              "' needs a default value; an output begins with 'out'",
+                          "write out " + parameter.type.base.text + " " + parameter.name.text);
     } else if (needs_default && !lost) {
         parameter.value = unknown(parameter.name.span);
         if (const std::string& type = parameter.type.base.text; is_type_word(type)) { // else enough is said

@@ -5,7 +5,9 @@
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"
 
+#include <algorithm>
 #include <atomic>
+#include <cstddef>
 #include <cstring>
 #include <thread>
 
@@ -24,9 +26,12 @@ std::vector<haptel_sample> samples_of(const TextureBinding& binding)
     return all;
 }
 
+// Of what the texture gives: bytes between the members are nobody's.
 bool same_bits(const std::vector<haptel_sample>& a, const std::vector<haptel_sample>& b)
 {
-    return std::memcmp(a.data(), b.data(), a.size() * sizeof a[0]) == 0;
+    return std::ranges::equal(a, b, [](const haptel_sample& one, const haptel_sample& other) {
+        return std::memcmp(&one, &other, offsetof(haptel_sample, stiffness_scale)) == 0 && one.faults == other.faults;
+    });
 }
 
 } // namespace
