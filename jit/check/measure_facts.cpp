@@ -14,11 +14,11 @@ namespace haptel::jit {
 
 namespace {
 
-using Vector = std::array<double, 3>;
+using Point = std::array<double, 3>;
 
 constexpr double nothing = -HUGE_VAL; // where a figure has no value
 
-double length(const Vector& a)
+double length(const Point& a)
 {
     return std::hypot(a[0], a[1], a[2]);
 }
@@ -30,7 +30,7 @@ public:
     {
     }
 
-    haptel_sample sample(const Vector& p_m) const
+    haptel_sample sample(const Point& p_m) const
     {
         const double at[3] = {p_m[0], p_m[1], p_m[2]};
         const haptel_point point = points.at(at);
@@ -39,13 +39,13 @@ public:
         return found;
     }
 
-    double height(const Vector& p_m) const
+    double height(const Point& p_m) const
     {
         const haptel_sample found = sample(p_m);
         return found.faults ? nothing : found.height_m;
     }
 
-    double slope(const Vector& p_m) const
+    double slope(const Point& p_m) const
     {
         const haptel_sample found = sample(p_m);
         return found.faults ? nothing : length({found.gradient[0], found.gradient[1], found.gradient[2]});
@@ -53,12 +53,12 @@ public:
 
     // The greatest eigenvalue of the second derivative, by the power method: differences of the gradient turn toward
     // its direction. Nothing at a kink, where they grow as the step shrinks.
-    double curvature(const Vector& p_m) const
+    double curvature(const Point& p_m) const
     {
         const double step_m = points.side_m() * 1e-6; // rounding and the third derivative weigh about the same
-        Vector direction = {0.6, 0.48, 0.64};
+        Point direction = {0.6, 0.48, 0.64};
         for (int i = 0; i < 4; ++i) {
-            const Vector change = change_along(p_m, direction, step_m);
+            const Point change = change_along(p_m, direction, step_m);
             const double size = length(change);
             if (!(size > 0)) return size == 0 ? 0 : nothing;
             for (size_t k = 0; k < 3; ++k) direction[k] = change[k] / size;
@@ -73,7 +73,7 @@ public:
         double most = nothing;
         bool is_endless = false; // it grew so much uphill that it will go on
     };
-    Found greatest(const std::vector<Vector>& places, const std::function<double(const Vector&)>& figure) const
+    Found greatest(const std::vector<Point>& places, const std::function<double(const Point&)>& figure) const
     {
         std::vector<std::pair<double, size_t>> best;
         for (size_t i = 0; i < places.size(); ++i) best.emplace_back(figure(places[i]), i);
@@ -93,19 +93,19 @@ public:
 
 private:
     // By central differences, per metre.
-    Vector change_along(const Vector& p_m, const Vector& direction, double step_m) const
+    Point change_along(const Point& p_m, const Point& direction, double step_m) const
     {
-        Vector a = p_m, b = p_m;
+        Point a = p_m, b = p_m;
         for (size_t k = 0; k < 3; ++k) a[k] -= direction[k] * step_m, b[k] += direction[k] * step_m;
         const haptel_sample low = sample(a), high = sample(b);
         if (low.faults || high.faults) return {NAN, NAN, NAN};
-        Vector change;
+        Point change;
         for (size_t k = 0; k < 3; ++k) change[k] = (high.gradient[k] - low.gradient[k]) / (2 * step_m);
         return change;
     }
 
     // Along the axes, with steps that are halved where none leads up.
-    double climbed(Vector p_m, double value, const std::function<double(const Vector&)>& figure) const
+    double climbed(Point p_m, double value, const std::function<double(const Point&)>& figure) const
     {
         constexpr int halvings = 40; // a step of the first length is 2^40 of the last
         double step_m = points.side_m() / 64;
@@ -113,7 +113,7 @@ private:
             bool is_higher = false;
             for (size_t axis = 0; axis < 3; ++axis)
                 for (const double sign : {-1.0, 1.0}) {
-                    Vector next = p_m;
+                    Point next = p_m;
                     next[axis] = std::clamp(next[axis] + sign * step_m, box.minimum_m[axis], box.maximum_m[axis]);
                     const double there = figure(next);
                     if (there > value) p_m = next, value = there, is_higher = true;
@@ -135,26 +135,26 @@ MeasuredFacts measure_facts(const TextureBinding& binding, const CheckBox& box, 
     const CheckPoints points(box, seed);
     const Search search(binding, box, points);
     MeasuredFacts facts;
-    std::vector<Vector> places;
+    std::vector<Point> places;
     for (uint32_t i = 0; i < count; ++i) {
         const haptel_point point = points.random(i);
-        const Vector p_m = {point.p[0], point.p[1], point.p[2]};
+        const Point p_m = {point.p[0], point.p[1], point.p[2]};
         if (search.sample(p_m).faults == 0) places.push_back(p_m);
     }
     facts.faulty = 1 - static_cast<double>(places.size()) / std::max(count, 1u);
     if (places.empty()) return facts;
 
-    facts.value_maximum = search.greatest(places, [&](const Vector& p_m) { return search.height(p_m); }).most;
+    facts.value_maximum = search.greatest(places, [&](const Point& p_m) { return search.height(p_m); }).most;
     facts.value_minimum = -search
                                .greatest(places,
-                                         [&](const Vector& p_m) {
+                                         [&](const Point& p_m) {
                                              const double height_m = search.height(p_m);
                                              return height_m == nothing ? nothing : -height_m;
                                          })
                                .most;
-    const auto slope = search.greatest(places, [&](const Vector& p_m) { return search.slope(p_m); });
+    const auto slope = search.greatest(places, [&](const Point& p_m) { return search.slope(p_m); });
     if (!slope.is_endless) facts.slope = std::max(slope.most, 0.0);
-    const auto curvature = search.greatest(places, [&](const Vector& p_m) { return search.curvature(p_m); });
+    const auto curvature = search.greatest(places, [&](const Point& p_m) { return search.curvature(p_m); });
     if (!curvature.is_endless) facts.curvature = std::max(curvature.most, 0.0);
 
     ShortPaths paths(binding, points);
