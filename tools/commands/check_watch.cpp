@@ -25,16 +25,16 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 // As where a texture follows its file (jit/live/live_texture.cpp).
-constexpr std::chrono::milliseconds settle_after_written = 10ms, settle_after_writing = 150ms, settle_longest = 1s;
+constexpr std::chrono::milliseconds pause_after_written = 10ms, pause_after_writing = 150ms, pause_longest = 1s;
 constexpr auto unasked = 1s;
-constexpr auto absence_forgiven = 500ms;
+constexpr auto absence_awaited = 500ms;
 
-std::atomic<bool> interrupted = false;
+std::atomic<bool> has_ended = false;
 static_assert(std::atomic<bool>::is_always_lock_free); // set by a signal
 
 extern "C" void on_watch_interrupt(int signal)
 {
-    interrupted = true;
+    has_ended = true;
     std::signal(signal, SIG_DFL);
 }
 
@@ -89,7 +89,7 @@ std::optional<FileStates> changed(jit::FileWatch& watch, const FileStates& known
     for (const auto& [file, state] : known) files.insert(file);
     constexpr auto never = Clock::time_point::max();
     Clock::time_point first_sign = never, gone_since = never;
-    for (Clock::time_point due = Clock::now(); !interrupted;) { // at once: something may have changed meanwhile
+    for (Clock::time_point due = Clock::now(); !has_ended;) { // at once: something may have changed meanwhile
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(due - Clock::now());
         pollfd descriptor{watch.descriptor(), POLLIN, 0};
         poll(&descriptor, 1, static_cast<int>(std::max<int64_t>(left.count(), 0)));
@@ -97,8 +97,7 @@ std::optional<FileStates> changed(jit::FileWatch& watch, const FileStates& known
         if (const auto change = watch.take(); change != jit::FileWatch::Change::none) {
             first_sign = std::min(first_sign, now);
             const bool is_written = change == jit::FileWatch::Change::written;
-            due =
-                std::min(now + (is_written ? settle_after_written : settle_after_writing), first_sign + settle_longest);
+            due = std::min(now + (is_written ? pause_after_written : pause_after_writing), first_sign + pause_longest);
         }
         if (now < due) continue;
         watch.watch(files); // folders that were not there
@@ -106,7 +105,7 @@ std::optional<FileStates> changed(jit::FileWatch& watch, const FileStates& known
         first_sign = never;
         if (has_lost_one(known, states)) {
             gone_since = std::min(gone_since, now);
-            due = gone_since + absence_forgiven;
+            due = gone_since + absence_awaited;
             if (now < due) continue;
         }
         gone_since = never;
@@ -120,7 +119,7 @@ std::optional<FileStates> changed(jit::FileWatch& watch, const FileStates& known
 
 void repeat_at_each_save(const std::function<std::set<std::string>()>& work)
 {
-    interrupted = false;
+    has_ended = false;
     std::signal(SIGINT, on_watch_interrupt);
     std::signal(SIGTERM, on_watch_interrupt);
     jit::FileWatch watch;

@@ -134,38 +134,38 @@ Engine open_engine(const EvalOptions& options)
     return {make_engine(options.engine, compiled.program, *bound.binding), bound.binding->texture->writes};
 }
 
-struct Output {
+struct Written {
     const OutputInfo* info;
     size_t first; // of its components, in Evaluated::outputs
 };
 
 // Only what the texture writes.
-std::vector<Output> outputs_of(uint32_t writes)
+std::vector<Written> written_by(uint32_t writes)
 {
-    std::vector<Output> outputs;
+    std::vector<Written> outputs;
     for_each_output(writes, [&](const OutputInfo& output, size_t first) { outputs.push_back({&output, first}); });
     return outputs;
 }
 
-std::string joined(const Evaluated& point, const Output& output, const char* between)
+std::string joined(const Evaluated& point, const Written& output, const char* between)
 {
     const std::span<const std::string> values(&point.outputs[output.first], output.info->components);
     return fmt::format("{}", fmt::join(values, between));
 }
 
-void print_text(uint32_t writes, const Evaluated& point)
+void print_lines(uint32_t writes, const Evaluated& point)
 {
     fmt::print("height_m {}\ngradient {} {} {}\n", point.height_m, point.gradient[0], point.gradient[1],
                point.gradient[2]);
-    for (const Output& output : outputs_of(writes))
+    for (const Written& output : written_by(writes))
         fmt::print("{} {}\n", output.info->name, joined(point, output, " "));
     fmt::print("faults {}\n", point.faults);
 }
 
 // Written by hand because the oracle's numbers have more digits than a JSON library's. `indent` stands before each line
 // but the first; `p_m` says which of many points it is.
-void print_json(const EvalOptions& options, uint32_t writes, const Evaluated& point, const char* indent,
-                const std::string& p_m)
+void print_point(const EvalOptions& options, uint32_t writes, const Evaluated& point, const char* indent,
+                 const std::string& p_m)
 {
     const auto line = [&](const std::string& text) { fmt::print("{}  {},\n", indent, text); };
     fmt::print("{{\n");
@@ -175,7 +175,7 @@ void print_json(const EvalOptions& options, uint32_t writes, const Evaluated& po
     if (!p_m.empty()) line(fmt::format("\"p_m\": [{}]", p_m));
     line(fmt::format("\"height_m\": {}", point.height_m));
     line(fmt::format("\"gradient\": [{}, {}, {}]", point.gradient[0], point.gradient[1], point.gradient[2]));
-    for (const Output& output : outputs_of(writes)) {
+    for (const Written& output : written_by(writes)) {
         const std::string values = joined(point, output, ", ");
         line(fmt::format("\"{}\": {}", output.info->name, output.info->components > 1 ? "[" + values + "]" : values));
     }
@@ -185,10 +185,10 @@ void print_json(const EvalOptions& options, uint32_t writes, const Evaluated& po
 // A table of points with their values, as a table or as an array; goes on from the first rows.
 void print_table(const EvalOptions& options, const Engine& engine, PointTable& table, std::vector<PointTable::Row> rows)
 {
-    const std::vector<Output> outputs = outputs_of(engine.writes);
+    const std::vector<Written> outputs = written_by(engine.writes);
     if (!options.json) {
         fmt::print("{},height_m,gx,gy,gz", table.header());
-        for (const Output& output : outputs)
+        for (const Written& output : outputs)
             for (size_t i = 0; i < output.info->components; ++i) fmt::print(",{}", component_name(*output.info, i));
         fmt::print(",faults\n");
     }
@@ -201,8 +201,8 @@ void print_table(const EvalOptions& options, const Engine& engine, PointTable& t
             const auto& [height_m, gradient, written, faults] = found[i];
             if (options.json) {
                 fmt::print("{}", std::exchange(between, ",\n  "));
-                print_json(options, engine.writes, found[i], "  ",
-                           fmt::format("{}, {}, {}", rows[i].p_m.x, rows[i].p_m.y, rows[i].p_m.z));
+                print_point(options, engine.writes, found[i], "  ",
+                            fmt::format("{}, {}, {}", rows[i].p_m.x, rows[i].p_m.y, rows[i].p_m.z));
                 continue;
             }
             fmt::print("{},{},{},{},{}", rows[i].text, height_m, gradient[0], gradient[1], gradient[2]);
@@ -234,10 +234,10 @@ ExitCode run(const EvalOptions& options)
         const haptel_point point = point_at(options, *options.at_m);
         const Evaluated found = engine.evaluate({&point, 1})[0];
         if (options.json) {
-            print_json(options, engine.writes, found, "", {});
+            print_point(options, engine.writes, found, "", {});
             fmt::print("\n");
         } else {
-            print_text(engine.writes, found);
+            print_lines(engine.writes, found);
         }
         return ExitCode::fine;
     }
