@@ -332,7 +332,8 @@ void BodyChecker::report_no_match(const Call& call, const std::vector<Candidate>
         std::string numbers;
         for (size_t count : counts)
             numbers += (numbers.empty() ? "" : count == *counts.rbegin() ? " or " : ", ") + std::to_string(count);
-        const std::string meant = decimal_comma(context.sources, std::get<CallExpression>(call.tree.node).arguments);
+        const auto* written = std::get_if<CallExpression>(&call.tree.node); // "grad(f)(q)" is none
+        const std::string meant = written ? decimal_comma(context.sources, written->arguments) : std::string();
         diagnostics.error(call.tree.span, "wrong-argument-count",
                           name + " takes " + numbers + (*counts.rbegin() == 1 ? " argument" : " arguments") +
                               ", found " + std::to_string(call.arguments.size()),
