@@ -14,6 +14,14 @@ namespace {
 constexpr uint32_t ended = IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_DELETE | IN_ATTRIB;
 constexpr uint32_t folder_events = ended | IN_CREATE | IN_MODIFY | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
 
+using namespace std::chrono_literals;
+
+// After the last sign that a file is complete: an editor's rename and what belongs to it are over by then.
+constexpr auto settle_after_written = 10ms;
+// After a write without an end: the writer is at work, or keeps the file open.
+constexpr auto settle_after_writing = 150ms;
+constexpr auto settle_longest = 1s; // since the first sign, however many follow
+
 } // namespace
 
 FileWatch::FileWatch() : inotify(inotify_init1(IN_NONBLOCK | IN_CLOEXEC)) {}
@@ -63,6 +71,13 @@ FileWatch::Change FileWatch::take()
             change = std::max(change, lost || folder_gone || (event->mask & ended) ? Change::written : Change::writing);
         }
     }
+}
+
+Settling::Clock::time_point Settling::due_after(FileWatch::Change change, Clock::time_point now)
+{
+    if (!first_sign) first_sign = now;
+    const auto settled = change == FileWatch::Change::written ? settle_after_written : settle_after_writing;
+    return std::min<Clock::time_point>(now + settled, *first_sign + settle_longest);
 }
 
 } // namespace haptel::jit

@@ -5,7 +5,9 @@
 // timeouts stand in. A report is a hint: whoever cares compares the content.
 #pragma once
 
+#include <chrono>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -35,6 +37,21 @@ public:
 private:
     int inotify = -1;
     std::map<int, std::set<std::string>> names_by_watch; // file names of interest, by a folder's watch descriptor
+};
+
+// When what somebody writes may be read: soon after it is closed, later where more is to come, and in any case a second
+// after the first sign.
+class Settling {
+public:
+    using Clock = std::chrono::steady_clock;
+
+    // Of a change that was taken at this time.
+    Clock::time_point due_after(FileWatch::Change change, Clock::time_point now);
+    bool is_awaited() const { return first_sign.has_value(); }
+    void read() { first_sign.reset(); }
+
+private:
+    std::optional<Clock::time_point> first_sign;
 };
 
 } // namespace haptel::jit

@@ -24,11 +24,6 @@ namespace {
 using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
-// After the last sign that a file is complete: an editor's rename and what belongs to it are over by then.
-constexpr auto settle_after_written = 10ms;
-// After a write without an end: the writer is at work, or keeps the file open.
-constexpr auto settle_after_writing = 150ms;
-constexpr auto settle_longest = 1s; // since the first sign, however many follow
 // Looks at the files unasked: for what inotify does not tell, and for folders that were not there.
 constexpr auto unasked = 1s;
 // Between deleting the old file and making the new one, some editors take a while.
@@ -88,20 +83,16 @@ public:
 private:
     void run(const std::stop_token& stop)
     {
-        std::optional<Clock::time_point> first_change;
+        Settling settling;
         Clock::time_point due = Clock::now();
         while (!stop.stop_requested()) {
             const bool is_woken = wait(due);
             const FileWatch::Change change = watch.take();
             const auto now = Clock::now();
-            if (change != FileWatch::Change::none) {
-                if (!first_change) first_change = now;
-                const auto settled = change == FileWatch::Change::written ? settle_after_written : settle_after_writing;
-                due = std::min(now + settled, *first_change + settle_longest);
-            }
-            if (now < due && (!is_woken || first_change)) continue;
+            if (change != FileWatch::Change::none) due = settling.due_after(change, now);
+            if (now < due && (!is_woken || settling.is_awaited())) continue;
             update_clients();
-            first_change.reset();
+            settling.read();
             due = Clock::now() + unasked;
         }
     }

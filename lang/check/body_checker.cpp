@@ -103,8 +103,7 @@ void BodyChecker::close_scope()
 
 bool BodyChecker::may_be_unread(const std::string& name) const
 {
-    const auto skipped = [&](const Declarations* layer) { return layer->unread.contains(name); };
-    return (damage && (damage->in_head || damage->unread.contains(name))) || std::ranges::any_of(scope.layers, skipped);
+    return (damage && (damage->in_head || damage->unread.contains(name))) || scope.is_unread(name);
 }
 
 void BodyChecker::report_unknown_name(Span span, const std::string& name)

@@ -32,14 +32,6 @@ struct CheckContext {
     std::vector<const Symbol*> inputs = {};                    // by InputName
     std::set<std::string, std::less<>> unknown_functions = {}; // those without a guess: each is reported once
     uint32_t near_searches = 200; // that are left: beyond, names that are unknown have no proposal
-
-    // Whether it may be declared in text of its file, or of what that imports, that could not be read.
-    bool is_unread(const ast::Name& name) const
-    {
-        return scopes && std::ranges::any_of((*scopes)[name.span.file].layers, [&](const Declarations* layer) {
-                   return layer->unread.contains(name.text);
-               });
-    }
 };
 
 // 'text', as names stand in messages.

@@ -35,7 +35,8 @@ Type resolve_type(CheckContext& context, const TypeName& name)
 {
     if (name.base.text.empty()) return Type::error(); // the parser has said why
     if (const auto type = type_named(name.base.text)) return *type;
-    if (context.is_unread(name.base)) return Type::error(); // "struct Cell": told
+    if (context.scopes && (*context.scopes)[name.base.span.file].is_unread(name.base.text))
+        return Type::error(); // "struct Cell": told
     Diagnostic& reported =
         context.diagnostics.error(name.base.span, "unknown-type", "unknown type " + quoted(name.base.text));
     if (name.base.text == any_size) {

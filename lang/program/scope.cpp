@@ -46,6 +46,11 @@ FunctionInfo* FileScope::texture(std::string_view name) const
     return nullptr;
 }
 
+bool FileScope::is_unread(std::string_view name) const
+{
+    return std::ranges::any_of(layers, [&](const Declarations* layer) { return layer->unread.contains(name); });
+}
+
 std::vector<Candidate> FileScope::functions(std::string_view name) const
 {
     std::vector<Candidate> found;

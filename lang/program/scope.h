@@ -53,6 +53,7 @@ struct FileScope {
     // Every function of that name; of equal signatures only the nearest, so that a file may replace what it imports.
     std::vector<Candidate> functions(std::string_view name) const;
     FunctionInfo* texture(std::string_view name) const; // null: none has that name
+    bool is_unread(std::string_view name) const;        // it may be declared in text that could not be read
 };
 
 } // namespace haptel::lang

@@ -25,7 +25,6 @@ using namespace std::chrono_literals;
 using Clock = std::chrono::steady_clock;
 
 // As where a texture follows its file (jit/live/live_texture.cpp).
-constexpr std::chrono::milliseconds pause_after_written = 10ms, pause_after_writing = 150ms, pause_longest = 1s;
 constexpr auto unasked = 1s;
 constexpr auto absence_awaited = 500ms;
 
@@ -88,21 +87,19 @@ std::optional<FileStates> changed(jit::FileWatch& watch, const FileStates& known
     std::set<std::string> files;
     for (const auto& [file, state] : known) files.insert(file);
     constexpr auto never = Clock::time_point::max();
-    Clock::time_point first_sign = never, gone_since = never;
+    jit::Settling settling;
+    Clock::time_point gone_since = never;
     for (Clock::time_point due = Clock::now(); !has_ended;) { // at once: something may have changed meanwhile
         const auto left = std::chrono::ceil<std::chrono::milliseconds>(due - Clock::now());
         pollfd descriptor{watch.descriptor(), POLLIN, 0};
         poll(&descriptor, 1, static_cast<int>(std::max<int64_t>(left.count(), 0)));
         const auto now = Clock::now();
-        if (const auto change = watch.take(); change != jit::FileWatch::Change::none) {
-            first_sign = std::min(first_sign, now);
-            const bool is_written = change == jit::FileWatch::Change::written;
-            due = std::min(now + (is_written ? pause_after_written : pause_after_writing), first_sign + pause_longest);
-        }
+        if (const auto change = watch.take(); change != jit::FileWatch::Change::none)
+            due = settling.due_after(change, now);
         if (now < due) continue;
         watch.watch(files); // folders that were not there
         FileStates states = states_of(known);
-        first_sign = never;
+        settling.read();
         if (has_lost_one(known, states)) {
             gone_since = std::min(gone_since, now);
             due = gone_since + absence_awaited;
