@@ -30,6 +30,7 @@ ir::BoundsBox box_of(const AnalysedCube& where)
     box.normal_turn_max_per_m = turn_per_m;
     set(Input::uv_dp_00, 6, {-infinity, infinity});
     set(Input::time, 1, {0, infinity});
+    ir::set_contact(box);
     set(Input::center_x, 3, {0, 0});
     set(Input::extent_x, 3, {side_m, side_m});
     set(Input::footprint, 1, {footprint_m, footprint_m});
@@ -180,7 +181,7 @@ void report_scales(const ir::Texture& texture, std::span<const ir::Interval> sca
         for (size_t i = 0; i < output.components; ++i) {
             const ir::Interval& scale = scales[first + i];
             const bool is_negative = scale.is_finite(); // else that is worse
-            if (is_negative && (scale.minimum >= 0 || !output.is_scale)) continue;
+            if (is_negative && (scale.minimum >= 0 || !output.is_never_negative)) continue;
             const std::string what = scale.is_empty() ? "is not a number" : "lies in " + shown(scale);
             const std::string counts = std::string(" it counts as ") + (output.value == 0 ? "0" : "1");
             diagnostics.warning(

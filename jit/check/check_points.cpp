@@ -38,6 +38,11 @@ haptel_point CheckPoints::at(const double (&p_m)[3]) const
 {
     haptel_point point{};
     point.time_s = 1.25;
+    point.velocity[0] = 0.03, point.velocity[1] = -0.02; // a hand that explores, with a stylus
+    point.normal_force_n = 1.5;
+    point.tool_radius_m = 0.5e-3;
+    point.tangent[0] = point.bitangent[1] = 1;
+    point.curvature_per_m = 5;
     std::copy(p_m, p_m + 3, point.p);
     for (size_t i = 0; i < 3; ++i) {
         point.n[i] = n_middle[i];
@@ -68,7 +73,18 @@ std::vector<haptel_point> CheckPoints::edges() const
     for (double size : {1e-6, 1e-3, 1.0, 1e3, 1e6, 1e9, 1e15, 1e18}) values.insert(values.end(), {size, -size});
     std::vector<haptel_point> points;
     const auto add = [&](double x, double y, double z) {
-        points.push_back({.p = {x, y, z}, .n = {0, 0, 1}, .uv = {x, y}, .time_s = 0, .n_dp = {}, .uv_dp = {}});
+        points.push_back({.p = {x, y, z},
+                          .n = {0, 0, 1},
+                          .uv = {x, y},
+                          .time_s = 0,
+                          .n_dp = {},
+                          .uv_dp = {},
+                          .velocity = {},
+                          .normal_force_n = 0,
+                          .tool_radius_m = 0,
+                          .tangent = {},
+                          .bitangent = {},
+                          .curvature_per_m = 0});
     };
     for (double x : values)
         for (double y : values)

@@ -2,7 +2,6 @@
 
 #include "jit/codegen/codegen_function.h"
 #include "jit/codegen/kernels.h"
-#include "lang/ir/dead_code.h"
 
 #include <algorithm>
 
@@ -63,26 +62,13 @@ llvm::Type* ModuleEmitter::type(ir::Type type, Form held)
     return nullptr;
 }
 
-const std::vector<bool>& ModuleEmitter::needed_values(uint32_t index, const std::vector<bool>& results)
-{
-    const std::pair key{index, results};
-    if (const auto known = needs.find(key); known != needs.end()) return known->second;
-    const auto parameters = [&](uint32_t callee, const std::vector<bool>& of_call) {
-        const std::vector<bool>& inside = needed_values(callee, of_call);
-        std::vector<bool> needed;
-        for (ir::Value parameter : source.functions[callee].parameters) needed.push_back(inside[parameter.index]);
-        return needed;
-    };
-    return needs.emplace(key, ir::needed_values(source.functions[index], results, parameters)).first->second;
-}
-
 ValueForms ModuleEmitter::forms(uint32_t index, const Signature& signature)
 {
     const ir::Function& from = source.functions[index];
     ValueForms made{.function = from,
                     .varies = varying_values(from, signature.arguments),
                     .wide = plan.wide_values(index, signature.wide_results)};
-    if (!signature.needed_results.empty()) made.needed = needed_values(index, signature.needed_results);
+    if (!signature.needed_results.empty()) made.needed = needs.of(index, signature.needed_results);
     if (form == LaneForm::points) {
         made.in_lanes = made.varies;
         return made;

@@ -1,6 +1,8 @@
 // An LLVM module in the making: the functions and tables of one IR module that its entries reach, in one form.
 #pragma once
 
+#include "lang/ir/dead_code.h"
+
 #include "jit/codegen/codegen.h"
 #include "jit/codegen/iteration_lanes.h"
 #include "jit/codegen/llvm.h"
@@ -112,9 +114,7 @@ private:
     std::map<std::pair<uint32_t, Signature>, Function> functions;
     std::vector<const Function*> unfinished;
     std::map<std::pair<uint32_t, bool>, llvm::GlobalVariable*> tables;
-    std::map<std::pair<uint32_t, std::vector<bool>>, std::vector<bool>> needs; // by function and results: by value
-
-    const std::vector<bool>& needed_values(uint32_t index, const std::vector<bool>& results);
+    ir::NeededValues needs{source};
 };
 
 } // namespace haptel::jit

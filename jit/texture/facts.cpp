@@ -42,6 +42,7 @@ ir::BoundsBox anywhere()
     set(box, Input::extent_x, {0, 0, 0}, {infinity, infinity, infinity});
     box.input[static_cast<size_t>(Input::time)] = {0, infinity};
     box.input[static_cast<size_t>(Input::footprint)] = {0, std::numeric_limits<double>::max()};
+    ir::set_contact(box);
     return box;
 }
 

@@ -18,13 +18,19 @@ enum { HAPTEL_ABI_VERSION = 1 };
 
 /* Bits of haptel_texture::reads: inputs that the entries use. An input whose bit is clear need not be filled. */
 enum {
-    HAPTEL_READS_POINT = 1u << 0,    /* p */
-    HAPTEL_READS_NORMAL = 1u << 1,   /* n, and n_dp for the gradient */
-    HAPTEL_READS_UV = 1u << 2,       /* uv, and uv_dp for the gradient */
-    HAPTEL_READS_TIME = 1u << 3,     /* time_s; excludes a conservative force field */
-    HAPTEL_READS_CENTER = 1u << 4,   /* center in the block */
-    HAPTEL_READS_EXTENT = 1u << 5,   /* extent in the block */
-    HAPTEL_READS_FOOTPRINT = 1u << 6 /* footprint_m in the block */
+    HAPTEL_READS_POINT = 1u << 0,     /* p */
+    HAPTEL_READS_NORMAL = 1u << 1,    /* n, and n_dp for the gradient */
+    HAPTEL_READS_UV = 1u << 2,        /* uv, and uv_dp for the gradient */
+    HAPTEL_READS_TIME = 1u << 3,      /* time_s; excludes a conservative force field */
+    HAPTEL_READS_CENTER = 1u << 4,    /* center in the block */
+    HAPTEL_READS_EXTENT = 1u << 5,    /* extent in the block */
+    HAPTEL_READS_FOOTPRINT = 1u << 6, /* footprint_m in the block */
+    /* What tells of the contact itself: for outputs only, neither height nor stiffness reads it. */
+    HAPTEL_READS_VELOCITY = 1u << 7,
+    HAPTEL_READS_NORMAL_FORCE = 1u << 8,
+    HAPTEL_READS_TOOL_RADIUS = 1u << 9,
+    HAPTEL_READS_TANGENT = 1u << 10, /* tangent and bitangent */
+    HAPTEL_READS_CURVATURE = 1u << 11
 };
 
 /* Bits of haptel_texture::writes: outputs beyond height and gradient. */
@@ -35,7 +41,9 @@ enum {
     HAPTEL_WRITES_DYNAMIC_FRICTION_SCALE = 1u << 3,
     HAPTEL_WRITES_DAMPING_SCALE = 1u << 4,
     HAPTEL_WRITES_FRICTION_DIRECTION = 1u << 5,
-    HAPTEL_WRITES_FRICTION_ALONG_SCALE = 1u << 6
+    HAPTEL_WRITES_FRICTION_ALONG_SCALE = 1u << 6,
+    HAPTEL_WRITES_VIBRATION = 1u << 7,
+    HAPTEL_WRITES_VIBRATION_HZ = 1u << 8
 };
 
 /* Bits of haptel_sample::faults. */
@@ -80,6 +88,12 @@ typedef struct {
     double time_s;      /* since the start of the exploration */
     double n_dp[3][3];  /* 1/m, filled only where `reads` says so */
     double uv_dp[2][3]; /* 1/m, likewise */
+    /* Within contact_limits.h; filled only where `reads` says so. No derivative is taken of what follows. */
+    double velocity[3];              /* m/s, of the hand along the surface */
+    double normal_force_n;           /* the object's stiffness times the depth below its base surface, >= 0 */
+    double tool_radius_m;            /* of the ball or the stylus's end that touches, >= 0 */
+    double tangent[3], bitangent[3]; /* unit, along the surface, where uv.x and uv.y grow alone; 0 without uv */
+    double curvature_per_m;          /* mean of the two principal ones of the smooth surface, > 0 where it is convex */
 } haptel_point;
 
 typedef struct {
@@ -90,8 +104,9 @@ typedef struct {
     uint32_t faults;
     /* From here on an entry writes only what `writes` names: a caller whose sample ends above may call it otherwise. */
     double static_friction_scale, dynamic_friction_scale, damping_scale;
-    double friction_along_scale;  /* friction along the direction over that across it */
-    double friction_direction[3]; /* of any length; only its part along the surface counts. Zero: none */
+    double friction_along_scale;      /* friction along the direction over that across it */
+    double friction_direction[3];     /* of any length; only its part along the surface counts. Zero: none */
+    double vibration_n, vibration_hz; /* amplitude, at most the force that presses, and frequency, along the normal */
 } haptel_sample;
 
 /* Proven bounds over a box and a set of parameter values. Infinity: unbounded or not found. */
@@ -126,7 +141,8 @@ typedef void haptel_entry(const haptel_point*, const void* block, haptel_sample*
  * No output may share memory with an input.
  */
 typedef struct {
-    const double *p[3], *n[3], *uv[2], *time_s, *n_dp[3][3], *uv_dp[2][3];
+    const double *p[3], *n[3], *uv[2], *time_s, *n_dp[3][3], *uv_dp[2][3], *velocity[3], *normal_force_n,
+        *tool_radius_m, *tangent[3], *bitangent[3], *curvature_per_m;
 } haptel_points;
 
 typedef struct {
@@ -134,7 +150,7 @@ typedef struct {
     uint32_t* faults;
     /* As in haptel_sample. */
     double *static_friction_scale, *dynamic_friction_scale, *damping_scale, *friction_along_scale,
-        *friction_direction[3];
+        *friction_direction[3], *vibration_n, *vibration_hz;
 } haptel_samples;
 
 /* Each sample is that of the entry for one point, bit for bit. */

@@ -22,9 +22,17 @@ public:
     void set(std::span<const haptel_point> points, uint32_t reads)
     {
         const auto kind_of = [](std::size_t real) { // of the doubles of haptel_point, as the bits of `reads` count them
-            return real < 3 ? 0 : real < 6 ? 1 : real < 8 ? 2 : real < 9 ? 3 : real < 18 ? 1 : 2;
+            constexpr struct {
+                std::size_t end;
+                int bit;
+            } kinds[] = {{3, 0},  {6, 1},  {8, 2},  {9, 3},   {18, 1}, {24, 2},
+                         {27, 7}, {28, 8}, {29, 9}, {35, 10}, {36, 11}};
+            return std::ranges::upper_bound(kinds, real, {}, [](const auto& kind) { return kind.end; })->bit;
         };
-        static_assert(HAPTEL_READS_NORMAL == 1 << 1 && HAPTEL_READS_UV == 1 << 2 && HAPTEL_READS_TIME == 1 << 3);
+        static_assert(HAPTEL_READS_NORMAL == 1 << 1 && HAPTEL_READS_UV == 1 << 2 && HAPTEL_READS_TIME == 1 << 3 &&
+                      HAPTEL_READS_VELOCITY == 1 << 7 && HAPTEL_READS_NORMAL_FORCE == 1 << 8 &&
+                      HAPTEL_READS_TOOL_RADIUS == 1 << 9 && HAPTEL_READS_TANGENT == 1 << 10 &&
+                      HAPTEL_READS_CURVATURE == 1 << 11 && reals == 36);
         for (std::size_t real = 0; real < reals; ++real) {
             if (!(reads >> kind_of(real) & 1)) continue;
             const char* place = reinterpret_cast<const char*>(points.data()) + real * sizeof(double);

@@ -19,30 +19,35 @@ struct OutputInfo {
     uint32_t writes;     // its bit, HAPTEL_WRITES_*
     uint32_t components; // 1: a float, 3: a vec3
     double value;        // of each component, where no texture assigns it, or what it assigns is not allowed
-    bool is_scale;       // a plain number that is never negative
+    bool is_never_negative;
     std::size_t offset, array_offset; // in haptel_sample; of the array, or the first of them, in haptel_samples
+    std::string_view unit; // SI; empty: a plain number, or newtons, which the language does not tell from them
     std::string_view meaning;
 };
 
 // By bit.
 inline constexpr OutputInfo output_table[] = {
     {"stiffness_scale", HAPTEL_WRITES_STIFFNESS_SCALE, 1, 1, true, offsetof(haptel_sample, stiffness_scale),
-     offsetof(haptel_samples, stiffness_scale), "times the object's stiffness"},
+     offsetof(haptel_samples, stiffness_scale), "", "times the object's stiffness"},
     {"friction_scale", HAPTEL_WRITES_FRICTION_SCALE, 1, 1, true, offsetof(haptel_sample, friction_scale),
-     offsetof(haptel_samples, friction_scale), "times both friction coefficients of the object"},
+     offsetof(haptel_samples, friction_scale), "", "times both friction coefficients of the object"},
     {"static_friction_scale", HAPTEL_WRITES_STATIC_FRICTION_SCALE, 1, 1, true,
-     offsetof(haptel_sample, static_friction_scale), offsetof(haptel_samples, static_friction_scale),
+     offsetof(haptel_sample, static_friction_scale), offsetof(haptel_samples, static_friction_scale), "",
      "times the object's static friction, beside friction_scale"},
     {"dynamic_friction_scale", HAPTEL_WRITES_DYNAMIC_FRICTION_SCALE, 1, 1, true,
-     offsetof(haptel_sample, dynamic_friction_scale), offsetof(haptel_samples, dynamic_friction_scale),
+     offsetof(haptel_sample, dynamic_friction_scale), offsetof(haptel_samples, dynamic_friction_scale), "",
      "times the object's dynamic friction, beside friction_scale"},
     {"damping_scale", HAPTEL_WRITES_DAMPING_SCALE, 1, 1, true, offsetof(haptel_sample, damping_scale),
-     offsetof(haptel_samples, damping_scale), "times the object's damping"},
+     offsetof(haptel_samples, damping_scale), "", "times the object's damping"},
     {"friction_direction", HAPTEL_WRITES_FRICTION_DIRECTION, 3, 0, false, offsetof(haptel_sample, friction_direction),
-     offsetof(haptel_samples, friction_direction), "where friction is friction_along_scale times that across it"},
+     offsetof(haptel_samples, friction_direction), "", "where friction is friction_along_scale times that across it"},
     {"friction_along_scale", HAPTEL_WRITES_FRICTION_ALONG_SCALE, 1, 1, true,
-     offsetof(haptel_sample, friction_along_scale), offsetof(haptel_samples, friction_along_scale),
+     offsetof(haptel_sample, friction_along_scale), offsetof(haptel_samples, friction_along_scale), "",
      "friction along friction_direction over that across it"},
+    {"vibration_n", HAPTEL_WRITES_VIBRATION, 1, 0, true, offsetof(haptel_sample, vibration_n),
+     offsetof(haptel_samples, vibration_n), "", "amplitude of a vibration along the normal, newtons"},
+    {"vibration_hz", HAPTEL_WRITES_VIBRATION_HZ, 1, 0, true, offsetof(haptel_sample, vibration_hz),
+     offsetof(haptel_samples, vibration_hz), "Hz", "its frequency"},
 };
 
 inline constexpr uint32_t all_outputs = (1u << std::size(output_table)) - 1;
@@ -99,6 +104,6 @@ inline const double* components_of(const haptel_sample& sample, const OutputInfo
 }
 
 // What a sample is before a texture writes to it.
-inline constexpr haptel_sample blank_sample = {0, {0, 0, 0}, 1, 1, 0, 1, 1, 1, 1, {0, 0, 0}};
+inline constexpr haptel_sample blank_sample = {0, {0, 0, 0}, 1, 1, 0, 1, 1, 1, 1, {0, 0, 0}, 0, 0};
 
 } // namespace haptel

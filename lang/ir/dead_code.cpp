@@ -3,9 +3,13 @@
 #include "lang/ir/dataflow.h"
 
 #include <algorithm>
+#include <functional>
 
 namespace haptel::ir {
 namespace {
+
+// Of a function that is called, which parameters those of its results are made from.
+using ParametersNeeded = std::function<std::vector<bool>(uint32_t function, const std::vector<bool>& results)>;
 
 struct Marker {
     std::vector<bool> needed;                            // by Value::index
@@ -110,14 +114,22 @@ private:
 
 } // namespace
 
-std::vector<bool> needed_values(const Function& function, const std::vector<bool>& results,
-                                const ParametersNeeded& parameters)
+const std::vector<bool>& NeededValues::of(uint32_t function, const std::vector<bool>& results)
 {
-    Marker marker{std::vector<bool>(function.value_types.size()), &parameters};
+    std::pair key{function, results};
+    if (const auto found = known.find(key); found != known.end()) return found->second;
+    const ParametersNeeded parameters = [&](uint32_t callee, const std::vector<bool>& of_call) {
+        const std::vector<bool>& inside = of(callee, of_call);
+        std::vector<bool> needed;
+        for (Value parameter : module.functions[callee].parameters) needed.push_back(inside[parameter.index]);
+        return needed;
+    };
+    const Function& source = module.functions[function];
+    Marker marker{std::vector<bool>(source.value_types.size()), &parameters};
     for (size_t i = 0; i < results.size(); ++i)
-        if (results[i]) marker.need(function.body.yields[i]);
-    Dataflow(marker).backwards(function.body);
-    return std::move(marker.needed);
+        if (results[i]) marker.need(source.body.yields[i]);
+    Dataflow(marker).backwards(source.body);
+    return known.emplace(std::move(key), std::move(marker.needed)).first->second;
 }
 
 void remove_dead_code(Function& function)

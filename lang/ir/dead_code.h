@@ -3,16 +3,23 @@
 
 #include "lang/ir/ir.h"
 
-#include <functional>
+#include <map>
+#include <utility>
+#include <vector>
 
 namespace haptel::ir {
 
-// Of a function that is called, which parameters those of its results are made from.
-using ParametersNeeded = std::function<std::vector<bool>(uint32_t function, const std::vector<bool>& results)>;
+// What some results of a module's functions are made from, through calls; worked out as it is asked for.
+class NeededValues {
+public:
+    explicit NeededValues(const Module& of) : module(of) {}
+    // By Value::index: whether one of those results of the function is made from it.
+    const std::vector<bool>& of(uint32_t function, const std::vector<bool>& results);
 
-// By Value::index: whether one of those results of the function is made from it.
-std::vector<bool> needed_values(const Function& function, const std::vector<bool>& results,
-                                const ParametersNeeded& parameters);
+private:
+    const Module& module;
+    std::map<std::pair<uint32_t, std::vector<bool>>, std::vector<bool>> known;
+};
 
 // Removes what no result depends on. Renumbers values densely, in order of appearance.
 void remove_dead_code(Function& function);

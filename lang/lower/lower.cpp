@@ -1,12 +1,18 @@
 // Textures: their parameters' places in the block, their bodies, their entries.
 #include "lang/lower/lower.h"
 
-#include "lang/abi/abi.h"
+#include "lang/abi/outputs.h"
 #include "lang/ir/cost.h"
+#include "lang/ir/dead_code.h"
 #include "lang/ir/derive/point_derivative.h"
 #include "lang/ir/verify.h"
 #include "lang/lower/lowering.h"
+#include "lang/program/builtins.h"
 #include "lang/text/limits.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
 
 namespace haptel::lang {
 namespace {
@@ -55,7 +61,56 @@ std::string magnitude(uint64_t count)
     return tenths.substr(0, 1) + "." + tenths.substr(1) + "e" + std::to_string(exponent);
 }
 
+// What of the results shapes the energy that a surface holds: it must be of the place alone, for that to be a
+// potential.
+std::vector<bool> energy_results(const ir::Texture& texture)
+{
+    std::vector<bool> results(1 + output_components(texture.writes));
+    results[0] = true;
+    for_each_output(texture.writes, [&](const OutputInfo& output, size_t first) {
+        results[1 + first] = output.writes == HAPTEL_WRITES_STIFFNESS_SCALE;
+    });
+    return results;
+}
+
+std::string_view input_name(ir::Input input)
+{
+    for (uint32_t name = input_name_count; name-- > static_cast<uint32_t>(InputName::velocity);)
+        if (input >= first_input[name] && input <= ir::Input::curvature) return builtin_inputs[name].name;
+    return {};
+}
+
 } // namespace
+
+// Height and stiffness that something of the contact shapes, told where it is first used for them.
+bool ModuleLowering::refuse_contact(const ir::Texture& texture)
+{
+    const ir::Function& body = module.functions[texture.body];
+    const std::vector<bool> needed = ir::NeededValues(module).of(texture.body, energy_results(texture));
+    std::map<uint32_t, const ir::Instruction*> contact; // by Value::index, until told
+    ir::for_each_instruction(body.body, [&](const ir::Instruction& made) {
+        if (const auto* read = std::get_if<ir::ReadInput>(&made.kind);
+            read && !input_name(read->input).empty() && needed[made.results[0].index])
+            contact.emplace(made.results[0].index, &made);
+    });
+    if (contact.empty()) return false;
+    const auto [value, read] = *contact.begin();
+    Span span = read->span;
+    bool is_found = false;
+    ir::for_each_instruction(body.body, [&](const ir::Instruction& made) {
+        const bool uses = std::ranges::any_of(made.operands, [&](ir::Value used) { return used.index == value; });
+        const bool matters =
+            std::ranges::any_of(made.results, [&](ir::Value result) { return bool(needed[result.index]); });
+        if (uses && matters && !std::exchange(is_found, true)) span = made.span;
+    });
+    diagnostics.error(span, "contact-input",
+                      "the height or stiffness of '" + texture.name + "' depends on '" +
+                          std::string(input_name(std::get<ir::ReadInput>(read->kind).input)) +
+                          "' here, expected one that depends on the place alone",
+                      "what a surface stores must be of the place, or it gives energy to the hand; use it for outputs: "
+                      "friction_scale, damping_scale or vibration_n");
+    return true;
+}
 
 void ModuleLowering::texture(const CheckedTexture& texture)
 {
@@ -99,7 +154,7 @@ void ModuleLowering::texture(const CheckedTexture& texture)
         return count > ir::operations_limit;
     };
     if (is_too_large(texture.tree->name.span) || refuse_costly(made.body)) return;
-    if (refuse_long({made.body}, instructions_max)) return;
+    if (refuse_long({made.body}, instructions_max) || refuse_contact(made)) return;
     differentiator.make_entries(made);
     if (refuse_costly(made.height_gradient)) return;
     if (refuse_long({made.height, made.height_gradient}, entry_instructions_max)) return;

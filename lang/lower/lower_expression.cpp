@@ -1,5 +1,6 @@
 // Expressions to instructions.
 #include "lang/lower/lowering.h"
+#include "lang/program/builtins.h"
 #include "lang/syntax/operators.h"
 #include "lang/syntax/swizzle.h"
 
@@ -14,11 +15,6 @@ using ir::Value;
 namespace {
 
 constexpr uint32_t nesting_limit = 500; // of expressions, statements and calls under work: bounds the stack
-
-constexpr ir::Input first_input[input_name_count] = {ir::Input::p_x,      ir::Input::n_x,      ir::Input::uv_x,
-                                                     ir::Input::time,     ir::Input::center_x, ir::Input::extent_x,
-                                                     ir::Input::footprint};
-constexpr uint32_t input_size[input_name_count] = {3, 3, 2, 1, 3, 3, 1};
 
 Value conversion(ir::Builder& builder, Value value, Scalar from, Scalar to)
 {
@@ -160,7 +156,7 @@ Values BodyLowering::input(InputName name)
     const auto index = static_cast<uint32_t>(name);
     if (!passed_inputs[index].empty()) return passed_inputs[index];
     Values made; // an entry reads; the builder shares equal reads
-    for (uint32_t i = 0; i < input_size[index]; ++i)
+    for (uint32_t i = 0; i < builtin_inputs[index].size; ++i)
         made.push_back(builder.input(static_cast<ir::Input>(static_cast<uint32_t>(first_input[index]) + i)));
     return made;
 }
@@ -168,7 +164,7 @@ Values BodyLowering::input(InputName name)
 void BodyLowering::input_parameters(uint32_t reads)
 {
     for (uint32_t index = 0; index < input_name_count; ++index)
-        for (uint32_t i = 0; (reads >> index & 1) && i < input_size[index]; ++i)
+        for (uint32_t i = 0; (reads >> index & 1) && i < builtin_inputs[index].size; ++i)
             passed_inputs[index].push_back(builder.parameter(ir::Type::real));
 }
 

@@ -38,6 +38,13 @@ private:
     uint32_t& depth;
 };
 
+// By InputName: the first of its components.
+inline constexpr ir::Input first_input[input_name_count] = {
+    ir::Input::p_x,          ir::Input::n_x,         ir::Input::uv_x,      ir::Input::time,
+    ir::Input::center_x,     ir::Input::extent_x,    ir::Input::footprint, ir::Input::velocity_x,
+    ir::Input::normal_force, ir::Input::tool_radius, ir::Input::tangent_x, ir::Input::bitangent_x,
+    ir::Input::curvature};
+
 class ModuleLowering {
 public:
     ModuleLowering(ir::Module& target, Diagnostics& sink) : module(target), diagnostics(sink), differentiator(target) {}
@@ -47,6 +54,7 @@ public:
     LoweredFunction function(const FunctionReference& function,
                              const std::vector<FunctionReference>& function_arguments, uint32_t order);
     void texture(const CheckedTexture& texture);
+    bool refuse_contact(const ir::Texture& texture);
     // One table per component of the elements.
     const std::vector<uint32_t>& tables(const Symbol& symbol);
 

@@ -17,11 +17,12 @@ namespace haptel::lang {
 struct BuiltinInput {
     std::string_view name;
     uint8_t size;
-    std::string_view unit; // SI; empty: plain numbers
+    std::string_view unit; // SI; empty: plain numbers, or newtons
 };
 inline constexpr BuiltinInput builtin_inputs[input_name_count] = {
-    {"p", 3, "m"},      {"n", 3, ""},       {"uv", 2, ""},        {"time", 1, "s"},
-    {"center", 3, "m"}, {"extent", 3, "m"}, {"footprint", 1, "m"}}; // by InputName
+    {"p", 3, "m"},      {"n", 3, ""},          {"uv", 2, ""},          {"time", 1, "s"},        {"center", 3, "m"},
+    {"extent", 3, "m"}, {"footprint", 1, "m"}, {"velocity", 3, "m/s"}, {"normal_force", 1, ""}, {"tool_radius", 1, "m"},
+    {"tangent", 3, ""}, {"bitangent", 3, ""},  {"curvature", 1, "1/m"}}; // by InputName
 
 enum class BuiltinId : uint8_t {
 #define OPERATION(id, ...) id,

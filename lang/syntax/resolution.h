@@ -26,8 +26,22 @@ struct FunctionInfo;
 struct Symbol;
 
 // Inputs of a texture; the value is the bit number in HAPTEL_READS_*.
-enum class InputName : uint8_t { p, n, uv, time, center, extent, footprint };
-constexpr uint32_t input_name_count = 7;
+enum class InputName : uint8_t {
+    p,
+    n,
+    uv,
+    time,
+    center,
+    extent,
+    footprint,
+    velocity, // from here on of the contact: for outputs only
+    normal_force,
+    tool_radius,
+    tangent,
+    bitangent,
+    curvature
+};
+constexpr uint32_t input_name_count = 13;
 
 // One component of a constant: a real number, the bits of an int or uint, or a bool.
 using ConstantPart = std::variant<double, uint32_t, bool>;

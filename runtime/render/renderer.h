@@ -113,6 +113,8 @@ private:
         LastSample sample = {};
         FacetLines lines = {};
         uint64_t texture_period = 0; // up to which its texture has faded
+        uint64_t swung_period = 0;   // up to which its vibration has swung, so many turns
+        double swing_turns = 0, swing_hz = 0;
     };
     struct HeldBodies { // that hold the probe, the first so many
         std::array<const Body*, 16> body{};
@@ -128,6 +130,7 @@ private:
         Grain grain;                      // of the friction, object space
         double surface_j = 0, held_j = 0; // in the spring of the surface, and with that of friction
         uint32_t faults = 0;
+        double swing_hz = 0;                         // of a vibration that the texture asks for
         bool textured = false, band_limited = false; // a texture was evaluated, with less detail than it has
         bool unmapped = false;                       // coordinates or the turning of normals were left out
 
@@ -178,6 +181,8 @@ private:
                                const Contact& contact) const noexcept;
     ObjectForce force_at(const Foot& foot, const Body& body, Touched& touched, const Placement& placement,
                          const Contact& contact) noexcept;
+    glm::dvec3 hand_m_per_s(const Body& body, const Placement& placement, const Contact& contact) const noexcept;
+    void swing_on(Touched& touched) noexcept;
     double damping_n(const Body& body, double n_s_per_m, const Placement& placement, const Contact& contact,
                      const glm::dvec3& normal, double depth_m, double stiffness_n_per_m) const noexcept;
     double work_j(const OnHand& on_hand, const DevicePose& from, const DevicePose& to) const noexcept;

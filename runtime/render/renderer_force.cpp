@@ -5,10 +5,14 @@
 #include "runtime/texture/shading.h"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 namespace haptel::runtime {
 
 namespace {
+
+constexpr double two_pi = 6.283185307179586;
 
 // From the finger at the tip to that at the tail.
 double along_fingers(const DevicePose& pose, const glm::dvec3& force_n)
@@ -76,6 +80,7 @@ void Renderer::render_object(Body& body, std::span<const Contact> contacts, cons
         if (rows.size() > 1 && is_smooth(*touched.object->surface))
             rows = smooth_rows_.of(*touched.object->surface, rows, way_m, probe_.radius_m, touched.lines);
     }
+    swing_on(touched);
     for (const Contact& contact : rows) { // what presses most first, of a stylus its tip
         const double share = alone || contact.by_shaft ? 1 : share_of(contact, way_m[contact.along > 0]);
         ObjectForce force;
@@ -104,6 +109,7 @@ void Renderer::render_object(Body& body, std::span<const Contact> contacts, cons
                     material.stiffness_n_per_m * contact.depth_m);
         }
         if (&contact != rows.data()) continue;
+        touched.swing_hz = force.swing_hz;
         if (result.contacts > 1 && contact.depth_m <= result.depth_m) continue;
         result.depth_m = contact.depth_m;
         result.height_m = force.height_m;
@@ -125,15 +131,29 @@ bool Renderer::feels_in_air(const Body& body, const DevicePose& pose) noexcept
     return textured;
 }
 
-// Along the normal, where the stylus touches; never more than the spring pulls back.
-double Renderer::damping_n(const Body& body, double n_s_per_m, const Placement& placement, const Contact& contact,
-                           const glm::dvec3& normal, double depth_m, double stiffness_n_per_m) const noexcept
+// There where the contact is, in the object's space.
+glm::dvec3 Renderer::hand_m_per_s(const Body& body, const Placement& placement, const Contact& contact) const noexcept
 {
     const auto in_object = [&](const HandVelocity& own, const HandVelocity& world) {
         return body.motion ? own.m_per_s() : placement.direction_to_object(world.m_per_s());
     };
-    glm::dvec3 velocity = in_object(body.velocity, velocity_);
-    if (contact.along > 0) velocity += contact.along * (in_object(body.tail_velocity, tail_velocity_) - velocity);
+    const glm::dvec3 tip = in_object(body.velocity, velocity_);
+    return contact.along > 0 ? tip + contact.along * (in_object(body.tail_velocity, tail_velocity_) - tip) : tip;
+}
+
+// To this tick's phase of a vibration, whose frequency may change from tick to tick: no step in force.
+void Renderer::swing_on(Touched& touched) noexcept
+{
+    const uint64_t periods = texture_period_ - std::exchange(touched.swung_period, texture_period_);
+    touched.swing_turns =
+        std::remainder(touched.swing_turns + touched.swing_hz * static_cast<double>(periods) * period_s_, 1.0);
+}
+
+// Along the normal, where the stylus touches; never more than the spring pulls back.
+double Renderer::damping_n(const Body& body, double n_s_per_m, const Placement& placement, const Contact& contact,
+                           const glm::dvec3& normal, double depth_m, double stiffness_n_per_m) const noexcept
+{
+    const glm::dvec3 velocity = hand_m_per_s(body, placement, contact);
     const double scale = hand_.workspace.scale;
     const double damping =
         n_s_per_m / scale * -glm::dot(velocity, normal) * std::min(1.0, depth_m / (scale * full_damping_depth_m));
@@ -187,6 +207,7 @@ void Renderer::ObjectForce::mix_in(const ObjectForce& other, double share, const
     static_share = std::lerp(static_share, other.static_share, share);
     dynamic_share = std::lerp(dynamic_share, other.dynamic_share, share);
     grain = mixed(grain, other.grain, share);
+    swing_hz = std::lerp(swing_hz, other.swing_hz, share);
     faults |= other.faults;
     textured |= other.textured;
     band_limited |= other.band_limited;
@@ -204,7 +225,8 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     const uint32_t reads = textured ? texture_reads(touched.texture) : 0;
     const bool all = !scene_->servo.skips.mapping, drawn = !surface.uv.empty(),
                turns = surface.normal_turn_max_per_m > 0;
-    const Shaded read{all || (reads & HAPTEL_READS_NORMAL), all || (reads & HAPTEL_READS_UV)};
+    const Shaded read{all || (reads & (HAPTEL_READS_NORMAL | HAPTEL_READS_CURVATURE)),
+                      all || (reads & (HAPTEL_READS_UV | HAPTEL_READS_TANGENT))};
     result.unmapped = (turns && !read.normal_dp) || (drawn && !read.uv);
     SurfacePoint at{foot.at_m, {}, time_s()};
     at.shading.normal = foot.normal;
@@ -214,12 +236,16 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
         at.shading.normal_dp = glm::dmat3(0);
     }
 
+    const double stiffness = object.material.stiffness_n_per_m / scale;
+    if (reads & HAPTEL_READS_VELOCITY)
+        at.velocity_m_per_s = tangential(hand_m_per_s(body, placement, contact), foot.normal);
+    at.normal_force_n = stiffness * contact.depth_m;
+    at.tool_radius_m = probe_.radius_m;
     TextureSample texture = textured ? sample_texture(touched.texture, at, touched.sample) : TextureSample();
     if (shares_.textures < 1) texture = mixed({}, texture, shares_.textures);
     result.textured = textured;
     result.band_limited =
         textured && (touched.texture.from().binding.band_limited || touched.texture.to().binding.band_limited);
-    const double stiffness = object.material.stiffness_n_per_m / scale;
     const ModelForce elastic = model_force(scene_->servo.force, foot, stiffness, texture);
     const double felt_stiffness = stiffness * texture.stiffness_scale;
 
@@ -235,8 +261,18 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     result.held_j = result.surface_j + felt_stiffness * glm::dot(contact.lag_m, contact.lag_m) / 2;
     const double damping = damping_n(body, object.material.damping_n_s_per_m * texture.damping_scale, placement,
                                      contact, foot.normal, elastic.depth_m, felt_stiffness);
+    result.swing_hz = texture.vibration_hz;
+    double swing_n = 0;
+    if (texture.vibration_n > 0) {
+        const double most_n = std::min(texture.vibration_n, std::max(0.0, glm::dot(elastic.force_n, foot.normal)));
+        if (texture.vibration_hz * period_s_ <= 0.5)
+            swing_n = most_n * std::sin(two_pi * touched.swing_turns);
+        else
+            result.faults |= fault_vibration_too_fast;
+    }
+    const double along_n = std::max(damping + swing_n, -felt_stiffness * elastic.depth_m); // a surface never pulls
     result.force_n =
-        placement.direction_to_world(elastic.force_n + felt_stiffness * contact.lag_m + damping * foot.normal);
+        placement.direction_to_world(elastic.force_n + felt_stiffness * contact.lag_m + along_n * foot.normal);
     return result;
 }
 

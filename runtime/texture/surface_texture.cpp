@@ -1,5 +1,6 @@
 #include "runtime/texture/surface_texture.h"
 
+#include "lang/abi/contact_limits.h"
 #include "lang/abi/outputs.h"
 #include "runtime/geometry/finite.h"
 
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <span>
+#include <type_traits>
 
 namespace haptel::runtime {
 
@@ -15,6 +17,38 @@ namespace {
 
 // Heights may exceed their bound by rounding only.
 constexpr double bound_slack_m = 1e-12;
+
+// Unit, along the surface, where the coordinate with this gradient grows and that with the other stays; 0: nowhere.
+glm::dvec3 way_of_growth(const glm::dvec3& gradient, const glm::dvec3& other, const glm::dvec3& normal)
+{
+    const glm::dvec3 along = glm::cross(other, normal);
+    const double length = glm::length(along), growth = glm::dot(gradient, along);
+    return length > 0 && growth != 0 ? along * (std::copysign(1.0, growth) / length) : glm::dvec3(0);
+}
+
+// What tells of the contact itself, within contact_limits.h.
+template <typename Set>
+void take_in_contact(const SurfacePoint& at, uint32_t reads, const Set& set, haptel_point& point)
+{
+    if (reads & HAPTEL_READS_VELOCITY) {
+        const double speed = glm::length(at.velocity_m_per_s);
+        const double share = speed > contact_speed_max_m_per_s ? contact_speed_max_m_per_s / speed : 1.0;
+        set(point.velocity, finite(at.velocity_m_per_s) ? share * at.velocity_m_per_s : glm::dvec3(0));
+    }
+    if (reads & HAPTEL_READS_NORMAL_FORCE)
+        set(point.normal_force_n, std::clamp(at.normal_force_n, 0.0, normal_force_max_n));
+    if (reads & HAPTEL_READS_TOOL_RADIUS) set(point.tool_radius_m, std::min(at.tool_radius_m, tool_radius_max_m));
+    if (reads & HAPTEL_READS_TANGENT) {
+        const glm::dmat2x3 by_coordinate = glm::transpose(at.shading.uv_dp);
+        set(point.tangent, way_of_growth(by_coordinate[0], by_coordinate[1], at.shading.normal));
+        set(point.bitangent, way_of_growth(by_coordinate[1], by_coordinate[0], at.shading.normal));
+    }
+    if (reads & HAPTEL_READS_CURVATURE) {
+        const glm::dmat3& turn = at.shading.normal_dp;
+        set(point.curvature_per_m,
+            std::clamp((turn[0][0] + turn[1][1] + turn[2][2]) / 2, -curvature_max_per_m, curvature_max_per_m));
+    }
+}
 
 // Takes the inputs that the entry reads into a point whose others are zero. Whether one of them is another than it was.
 bool take_in(haptel_point& point, const SurfacePoint& at, uint32_t reads)
@@ -38,6 +72,16 @@ bool take_in(haptel_point& point, const SurfacePoint& at, uint32_t reads)
         }
     }
     if (reads & HAPTEL_READS_TIME) set(point.time_s, at.time_s);
+    if (reads >= HAPTEL_READS_VELOCITY)
+        take_in_contact(
+            at, reads,
+            [&](auto& input, const auto& value) {
+                if constexpr (std::is_array_v<std::remove_reference_t<decltype(input)>>)
+                    for (int i = 0; i < 3; ++i) set(input[i], value[i]);
+                else
+                    set(input, value);
+            },
+            point);
     return changed;
 }
 
@@ -60,7 +104,8 @@ void distrust(haptel_sample& sample, uint32_t writes)
         for (double& g : sample.gradient) g = 0;
     for (const OutputInfo& output : output_table) {
         const std::span components(components_of(sample, output), output.components);
-        if (std::ranges::all_of(components, [&](double x) { return std::isfinite(x) && (x >= 0 || !output.is_scale); }))
+        if (std::ranges::all_of(components,
+                                [&](double x) { return std::isfinite(x) && (x >= 0 || !output.is_never_negative); }))
             continue;
         std::ranges::fill(components, output.value);
         sample.faults |= HAPTEL_FAULT_OUTPUT_NOT_FINITE;
@@ -86,6 +131,8 @@ TextureSample felt_within(const TextureBinding& binding, const haptel_sample& sa
     result.static_friction_scale = sample.friction_scale * sample.static_friction_scale;
     result.dynamic_friction_scale = sample.friction_scale * sample.dynamic_friction_scale;
     result.damping_scale = sample.damping_scale;
+    result.vibration_n = sample.vibration_n;
+    result.vibration_hz = sample.vibration_hz;
     result.faults = sample.faults;
     if (binding.texture->writes & HAPTEL_WRITES_FRICTION_DIRECTION) {
         const auto& d = sample.friction_direction;
@@ -164,6 +211,9 @@ TextureSample sample_texture(const TextureReader& reader, const SurfacePoint& at
 TextureSample mixed(const TextureSample& from, const TextureSample& to, double share) noexcept
 {
     const auto mix = [share](const auto& a, const auto& b) { return a + share * (b - a); };
+    const double vibration_n = mix(from.vibration_n, to.vibration_n);
+    // By how strong each is: what comes or goes keeps its frequency.
+    const double weight = vibration_n > 0 ? share * to.vibration_n / vibration_n : 0.0;
     return {.height_m = mix(from.height_m, to.height_m),
             .envelope_m = mix(from.envelope_m, to.envelope_m),
             .raised_m = mix(from.raised_m, to.raised_m),
@@ -172,6 +222,8 @@ TextureSample mixed(const TextureSample& from, const TextureSample& to, double s
             .static_friction_scale = mix(from.static_friction_scale, to.static_friction_scale),
             .dynamic_friction_scale = mix(from.dynamic_friction_scale, to.dynamic_friction_scale),
             .damping_scale = mix(from.damping_scale, to.damping_scale),
+            .vibration_n = vibration_n,
+            .vibration_hz = std::lerp(from.vibration_hz, to.vibration_hz, weight),
             .grain = mixed(from.grain, to.grain, share),
             .faults = from.faults | to.faults};
 }

@@ -23,7 +23,8 @@ namespace haptel::runtime {
 // Bits beside those of haptel_sample::faults.
 enum : uint32_t {
     fault_height_above_bound = 1u << 8, // the height exceeds the binding's facts; cut off there, gradient 0
-    fault_height_bent = 1u << 9         // the height is beyond what was found of the texture; felt bent by a shoulder
+    fault_height_bent = 1u << 9,        // the height is beyond what was found of the texture; felt bent by a shoulder
+    fault_vibration_too_fast = 1u << 10 // for the servo's rate, which makes half of it at most; left out
 };
 
 // Where a texture is evaluated, object space. What the texture does not read need not be filled, but for the normal,
@@ -32,6 +33,9 @@ struct SurfacePoint {
     glm::dvec3 p_m{0};
     Shading shading;
     double time_s = 0;
+    glm::dvec3 velocity_m_per_s{0}; // of the hand along the surface
+    double normal_force_n = 0;      // of the bare surface
+    double tool_radius_m = 0;
 };
 
 struct TextureSample {
@@ -40,6 +44,7 @@ struct TextureSample {
     double raised_m = 0;    // height - min(h_min, 0), >= 0: as published where that is never below 0
     glm::dvec3 gradient{0}; // dh/dp, metres per metre: what of it is along the surface counts
     double stiffness_scale = 1, static_friction_scale = 1, dynamic_friction_scale = 1, damping_scale = 1;
+    double vibration_n = 0, vibration_hz = 0;
     Grain grain;         // of the friction, in the plane of the point's normal; object space
     uint32_t faults = 0; // HAPTEL_FAULT_* and the bits above
 };

@@ -7,7 +7,8 @@
 //
 //   //= p=1,2,0 set.depth=0.001 height=0.25 gradient=0,0.5,0
 //
-// is a value of the last texture, in SI units: what is given (p n uv time center extent footprint n_dp uv_dp set.NAME),
+// is a value of the last texture, in SI units: what is given (p n uv time velocity normal_force tool_radius
+// tangent bitangent curvature center extent footprint n_dp uv_dp set.NAME),
 // then what must come out (height gradient faults stiffness friction, and out.NAME of any output) to `within=` relative
 // (1e-14); a 0 must be exactly 0, and -0 that; oracle=0 leaves out the oracle, which overflows later. What is not
 // expected is not looked at, but faults are 0 unless told otherwise.

@@ -193,7 +193,9 @@ std::string shown_class(const CheckedTexture& checked)
 
 std::vector<std::string> inputs_of(const ir::Texture& texture)
 {
-    constexpr const char* names[] = {"p", "n", "uv", "time", "center", "extent", "footprint"}; // by bit
+    constexpr const char* names[] = {"p",       "n",         "uv",       "time",         "center",
+                                     "extent",  "footprint", "velocity", "normal_force", "tool_radius",
+                                     "tangent", "curvature"}; // by bit
     std::vector<std::string> read;
     for (size_t bit = 0; bit < std::size(names); ++bit)
         if (texture.reads >> bit & 1) read.emplace_back(names[bit]);

@@ -63,6 +63,7 @@ std::string faults_text(uint32_t bits)
         {runtime::fault_height_above_bound, "a height was above its proven bound (cut off there)"},
         {runtime::fault_height_bent,
          "a height was beyond what a search had found of its texture (bent to stay within)"},
+        {runtime::fault_vibration_too_fast, "a vibration was too fast for the servo's rate (left out)"},
         {runtime::fault_pose_not_finite, "the device gave a pose that is not finite (no force)"},
         {runtime::fault_force_not_finite, "the force was not finite (none was sent)"},
         {runtime::fault_scene_refused, "the scene was refused (no force)"},

@@ -59,8 +59,8 @@ constexpr Known all_known[] = {
     {Dimension::frequency(), "a frequency", "multiply by a time", "Hz"},
     {Dimension::of({2, 1}, {}), "an area", "divide by an area"},
     {Dimension::of({3, 1}, {}), "a volume", "divide by a volume"},
-    {Dimension::of({-1, 1}, {}), "a number per length", "multiply by a length"},
-    {Dimension::of({1, 1}, {-1, 1}), "a speed", "divide by a speed"},
+    {Dimension::of({-1, 1}, {}), "a number per length", "multiply by a length", "1/m"},
+    {Dimension::of({1, 1}, {-1, 1}), "a speed", "divide by a speed", "m/s"},
     {Dimension::of({1, 1}, {-2, 1}), "an acceleration", "divide by an acceleration"},
 };
 
@@ -135,7 +135,8 @@ std::optional<Dimension> join(Dimension a, Dimension b)
 
 Dimension dimension_of_unit(std::string_view unit)
 {
-    const auto found = std::ranges::find(all_known, si_unit(unit), &Known::unit);
+    const std::string_view written = si_unit(unit), si = written.empty() ? unit : written;
+    const auto found = std::ranges::find(all_known, si, &Known::unit);
     return unit.empty() || found == std::end(all_known) ? Dimension::plain() : found->dimension;
 }
 

@@ -34,7 +34,8 @@ void DimensionBody::texture(const CheckedTexture& texture)
     Variables start(texture.slot_count);
     for (const CheckedOutput& output : texture.outputs)
         start[output.symbol->slot] = {
-            {output.info->is_scale ? Dimension::plain() : Dimension::any(), output.symbol->span}};
+            {output.info->is_never_negative ? dimension_of_unit(output.info->unit) : Dimension::any(),
+             output.symbol->span}};
     for (const CheckedParameter& parameter : texture.parameters)
         owner.symbols.insert_or_assign(parameter.symbol, this->parameter(parameter));
     body(*texture.tree->body, start);
@@ -226,16 +227,17 @@ void DimensionBody::settle(Variables& learnt, Variables& at_head)
     }
 }
 
-// Scales of the material are plain numbers, whatever they were on the way.
+// What they were on the way is as it may be.
 void DimensionBody::check_outputs()
 {
     for (const CheckedOutput& output : *outputs) {
-        if (!output.info->is_scale) continue; // of a direction the length means nothing
+        if (!output.info->is_never_negative) continue; // of a direction the length means nothing
         Variable& variable = (*flow)[output.symbol->slot];
-        const Origin& wrong = join(variable.first.dimension, Dimension::plain()) ? variable.other : variable.first;
+        const Dimension wanted = dimension_of_unit(output.info->unit);
+        const Origin& wrong = join(variable.first.dimension, wanted) ? variable.other : variable.first;
         if (wrong.dimension.is_any()) continue;
-        report(wrong.span,
-               "output '" + output.symbol->name + "' is a plain number, got " + description(wrong.dimension));
+        report(wrong.span, "output '" + output.symbol->name + "' is " + description(wanted) + ", got " +
+                               description(wrong.dimension));
         variable = {};
     }
 }

@@ -1,5 +1,6 @@
 #include "lang/ir/bounds/bounds.h"
 
+#include "lang/abi/contact_limits.h"
 #include "lang/ir/bounds/interval_evaluator.h"
 #include "lang/ir/cost.h"
 
@@ -252,6 +253,19 @@ Interval height_bounds(const Module& module, const Texture& texture, const Bound
     height.may_be_nan |= !height.is_finite();
     if (height.may_be_nan) height = {std::min(height.minimum, 0.0), std::max(height.maximum, 0.0), true};
     return height;
+}
+
+void set_contact(BoundsBox& box)
+{
+    const auto set = [&](Input first, size_t count, Interval interval) {
+        std::fill_n(box.input + static_cast<size_t>(first), count, interval);
+    };
+    set(Input::velocity_x, 3, {-contact_speed_max_m_per_s, contact_speed_max_m_per_s});
+    set(Input::normal_force, 1, {0, normal_force_max_n});
+    set(Input::tool_radius, 1, {0, tool_radius_max_m});
+    set(Input::tangent_x, 3, {-1, 1});
+    set(Input::bitangent_x, 3, {-1, 1});
+    set(Input::curvature, 1, {-curvature_max_per_m, curvature_max_per_m});
 }
 
 std::vector<Interval> output_bounds(const Module& module, const Texture& texture, const BoundsBox& box,

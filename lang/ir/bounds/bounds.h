@@ -28,6 +28,9 @@ struct BoundsBox {
     double uv_slope_max_per_m[2] = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 };
 
+// What tells of the contact itself: all that abi/contact_limits.h allows.
+void set_contact(BoundsBox& box);
+
 // Where a number may end: an operation whose operands are finite, and whose result, or its derivative as an entry
 // computes it, may be not; or a constant that is not finite; or what takes too many operations to be looked at.
 struct Undefined {

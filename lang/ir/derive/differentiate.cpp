@@ -36,15 +36,20 @@ uint32_t inputs_read(const Block& block)
         const auto* read = std::get_if<ReadInput>(&made.kind);
         if (!read) return;
         const Input input = read->input;
-        bits |= input <= Input::p_z        ? HAPTEL_READS_POINT
-                : input <= Input::n_z      ? HAPTEL_READS_NORMAL
-                : input <= Input::uv_y     ? HAPTEL_READS_UV
-                : input == Input::time     ? HAPTEL_READS_TIME
-                : input <= Input::n_dp_22  ? HAPTEL_READS_NORMAL
-                : input <= Input::uv_dp_12 ? HAPTEL_READS_UV
-                : input <= Input::center_z ? HAPTEL_READS_CENTER
-                : input <= Input::extent_z ? HAPTEL_READS_EXTENT
-                                           : HAPTEL_READS_FOOTPRINT;
+        bits |= input <= Input::p_z            ? HAPTEL_READS_POINT
+                : input <= Input::n_z          ? HAPTEL_READS_NORMAL
+                : input <= Input::uv_y         ? HAPTEL_READS_UV
+                : input == Input::time         ? HAPTEL_READS_TIME
+                : input <= Input::n_dp_22      ? HAPTEL_READS_NORMAL
+                : input <= Input::uv_dp_12     ? HAPTEL_READS_UV
+                : input <= Input::velocity_z   ? HAPTEL_READS_VELOCITY
+                : input == Input::normal_force ? HAPTEL_READS_NORMAL_FORCE
+                : input == Input::tool_radius  ? HAPTEL_READS_TOOL_RADIUS
+                : input <= Input::bitangent_z  ? HAPTEL_READS_TANGENT
+                : input == Input::curvature    ? HAPTEL_READS_CURVATURE
+                : input <= Input::center_z     ? HAPTEL_READS_CENTER
+                : input <= Input::extent_z     ? HAPTEL_READS_EXTENT
+                                               : HAPTEL_READS_FOOTPRINT;
     });
     return bits;
 }
@@ -201,7 +206,8 @@ uint32_t Differentiator::entry(const Texture& texture, size_t directions, const 
         for (size_t i = 0; i < output.components; ++i) {
             const Value component = emitter.primal(yields[1 + first + i]), is_number = is_finite(component);
             is_fine = i == 0 ? is_number : both(is_fine, is_number);
-            if (output.is_scale) is_fine = both(is_fine, builder.operation(Op::le, {builder.real(0), component}));
+            if (output.is_never_negative)
+                is_fine = both(is_fine, builder.operation(Op::le, {builder.real(0), component}));
         }
         for (size_t i = 0; i < output.components; ++i)
             outputs.push_back(select(is_fine, emitter.primal(yields[1 + first + i]), builder.real(output.value)));
