@@ -138,8 +138,8 @@ CompileResult compile(const SourceFile& main, const CompileOptions& options,
 
     Diagnostics& diagnostics = result.diagnostics;
     const ast::File& tree = files.files.front().tree;
-    const bool is_empty = tree.imports.empty() && tree.constants.empty() && tree.functions.empty() &&
-                          tree.textures.empty() && tree.presets.empty();
+    const bool is_empty = tree.imports.empty() && tree.structs.empty() && tree.constants.empty() &&
+                          tree.functions.empty() && tree.textures.empty() && tree.presets.empty();
     if (is_empty && !diagnostics.has_errors())
         diagnostics.warning({}, "empty-file", "expected a texture, found an empty file",
                             "the smallest one is: texture flat() { return 0.0; }");

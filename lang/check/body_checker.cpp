@@ -54,7 +54,7 @@ void BodyChecker::mark_read(std::string_view name)
 
 Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
 {
-    const bool is_type = type_named(name.text).has_value();
+    const bool is_type = type_named(name.text).has_value() || scope.structure(name.text);
     if (is_type)
         diagnostics.error(name.span, "reserved-name", quoted(name.text) + " is a type, expected a name of your own");
     Symbol* other = find_local(name.text);

@@ -1,8 +1,8 @@
 // Checks one body: of a function, of a texture, or of a global constant. One pass over its tree, in source order, with
 // a little knowledge of flow: which variables are assigned for certain, and what the integers can be.
 //
-// check_expression.cpp, check_call.cpp, check_statement.cpp, check_array.cpp, check_loop.cpp and check_range.cpp hold
-// the parts.
+// check_expression.cpp, check_struct.cpp, check_constructor.cpp, check_call.cpp, check_statement.cpp, check_switch.cpp,
+// check_array.cpp, check_loop.cpp and check_range.cpp hold the parts.
 #pragma once
 
 #include "lang/check/constant.h"
@@ -12,6 +12,7 @@
 #include "lang/text/diagnostic.h"
 #include "lang/text/near_name.h"
 
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -32,6 +33,7 @@ struct CheckContext {
     std::vector<const Symbol*> inputs = {};                    // by InputName
     std::set<std::string, std::less<>> unknown_functions = {}; // those without a guess: each is reported once
     uint32_t near_searches = 200; // that are left: beyond, names that are unknown have no proposal
+    uint32_t struct_depth = 0;    // of structs whose members are being looked up, one in the other
 };
 
 // 'text', as names stand in messages.
@@ -50,13 +52,18 @@ void propose(Diagnostic& reported, Span span, const ForeignWord& word);
 // Without being asked: what converts_implicitly(), and a whole number where a uint is wanted, which it is then.
 bool converts(const ast::Expression& e, Type wanted);
 void adopt_literal(ast::Expression& e, Type wanted);
-Type operand_type(Type other);  // what a literal beside it is
-std::string zero_of(Type type); // as it is written: "vec2(0.0)"
+Type operand_type(Type other);         // what a literal beside it is
+std::string zero_of(Type type);        // as it is written: "vec2(0.0)"
+std::string constructor_of(Type type); // of a struct: "Cell(id, d)"
 // The argument of a call at `where` that is not given.
 ast::ExpressionPtr left_out(Span where, const ParameterInfo& parameter);
 
 // The type of a name in source, or nothing if the name means no type.
 std::optional<Type> type_named(std::string_view name);
+// Of a struct, whose members are then known; the error that was reported where it has mistakes. `from` named it.
+Type type_of_struct(CheckContext& context, StructDeclaration& declared, Span from);
+// What an author calls `file`.
+const FileScope& scope_of(const CheckContext& context, uint32_t file);
 // Reports what is no type. Arrays: the element, the caller looks at is_array.
 Type resolve_type(CheckContext& context, const ast::TypeName& name);
 // Likewise what holds no value, with why it should: "a parameter holds a value".
@@ -70,6 +77,7 @@ inline ir::IntRange full_range(Type type)
 
 // Parts of a variable, a bit each: components; of an array, elements.
 inline constexpr uint64_t all_parts = ~uint64_t{0};
+uint64_t first_parts(uint32_t count);
 uint64_t parts_of(Type type);
 uint64_t parts_at(Type type, int64_t index); // what an index picks; none if it is out of range
 
@@ -140,11 +148,14 @@ private:
     Type check(ast::Expression& e, ast::Conditional& node);
     Type check(ast::Expression& e, ast::CallExpression& node);
     Type check(ast::Expression& e, ast::GradCall& node);
-    Type check(ast::Expression& e, ast::Member& node);
+    Type check(ast::Expression& e, ast::Member& node) { return member(e, node, all_parts); }
     Type check(ast::Expression& e, ast::Index& node);
     Type check(ast::Expression& e, ast::BraceList& node);
     Type check(ast::Expression&, ast::LeftOut& node) { return node.parameter->type; }
     Type read(ast::Expression& e, ast::NameExpression& node, uint64_t parts);
+    Type member(ast::Expression& e, ast::Member& node, uint64_t parts);
+    Type type_before_reading(const ast::Expression& e) const;
+    Type member_of_struct(const ast::Expression& e, const ast::Member& node, Type object);
     // Reports unless `e` has or becomes that type, or is wrong already; `where` as a clause: " for 'x'".
     void require(ast::Expression& e, Type wanted, const std::string& where);
     // Reports; the type of what is wrong.
@@ -157,6 +168,7 @@ private:
     // ---- calls
     using Targets = std::vector<std::optional<Target>>; // by argument
     Type constructor(ast::Expression& e, ast::CallExpression& call, Type type);
+    Type struct_constructor(ast::Expression& e, ast::CallExpression& call, Type type);
     Type texture_call(ast::Expression& e, ast::CallExpression& call);
     bool named_argument(ast::CallExpression& call, const FunctionInfo& callee, size_t index,
                         std::vector<ast::ExpressionPtr>& ordered, Targets& targets);
@@ -189,6 +201,9 @@ private:
     void check(Span span, ast::Scope& node);
     void check(Span span, ast::If& node);
     void check(Span span, ast::For& node);
+    void check(Span span, ast::Switch& node);
+    void labels(ast::Switch& node);
+    void label(ast::Expression& e, Type selector, std::map<int64_t, Span>& seen);
     void check(Span span, ast::Break& node);
     void check(Span span, ast::Continue& node);
     void leave_loop(Span span, const char* what);
@@ -233,6 +248,7 @@ private:
     Flow flow;
     uint32_t slot_count = 0; // of variables declared so far: no slot is used twice
     uint32_t loop_depth = 0;
+    Flow* switch_exit = nullptr;                            // of the switch that a break leaves; null: it leaves a loop
     uint32_t choice_depth = 0;                              // of operands that may not be evaluated, or more than once
     std::vector<const Symbol*>* written_by_calls = nullptr; // in the innermost statement
     std::vector<const Symbol*> must_be_written;             // parameters of the function

@@ -35,8 +35,10 @@ Type resolve_type(CheckContext& context, const TypeName& name)
 {
     if (name.base.text.empty()) return Type::error(); // the parser has said why
     if (const auto type = type_named(name.base.text)) return *type;
-    if (context.scopes && (*context.scopes)[name.base.span.file].is_unread(name.base.text))
-        return Type::error(); // "struct Cell": told
+    const FileScope* scope = context.scopes ? &scope_of(context, name.base.span.file) : nullptr;
+    if (StructDeclaration* declared = scope ? scope->structure(name.base.text) : nullptr)
+        return type_of_struct(context, *declared, name.base.span);
+    if (scope && scope->is_unread(name.base.text)) return Type::error(); // told
     Diagnostic& reported =
         context.diagnostics.error(name.base.span, "unknown-type", "unknown type " + quoted(name.base.text));
     if (name.base.text == any_size) {
@@ -46,8 +48,12 @@ Type resolve_type(CheckContext& context, const TypeName& name)
     reported.hint = "types are float, int, uint, bool, vec2, vec3, vec4 (ivec2, uvec2, bvec2 ...), mat2, mat3 and mat4";
     if (name.base.text.starts_with("mat") && name.base.text.find('x') != std::string::npos)
         reported.hint = "matrices are square: mat2, mat3 and mat4";
-    else
-        propose(reported, name.base.span, near_name(name.base.text, {std::begin(own_types), std::end(own_types)}));
+    else {
+        std::vector<std::string_view> names(std::begin(own_types), std::end(own_types));
+        for (size_t i = 0; scope && i < scope->layers.size(); ++i)
+            for (const auto& [known, declared] : scope->layers[i]->structs) names.push_back(known);
+        propose(reported, name.base.span, near_name(name.base.text, names));
+    }
     return Type::error();
 }
 
@@ -204,9 +210,11 @@ public:
             declarations_of(file).unread.merge(program.files[file].tree.unread);
         }
         context.scopes = &scopes;
-        // Sizes of arrays in heads of functions are constants, and constants may name functions.
+        for (uint32_t file = 0; file < count; ++file) declare_structs(file);
+        // Sizes of arrays in heads of functions and in structs are constants, and constants may name functions.
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], false);
         for (uint32_t file = 0; file < count; ++file) check_constants(file, scopes[file]);
+        for (StructDeclaration& declared : program.structs) type_of_struct(context, declared, declared.tree->name.span);
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], true);
         for (FunctionInfo& function : program.functions) check_defaults(function, scopes[function.file]);
         for (uint32_t file = 0; file < count; ++file) declare_textures(file, scopes[file]);
@@ -223,12 +231,44 @@ public:
 private:
     Declarations& declarations_of(uint32_t file) { return made_library ? *made_library : declarations[file]; }
 
+    void declare_structs(uint32_t file)
+    {
+        auto& known = declarations_of(file).structs;
+        for (const Struct& tree : program.files[file].tree.structs) {
+            if (diagnostics.full()) return;
+            if (type_named(tree.name.text)) {
+                diagnostics.error(tree.name.span, "reserved-name",
+                                  quoted(tree.name.text) + " is a type, expected a name of your own");
+                continue;
+            }
+            StructDeclaration& made = program.structs.emplace_back(StructDeclaration{&tree});
+            made.info.name = tree.name.text;
+            const auto [place, is_new] = known.try_emplace(tree.name.text, &made);
+            if (!is_new)
+                diagnostics.error(tree.name.span, "duplicate-name", quoted(tree.name.text) + " is declared twice")
+                    .related.push_back({place->second->tree->name.span, "first declared here"});
+        }
+    }
+
+    bool is_type(std::string_view name, uint32_t file)
+    {
+        return type_named(name) || declarations_of(file).structs.contains(name);
+    }
+
+    // Whether the head names arrays or structs, which may have members that are arrays.
+    static bool passes_arrays(const Function& tree)
+    {
+        const auto may_be_array = [](const TypeName& type) { return type.is_array || !type_named(type.base.text); };
+        return may_be_array(tree.result) || std::ranges::any_of(tree.parameters, [&](const FunctionParameter& one) {
+                   return may_be_array(one.type) || std::ranges::any_of(one.signature, may_be_array);
+               });
+    }
+
     // Those that pass arrays, or the others.
     void declare_functions(uint32_t file, const FileScope& scope, bool with_arrays)
     {
         for (Function& tree : program.files[file].tree.functions) {
-            const auto is_array = [](const auto& parameter) { return parameter.type.is_array; };
-            if ((tree.result.is_array || std::ranges::any_of(tree.parameters, is_array)) != with_arrays) continue;
+            if (passes_arrays(tree) != with_arrays) continue;
             if (diagnostics.full()) return;
             FunctionInfo& info = program.functions.emplace_back();
             info.name = tree.name.text;
@@ -241,7 +281,13 @@ private:
                 returns_nothing && std::ranges::any_of(tree.parameters, is_written)
                     ? void_type
                     : type_of(tree.result, "a function returns a value, or has an 'out' parameter", scope, true);
-            if (type_named(info.name))
+            if (tree.facts && info.result.structure) {
+                diagnostics.error(tree.facts->span, "facts",
+                                  "facts are of numbers, and this function returns a " + to_string(info.result),
+                                  "leave them out; bounds are computed all the same");
+                tree.facts.reset();
+            }
+            if (is_type(info.name, file))
                 diagnostics.error(tree.name.span, "reserved-name",
                                   quoted(info.name) + " is a type, expected a name of your own");
             size_t numbers = 0;

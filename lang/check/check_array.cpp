@@ -10,12 +10,22 @@ namespace {
 
 constexpr uint32_t table_size_max = 65'536;
 
+bool is_swizzle(const Expression& e)
+{
+    auto member = std::get_if<Member>(&e.node);
+    return member && member->object->type.is_vector();
+}
+
 } // namespace
+
+uint64_t first_parts(uint32_t count)
+{
+    return count >= 64 ? all_parts : (uint64_t{1} << count) - 1;
+}
 
 uint64_t parts_of(Type type)
 {
-    const uint32_t count = type.is_array() ? type.array_size : type.components();
-    return count >= 64 ? all_parts : (uint64_t{1} << count) - 1;
+    return first_parts(type.is_array() ? type.array_size : type.components());
 }
 
 uint64_t parts_at(Type type, int64_t index)
@@ -175,22 +185,15 @@ BodyChecker::Target BodyChecker::target_of(Expression& e, const char* where)
 {
     std::vector<const Expression*> accessors; // from the name outwards
     Expression* object = &e;
-    if (auto member = std::get_if<Member>(&object->node)) {
-        accessors.push_back(object);
-        object = member->object.get();
-    }
-    while (auto index = std::get_if<Index>(&object->node)) {
+    for (; const Expression* whole = whole_of(*object); object = const_cast<Expression*>(whole))
         accessors.insert(accessors.begin(), object);
-        object = index->object.get();
-    }
     auto name = std::get_if<NameExpression>(&object->node);
-    if (!name) {
-        if (!std::holds_alternative<ErrorExpression>(object->node))
-            diagnostics.error(e.span, "not-assignable",
-                              std::string("expected a variable or components of one ") + where,
-                              "v.xy and v[1] are such components, v.xyz.x is not");
-        return {};
-    }
+    const auto refuse = [&] {
+        diagnostics.error(e.span, "not-assignable", std::string("expected a variable or components of one ") + where,
+                          "v.xy and v[1] are such components, v.xyz.x is not");
+        return Target{};
+    };
+    if (!name) return std::holds_alternative<ErrorExpression>(object->node) ? Target{} : refuse();
     Symbol* local = find_local(name->name);
     const Symbol* symbol = find(name->name);
     if (!symbol) {
@@ -222,7 +225,10 @@ BodyChecker::Target BodyChecker::target_of(Expression& e, const char* where)
     if (is_wrong) return {}; // whatever was meant has a value now
     if (std::holds_alternative<Member>(e.node)) local->is_read = was_read;
     flow.variables[local->slot].assigned = before;
-    if (auto member = std::get_if<Member>(&e.node); member && parse_swizzle(member->member.text)->has_repeats()) {
+    for (const Expression* accessor : accessors)
+        if (accessor != &e && is_swizzle(*accessor)) return refuse();
+    if (auto member = std::get_if<Member>(&e.node);
+        is_swizzle(e) && parse_swizzle(member->member.text)->has_repeats()) {
         diagnostics.error(member->member.span, "bad-swizzle",
                           "a component stands twice in " + quoted(member->member.text) +
                               ", expected each once in a target");
@@ -232,22 +238,35 @@ BodyChecker::Target BodyChecker::target_of(Expression& e, const char* where)
 }
 
 // What certainly has a value afterwards. An array that is written at an index known only at run time counts as written
-// whole: its elements are 0 before, and loops that fill it are what it is for.
+// whole: its elements are 0 before, and loops that fill it are what it is for. So does an element that is a struct of
+// which a member is written, and a struct of more members than there are bits.
 uint64_t BodyChecker::parts_written(Type type, const std::vector<const Expression*>& accessors) const
 {
     uint64_t parts = 0, first = 0; // of the innermost access so far, counted from part `first`
     for (const Expression* accessor : accessors) {
+        const bool is_last = accessor == accessors.back();
         if (auto member = std::get_if<Member>(&accessor->node)) {
-            if (type.is_array()) return 0;
-            return uint64_t{parse_swizzle(member->member.text)->mask()} << first;
+            if (!type.is_struct()) return uint64_t{parse_swizzle(member->member.text)->mask()} << first;
+            if (first + type.components() > 64) return all_parts;
+            const StructMember& picked = *type.structure->member(member->member.text);
+            first += picked.first;
+            type = picked.type;
+            parts = first_parts(type.components()) << first;
+            continue;
         }
         const ir::IntRange at = range(*std::get<Index>(accessor->node).index);
-        const bool is_last = accessor == accessors.back();
-        if (!at.is_constant()) return type.is_array() && is_last ? all_parts : 0;
+        const Type element = type.element();
+        if (type.is_array() && accessor != accessors.front()) { // a member: its parts are components
+            if (!is_last && !element.is_struct()) return 0;
+            if (!at.is_constant() || !is_last) return parts;
+            return first_parts(element.components())
+                   << (first + static_cast<uint64_t>(at.minimum) * element.components());
+        }
+        if (!at.is_constant()) return type.is_array() && (is_last || element.is_struct()) ? all_parts : 0;
         parts = parts_at(type, at.minimum) << first;
-        if (type.is_array()) return is_last ? parts : 0; // parts of elements are not counted
+        if (type.is_array()) return is_last || element.is_struct() ? parts : 0; // parts of elements are not counted
         first += static_cast<uint64_t>(at.minimum) * (type.is_matrix() ? type.size : 1);
-        type = type.element();
+        type = element;
     }
     return parts;
 }

@@ -1,4 +1,4 @@
-// Calls: constructors, overloads, functions as arguments, derivatives of functions; and of what is no function: a
+// Calls: overloads, functions as arguments, derivatives of functions; and of what is no function: a
 // variable, a word of another language, a slip.
 #include "lang/check/body_checker.h"
 #include "lang/syntax/grammar.h"
@@ -96,6 +96,16 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
                               "the parts of a " + to_string(*type) + " have no names", "leave the names out");
         return constructor(e, call, *type);
     }
+    if (StructDeclaration* structure = scope.structure(call.callee.text)) {
+        const Type type = type_of_struct(context, *structure, call.callee.span);
+        if (!call.names.empty())
+            return fail(call.callee.span, "named-argument",
+                        "the members of " + to_string(type) + " are given in their order, without names",
+                        "leave the names out");
+        if (!type.is_error()) return struct_constructor(e, call, type);
+        for (ExpressionPtr& argument : call.arguments) expression(*argument);
+        return type;
+    }
     const ForeignWord* foreign = foreign_word(ForeignKind::type, call.callee.text);
     if (foreign && !find(call.callee.text) && scope.functions(call.callee.text).empty()) {
         Diagnostic& reported =
@@ -124,57 +134,6 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
     Type result;
     resolve(e, call.callee, call.arguments, 0, call.target, result);
     return result;
-}
-
-// Scalars convert from any scalar; vectors and matrices join the components of their arguments. One scalar fills a
-// vector or the diagonal of a matrix, a longer vector is cut, and a matrix of another size is cut or filled up from the
-// unit matrix.
-Type BodyChecker::constructor(Expression& e, CallExpression& call, Type type)
-{
-    bool damaged = false;
-    uint32_t components = 0;
-    const std::string all = std::to_string(type.components()) + (type.is_scalar() ? " component" : " components");
-    for (ExpressionPtr& tree : call.arguments) {
-        Expression& argument = *tree;
-        const Type found = expression(argument);
-        const bool is_second_matrix = type.is_matrix() && found.is_matrix() && call.arguments.size() > 1;
-        damaged |= found.is_error();
-        if (!damaged && components >= type.components()) {
-            const std::string full =
-                type.is_scalar() ? "is made of one value" : "has all its " + all + " before this argument";
-            diagnostics.error(argument.span, "wrong-argument-count", to_string(type) + " " + full,
-                              "leave this argument out");
-            damaged = true;
-        }
-        const bool is_nothing = found == void_type || found == image_type || found.is_array();
-        if (!damaged && (is_nothing || is_second_matrix)) {
-            diagnostics.error(argument.span, found == image_type ? ErrorCode("image") : ErrorCode("type-mismatch"),
-                              "expected numbers and vectors for " + to_string(type) + ", found " + to_string(found),
-                              found == image_type  ? "read it: sample(" + excerpt(argument) + ", uv)"
-                              : found.is_array()   ? "pick elements: " + operand(argument) + "[i]"
-                              : found == void_type ? "call it as a statement of its own"
-                                                   : "pick columns: " + operand(argument) + "[0]");
-            damaged = true;
-        }
-        components += found.components();
-    }
-    call.target.is_constructor = true;
-    call.target.function_arguments.assign(call.arguments.size(), {});
-    if (damaged) return type;
-    if (type == void_type) return fail(e.span, "type-mismatch", "void has no values");
-    if (type == image_type)
-        return fail(e.span, "image", "an image is not made of values",
-                    "it comes with the texture: texture t(image picture) { return 1mm * sample(picture, uv); }");
-    const bool fills =
-        call.arguments.size() == 1 && (components == 1 || (type.is_matrix() && call.arguments[0]->type.is_matrix()));
-    if (components == 0 || (components < type.components() && !fills)) {
-        Diagnostic& reported =
-            diagnostics.error(e.span, "wrong-argument-count",
-                              to_string(type) + " needs " + all + ", found " + std::to_string(components));
-        if (type.is_vector()) reported.hint = "one fills all: " + zero_of(type);
-        if (type.is_matrix()) reported.hint = "one number fills the diagonal: " + to_string(type) + "(1.0)";
-    }
-    return type;
 }
 
 Type BodyChecker::check(Expression& e, GradCall& call)
@@ -434,6 +393,8 @@ void BodyChecker::report_unknown_function(const Call& call)
     }
     std::vector<std::string_view> names(types_of_numbers.begin(), types_of_numbers.end());
     names.push_back("grad");
+    for (const Declarations* layer : scope.layers)
+        for (const auto& [known, structure] : layer->structs) names.push_back(known);
     for (const Declarations* layer : scope.layers)
         for (const auto& [known, functions] : layer->functions) names.push_back(known);
     for (const auto& [known, overloads] : builtin_overloads()) names.push_back(known);

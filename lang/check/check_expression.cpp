@@ -2,7 +2,6 @@
 #include "lang/check/body_checker.h"
 #include "lang/syntax/foreign.h"
 #include "lang/syntax/operators.h"
-#include "lang/syntax/swizzle.h"
 
 #include <algorithm>
 #include <bit>
@@ -20,6 +19,14 @@ std::string conversion_hint(Type from, Type to, const std::string& text, const s
     if (to.is_array() || to.is_error() || to == image_type) return {};
     if (from == image_type) return "read it: sample(" + text + ", uv)";
     if (from.is_array()) return "pick an element: " + operand + "[i]";
+    if (from.is_struct() && to.is_struct() && from.structure->name == to.structure->name)
+        return "two files declare a struct of this name: give one of them another";
+    if (to.is_struct()) return "make one of its members: " + constructor_of(to);
+    if (from.is_struct()) {
+        const auto fits = std::ranges::find(from.structure->members, to, &StructMember::type);
+        const bool has_one = fits != from.structure->members.end();
+        return "pick a member: " + operand + "." + (has_one ? *fits : from.structure->members.front()).name;
+    }
     if (from.is_matrix() || to.is_matrix()) {
         if (from.is_matrix() && to == from.element()) return "pick a column: " + operand + "[0]";
         if (from.is_matrix() && to.is_scalar()) return "pick an element: " + operand + "[0][0]";
@@ -37,9 +44,16 @@ std::string conversion_hint(Type from, Type to, const std::string& text, const s
     return "write " + to_string(to) + "(" + text + ")";
 }
 
-// ".x", "[2]", "[0][1]": which part of a variable a bit stands for.
+// ".x", "[2]", "[0][1]", ".id.x": which part of a variable a bit stands for.
 std::string part_name(Type type, uint32_t part)
 {
+    if (type.is_struct()) {
+        for (const StructMember& member : type.structure->members)
+            if (part < member.first + member.type.components()) {
+                const bool is_one = member.type.is_scalar() || member.type.is_array();
+                return "." + member.name + (is_one ? "" : part_name(member.type, part - member.first));
+            }
+    }
     if (type.is_vector()) return std::string(".") + "xyzw"[part];
     if (!type.is_matrix()) return "[" + std::to_string(part) + "]";
     return "[" + std::to_string(part / type.size) + "][" + std::to_string(part % type.size) + "]";
@@ -53,6 +67,10 @@ std::string operator_hint(BinaryOp op, Type left, Type right)
     const bool reals = left.scalar == Scalar::float_ || right.scalar == Scalar::float_;
     const bool bools = left.scalar == Scalar::bool_ || right.scalar == Scalar::bool_;
     if (left.is_array() || right.is_array()) return "an array is used by its elements: a[i]";
+    if (left.is_struct() || right.is_struct()) {
+        const StructInfo& info = *(left.is_struct() ? left : right).structure;
+        return "a struct is used by its members, as ." + info.members.front().name;
+    }
     if (left.is_whole() && right.is_whole() && left.scalar != right.scalar)
         return "int and uint do not mix: write " + to_string(vec(right.size, left.scalar)) + "(...) round the second";
     switch (op) {
@@ -91,6 +109,17 @@ std::string operator_hint(BinaryOp op, Type left, Type right)
 
 std::string zero_of(Type type)
 {
+    if (type.is_struct()) {
+        std::string parts;
+        for (const StructMember& member : type.structure->members)
+            parts += (parts.empty() ? "" : ", ") + zero_of(member.type);
+        return to_string(type) + "(" + parts + ")";
+    }
+    if (type.is_array()) { // a member
+        std::string parts = zero_of(type.element());
+        for (uint32_t i = 1; i < type.array_size; ++i) parts += ", " + zero_of(type.element());
+        return to_string(type) + "(" + parts + ")";
+    }
     const std::string zero = type.scalar == Scalar::bool_ ? "false" : type.scalar == Scalar::float_ ? "0.0" : "0";
     return type.is_scalar() ? zero : to_string(type) + "(" + zero + ")";
 }
@@ -227,7 +256,9 @@ Type BodyChecker::check(Expression& e, Unary& node)
         return fail(e.span, "type-mismatch",
                     (node.op == UnaryOp::negate ? "'-'" : "'+'") + std::string(" expects a number, found ") +
                         to_string(type),
-                    type.is_array() ? "an array is used by its elements: a[i]" : "write !x for a bool");
+                    type.is_array()    ? "an array is used by its elements: a[i]"
+                    : type.is_struct() ? "a struct is used by its members, as ." + type.structure->members.front().name
+                                       : "write !x for a bool");
     case UnaryOp::logical_not:
         if (type == bool_type) return type;
         return fail(
@@ -314,35 +345,6 @@ Type BodyChecker::check(Expression& e, Conditional& node)
                 conversion_hint(b, a, excerpt(*node.when_false), operand(*node.when_false)));
 }
 
-Type BodyChecker::check(Expression& e, Member& node)
-{
-    const auto swizzle = parse_swizzle(node.member.text);
-    auto name = std::get_if<NameExpression>(&node.object->node);
-    const Symbol* symbol = name ? find(name->name) : nullptr;
-    const bool reads_part = swizzle && symbol && symbol->type.is_vector() && swizzle->highest() < symbol->type.size;
-    const Type object = node.object->type =
-        reads_part ? read(*node.object, *name, swizzle->mask()) : expression(*node.object);
-    if (object.is_error()) return object;
-    if (!object.is_vector())
-        return fail(e.span, "bad-swizzle",
-                    quoted(excerpt(*node.object)) + " is a " + to_string(object) + " and has no components",
-                    object == float_type
-                        ? "leave '." + node.member.text + "' out, or write vec3(" + excerpt(*node.object) + ")"
-                    : object.is_matrix() ? "pick a column, which is a vector: " + excerpt(*node.object) + "[0]"
-                    : object.is_array()  ? "pick an element: " + excerpt(*node.object) + "[i]"
-                                         : std::string{});
-    if (!swizzle || swizzle->highest() >= object.size) {
-        constexpr const char* names[] = {"x and y", "x, y and z", "x, y, z and w"};
-        Diagnostic& reported = diagnostics.error(node.member.span, "bad-swizzle",
-                                                 to_string(object) + " has no component " + quoted(node.member.text),
-                                                 std::string("its components are ") + names[object.size - 2]);
-        if (node.member.text.size() > 1)
-            reported.hint += ", picked by up to four letters of one set: xyzw, rgba or stpq";
-        return Type::error();
-    }
-    return vec(swizzle->size, object.scalar);
-}
-
 Type BodyChecker::check(Expression& e, Index& node)
 {
     auto name = std::get_if<NameExpression>(&node.object->node);
@@ -353,7 +355,7 @@ Type BodyChecker::check(Expression& e, Index& node)
     const uint64_t parts = is_one_part ? parts_at(symbol->type, at.minimum) : all_parts;
     const Type object = node.object->type = name ? read(*node.object, *name, parts) : expression(*node.object);
     if (object.is_error()) return object;
-    if (object.is_scalar())
+    if (object.is_scalar() || object.is_struct())
         return fail(e.span, "not-indexable",
                     quoted(excerpt(*node.object)) + " is a " + to_string(object) +
                         ", expected an array, a matrix or a vector before '['");

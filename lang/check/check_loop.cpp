@@ -98,7 +98,9 @@ void BodyChecker::check(Span span, For& node)
     }
     const Flow before = flow;
     ++loop_depth;
+    Flow* const around = std::exchange(switch_exit, nullptr);
     if (node.body) body(*node.body);
+    switch_exit = around;
     --loop_depth;
     const Flow behind = std::exchange(flow, before);
     // What the body assigns on its way to its end has a value, if it runs at all.

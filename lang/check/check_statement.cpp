@@ -42,14 +42,22 @@ void BodyChecker::check(Span, ast::Scope& node)
 
 void BodyChecker::check(Span, Declaration& node)
 {
-    Type type = value_type(context, node.type, "a variable holds a value", false);
+    const std::string& written = node.type.base.text;
+    const bool is_told = !type_named(written) && !scope.structure(written) && may_be_unread(written);
+    if (is_told) diagnostics.count_consequence();
+    Type type = is_told ? Type::error() : value_type(context, node.type, "a variable holds a value", false);
     if (node.type.is_array) {
         node.symbol = &array(node, type);
         return;
     }
     Expression* value = node.initializer.get();
     const uint32_t reports = diagnostics.reports();
-    if (value) {
+    auto braces = value ? std::get_if<BraceList>(&value->node) : nullptr;
+    if (braces && !braces->type && type.is_struct()) {
+        for (ExpressionPtr& element : braces->elements) expression(*element);
+        fail(value->span, "struct", "a struct is made by its constructor, found braces",
+             "write " + constructor_of(type));
+    } else if (value) {
         expression(*value);
         require(*value, type, " for " + quoted(node.name.text));
     } else if (node.is_const) {
@@ -168,7 +176,12 @@ void BodyChecker::check(Span, If& node)
 
 void BodyChecker::check(Span span, Break&)
 {
-    leave_loop(span, "'break' leaves a loop");
+    if (switch_exit) {
+        merge(*switch_exit, flow);
+        flow.reachable = false;
+    } else {
+        leave_loop(span, "'break' leaves a loop or a switch");
+    }
 }
 
 void BodyChecker::check(Span span, Continue&)

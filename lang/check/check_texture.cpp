@@ -203,7 +203,10 @@ void BodyChecker::check_parameter(TextureParameter& tree, CheckedTexture& textur
         diagnostics.error(tree.type.base.span, "type-mismatch",
                           "a parameter of a texture is a float, int, uint, bool, vec2, vec3, vec4 or image, found " +
                               (tree.type.is_array ? "a table" : to_string(type)),
-                          !type.is_scalar() ? "take the components as parameters of their own" : "");
+                          type.is_struct()
+                              ? "take its members as parameters, and make it in the body: " + constructor_of(type)
+                          : !type.is_scalar() ? "take the components as parameters of their own"
+                                              : "");
         type = Type::error();
     }
     if (!tree.choices.empty() && !type.is_error() && type != int_type) {

@@ -32,8 +32,9 @@ const Expression* first_not_constant(const Expression& e)
     if (auto call = std::get_if<CallExpression>(&e.node))
         if (!call->target.is_constructor && !std::holds_alternative<const BuiltinOverload*>(call->target.function))
             return &e;
+    auto list = std::get_if<BraceList>(&e.node);
     if (std::holds_alternative<ErrorExpression>(e.node) || std::holds_alternative<GradCall>(e.node) ||
-        std::holds_alternative<BraceList>(e.node))
+        (list && !list->type))
         return &e;
     for (const Expression* operand : operands_of(e))
         if (auto found = first_not_constant(*operand)) return found;
@@ -57,10 +58,12 @@ std::vector<ConstantPart> ConstantEvaluator::value(const Expression& e, Type typ
     const uint32_t function = body.builder.finish(parts);
     ir::Interpreter<double> interpreter(work->module);
     std::vector<ConstantPart> found;
+    const std::vector<ir::Type> types = ir_types(type);
     for (const ir::Slot<double>& slot : interpreter.run(function, {}, nullptr)) {
-        if (type.scalar == Scalar::float_)
+        const ir::Type part = types[found.size()];
+        if (part == ir::Type::real)
             found.emplace_back(slot.real);
-        else if (type.scalar == Scalar::bool_)
+        else if (part == ir::Type::boolean)
             found.emplace_back(slot.bits != 0);
         else
             found.emplace_back(slot.bits);

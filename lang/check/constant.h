@@ -18,7 +18,7 @@ const ast::Expression* first_not_constant(const ast::Expression& expression);
 class ConstantEvaluator {
 public:
     ConstantEvaluator();
-    // The components of a checked constant expression, converted to `type` (a scalar or vector).
+    // The components of a checked constant expression, converted to `type`.
     std::vector<ConstantPart> value(const ast::Expression& expression, Type type);
 
 private:

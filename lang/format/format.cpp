@@ -16,6 +16,8 @@ class Formatter {
 public:
     explicit Formatter(std::vector<Piece> all) : pieces(std::move(all))
     {
+        for (size_t i = 0; i + 1 < pieces.size(); ++i)
+            if (begins_case(i)) find_end_of_label(i);
         for (size_t i = 0; i + 1 < pieces.size(); ++i) // a while stands as a for does
             if (pieces[i].kind == Token::name && pieces[i].text.ends_with("while") &&
                 pieces[i + 1].kind == Token::left_paren && begins_statement(i))
@@ -36,7 +38,19 @@ private:
         if (i == 0) return false;
         const Token before = pieces[i - 1].kind;
         return before == Token::left_brace || before == Token::right_brace || before == Token::semicolon ||
-               before == Token::right_paren || before == Token::kw_else;
+               before == Token::right_paren || before == Token::kw_else || pieces[i - 1].ends_label;
+    }
+    bool begins_case(size_t i) const { return pieces[i].kind == Token::kw_case || pieces[i].kind == Token::kw_default; }
+    // The ':' that belongs to no '?'.
+    void find_end_of_label(size_t i)
+    {
+        size_t choices = 0;
+        for (; i + 1 < pieces.size(); i = opens(pieces[i].kind) ? behind_bracket(i) : i + 1) {
+            if (pieces[i].kind == Token::question) ++choices;
+            if (pieces[i].kind != Token::colon || choices-- > 0) continue;
+            pieces[i].ends_label = pieces[i + 1].begins_statement = true;
+            return;
+        }
     }
     std::span<const Piece> part(size_t begin, size_t end) const
     {
@@ -67,6 +81,7 @@ private:
 
     void top_level()
     {
+        if (kind() == Token::kw_struct) return structure();
         size_t opener = at;
         while (pieces[opener].kind != Token::left_paren && pieces[opener].kind != Token::semicolon) ++opener;
         const bool has_body = kind() != Token::kw_import && kind() != Token::kw_const &&
@@ -85,6 +100,20 @@ private:
         at = end;
         block(0);
         if (kind() != Token::semicolon) page.blank_line();
+    }
+
+    // A member per line.
+    void structure()
+    {
+        size_t begin = at;
+        while (kind() != Token::left_brace) ++at;
+        const size_t end = behind_statement(begin);
+        page.blank_line();
+        put(begin, ++at, 0);
+        rest_of_block(0);
+        put(at, end, 0);
+        at = end;
+        page.blank_line();
     }
 
     // Those of a texture, one per line, the ranges below one another.
@@ -140,17 +169,61 @@ private:
     {
         if (kind() == Token::left_brace)
             block(indent);
-        else if (kind() == Token::kw_if || kind() == Token::kw_for)
+        else if (begins_case(at))
+            one_case(indent - step);
+        else if (nests(at))
             controlled(indent);
         else
             simple(indent);
     }
 
-    // if and for: the brace in the line of the head, a single statement too where there is room.
+    bool nests(size_t i) const
+    {
+        return pieces[i].kind == Token::kw_if || pieces[i].kind == Token::kw_for || pieces[i].kind == Token::kw_switch;
+    }
+
+    // Labels stand as deep as their switch, in the author's rows if all fit, else one per line; what they lead to
+    // stands behind them if the author has it there in one line.
+    void one_case(size_t indent)
+    {
+        std::vector<size_t> labels, rows;
+        while (begins_case(at)) {
+            if (labels.empty() || pieces[at].begins_line) rows.push_back(at);
+            labels.push_back(at);
+            while (!pieces[at++].ends_label) {
+            }
+        }
+        const auto row_fits = [&](const size_t& row) {
+            return fits(part(row, &row == &rows.back() ? at : *(&row + 1)), indent);
+        };
+        if (!std::ranges::all_of(rows, row_fits)) rows = labels;
+        for (size_t r = 0; r + 1 < rows.size(); ++r) put(rows[r], rows[r + 1], indent);
+        const size_t begin = rows.back();
+        size_t end = at;
+        bool is_short = true;
+        while (pieces[end].kind != Token::right_brace && pieces[end].kind != Token::end && !begins_case(end)) {
+            is_short &= !pieces[end].begins_line && !nests(end) && pieces[end].kind != Token::left_brace;
+            end = opens(pieces[end].kind) ? behind_bracket(end) : end + 1;
+        }
+        if (is_short && fits(part(begin, end), indent)) {
+            put(begin, end, indent);
+            at = end;
+        } else if (kind() == Token::left_brace) {
+            put(begin, ++at, indent);
+            rest_of_block(indent);
+            put(at, at + 1, indent);
+            ++at;
+        } else {
+            put(begin, at, indent);
+        }
+        while (at < end) statement(indent + step);
+    }
+
+    // if, for and switch: the brace in the line of the head, a single statement too where there is room.
     void controlled(size_t indent)
     {
         for (size_t begin = at;;) { // of the line, "} else" included
-            const bool may_have_else = kind() != Token::kw_for;
+            const bool may_have_else = kind() != Token::kw_for && kind() != Token::kw_switch;
             if (kind() == Token::kw_else) ++at;
             const bool last = kind() != Token::kw_if && may_have_else;
             if (!last) at = behind_bracket(at + 1);
@@ -162,8 +235,7 @@ private:
             } else {
                 pieces[at].begins_statement = true;
                 const size_t end = behind_statement(at);
-                const bool nests = kind() == Token::kw_if || kind() == Token::kw_for;
-                if (!nests && fits(part(begin, end), indent)) {
+                if (!nests(at) && fits(part(begin, end), indent)) {
                     put(begin, end, indent);
                     at = end;
                 } else {

@@ -40,7 +40,8 @@ bool is_spaced(std::span<const Piece> pieces, size_t i)
     const Token before = pieces[i - 1].kind, here = pieces[i].kind;
     if (pieces[i].begins_statement) return true;
     if (pieces[i].has_comment) return !opens(before);
-    if (here == Token::comma || here == Token::semicolon || here == Token::right_paren || here == Token::right_bracket)
+    if (pieces[i].ends_label || here == Token::comma || here == Token::semicolon || here == Token::right_paren ||
+        here == Token::right_bracket)
         return false;
     if (opens(before) || before == Token::dot) return false;
     if (here == Token::dot) return before == Token::number; // "1 .x" is not "1.x"

@@ -23,7 +23,8 @@ struct Piece {
     bool blank_above = false;  // an empty line right above the token
     bool begins_line = false;
     bool has_comment = false;      // in its text
-    bool begins_statement = false; // the body of an "if" or "for"
+    bool begins_statement = false; // the body of an "if" or "for", or the first of a case
+    bool ends_label = false;       // the ':' of a case
 };
 
 // Ends with Token::end, which may have comments above it.

@@ -33,7 +33,7 @@ std::vector<Values> declared(ir::Builder& builder, const std::vector<ParameterIn
             const Type type = values[p]->type;
             if ((type == image_type) != are_images || values[p]->passing == Passing::out) continue;
             if (first_size == 0 && !are_images) first_size = type.components();
-            for (uint32_t i = 0; i < type.components(); ++i) arguments[p].push_back(builder.parameter(ir_type(type)));
+            for (const ir::Type part : ir_types(type)) arguments[p].push_back(builder.parameter(part));
         }
     return arguments;
 }
@@ -71,6 +71,11 @@ Values BodyLowering::constructor(const Expression& e, const CallExpression& node
 {
     const Type from = node.arguments[0]->type;
     Values parts;
+    for (size_t i = 0; e.type.is_struct() && i < node.arguments.size(); ++i) {
+        const Values more = converted(*node.arguments[i], e.type.structure->members[i].type);
+        parts.insert(parts.end(), more.begin(), more.end());
+    }
+    if (e.type.is_struct()) return parts;
     for (const ExpressionPtr& argument : node.arguments) {
         const Values more = convert(expression(*argument), argument->type, {e.type.scalar});
         parts.insert(parts.end(), more.begin(), more.end());
@@ -275,12 +280,13 @@ const std::vector<uint32_t>& ModuleLowering::tables(const Symbol& symbol)
     std::vector<uint32_t>& made = component_tables[&symbol];
     if (!made.empty()) return made;
     const Type element = symbol.type.element();
+    const std::vector<ir::Type> types = ir_types(element);
     for (uint32_t component = 0; component < element.components(); ++component) {
         ir::Table table;
-        table.name = unique(element.is_vector()   ? symbol.name + "." + "xyzw"[component]
-                            : element.is_matrix() ? symbol.name + "." + std::to_string(component)
-                                                  : symbol.name);
-        table.element = ir_type(element);
+        table.name = unique(element.is_vector()    ? symbol.name + "." + "xyzw"[component]
+                            : !element.is_scalar() ? symbol.name + "." + std::to_string(component)
+                                                   : symbol.name);
+        table.element = types[component] == ir::Type::boolean ? ir::Type::i32 : types[component];
         for (size_t cell = component; cell < symbol.value.size(); cell += element.components()) {
             const ConstantPart& part = symbol.value[cell];
             if (auto real = std::get_if<double>(&part))

@@ -32,6 +32,7 @@ Value conversion(ir::Builder& builder, Value value, Scalar from, Scalar to)
     }
     case Scalar::error:
     case Scalar::image_:
+    case Scalar::struct_:
     case Scalar::void_: break;
     }
     return value;
@@ -56,18 +57,35 @@ ir::Type ir_type(Type type)
     case Scalar::bool_: return ir::Type::boolean;
     case Scalar::image_: return ir::Type::image;
     case Scalar::error:
+    case Scalar::struct_:
     case Scalar::void_:
     case Scalar::float_: break;
     }
     return ir::Type::real;
 }
 
+std::vector<ir::Type> ir_types(Type type)
+{
+    if (!type.structure) return std::vector<ir::Type>(type.components(), ir_type(type));
+    std::vector<ir::Type> types;
+    const uint32_t count = type.is_array() ? type.array_size : 1;
+    for (uint32_t i = 0; i < count; ++i)
+        for (const StructMember& member : type.structure->members) {
+            const std::vector<ir::Type> more = ir_types(member.type);
+            types.insert(types.end(), more.begin(), more.end());
+        }
+    return types;
+}
+
 Values BodyLowering::zeros(Type type)
 {
     if (type == void_type) return {};
-    const ir::Type part = ir_type(type);
-    const bool is_word = part != ir::Type::real && part != ir::Type::image; // no variable is an image
-    return Values(type.components(), is_word ? builder.word(0, part) : builder.real(0));
+    Values made;
+    for (const ir::Type part : ir_types(type)) {
+        const bool is_word = part != ir::Type::real && part != ir::Type::image; // no variable is an image
+        made.push_back(is_word ? builder.word(0, part) : builder.real(0));
+    }
+    return made;
 }
 
 bool BodyLowering::too_deep(Span span)
@@ -171,13 +189,14 @@ void BodyLowering::input_parameters(uint32_t reads)
 Values BodyLowering::constant(std::span<const ConstantPart> parts, Type type)
 {
     Values made;
+    const std::vector<ir::Type> types = ir_types(type);
     for (const ConstantPart& part : parts) {
         if (auto real = std::get_if<double>(&part))
             made.push_back(builder.real(*real));
         else if (auto truth = std::get_if<bool>(&part))
             made.push_back(builder.boolean(*truth));
         else
-            made.push_back(builder.word(std::get<uint32_t>(part), ir_type(type)));
+            made.push_back(builder.word(std::get<uint32_t>(part), types[made.size()]));
     }
     return made;
 }
@@ -314,9 +333,13 @@ Values BodyLowering::lower(const Expression& e, const Conditional& node)
         [&] { return converted(*node.when_false, e.type); });
 }
 
-Values BodyLowering::lower(const Expression&, const Member& node)
+Values BodyLowering::lower(const Expression& e, const Member& node)
 {
     const Values object = expression(*node.object);
+    if (node.object->type.is_struct()) {
+        const auto first = object.begin() + node.object->type.structure->member(node.member.text)->first;
+        return {first, first + e.type.components()};
+    }
     const Swizzle swizzle = *parse_swizzle(node.member.text);
     Values made;
     for (uint8_t i = 0; i < swizzle.size; ++i) made.push_back(object[swizzle.component[i]]);
@@ -351,12 +374,9 @@ Value BodyLowering::index_within(const Expression& index, uint32_t size)
 // Where a call writes is known before it is made, whatever it changes.
 void BodyLowering::locate(const Expression& target)
 {
-    const Expression* object = &target;
-    if (auto member = std::get_if<Member>(&object->node)) object = member->object.get();
-    while (auto index = std::get_if<Index>(&object->node)) {
-        located[index->index.get()] = index_within(*index->index, index->object->type.element_count());
-        object = index->object.get();
-    }
+    for (const Expression* object = &target; const Expression* whole = whole_of(*object); object = whole)
+        if (auto index = std::get_if<Index>(&object->node))
+            located[index->index.get()] = index_within(*index->index, whole->type.element_count());
 }
 
 Values BodyLowering::lower(const Expression& e, const Index& node)
@@ -366,7 +386,12 @@ Values BodyLowering::lower(const Expression& e, const Index& node)
         const Value at = index_within(*node.index, name->symbol->type.array_size);
         builder.span = e.span;
         Values made;
-        for (uint32_t table : owner.tables(*name->symbol)) made.push_back(builder.table(table, at));
+        const std::vector<ir::Type> types = ir_types(e.type);
+        for (uint32_t table : owner.tables(*name->symbol)) {
+            const Value cell = builder.table(table, at);
+            const bool is_truth = types[made.size()] == ir::Type::boolean; // which no table holds
+            made.push_back(is_truth ? binary_scalar(BinaryOp::not_equal, cell, builder.i32(0)) : cell);
+        }
         return made;
     }
     const Values object = expression(*node.object);

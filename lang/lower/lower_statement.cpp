@@ -27,6 +27,32 @@ std::vector<const Statement*> listed(const Statement* first, std::span<const Sta
     return all;
 }
 
+// The statements of a case, without the break that ends it.
+std::span<const StatementPtr> up_to_break(const Switch::Case& one)
+{
+    const std::span<const StatementPtr> all = std::get<ast::Scope>(one.body->node).statements;
+    const bool ends_in_break = !all.empty() && all.back() && std::holds_alternative<Break>(all.back()->node);
+    return all.first(all.size() - (ends_in_break ? 1 : 0));
+}
+
+// Whether what follows can stand in the one arm or case that goes on.
+bool goes_on_once(const Statement& s)
+{
+    size_t going_on = 0;
+    if (auto branch = std::get_if<If>(&s.node)) {
+        going_on = branch->arms.back().condition ? 1 : 0;
+        for (const If::Arm& arm : branch->arms) going_on += !arm.body || completion_of(*arm.body).falls_through;
+    } else if (auto choice = std::get_if<Switch>(&s.node)) {
+        going_on = std::ranges::none_of(choice->cases, &Switch::Case::is_default) ? 1 : 0;
+        for (const Switch::Case& one : choice->cases) {
+            const Completion ends = completion_of(up_to_break(one));
+            if (ends.breaks) return false;
+            going_on += ends.falls_through;
+        }
+    }
+    return going_on == 1;
+}
+
 } // namespace
 
 BodyLowering::BodyLowering(ModuleLowering& module_lowering, std::string name, uint32_t slot_count)
@@ -110,18 +136,14 @@ void BodyLowering::sequence(Statements statements)
             continue;
         }
         if (!ends.falls_through || rest.empty()) return statement(s, {});
-        if (auto branch = std::get_if<If>(&s.node)) {
-            size_t going_on = branch->arms.back().condition ? 1 : 0;
-            for (const If::Arm& arm : branch->arms) going_on += !arm.body || completion_of(*arm.body).falls_through;
-            if (going_on == 1) return statement(s, rest);
-        }
+        if (goes_on_once(s)) return statement(s, rest);
         statement(s, {});
         const Slots changed = changed_slots(listed(nullptr, rest), completion_of(rest));
         return choose(left(), changed, [] {}, [&] { sequence(rest); });
     }
 }
 
-// `rest` follows inside the arm of an `if` that goes on; empty for other statements.
+// `rest` follows inside the arm of an `if` or `switch` that goes on; empty for other statements.
 void BodyLowering::statement(const Statement& s, Statements rest)
 {
     const Nesting nesting(owner.nesting);
@@ -140,6 +162,8 @@ void BodyLowering::statement(const Statement& s, Statements rest)
         either.add(completion_of(rest));
         const Slots changed = changed_slots(listed(&s, rest), either);
         branch(*branch_node, 0, rest, changed);
+    } else if (auto choice = std::get_if<Switch>(&s.node)) {
+        lower(*choice, s, rest);
     } else if (auto loop = std::get_if<For>(&s.node)) {
         lower(*loop);
     } else if (std::holds_alternative<Break>(s.node)) {
@@ -157,15 +181,55 @@ void BodyLowering::branch(const If& node, size_t index, Statements rest, const S
 {
     if (index == node.arms.size()) return sequence(rest);
     const If::Arm& arm = node.arms[index];
-    const auto take = [&] {
-        if (arm.body) statement(*arm.body, {});
-        if (rest.empty() || (arm.body && !completion_of(*arm.body).falls_through)) return;
-        if (!arm.body || !completion_of(*arm.body).may_leave()) return sequence(rest);
-        choose(left(), changed, [] {}, [&] { sequence(rest); });
-    };
-    if (!arm.condition) return take();
+    const auto take_arm = [&] { take(arm.body ? Statements(&arm.body, 1) : Statements{}, rest, changed); };
+    if (!arm.condition) return take_arm();
     const Value condition = converted(*arm.condition, bool_type)[0];
-    choose(condition, changed, take, [&] { branch(node, index + 1, rest, changed); });
+    choose(condition, changed, take_arm, [&] { branch(node, index + 1, rest, changed); });
+}
+
+void BodyLowering::take(Statements arm, Statements rest, const Slots& changed)
+{
+    sequence(arm);
+    const Completion ends = completion_of(arm);
+    if (rest.empty() || !ends.falls_through) return;
+    if (!ends.may_leave()) return sequence(rest);
+    choose(left(), changed, [] {}, [&] { sequence(rest); });
+}
+
+// The slot of a loop that was left serves for a break that stands in front of other statements of its case.
+void BodyLowering::lower(const Switch& node, const Statement& s, Statements rest)
+{
+    const Value selector = expression(*node.selector)[0];
+    std::vector<const Switch::Case*> all; // the default last
+    const Switch::Case* otherwise = nullptr;
+    Completion either = completion_of(s);
+    for (const Switch::Case& one : node.cases) {
+        (one.is_default() ? otherwise : all.emplace_back()) = &one;
+        either.breaks |= completion_of(up_to_break(one)).breaks;
+    }
+    if (otherwise) all.push_back(otherwise);
+    either.add(completion_of(rest));
+    const Slots changed = changed_slots(listed(&s, rest), either);
+    const Values broken_before = variables[broken_slot()];
+    variables[broken_slot()] = {builder.boolean(false)};
+    cases(all, selector, rest, changed);
+    variables[broken_slot()] = broken_before;
+}
+
+// "if (it is one of the labels of the first) a else (the others)".
+void BodyLowering::cases(std::span<const Switch::Case* const> all, Value selector, Statements rest,
+                         const Slots& changed)
+{
+    if (all.empty()) return sequence(rest);
+    const Switch::Case& one = *all.front();
+    const auto take_case = [&] { take(up_to_break(one), rest, changed); };
+    if (one.is_default()) return take_case();
+    std::optional<Value> is_here;
+    for (const ExpressionPtr& label : one.labels) {
+        const Value is_label = binary_scalar(BinaryOp::equal, selector, expression(*label)[0]);
+        is_here = is_here ? builder.operation(Op::lor, {*is_here, is_label}) : is_label;
+    }
+    choose(*is_here, changed, take_case, [&] { cases(all.subspan(1), selector, rest, changed); });
 }
 
 // ---- variables
@@ -204,7 +268,9 @@ void BodyLowering::store(const Expression& target, const Values& value)
     const Expression& object = member ? *member->object : *index->object;
     if (owner.is_too_large(target.span, builder.function().value_types.size())) return; // a choice per element adds up
     Values whole = expression(object);
-    if (member) {
+    if (object.type.is_struct()) {
+        std::ranges::copy(value, whole.begin() + object.type.structure->member(member->member.text)->first);
+    } else if (member) {
         const Swizzle swizzle = *parse_swizzle(member->member.text);
         for (uint8_t i = 0; i < swizzle.size; ++i) whole[swizzle.component[i]] = value[i];
     } else {

@@ -157,6 +157,10 @@ private:
     void lower(const ast::For& node);
     void turns(const ast::For& node, ir::Value trips, const std::function<ir::Value(ir::Value turn)>& counter);
     void branch(const ast::If& node, size_t arm, Statements rest, const Slots& changed);
+    void lower(const ast::Switch& node, const ast::Statement& s, Statements rest);
+    void cases(std::span<const ast::Switch::Case* const> all, ir::Value selector, Statements rest,
+               const Slots& changed);
+    void take(Statements arm, Statements rest, const Slots& changed);
     void choose(ir::Value condition, const Slots& changed, const std::function<void()>& then_arm,
                 const std::function<void()>& else_arm);
     // Variables that the statements change, and what of the flow they can change.
@@ -182,6 +186,7 @@ private:
 Values lower_builtin(ModuleLowering& owner, ir::Builder& builder, const BuiltinOverload& overload,
                      std::span<const Values> arguments);
 
-ir::Type ir_type(Type type); // of its components
+ir::Type ir_type(Type type);               // of its components, which are of one type in all but structs
+std::vector<ir::Type> ir_types(Type type); // of each of its components
 
 } // namespace haptel::lang

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lang/abi/outputs.h"
+#include "lang/program/scope.h"
 #include "lang/syntax/ast.h"
 
 #include <deque>
@@ -55,6 +56,7 @@ struct CheckedProgram {
     std::deque<Symbol> symbols;
     std::deque<FunctionInfo> functions;
     std::deque<Choices> choices;
+    std::deque<StructDeclaration> structs;
     std::vector<CheckedTexture> textures; // of file 0, in source order
 };
 

@@ -22,6 +22,16 @@ Completion completion_of(const Statement& s)
         }
         return all;
     }
+    if (auto choice = std::get_if<Switch>(&s.node)) { // of which a break leaves no more than itself
+        Completion all{.falls_through = std::ranges::none_of(choice->cases, &Switch::Case::is_default)};
+        for (const Switch::Case& one : choice->cases) {
+            const Completion ends = completion_of(*one.body);
+            all.falls_through |= ends.falls_through || ends.breaks;
+            all.returns |= ends.returns;
+            all.continues |= ends.continues;
+        }
+        return all;
+    }
     if (auto loop = std::get_if<For>(&s.node))
         return {.falls_through = true, .returns = loop->body && completion_of(*loop->body).returns};
     return {.falls_through = true};

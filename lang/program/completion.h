@@ -1,4 +1,5 @@
-// How a statement can end, on some path: by going on, by returning, by leaving the loop round it or its turn.
+// How a statement can end, on some path: by going on, by returning, by leaving the loop or switch round it or the
+// loop's turn.
 #pragma once
 
 #include "lang/syntax/ast.h"

@@ -46,6 +46,13 @@ FunctionInfo* FileScope::texture(std::string_view name) const
     return nullptr;
 }
 
+StructDeclaration* FileScope::structure(std::string_view name) const
+{
+    for (const Declarations* layer : layers)
+        if (const auto found = layer->structs.find(name); found != layer->structs.end()) return found->second;
+    return nullptr;
+}
+
 bool FileScope::is_unread(std::string_view name) const
 {
     return std::ranges::any_of(layers, [&](const Declarations* layer) { return layer->unread.contains(name); });

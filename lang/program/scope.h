@@ -2,6 +2,7 @@
 #pragma once
 
 #include "lang/program/builtins.h"
+#include "lang/syntax/ast.h"
 #include "lang/syntax/resolution.h"
 
 #include <map>
@@ -13,8 +14,17 @@
 
 namespace haptel::lang {
 
+// A struct of the source. Its members are looked up when it is first named, so that it may hold one that stands below.
+struct StructDeclaration {
+    const ast::Struct* tree;
+    StructInfo info = {};
+    enum class State : uint8_t { untouched, in_work, done } state = State::untouched;
+    bool is_valid = true; // false: it has mistakes, and values of it are not checked
+};
+
 // Global names of one file, or of the whole library.
 struct Declarations {
+    std::map<std::string, StructDeclaration*, std::less<>> structs;
     std::map<std::string, std::vector<FunctionInfo*>, std::less<>> functions;
     std::map<std::string, FunctionInfo*, std::less<>> textures;  // as functions
     std::map<std::string, const Symbol*, std::less<>> constants; // those above the place that is being checked
@@ -52,8 +62,9 @@ struct FileScope {
 
     // Every function of that name; of equal signatures only the nearest, so that a file may replace what it imports.
     std::vector<Candidate> functions(std::string_view name) const;
-    FunctionInfo* texture(std::string_view name) const; // null: none has that name
-    bool is_unread(std::string_view name) const;        // it may be declared in text that could not be read
+    FunctionInfo* texture(std::string_view name) const;        // null: none has that name
+    StructDeclaration* structure(std::string_view name) const; // likewise
+    bool is_unread(std::string_view name) const;               // it may be declared in text that could not be read
 };
 
 } // namespace haptel::lang

@@ -38,6 +38,8 @@ void for_each_in(const Statement& s, const std::function<void(const Statement&)>
         for (const If::Arm& arm : branch->arms) inner(arm.body);
     if (auto loop = std::get_if<For>(&s.node))
         for (const StatementPtr* part : {&loop->init, &loop->step, &loop->body}) inner(*part);
+    if (auto choice = std::get_if<Switch>(&s.node))
+        for (const Switch::Case& one : choice->cases) inner(one.body);
 }
 
 std::vector<const Expression*> expressions_of(const Statement& s)
@@ -53,6 +55,11 @@ std::vector<const Expression*> expressions_of(const Statement& s)
     if (auto left = std::get_if<Return>(&s.node)) add(left->value);
     if (auto branch = std::get_if<If>(&s.node))
         for (const If::Arm& arm : branch->arms) add(arm.condition);
+    if (auto choice = std::get_if<Switch>(&s.node)) {
+        add(choice->selector);
+        for (const Switch::Case& one : choice->cases)
+            for (const ExpressionPtr& label : one.labels) add(label);
+    }
     return expressions;
 }
 
@@ -73,11 +80,17 @@ Function head_as_function(const Texture& texture)
     return made;
 }
 
+const Expression* whole_of(const Expression& part)
+{
+    if (auto member = std::get_if<Member>(&part.node)) return member->object.get();
+    if (auto index = std::get_if<Index>(&part.node)) return index->object.get();
+    return nullptr;
+}
+
 const NameExpression* root_of(const Expression& target)
 {
     const Expression* object = &target;
-    if (auto member = std::get_if<Member>(&object->node)) object = member->object.get();
-    while (auto index = std::get_if<Index>(&object->node)) object = index->object.get();
+    while (const Expression* whole = whole_of(*object)) object = whole;
     return std::get_if<NameExpression>(&object->node);
 }
 

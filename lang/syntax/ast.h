@@ -10,6 +10,7 @@
 #include "lang/text/number.h"
 #include "lang/text/source.h"
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -126,7 +127,7 @@ struct GradCall {
 struct Member {
     ExpressionPtr object;
     Name member;
-}; // swizzle
+}; // of a struct, or a swizzle
 struct Index {
     ExpressionPtr object, index;
 };
@@ -166,7 +167,7 @@ struct Declaration { // one name; "float a = 1, b;" makes two in a row
     ExpressionPtr initializer;      // may be null
     const Symbol* symbol = nullptr; // set by the checker
 };
-struct Assignment { // target: name, swizzle or index of one. "++i;" and "i++;" are "i += 1".
+struct Assignment { // target: name, or members, swizzle or index of one. "++i;" and "i++;" are "i += 1".
     ExpressionPtr target;
     std::optional<BinaryOp> op; // in "+=" and its like; nothing: "="
     Span op_span;
@@ -193,7 +194,21 @@ struct For {
     StatementPtr body;
     LoopPlan plan = {}; // set by the checker
 }; // parts may be null
-struct Break {};
+// "switch (e) { case 0: ... break; case 1: case 2: ... break; default: ... }"
+struct Switch {
+    struct Case {
+        std::vector<ExpressionPtr> labels; // constant; null: "default"
+        Span head;                         // from the first label to the last ':'
+        StatementPtr body;                 // a Scope
+        bool is_default() const
+        {
+            return std::ranges::any_of(labels, [](const ExpressionPtr& label) { return !label; });
+        }
+    };
+    ExpressionPtr selector;
+    std::vector<Case> cases;
+};
+struct Break {}; // of the innermost loop or switch
 struct Continue {};
 struct Return {
     ExpressionPtr value;
@@ -202,7 +217,7 @@ struct Return {
 struct Statement {
     Span span;
     std::vector<const Symbol*> written; // by calls in it; set by the checker
-    std::variant<Declaration, Assignment, ExpressionStatement, Scope, If, For, Break, Continue, Return> node;
+    std::variant<Declaration, Assignment, ExpressionStatement, Scope, If, For, Switch, Break, Continue, Return> node;
 };
 
 // The expressions that stand in `s` itself and not in a statement inside of it, in source order.
@@ -210,6 +225,8 @@ std::vector<const Expression*> expressions_of(const Statement& s);
 
 // `look` at `s` and at every statement inside of it, in source order.
 void for_each_in(const Statement& s, const std::function<void(const Statement&)>& look);
+// What `part` is a member, component or element of; null: it is none.
+const Expression* whole_of(const Expression& part);
 // What is assigned to, or has the part that is: a name; null where it is none, which is a mistake.
 const NameExpression* root_of(const Expression& target);
 
@@ -280,6 +297,15 @@ struct Constant {
     Declaration declaration;
     Span span;
 }; // global const, tables too
+struct Struct {
+    struct Member {
+        TypeName type;
+        Name name;
+    };
+    Name name;
+    std::vector<Member> members;
+    Span span;
+};
 struct Import {
     std::string path; // "wood/oak.haptel"
     Span span;
@@ -287,6 +313,7 @@ struct Import {
 
 struct File {
     std::vector<Import> imports;
+    std::vector<Struct> structs;
     std::vector<Constant> constants;
     std::vector<Function> functions;
     std::vector<Texture> textures;

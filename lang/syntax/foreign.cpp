@@ -106,11 +106,10 @@ constexpr ForeignWord meanings[] = {
     {qualifier, "precise", "", "leave it out; every operation is IEEE 754 as written"},
 
     {statement, "do", "", "write /// @bound 64 and while (...) { ... }, or a for loop"},
-    {statement, "switch case default goto", "", "write if (...) { ... } else if (...) { ... }"},
+    {statement, "goto", "", "write if (...) { ... } else if (...) { ... }"},
     {statement, "discard", "", "a texture has a height everywhere: return 0.0"},
 
-    {declaration, "struct class union typedef", "",
-     "there are no structures; pass the values one by one or in a vector"},
+    {declaration, "class union typedef", "", "write a struct: struct Cell { vec2 id; float d; };"},
     {declaration, "enum", "",
      "write constants, const int ROUGH = 1;, or name a parameter's values: int finish = fine in {fine, rough}"},
     {declaration, "uniform attribute", "",

@@ -48,6 +48,7 @@ private:
     void range_of(ast::TextureParameter& parameter);
     void choices_of(ast::TextureParameter& parameter);
     void constants(ast::File& result);
+    void structure(ast::File& result);
     void function_or_variable(ast::File& result);
     bool takes_any_size() const;
     void function_of_each_size(ast::File& result);
@@ -65,6 +66,8 @@ private:
     ast::StatementPtr if_statement();
     ast::StatementPtr for_statement();
     ast::StatementPtr while_statement();
+    ast::StatementPtr switch_statement();
+    ast::Switch::Case one_case();
     ast::StatementPtr return_statement();
     ast::StatementPtr assignment_or_expression();
     ast::StatementPtr chained(ast::Assignment left, Span first, size_t value);
@@ -133,12 +136,13 @@ private:
     ast::ExpressionPtr grad_call(Span first);
     std::vector<ast::ExpressionPtr> arguments(std::vector<ast::Name>* names = nullptr);
     ast::ExpressionPtr array_constructor(ast::Name type);
+    bool makes_structs(std::string_view type) const;
 
     // parse_foreign.cpp
     void skip_foreign_qualifiers();
     void skip_type_arguments();
     bool skip_precision();
-    void skip_foreign_declaration(std::string message, std::string_view hint);
+    void skip_foreign_declaration(std::string message, std::string_view hint, ErrorCode code = "foreign-word");
     void foreign_statement(const ForeignWord& word, Statements& into);
     void read_misspelt_keyword();
     void read_misspelt_in();
@@ -192,9 +196,10 @@ private:
     size_t macro_tokens = 0;                  // read of all values so far
     mutable size_t alias_steps = 0;           // from a name to what it stands for; beyond many, it stands for itself
 
-    bool has_own_grad = false;       // a function of that name stands above
-    uint32_t told_type = UINT32_MAX; // where a type begins of which enough is said
-    bool are_types_behind = false;   // in the head of this function, and that is told
+    std::set<std::string, std::less<>> struct_names; // of those that stand above
+    bool has_own_grad = false;                       // a function of that name stands above
+    uint32_t told_type = UINT32_MAX;                 // where a type begins of which enough is said
+    bool are_types_behind = false;                   // in the head of this function, and that is told
 
     // Of the function or texture that is being read:
     std::string_view one_size;                 // what `any_size` stands for; empty: nothing

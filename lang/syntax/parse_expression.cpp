@@ -233,11 +233,20 @@ ExpressionPtr Grammar::brace_list()
     return make(since(opener), std::move(list_of));
 }
 
+// At '[' behind a struct's name: whether "(" follows the "]", as in "Cell[2](a, b)".
+bool Grammar::makes_structs(std::string_view type) const
+{
+    if (!struct_names.contains(type)) return false;
+    const size_t closer = closer_ahead(0);
+    return kind(closer) == Token::right_bracket && kind(closer + 1) == Token::left_paren;
+}
+
 // name_or_call = name | name "(" [expression {"," expression}] ")" | grad_call
 ExpressionPtr Grammar::name_or_call()
 {
     Name callee = name("");
-    if (at(Token::left_bracket) && is_own_type(callee.text)) return array_constructor(std::move(callee));
+    if (at(Token::left_bracket) && (is_own_type(callee.text) || makes_structs(callee.text)))
+        return array_constructor(std::move(callee));
     if (at(Token::less) && is_own_type(callee.text)) skip_type_arguments();
     if (!at(Token::left_paren)) return make(callee.span, NameExpression{callee.text});
     if (callee.text == "grad") return grad_call(callee.span);

@@ -230,20 +230,20 @@ bool Grammar::skip_precision()
     return true;
 }
 
-// "struct S {...};", "uniform float x;", "in vec2 uv;": says what to write, skips the whole.
-void Grammar::skip_foreign_declaration(std::string message, std::string_view hint)
+// "class S {...};", "uniform float x;", "in vec2 uv;": says what to write, skips the whole.
+void Grammar::skip_foreign_declaration(std::string message, std::string_view hint, ErrorCode code)
 {
-    error(span(), "foreign-word", std::move(message), hint);
+    error(span(), code, std::move(message), hint);
     advance();
     skip_to({Token::left_brace});
     if (at(Token::left_brace)) skip_braces();
-    while (at(Token::name) && !on_new_line()) advance(); // "struct S {...} s;"
+    while (at(Token::name) && !on_new_line()) advance(); // "class S {...} s;"
     accept(Token::semicolon);
     lost = false;
 }
 
-// "do {...} while (...);", "switch (...) {...}": says what to write. A loop's body, which may never
-// run, is still read for its own mistakes.
+// "do {...} while (...);", "goto end;": says what to write. A loop's body, which may never run, is still read for its
+// own mistakes.
 void Grammar::foreign_statement(const ForeignWord& word, Statements& into)
 {
     error(span(), "foreign-word", not_in_haptel(), word.hint);
@@ -263,11 +263,8 @@ void Grammar::foreign_statement(const ForeignWord& word, Statements& into)
         loop.arms.push_back(std::move(arm));
         into.push_back(make_statement(since(head), std::move(loop)));
         if (at(Token::name) && text() == "while") advance(), skip_to({});
-    } else if (at(Token::left_brace)) {
-        skip_braces();
     } else {
-        skip_to({Token::colon}); // "case 1:", "default:"
-        accept(Token::colon);
+        skip_to({});
     }
     accept(Token::semicolon);
     lost = false;

@@ -32,7 +32,8 @@ void Grammar::forget(std::span<StatementPtr> statements)
         if (auto declaration = std::get_if<Declaration>(&made->node)) {
             declaration->initializer = unknown(made->span);
             declaration->type = {};
-        } else if (!std::holds_alternative<If>(made->node) && !std::holds_alternative<For>(made->node)) {
+        } else if (!std::holds_alternative<If>(made->node) && !std::holds_alternative<For>(made->node) &&
+                   !std::holds_alternative<Switch>(made->node)) {
             made->node = ExpressionStatement{unknown(made->span)};
         }
     }
@@ -144,9 +145,10 @@ StatementPtr Grammar::body_of(std::string_view what)
 // What begins here ends in a '{' that must be a body's: it is a function, however its head is written.
 bool Grammar::body_follows() const
 {
-    const size_t brace = first_ahead({Token::left_brace, Token::right_brace, Token::semicolon, Token::end,
-                                      Token::kw_texture, Token::kw_import, Token::kw_if, Token::kw_else, Token::kw_for,
-                                      Token::kw_break, Token::kw_continue, Token::kw_return});
+    const size_t brace =
+        first_ahead({Token::left_brace, Token::right_brace, Token::semicolon, Token::end, Token::kw_texture,
+                     Token::kw_import, Token::kw_if, Token::kw_else, Token::kw_for, Token::kw_switch, Token::kw_case,
+                     Token::kw_default, Token::kw_break, Token::kw_continue, Token::kw_return});
     const Token before = brace > 0 ? kind(brace - 1) : Token::name;
     return kind(brace) == Token::left_brace && before != Token::assign && before != Token::right_bracket;
 }

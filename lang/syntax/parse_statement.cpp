@@ -8,7 +8,8 @@ namespace haptel::lang {
 
 using namespace ast;
 
-// statement = macro | block | if | for | while | "break" ";" | "continue" ";" | return | declaration | assignment | ";"
+// statement = macro | block | if | for | while | switch | "break" ";" | "continue" ";" | return | declaration
+//           | assignment | ";"
 // Appends none, one, or, for "float a, b;", several.
 void Grammar::statement(Statements& into)
 {
@@ -28,6 +29,8 @@ void Grammar::statement(Statements& into)
         into.push_back(for_statement());
     } else if (text() == "while" && kind(1) == Token::left_paren) {
         into.push_back(while_statement());
+    } else if (at(Token::kw_switch)) {
+        into.push_back(switch_statement());
     } else if (at(Token::kw_return)) {
         into.push_back(return_statement());
     } else if (accept(Token::kw_break)) {
@@ -36,6 +39,17 @@ void Grammar::statement(Statements& into)
     } else if (accept(Token::kw_continue)) {
         expect_semicolon("'continue'");
         into.push_back(make_statement(since(first), Continue{}));
+    } else if (at(Token::kw_case) || at(Token::kw_default)) {
+        error(first, "switch", "this '" + std::string(text()) + "' belongs to no 'switch'",
+              "cases stand right inside the braces of a switch");
+        advance();
+        skip_to({Token::colon});
+        accept(Token::colon);
+        lost = false;
+    } else if (at(Token::kw_struct)) {
+        skip_foreign_declaration("a struct is declared outside of functions and textures",
+                                 "move it to the top of the file", "struct");
+        note_unread(first_position);
     } else if (at(Token::kw_else)) {
         error(first, "else-without-if", "this 'else' belongs to no 'if'",
               "an 'if' with several statements needs braces around them");

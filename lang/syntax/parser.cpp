@@ -19,7 +19,7 @@ File parse(const SourceSet& sources, uint32_t file, TokenList tokens, Diagnostic
     return Grammar(sources, file, std::move(tokens), diagnostics).parse_file();
 }
 
-// file = {import | constants | texture | function | macro | ";"}
+// file = {import | constants | struct | texture | function | macro | ";"}
 File Grammar::parse_file()
 {
     File result;
@@ -46,6 +46,8 @@ File Grammar::parse_file()
             import_declaration(result);
         } else if (at(Token::kw_const)) {
             constants(result);
+        } else if (at(Token::kw_struct)) {
+            structure(result);
         } else if (at(Token::kw_texture)) {
             texture(result);
         } else if ((at(Token::kw_in) || at(Token::kw_out)) && kind(1) == Token::name) {
@@ -85,7 +87,8 @@ void Grammar::begin_declaration()
 void Grammar::report_stray(File& result)
 {
     const bool statement_like = kind() >= Token::kw_if || at(Token::name) || at(Token::right_brace);
-    Diagnostic& reported = error(span(), "syntax", "expected a texture, function, constant or import" + found());
+    Diagnostic& reported =
+        error(span(), "syntax", "expected a texture, function, constant, struct or import" + found());
     if (!statement_like) return;
     reported.hint = "statements stand inside functions and textures; is there a '}' too many above?";
     // Then the body above has ended too early.
@@ -140,7 +143,8 @@ void Grammar::find_top_level(bool strayed)
             advance();
             return;
         }
-        if (open_braces == 0 && on_new_line() && (at(Token::kw_const) || at_top_level_start())) return;
+        if (open_braces == 0 && on_new_line() && (at(Token::kw_const) || at(Token::kw_struct) || at_top_level_start()))
+            return;
     }
 }
 

@@ -1,35 +1,42 @@
-// Types of the language: scalars, vectors of 2 to 4 of them, square matrices, arrays of all these, and images.
+// Types of the language: scalars, vectors of 2 to 4 of them, square matrices, structs, arrays of all these, and images.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace haptel::lang {
 
-enum class Scalar : uint8_t { error, void_, float_, int_, uint_, bool_, image_ };
+enum class Scalar : uint8_t { error, void_, float_, int_, uint_, bool_, image_, struct_ };
+
+struct StructInfo;
 
 struct Type {
     Scalar scalar = Scalar::error;
-    uint8_t size = 1;        // 1: scalar; 2 to 4: components of a vector, rows of a matrix
-    uint32_t array_size = 0; // 0: not an array
-    uint8_t columns = 1;     // 2 to 4: square matrix of floats, column after column as in GLSL
+    uint8_t size = 1;                      // 1: scalar; 2 to 4: components of a vector, rows of a matrix
+    uint32_t array_size = 0;               // 0: not an array
+    uint8_t columns = 1;                   // 2 to 4: square matrix of floats, column after column as in GLSL
+    const StructInfo* structure = nullptr; // of a struct, which is its members one behind the other
 
     static constexpr Type error() { return {}; }
     bool is_error() const { return scalar == Scalar::error; }
     bool is_array() const { return array_size > 0; }
-    bool is_scalar() const { return size == 1 && !is_array(); }
+    bool is_scalar() const { return size == 1 && !is_array() && !structure; }
     bool is_vector() const { return size > 1 && columns == 1 && !is_array(); }
     bool is_matrix() const { return columns > 1 && !is_array(); }
+    bool is_struct() const { return structure && !is_array(); }
     bool is_numeric() const { return scalar == Scalar::float_ || is_whole(); }
     bool is_whole() const { return scalar == Scalar::int_ || scalar == Scalar::uint_; } // or of whole numbers
     // What an index picks: an element of an array, a column of a matrix, a component of a vector.
     constexpr Type element() const
     {
-        if (array_size > 0) return {scalar, size, 0, columns};
+        if (array_size > 0) return {scalar, size, 0, columns, structure};
         return {scalar, columns > 1 ? size : uint8_t{1}, 0, 1};
     }
     uint32_t element_count() const { return is_array() ? array_size : is_matrix() ? columns : size; }
-    uint32_t components() const { return uint32_t{size} * columns * (is_array() ? array_size : 1); }
+    uint32_t components() const;
     bool operator==(const Type&) const = default;
 };
 
@@ -53,6 +60,32 @@ inline constexpr Type mat(uint8_t size)
 // at run time costs a choice per element.
 inline constexpr uint32_t array_size_max = 64, array_components_max = 256;
 
+// A member stands behind the components of those before it.
+struct StructMember {
+    std::string name;
+    Type type;
+    uint32_t first = 0; // of its components
+};
+
+// Two structs are one type only if they are one declaration. Owned by CheckedProgram.
+struct StructInfo {
+    std::string name;
+    std::vector<StructMember> members;
+    uint32_t components = 0;
+
+    const StructMember* member(std::string_view wanted) const // null: it has none of that name
+    {
+        const auto found = std::ranges::find(members, wanted, &StructMember::name);
+        return found == members.end() ? nullptr : &*found;
+    }
+};
+
+inline uint32_t Type::components() const
+{
+    const uint32_t of_element = structure ? structure->components : uint32_t{size} * columns;
+    return of_element * (is_array() ? array_size : 1);
+}
+
 // As written in source: "mat3", "ivec3", "float[4]".
 inline std::string to_string(Type type)
 {
@@ -71,6 +104,7 @@ inline std::string to_string(Type type)
     case Scalar::uint_: return "uint";
     case Scalar::bool_: return "bool";
     case Scalar::image_: return "image";
+    case Scalar::struct_: return type.structure->name;
     }
     return {};
 }

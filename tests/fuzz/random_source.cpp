@@ -20,6 +20,11 @@ public:
         line("const int FEW = 1 + 2;");
         line("const ivec3 C[2] = {ivec3(1, -2, 3), ivec3(2147483647, " + whole_number() + ", 0)};");
         names_of_half();
+        line("struct Pair { Mark mark; float r, w[2]; };");
+        line("struct Mark { ivec3 c; bool t; vec2 v; uint u; };");
+        line("const Mark MARKS[2] = {Mark(C[1], false, V[1], 7u), Mark(ivec3(2), true, vec2(0.5, C1), 1)};");
+        line("Pair pair(Mark m, float x) { return Pair(m, x, float[2](0.5 * x, x)); }");
+        line("void swap(inout Pair a, out Mark b) { b = a.mark; b.c.zx = a.mark.c.xy; a.r += a.w[1]; }");
         line("float by_two(float f(float, float), float x) { return f(x, 0.5) - f(0.25, x); }");
         line("float over(float f(vec3), const vec3 v) { return f(v.zxy) - 0.5 * f(v); }");
         line("float across(float f(vecN), const vecN v) { vecN w = vecN(0.5) - v; return f(w) - 0.5 * f(v); }");
@@ -129,7 +134,12 @@ private:
 
     void statement(int depth)
     {
-        switch (below(20)) {
+        switch (below(23)) {
+        case 20: return record();
+        case 21:
+        case 22:
+            if (depth < 3) return choose(depth);
+            break;
         case 11: return call();
         case 12:
             if (loops > 0 && depth > 0) return line("if (" + truth(1) + ") continue;");
@@ -252,6 +262,54 @@ private:
             body(depth);
         }
         line("}");
+    }
+
+    void choose(int depth)
+    {
+        const bool is_word = below(4) == 0;
+        line("switch (" +
+             (is_word ? word(2) + " % 5" : one_of({whole(2), whole(1) + " & 3", "int(" + index(4, 2) + ")"})) + ") {");
+        const auto one_case = [&](const std::string& labels, bool is_last) {
+            line(labels);
+            if (below(4) == 0) line("    if (" + truth(1) + ") break;");
+            body(depth);
+            if (!is_last || below(2)) line(below(6) ? "    break;" : "    return " + returned(1) + ";");
+        };
+        const bool has_default = below(3) > 0, is_default_first = has_default && below(3) == 0;
+        if (is_default_first) one_case(below(2) ? "default:" : "case 7: default:", false);
+        one_case("case 0:", false);
+        one_case(is_word ? "case 1: case 2u:" : "case 1: case FEW: case -1:", !has_default || is_default_first);
+        if (has_default && !is_default_first) one_case("default:", true);
+        line("}");
+    }
+
+    // A struct, whose members are variables like others.
+    void record()
+    {
+        const std::string name = fresh(), mark = fresh();
+        line("Pair " + name + " = pair(" +
+             one_of({"MARKS[" + index(2, 1) + "]",
+                     "Mark(" + cell(1) + ", " + truth(1) + ", " + vector(2, 1) + ", " + word(1) + ")",
+                     "(" + truth(1) + " ? MARKS[0] : MARKS[1])"}) +
+             ", " + tame(2) + ");");
+        line("Mark " + mark + ";");
+        if (below(2)) {
+            line("swap(" + name + ", " + mark + ");");
+        } else {
+            line(mark + ".c = " + cell(1) + ";");
+            line(mark + ".v.x = " + tame(1) + ";");
+            line(mark + ".v.y = " + tame(1) + ";");
+            line(mark + ".t = " + name + ".mark " + one_of({"==", "!="}) + " MARKS[" + index(2, 1) + "];");
+            line(mark + ".u = " + name + ".mark.u;");
+        }
+        if (below(2)) line(name + ".w[" + index(2, 1) + "] = " + tame(1) + ";");
+        if (below(3) == 0) line(name + ".mark = " + mark + ";");
+        scope.push_back({name + ".r", Kind::real, true});
+        scope.push_back({name + ".w[1]", Kind::real, true});
+        scope.push_back({name + ".mark.c", Kind::cell, true});
+        scope.push_back({name + ".mark.v", Kind::vec2, true});
+        scope.push_back({mark + ".t", Kind::truth, true});
+        scope.push_back({mark + ".u", Kind::word, true});
     }
 
     // Between -1 and 5 for certain, from what the body of no loop changes.

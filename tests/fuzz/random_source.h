@@ -1,6 +1,6 @@
 // Random programs as source text: functions that call and differentiate each other, loops, branches, arrays, matrices,
-// integers, outputs: what the grammar has but images, imports and doc comments, and of an odd seed lines that begin
-// with
+// structs, integers, outputs: what the grammar has but images, imports and doc comments, and of an odd seed lines that
+// begin with
 // '#'. Values are mostly of moderate size, so that rounding can be told from a mistake.
 #pragma once
 

@@ -16,6 +16,10 @@ FunctionReference DimensionBody::resolved(const FunctionReference& reference) co
 
 Dimension DimensionBody::constructor(const Expression& e, const CallExpression& node)
 {
+    if (e.type.is_struct()) {
+        for (const ExpressionPtr& argument : node.arguments) expression(*argument);
+        return Dimension::any();
+    }
     if (e.type.scalar == Scalar::float_) return common(node.arguments, described(e.type));
     for (const ExpressionPtr& argument : node.arguments) {
         const Dimension found = expression(*argument);
@@ -36,7 +40,8 @@ Dimension DimensionBody::call(const Expression& e, const std::string& name, cons
             call.passed.push_back(resolved(target.function_arguments[i]));
             continue;
         }
-        const bool counts = source && (*source)->parameters[i].type.scalar != Scalar::float_;
+        const Type of = source ? (*source)->parameters[i].type : float_type;
+        const bool counts = of.scalar != Scalar::float_ && !of.structure;
         const bool is_read = !source || (*source)->parameters[i].passing != Passing::out;
         const Dimension found = is_read ? expression(*arguments[i]) : Dimension::any();
         call.values.push_back(arguments[i].get());

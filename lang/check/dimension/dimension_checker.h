@@ -140,6 +140,7 @@ private:
     void give(const ast::Expression& target, Dimension value, const ast::Expression& whence);
     void collect_written(Span where);
     void branch(const ast::If& node);
+    void choice(const ast::Switch& node);
     void loop(const ast::For& node);
     void leave(const ast::Return& node, Span where);
     void body(const ast::Statement& tree, const Variables& start);

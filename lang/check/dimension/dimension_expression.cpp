@@ -40,7 +40,11 @@ const Expression* bare_number(const Expression& e)
 
 std::string described(Type type)
 {
-    return type.is_array() ? "an array" : type.is_matrix() ? "a matrix" : type.is_vector() ? "a vector" : "a number";
+    return type.is_struct()   ? "a struct"
+           : type.is_array()  ? "an array"
+           : type.is_matrix() ? "a matrix"
+           : type.is_vector() ? "a vector"
+                              : "a number";
 }
 
 Dimension DimensionBody::expression(const Expression& e)

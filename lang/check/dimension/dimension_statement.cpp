@@ -72,13 +72,15 @@ void DimensionBody::statement(const Statement& s)
         assign(s, *assignment);
     } else if (auto choice = std::get_if<If>(&s.node)) {
         branch(*choice);
+    } else if (auto chosen = std::get_if<Switch>(&s.node)) {
+        this->choice(*chosen);
     } else if (auto repeated = std::get_if<For>(&s.node)) {
         loop(*repeated);
     } else if (auto left = std::get_if<Return>(&s.node)) {
         leave(*left, s.span);
         flow.reset();
     } else {
-        const bool ends_turn = std::holds_alternative<Continue>(s.node); // else the loop
+        const bool ends_turn = std::holds_alternative<Continue>(s.node); // else the loop or switch
         merge(*(ends_turn ? loop_turns : loop_exits).back(), flow);
         flow.reset();
     }
@@ -109,16 +111,13 @@ void DimensionBody::give(const Expression& target, Dimension value, const Expres
 {
     const Expression* object = &target;
     uint32_t components = 0; // of a vector that is assigned in part
-    if (auto member = std::get_if<Member>(&object->node)) {
-        object = member->object.get();
-        components = parse_swizzle(member->member.text)->mask();
-    }
-    while (auto index = std::get_if<Index>(&object->node)) {
-        expression(*index->index);
-        object = index->object.get();
-        components = 0;
+    for (; const Expression* whole = whole_of(*object); object = whole) {
+        auto member = std::get_if<Member>(&object->node);
+        if (auto index = std::get_if<Index>(&object->node)) expression(*index->index);
+        components = member && whole->type.is_vector() ? parse_swizzle(member->member.text)->mask() : 0;
     }
     const Symbol& symbol = *std::get<NameExpression>(object->node).symbol;
+    if (symbol.type.structure) return; // each member has a dimension of its own, which nobody asks for
     Variable& variable = (*flow)[symbol.slot];
     const bool is_whole = object == &target || components == (1u << symbol.type.size) - 1;
     const Dimension before = is_whole ? Dimension::any() : read(symbol, object->span);
@@ -178,6 +177,25 @@ void DimensionBody::branch(const If& node)
         flow = before;
     }
     if (node.arms.back().condition) merge(after, flow); // no else
+    flow = std::move(after);
+}
+
+void DimensionBody::choice(const Switch& node)
+{
+    expression(*node.selector);
+    Flow after;
+    bool has_default = false;
+    loop_exits.push_back(&after);
+    for (const Switch::Case& one : node.cases) {
+        if (!owner.spend(flow->size())) break;
+        has_default |= one.is_default();
+        const Flow before = flow;
+        statement(*one.body);
+        merge(after, flow);
+        flow = before;
+    }
+    loop_exits.pop_back();
+    if (!has_default) merge(after, flow);
     flow = std::move(after);
 }
 

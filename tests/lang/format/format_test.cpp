@@ -57,6 +57,42 @@ TEST_CASE("format: braces of control flow stand in the line, those of functions 
           "                c;\n            }\n}\n");
 }
 
+TEST_CASE("format: labels stand as deep as their switch")
+{
+    const std::string text = "float f(int i, float x)\n{\n"
+                             "    switch (i) {\n"
+                             "    case 0: return x;\n"
+                             "    // the two alike\n"
+                             "    case 1:\n"
+                             "    case N + 1: {\n"
+                             "        x += 1.0;\n"
+                             "        break;\n"
+                             "    }\n"
+                             "    case 4: case 5:\n"
+                             "        /// @bound 4\n"
+                             "        while (x > 1.0) x *= 0.5;\n"
+                             "        switch (i) {\n"
+                             "        default: ++x; break; // above\n"
+                             "        }\n"
+                             "        x = x > 0.0 ? 1.0 : 2.0;\n"
+                             "    default:\n"
+                             "    }\n"
+                             "    return x;\n}\n";
+    CHECK(formatted(text) == text);
+    CHECK(
+        formatted("float f(){switch(i){case 0 :x=1;break;case a?1:2 :{return -x;}default:++x;}}") ==
+        "float f()\n{\n    switch (i) {\n    case 0: x = 1; break;\n    case a ? 1 : 2: {\n        return -x;\n    }\n"
+        "    default: ++x;\n    }\n}\n");
+}
+
+TEST_CASE("format: a member of a struct per line")
+{
+    CHECK(formatted(
+              "const int N=2;struct Cell{vec2 id,at ;float d[N];}; // here\nCell f(){return Cell[2]( a,b )[0] ;}") ==
+          "const int N = 2;\n\nstruct Cell {\n    vec2 id, at;\n    float d[N];\n}; // here\n\nCell f()\n{\n"
+          "    return Cell[2](a, b)[0];\n}\n");
+}
+
 TEST_CASE("format: at most one empty line in a row, one round every function, none inside of braces")
 {
     CHECK(formatted("\n\n// a\n\n\n\n// b\nfloat f()\n{\n\n\n    float x = 1.0;\n\n\n\n    return x;\n\n}\nfloat g() { "

@@ -48,6 +48,16 @@ TEST_CASE("literals carry their value in SI")
     CHECK(literal(2).kind == ast::NumberLiteral::Kind::unsigned_integer);
 }
 
+TEST_CASE("structs and switches")
+{
+    CHECK(tree_text(parse_text("struct S { float a, b[2]; vec3[2] c; T d; }; S f(S s) { return s; }").file) ==
+          "struct S (float a) (float[2] b) (vec3[2] c) (T d)\nfunction S f (S s) {(return s)}\n");
+    CHECK(body_tree("switch (i) { case 0: a = 1; break; case 1: case N + 1: { b; } default: return; }") ==
+          "(switch i [0 {(= a 1) (break)}] [1 (+ N 1) {{(do b)}}] [default {(return)}])");
+    CHECK(body_tree("switch (i) { case a ? 1 : 2: default: } s.a.b[1].x = 2;") ==
+          "(switch i [(? a 1 2) default {}]) (= (. ([] (. (. s a) b) 1) x) 2)");
+}
+
 TEST_CASE("statements")
 {
     CHECK(body_tree("float a = 1, b; const int n = 3;") == "(let float a 1) (let float b) (const int n 3)");
@@ -60,7 +70,7 @@ TEST_CASE("statements")
     CHECK(body_tree("f(x);") == "(do (call f x))");
     CHECK(body_tree("return;") == "(return)");
     CHECK(body_tree("vec3(1.0).x;") == "(do (. (call vec3 1.0) x))");
-    CHECK(body_tree("half = 2; default = 3;") == "(= half 2) (= default 3)"); // reserved elsewhere, names here
+    CHECK(body_tree("half = 2; discard = 3;") == "(= half 2) (= discard 3)"); // reserved elsewhere, names here
 }
 
 TEST_CASE("if and for, with and without braces")

@@ -129,6 +129,16 @@ struct StatementText {
     {
         return "(for " + maybe(f.init) + " " + maybe(f.condition) + " " + maybe(f.step) + " " + maybe(f.body) + ")";
     }
+    std::string operator()(const Switch& s) const
+    {
+        std::string text = "(switch " + maybe(s.selector);
+        for (const Switch::Case& one : s.cases) {
+            text += " [";
+            for (const ExpressionPtr& label : one.labels) text += (label ? tree_text(*label) : "default") + " ";
+            text += maybe(one.body) + "]";
+        }
+        return text + ")";
+    }
     std::string operator()(const Break&) const { return "(break)"; }
     std::string operator()(const Continue&) const { return "(continue)"; }
     std::string operator()(const Return& r) const
@@ -162,6 +172,12 @@ std::string tree_text(const File& file)
 {
     std::string text;
     for (const Import& import : file.imports) text += "import " + import.path + "\n";
+    for (const Struct& structure : file.structs) {
+        text += "struct " + structure.name.text;
+        for (const Struct::Member& member : structure.members)
+            text += " (" + type_text(member.type) + " " + member.name.text + ")";
+        text += "\n";
+    }
     for (const Constant& constant : file.constants) text += declaration_text(constant.declaration) + "\n";
     for (const Function& function : file.functions) {
         text += "function " + type_text(function.result) + " " + function.name.text;
