@@ -171,6 +171,8 @@ private:
     std::vector<Candidate> functions_called(const std::string& name);
     void report_no_match(const Call& call, const std::vector<Candidate>& candidates);
     void report_unknown_function(const Call& call);
+    void report_unknown_prefix(const Call& call, const PrefixedName& parts);
+    void report_grad(Span span);
     bool takes(std::string_view function, const Call& call) const;
     std::string filled_in(std::string_view pattern, const Call& call) const;
 

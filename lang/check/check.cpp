@@ -3,6 +3,7 @@
 
 #include "lang/check/body_checker.h"
 #include "lang/check/call_order.h"
+#include "lang/check/import_prefix.h"
 #include "lang/check/library.h"
 #include "lang/check/preset.h"
 #include "lang/syntax/grammar.h"
@@ -198,7 +199,13 @@ public:
         for (uint32_t file = 0; file < count; ++file) {
             FileScope& scope = scopes.emplace_back();
             if (!context.is_library) scope.layers.push_back(&declarations[file]);
-            for (uint32_t imported : program.files[file].imported) scope.layers.push_back(&declarations[imported]);
+            for (const Import& import : program.files[file].tree.imports)
+                if (!import.prefix.text.empty()) scope.by_prefix.emplace(import.prefix.text, nullptr);
+            for (const auto& [imported, prefix] : program.files[file].imported)
+                if (prefix.empty())
+                    scope.layers.push_back(&declarations[imported]);
+                else
+                    scope.by_prefix[prefix] = &declarations[imported]; // two of one prefix are told of
             scope.layers.push_back(&library);
             declarations_of(file).lacks_functions |= program.files[file].tree.lacks_functions;
             declarations_of(file).unread.merge(program.files[file].tree.unread);
@@ -206,10 +213,12 @@ public:
         context.scopes = &scopes;
         // Sizes of arrays in heads of functions are constants, and constants may name functions.
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], false);
-        for (uint32_t file = 0; file < count; ++file) check_constants(file, scopes[file]);
+        for (const uint32_t file : imported_first(program.files)) check_constants(file, scopes[file]);
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], true);
         for (FunctionInfo& function : program.functions) check_defaults(function, scopes[function.file]);
         for (uint32_t file = 0; file < count; ++file) declare_textures(file, scopes[file]);
+        for (uint32_t file = 0; file < count; ++file)
+            check_prefixes(context, program.files[file].tree, declarations_of(file));
         for (uint32_t file = 0; file < count; ++file) check_textures(file, scopes[file]);
         for (FunctionInfo* function : callers_first(program.functions)) {
             if (diagnostics.full()) return;

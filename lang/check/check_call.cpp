@@ -396,6 +396,30 @@ bool BodyChecker::takes(std::string_view name, const Call& call) const
     return std::ranges::any_of(scope.functions(name), [&](const Candidate& candidate) { return call.fits(candidate); });
 }
 
+// What stands before the '.' of a name that is called, and is the prefix of no import.
+void BodyChecker::report_unknown_prefix(const Call& call, const PrefixedName& parts)
+{
+    const std::string prefix(parts.prefix), name(parts.name);
+    const Span span{call.callee.span.file, call.callee.span.begin,
+                    call.callee.span.begin + static_cast<uint32_t>(prefix.size())};
+    const Symbol* const value = find(prefix);
+    if (!value) return report_unknown_name(span, prefix);
+    mark_read(prefix);
+    if (value->type.is_error()) return diagnostics.count_consequence();
+    if (std::holds_alternative<GradCall>(call.tree.node)) return report_grad(call.callee.span);
+    std::string arguments = prefix;
+    for (const Argument& argument : call.arguments)
+        arguments += ", " + printable(context.sources.text(argument.tree->span));
+    diagnostics.error(call.tree.span, "not-callable", "values have no functions of their own",
+                      "write " + name + "(" + arguments + ")"); // GLSL's q.length() counts components
+}
+
+void BodyChecker::report_grad(Span span)
+{
+    diagnostics.error(span, "grad", "grad takes the name of a function",
+                      "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)");
+}
+
 void BodyChecker::report_unknown_function(const Call& call)
 {
     const std::string& name = call.callee.text;
@@ -408,13 +432,16 @@ void BodyChecker::report_unknown_function(const Call& call)
                           "to multiply, write " + name + " * (...)");
         return;
     }
-    if (name == "grad") {
-        diagnostics.error(span, "grad", "grad takes the name of a function",
-                          "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)");
+    if (name == "grad") return report_grad(span);
+    const PrefixedName parts(name);
+    if (!parts.prefix.empty() && !scope.by_prefix.contains(parts.prefix)) return report_unknown_prefix(call, parts);
+    if (scope.by_prefix.contains(name)) {
+        diagnostics.error(span, "not-a-function", quoted(name) + " is the prefix of an import, expected a function",
+                          "write " + name + ". and the name of a function of its file");
         return;
     }
-    if (std::ranges::any_of(scope.layers, &Declarations::lacks_functions) || may_be_unread(name) ||
-        context.unknown_functions.contains(name) || diagnostics.full())
+    if (scope.may_be_function(name) || may_be_unread(name) || context.unknown_functions.contains(name) ||
+        diagnostics.full())
         return diagnostics.count_consequence();
     Diagnostic& reported = diagnostics.error(span, "unknown-function", "unknown function " + quoted(name));
     if (const ForeignWord* foreign = foreign_word(ForeignKind::function, name)) {
@@ -432,13 +459,18 @@ void BodyChecker::report_unknown_function(const Call& call)
         if (takes(stem, call)) reported.fix = FixIt{span, std::string(stem)};
         return;
     }
-    std::vector<std::string_view> names(types_of_numbers.begin(), types_of_numbers.end());
-    names.push_back("grad");
-    for (const Declarations* layer : scope.layers)
+    std::vector<std::string_view> names;
+    if (parts.prefix.empty()) {
+        names.assign(types_of_numbers.begin(), types_of_numbers.end());
+        names.push_back("grad");
+        for (const auto& [known, overloads] : builtin_overloads()) names.push_back(known);
+    }
+    for (const Declarations* layer : scope.layers_of(parts.prefix))
         for (const auto& [known, functions] : layer->functions) names.push_back(known);
-    for (const auto& [known, overloads] : builtin_overloads()) names.push_back(known);
-    const NearName near = near_name(name, names);
+    NearName near = near_name(parts.name, names);
+    const std::string behind_prefix = std::string(parts.prefix) + "." + std::string(near.name);
     if (near.name.empty()) context.unknown_functions.insert(name);
+    if (!near.name.empty() && !parts.prefix.empty()) near.name = behind_prefix;
     propose(reported, span, near, takes(near.name, call));
 }
 

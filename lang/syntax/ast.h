@@ -282,6 +282,7 @@ struct Constant {
 }; // global const, tables too
 struct Import {
     std::string path; // "wood/oak.haptel"
+    Name prefix;      // "as oak": what stands before the file's names; none: they stand alone
     Span span;
 };
 

@@ -121,6 +121,11 @@ TEST_CASE("work: a file that is imported again is not read again, and many impor
         {"main.haptel", repeated(1000, "import \"a.haptel\";\n") + "texture t() { return 1mm * f(1.0); }"}, options);
     CHECK(result.program);
     CHECK(reads == 1);
+
+    std::string prefixed;
+    for (int i = 0; i < 20'000; ++i) prefixed += "import \"a.haptel\" as a" + std::to_string(i) + ";\n";
+    CHECK(compile({"main.haptel", prefixed + "texture t() { return 1mm * a7.f(1.0); }"}, options).program);
+    CHECK(reads == 2);
 }
 
 TEST_CASE("limits: what is imported is read up to 64 MiB, and the same file in many ways of writing its path too")

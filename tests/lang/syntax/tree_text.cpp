@@ -161,7 +161,8 @@ std::string tree_text(const Statement& statement)
 std::string tree_text(const File& file)
 {
     std::string text;
-    for (const Import& import : file.imports) text += "import " + import.path + "\n";
+    for (const Import& import : file.imports)
+        text += "import " + import.path + (import.prefix.text.empty() ? "" : " as " + import.prefix.text) + "\n";
     for (const Constant& constant : file.constants) text += declaration_text(constant.declaration) + "\n";
     for (const Function& function : file.functions) {
         text += "function " + type_text(function.result) + " " + function.name.text;
