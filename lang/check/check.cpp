@@ -85,8 +85,8 @@ void complete(FunctionInfo& caller, const std::vector<FunctionInfo::Mention>& me
     for (const FunctionInfo::Mention& mention : mentions) {
         const FunctionInfo& callee = mention.function ? *mention.function : built_in;
         const uint32_t depth = 1 + callee.call_depth;
-        const uint32_t order =
-            mention.order + callee.derivative_order + (mention.through ? mention.through->derivative_order : 0);
+        uint32_t order = mention.order + callee.derivative_order;
+        for (const FunctionInfo* through : mention.through) order += through->derivative_order;
         if (depth > chain_max) {
             diagnostics.error(mention.span, "too-deep",
                               "functions call each other more than " + std::to_string(chain_max) + " deep here");

@@ -1,5 +1,7 @@
 #include "lang/program/scope.h"
 
+#include "lang/syntax/ast.h"
+
 #include <algorithm>
 
 namespace haptel::lang {
@@ -20,6 +22,7 @@ std::string name_of(const FunctionReference& function)
     if (auto source = std::get_if<const FunctionInfo*>(&function)) return (*source)->name;
     if (auto builtin = std::get_if<const BuiltinOverload*>(&function)) return std::string((*builtin)->builtin->name);
     if (auto parameter = std::get_if<const Symbol*>(&function)) return (*parameter)->name;
+    if (auto bound = std::get_if<const ast::CallExpression*>(&function)) return (*bound)->callee.text;
     return {};
 }
 

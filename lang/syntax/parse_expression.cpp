@@ -15,7 +15,8 @@ ExpressionPtr Grammar::expression()
     ExpressionPtr result = conditional();
     if (at(Token::assign) && kind(1) == Token::greater && !lost) {
         error(join(span(), span(1)), "foreign-word", "there are no functions without a name in Haptel",
-              "write a function, and pass its name: float wave(vec3 q) { return ...; } ... fbm(wave, q, 4)");
+              "pass a function by its name, fbm(wave, q, 4, 2.0, 0.5), or what '_' leaves of it, fbm(wave(_, 0.2), q, "
+              "4, 2.0, 0.5)");
     } else if (at(Token::assign) && !lost) {
         error(span(), "assignment-in-expression", "expected the end of the expression, found '='",
               "to compare, write '=='; an assignment is a statement of its own");

@@ -21,6 +21,8 @@ public:
         line("const ivec3 C[2] = {ivec3(1, -2, 3), ivec3(2147483647, " + whole_number() + ", 0)};");
         names_of_half();
         line("float by_two(float f(float, float), float x) { return f(x, 0.5) - f(0.25, x); }");
+        line("float by_one(float f(float), float x) { return f(0.5 * x) - 0.25 * f(f(x)); }");
+        line("float slope_of(float f(float), float x) { return grad(f)(0.5 - x); }");
         line("float over(float f(vec3), const vec3 v) { return f(v.zxy) - 0.5 * f(v); }");
         line("float across(float f(vecN), const vecN v) { vecN w = vecN(0.5) - v; return f(w) - 0.5 * f(v); }");
         for (int i = static_cast<int>(below(4)); i > 0; --i) function();
