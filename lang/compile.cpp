@@ -35,8 +35,10 @@ struct Files {
     };
     std::vector<Edge> edges = {};
     std::map<std::string, uint32_t, std::less<>> by_name = {};
-    std::set<std::pair<uint32_t, std::string>> asked = {}; // by file and path: what is imported again is not read again
-    size_t token_count = 0;                                // of all files
+    // By file and path: what is imported again is not read again. Nothing: it could not be read.
+    std::map<std::pair<uint32_t, std::string>, std::optional<uint32_t>> asked = {};
+    std::set<std::pair<uint32_t, uint32_t>> plain = {}; // file and what it imports without a prefix
+    size_t token_count = 0;                             // of all files
     size_t text_bytes = 0; // read for imports, again where a path is written in another way
 
     void load(SourceFile main)
@@ -64,30 +66,43 @@ struct Files {
     void import(uint32_t file, size_t which)
     {
         const ast::Import import = files[file].tree.imports[which];
-        const bool is_told = text_bytes > text_bytes_max;
-        if (is_told || !asked.emplace(file, import.path).second) return;
+        const bool is_told = text_bytes > text_bytes_max || import.path.empty();
+        if (is_told) return;
+        const auto [place, is_new] = asked.try_emplace({file, import.path});
+        if (is_new) place->second = read(file, import);
+        if (!place->second) return;
+        const CheckFile::Imported made{*place->second, import.prefix.text};
+        auto& imported = files[file].imported; // of any prefix there is one
+        if (made.prefix.empty() && !plain.emplace(file, made.file).second) return;
+        imported.push_back(made);
+        edges.push_back({file, made.file, import.span});
+    }
+
+    // What the import names; nothing, and reported, if it cannot be read.
+    std::optional<uint32_t> read(uint32_t file, const ast::Import& import)
+    {
         Imported found(std::nullopt, {}, "this program was given no way to read other files");
         if (options.load_import) found = options.load_import(import.path, sources.file(file).name);
         std::optional<SourceFile>& text = found.file;
         if (!text) {
             const std::string why = found.why.empty() ? "" : ": " + found.why;
-            diagnostics.error(import.span, "missing-import", "cannot read \"" + printable(import.path) + "\"" + why,
-                              found.hint.empty() ? "the path is relative to the file that imports" : found.hint);
-            return;
+            Diagnostic& reported =
+                diagnostics.error(import.span, "missing-import", "cannot read \"" + printable(import.path) + "\"" + why,
+                                  found.hint.empty() ? "the path is relative to the file that imports" : found.hint);
+            const std::string_view name = std::string_view(import.path).substr(import.path.rfind('/') + 1);
+            if (std::ranges::find(options.library, name, &SourceFile::name) != options.library.end())
+                reported.hint = "the library needs no import: leave it out, and the names have no prefix";
+            return std::nullopt;
         }
         text_bytes += text->text.size();
         if (by_name.size() >= import_max || text_bytes > text_bytes_max) {
             diagnostics.error(import.span, "too-large",
                               "expected imports of at most " + std::to_string(import_max) + " files, with " +
                                   std::to_string(text_bytes_max >> 20) + " MiB of text");
-            return;
+            return std::nullopt;
         }
         const auto known = by_name.find(text->name);
-        const uint32_t target = known != by_name.end() ? known->second : add(std::move(*text));
-        auto& imported = files[file].imported;
-        if (std::find(imported.begin(), imported.end(), target) != imported.end()) return;
-        imported.push_back(target);
-        edges.push_back({file, target, import.span});
+        return known != by_name.end() ? known->second : add(std::move(*text));
     }
 
     // An import that leads back to its own file, by the shortest way there is.
@@ -104,7 +119,7 @@ struct Files {
             // Breadth first from where the edge leads; by file, the one that it was reached from.
             std::vector<uint32_t> reached{edge.to}, reached_from(files.size(), UINT32_MAX);
             for (size_t i = 0; i < reached.size(); ++i)
-                for (uint32_t next : files[reached[i]].imported)
+                for (const auto& [next, prefix] : files[reached[i]].imported)
                     if (next != edge.to && reached_from[next] == UINT32_MAX) {
                         reached_from[next] = reached[i];
                         reached.push_back(next);

@@ -40,8 +40,7 @@ const Symbol* BodyChecker::find(std::string_view name) const
 {
     if (const Symbol* choice = find_choice(name)) return choice;
     if (const Symbol* local = find_local(name)) return local;
-    for (const Declarations* layer : scope.layers)
-        if (auto found = layer->constants.find(name); found != layer->constants.end()) return found->second;
+    if (const Symbol* constant = scope.constant(name)) return constant;
     for (const Symbol* input : context.inputs)
         if (input->name == name) return input;
     return nullptr;
@@ -57,6 +56,10 @@ Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
     const bool is_type = type_named(name.text).has_value() || scope.structure(name.text);
     if (is_type)
         diagnostics.error(name.span, "reserved-name", quoted(name.text) + " is a type, expected a name of your own");
+    const bool is_prefix = scope.by_prefix.contains(name.text);
+    if (is_prefix && !is_global)
+        diagnostics.error(name.span, "duplicate-name",
+                          quoted(name.text) + " is the prefix of an import in this file, expected another name");
     Symbol* other = find_local(name.text);
     const bool is_twice = std::find(declared.begin() + scope_marks.back(), declared.end(), other) != declared.end();
     if (is_twice && !type.is_error() && !other->type.is_error()) {
@@ -70,7 +73,7 @@ Symbol& BodyChecker::declare(const Name& name, SymbolKind kind, Type type)
     symbol.name = name.text;
     symbol.type = type;
     symbol.span = name.span;
-    symbol.is_read = is_type;
+    symbol.is_read = is_type || is_prefix;
     if (kind == SymbolKind::local) {
         symbol.slot = slot_count;
         if (symbol.slot == variables_max)
@@ -103,7 +106,9 @@ void BodyChecker::close_scope()
 
 bool BodyChecker::may_be_unread(const std::string& name) const
 {
-    return (damage && (damage->in_head || damage->unread.contains(name))) || scope.is_unread(name);
+    const std::string_view prefix = PrefixedName(name).prefix;
+    const bool is_of_local = !prefix.empty() && find_local(prefix); // which is called as a prefix is: told
+    return is_of_local || (damage && (damage->in_head || damage->unread.contains(name))) || scope.is_unread(name);
 }
 
 void BodyChecker::report_unknown_name(Span span, const std::string& name)
@@ -113,7 +118,12 @@ void BodyChecker::report_unknown_name(Span span, const std::string& name)
     const auto report = [&]() -> Diagnostic& {
         return diagnostics.error(span, "unknown-name", "unknown name " + quoted(name));
     };
-    if (std::ranges::any_of(scope.layers, [&](auto* layer) { return layer->constant_names.contains(name); })) {
+    if (scope.by_prefix.contains(name)) {
+        diagnostics.error(span, "not-a-value", quoted(name) + " is the prefix of an import, expected a value",
+                          "write " + name + ". and a name of its file");
+        return;
+    }
+    if (scope.is_constant_below(name)) {
         report().hint = "it is declared further down: a constant is known from its declaration on";
         return;
     }
@@ -125,13 +135,19 @@ void BodyChecker::report_unknown_name(Span span, const std::string& name)
         for (const auto& [local, symbols] : by_name)
             if (!symbols.empty()) names.push_back(local);
         std::ranges::sort(names); // the hash's order must not decide between equals
-        for (const Declarations* layer : scope.layers)
-            for (const auto& [constant, symbol] : layer->constants) names.push_back(constant);
+        for (const auto& [prefix, behind] : scope.by_prefix) names.push_back(prefix);
         for (const Symbol* input : context.inputs) names.push_back(input->name);
         if (choices)
             for (const Name& choice : *choices->names) names.push_back(choice.text);
-        near = near_name(name, names);
+        const PrefixedName parts(name);
+        if (!parts.prefix.empty()) names.clear();
+        for (const Declarations* layer : scope.layers_of(parts.prefix))
+            for (const auto& [constant, symbol] : layer->constants) names.push_back(constant);
+        near = near_name(parts.name, names);
     }
+    const std::string_view prefix = PrefixedName(name).prefix;
+    const std::string behind_prefix = std::string(prefix) + "." + std::string(near.name);
+    if (!near.name.empty() && !prefix.empty()) near.name = behind_prefix;
     // Most likely what declares it could not be read.
     if (in_damaged_body && near.name.empty()) return diagnostics.count_consequence();
     Diagnostic& reported = report();

@@ -177,12 +177,24 @@ private:
                Span call);
     void require_outputs(Span where);
     void note_ranges(const FunctionInfo& callee, const std::vector<ast::ExpressionPtr>& arguments);
+    bool is_left_open(const ast::Expression& e) const; // "_", an argument that is left open
+    bool is_binding(const ast::Expression& e) const;   // "f(_, 2.0)", a function
+    bool read_arguments(Call& call, std::vector<ast::ExpressionPtr>& arguments,
+                        const std::vector<Candidate>& candidates, Targets* targets);
+    std::optional<Argument> binding(ast::Expression& e);
+    FunctionReference pass(Argument& argument, const Candidate& passed, uint32_t order,
+                           std::vector<const FunctionInfo*> through);
+    void check_again(ast::CallExpression& call);
+    std::string found_for(const Argument& argument) const;
+    std::string hint_to_bind(const Argument& argument, const ParameterInfo& wanted) const;
     std::optional<Candidate> resolve(const ast::Expression& e, const ast::Name& callee,
                                      std::vector<ast::ExpressionPtr>& arguments, uint32_t order, CallTarget& target,
                                      Type& result);
     std::vector<Candidate> functions_called(const std::string& name);
     void report_no_match(const Call& call, const std::vector<Candidate>& candidates);
     void report_unknown_function(const Call& call);
+    void report_unknown_prefix(const Call& call, const PrefixedName& parts);
+    void report_grad(Span span);
     bool takes(std::string_view function, const Call& call) const;
     std::string filled_in(std::string_view pattern, const Call& call) const;
 

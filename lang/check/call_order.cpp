@@ -1,8 +1,10 @@
 #include "lang/check/call_order.h"
 
+#include "lang/program/scope.h"
 #include "lang/syntax/ast.h"
 
 #include <algorithm>
+#include <functional>
 #include <set>
 #include <string_view>
 #include <unordered_map>
@@ -21,9 +23,12 @@ struct Named {
 
 void add_names(const Expression& e, std::set<Named>& names)
 {
-    if (auto name = std::get_if<NameExpression>(&e.node)) names.insert({name->name, SIZE_MAX});
-    if (auto call = std::get_if<CallExpression>(&e.node)) names.insert({call->callee.text, call->arguments.size()});
-    if (auto grad = std::get_if<GradCall>(&e.node)) names.insert({grad->function.text, grad->arguments.size()});
+    const auto add = [&](std::string_view written, size_t arguments) {
+        names.insert({PrefixedName(written).name, arguments}); // wherever it comes from
+    };
+    if (auto name = std::get_if<NameExpression>(&e.node)) add(name->name, SIZE_MAX);
+    if (auto call = std::get_if<CallExpression>(&e.node)) add(call->callee.text, call->arguments.size());
+    if (auto grad = std::get_if<GradCall>(&e.node)) add(grad->function.text, grad->arguments.size());
     for (const Expression* operand : operands_of(e)) add_names(*operand, names);
 }
 
@@ -78,6 +83,20 @@ std::vector<FunctionInfo*> callers_first(std::deque<FunctionInfo>& functions)
     std::vector<FunctionInfo*> sorted;
     for (const size_t i : order) sorted.push_back(&functions[i]);
     return sorted;
+}
+
+std::vector<uint32_t> imported_first(const std::vector<CheckFile>& files)
+{
+    std::vector<uint32_t> order;
+    std::vector<bool> is_begun(files.size());
+    const std::function<void(uint32_t)> add = [&](uint32_t i) {
+        if (is_begun[i]) return;
+        is_begun[i] = true;
+        for (const CheckFile::Imported& imported : files[i].imported) add(imported.file); // of at most 256 files
+        order.push_back(i);
+    };
+    for (uint32_t i = 0; i < files.size(); ++i) add(i);
+    return order;
 }
 
 } // namespace haptel::lang

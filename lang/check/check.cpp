@@ -3,6 +3,7 @@
 
 #include "lang/check/body_checker.h"
 #include "lang/check/call_order.h"
+#include "lang/check/import_prefix.h"
 #include "lang/check/library.h"
 #include "lang/check/preset.h"
 #include "lang/syntax/grammar.h"
@@ -90,8 +91,8 @@ void complete(FunctionInfo& caller, const std::vector<FunctionInfo::Mention>& me
     for (const FunctionInfo::Mention& mention : mentions) {
         const FunctionInfo& callee = mention.function ? *mention.function : built_in;
         const uint32_t depth = 1 + callee.call_depth;
-        const uint32_t order =
-            mention.order + callee.derivative_order + (mention.through ? mention.through->derivative_order : 0);
+        uint32_t order = mention.order + callee.derivative_order;
+        for (const FunctionInfo* through : mention.through) order += through->derivative_order;
         if (depth > chain_max) {
             diagnostics.error(mention.span, "too-deep",
                               "functions call each other more than " + std::to_string(chain_max) + " deep here");
@@ -204,7 +205,13 @@ public:
         for (uint32_t file = 0; file < count; ++file) {
             FileScope& scope = scopes.emplace_back();
             if (!context.is_library) scope.layers.push_back(&declarations[file]);
-            for (uint32_t imported : program.files[file].imported) scope.layers.push_back(&declarations[imported]);
+            for (const Import& import : program.files[file].tree.imports)
+                if (!import.prefix.text.empty()) scope.by_prefix.emplace(import.prefix.text, nullptr);
+            for (const auto& [imported, prefix] : program.files[file].imported)
+                if (prefix.empty())
+                    scope.layers.push_back(&declarations[imported]);
+                else
+                    scope.by_prefix[prefix] = &declarations[imported]; // two of one prefix are told of
             scope.layers.push_back(&library);
             declarations_of(file).lacks_functions |= program.files[file].tree.lacks_functions;
             declarations_of(file).unread.merge(program.files[file].tree.unread);
@@ -213,11 +220,13 @@ public:
         for (uint32_t file = 0; file < count; ++file) declare_structs(file);
         // Sizes of arrays in heads of functions and in structs are constants, and constants may name functions.
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], false);
-        for (uint32_t file = 0; file < count; ++file) check_constants(file, scopes[file]);
+        for (const uint32_t file : imported_first(program.files)) check_constants(file, scopes[file]);
         for (StructDeclaration& declared : program.structs) type_of_struct(context, declared, declared.tree->name.span);
         for (uint32_t file = 0; file < count; ++file) declare_functions(file, scopes[file], true);
         for (FunctionInfo& function : program.functions) check_defaults(function, scopes[function.file]);
         for (uint32_t file = 0; file < count; ++file) declare_textures(file, scopes[file]);
+        for (uint32_t file = 0; file < count; ++file)
+            check_prefixes(context, program.files[file].tree, declarations_of(file));
         for (uint32_t file = 0; file < count; ++file) check_textures(file, scopes[file]);
         for (FunctionInfo* function : callers_first(program.functions)) {
             if (diagnostics.full()) return;

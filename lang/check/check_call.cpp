@@ -1,6 +1,6 @@
 // Calls: overloads, functions as arguments, derivatives of functions; and of what is no function: a
 // variable, a word of another language, a slip.
-#include "lang/check/body_checker.h"
+#include "lang/check/call_arguments.h"
 #include "lang/syntax/grammar.h"
 
 #include <algorithm>
@@ -8,58 +8,6 @@
 namespace haptel::lang {
 
 using namespace ast;
-
-// An argument: a value, or a function.
-struct BodyChecker::Argument {
-    Expression* tree;
-    std::vector<Candidate> functions; // that its name may mean; none: it is a value
-    bool is_function() const { return !functions.empty(); }
-
-    // The function that is passed; null if none fits.
-    const Candidate* passed_as(const ParameterInfo& parameter) const
-    {
-        const auto same = [](const ParameterInfo& p, Type type) {
-            return !p.is_function && !p.is_written() && p.type == type;
-        };
-        const auto found = std::ranges::find_if(functions, [&](const Candidate& candidate) {
-            return parameter.is_function && candidate.result == parameter.type &&
-                   std::ranges::equal(candidate.parameters, parameter.signature, same);
-        });
-        return found == functions.end() ? nullptr : &*found;
-    }
-    bool fits(const ParameterInfo& parameter) const
-    {
-        if (parameter.is_function || is_function()) return passed_as(parameter);
-        if (parameter.is_written()) return tree->type == parameter.type; // what it gets is of its own type
-        return converts(*tree, parameter.type);
-    }
-};
-
-struct BodyChecker::Call {
-    const Expression& tree;
-    const Name& callee;
-    std::vector<Argument> arguments;
-
-    bool fits(const Candidate& candidate) const
-    {
-        const auto fits = [](const Argument& argument, const ParameterInfo& p) { return argument.fits(p); };
-        return takes_as_many(candidate) &&
-               std::ranges::equal(arguments, candidate.parameters.first(arguments.size()), fits);
-    }
-    bool takes_as_many(const Candidate& candidate) const
-    {
-        const size_t given = arguments.size(), all = candidate.parameters.size();
-        return given == all || (given < all && candidate.parameters[given].value);
-    }
-    // Arguments that become what a function takes, which they fit, and those that are left out.
-    ptrdiff_t conversions(const Candidate& candidate) const
-    {
-        ptrdiff_t count = std::ssize(candidate.parameters) - std::ssize(arguments);
-        for (size_t i = 0; i < arguments.size(); ++i)
-            count += !arguments[i].is_function() && arguments[i].tree->type != candidate.parameters[i].type;
-        return count;
-    }
-};
 
 namespace {
 
@@ -71,19 +19,6 @@ std::string listed(const std::vector<Candidate>& candidates)
     for (size_t i = 0; i < candidates.size() && i < shown; ++i) text += (i > 0 ? "; " : "") + to_string(candidates[i]);
     if (candidates.size() > shown) text += "; and " + std::to_string(candidates.size() - shown) + " more";
     return text;
-}
-
-bool is_valid(const Candidate& candidate)
-{
-    if (auto source = std::get_if<const FunctionInfo*>(&candidate.function)) return (*source)->is_valid;
-    const auto is_error = [](const ParameterInfo& parameter) { return parameter.type.is_error(); };
-    return !candidate.result.is_error() && std::ranges::none_of(candidate.parameters, is_error);
-}
-
-const FunctionInfo* source_of(const FunctionReference& function)
-{
-    auto source = std::get_if<const FunctionInfo*>(&function);
-    return source ? *source : nullptr;
 }
 
 } // namespace
@@ -120,8 +55,7 @@ Type BodyChecker::check(Expression& e, CallExpression& call)
         return resolve_type(context, TypeName{.base = call.callee, .is_array = false, .array_size = nullptr});
     }
     if (call.target.function != FunctionReference{} && !call.target.is_constructor) { // checked before
-        for (size_t i = 0; i < call.arguments.size(); ++i)
-            if (call.target.function_arguments[i] == FunctionReference{}) expression(*call.arguments[i]);
+        check_again(call);
         return e.type;
     }
     const auto may_be_meant = [&](const Candidate& candidate) {
@@ -178,26 +112,15 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
                                               Type& result)
 {
     Call call{e, callee, {}};
-    bool damaged = false;
     const std::vector<Candidate> candidates = functions_called(callee.text);
     Targets targets(arguments.size());
-    for (size_t i = 0; i < arguments.size(); ++i) {
-        ExpressionPtr& tree = arguments[i];
-        const auto writes_here = [&](const Candidate& c) {
-            return i < c.parameters.size() && c.parameters[i].is_written();
-        };
-        if (std::ranges::any_of(candidates, writes_here)) {
-            targets[i] = target_of(*tree, "for an output");
-            damaged |= !targets[i]->symbol;
-            call.arguments.push_back({tree.get(), {}});
-            continue;
-        }
-        auto name = std::get_if<NameExpression>(&tree->node);
-        const Symbol* symbol = name ? find(name->name) : nullptr;
-        const bool is_value = !name || (symbol && symbol->kind != SymbolKind::function);
-        call.arguments.push_back({tree.get(), is_value ? std::vector<Candidate>{} : functions_called(name->name)});
-        const std::vector<Candidate>& functions = call.arguments.back().functions;
-        damaged |= functions.empty() ? expression(*tree).is_error() : !std::ranges::all_of(functions, is_valid);
+    bool damaged = read_arguments(call, arguments, candidates, &targets);
+    if (const auto open = std::ranges::find(call.arguments, true, &Argument::is_open); open != call.arguments.end()) {
+        diagnostics.error(
+            open->tree->span, "open-argument",
+            "'_' stands for an argument of a function that is passed, and this call is a value",
+            "write the argument; a function that is passed stands as it is, fbm(cellular(_, 0.2), q, 4, 2.0, 0.5)");
+        damaged = true;
     }
     if (candidates.empty()) {
         report_unknown_function(call);
@@ -234,17 +157,13 @@ std::optional<Candidate> BodyChecker::resolve(const Expression& e, const Name& c
     write(best.front(), arguments, targets, e.span);
     target.function = best.front().function;
     const FunctionInfo* source = source_of(target.function);
-    if (source || order > 0) mentions.push_back({source, callee.span, order, nullptr});
+    if (source || order > 0) mentions.push_back({source, callee.span, order});
     for (size_t i = 0; i < arguments.size(); ++i) {
         const ParameterInfo& parameter = best.front().parameters[i];
         const Candidate* passed = call.arguments[i].passed_as(parameter);
-        target.function_arguments.push_back(passed ? passed->function : FunctionReference{});
-        if (passed) {
-            mentions.push_back({source_of(passed->function), arguments[i]->span, order, source});
-            if (auto handed_on = source_of(passed->function)) note_ranges(*handed_on, {});
-        } else {
-            adopt_literal(*arguments[i], parameter.type);
-        }
+        target.function_arguments.push_back(passed ? pass(call.arguments[i], *passed, order, {source})
+                                                   : FunctionReference{});
+        if (!passed) adopt_literal(*arguments[i], parameter.type);
     }
     if (source) note_ranges(*source, arguments);
     result = best.front().result;
@@ -306,11 +225,9 @@ void BodyChecker::report_no_match(const Call& call, const std::vector<Candidate>
         Diagnostic& reported = diagnostics.error(
             argument.tree->span, "type-mismatch",
             std::string("expected ") + (parameter.is_function ? "a function " : "") + to_string(parameter) +
-                " as argument " + std::to_string(i + 1) + ", found " +
-                (!argument.is_function()          ? to_string(argument.tree->type)
-                 : argument.functions.size() == 1 ? "the function " + to_string(argument.functions.front())
-                                                  : "functions that take other arguments"),
+                " as argument " + std::to_string(i + 1) + ", found " + found_for(argument),
             listed(same_count));
+        if (const std::string hint = hint_to_bind(argument, parameter); !hint.empty()) reported.hint = hint;
         if (source_of(same_count.front().function) && parameter.symbol)
             reported.related.push_back({parameter.symbol->span, quoted(parameter.name) + " is declared here"});
         return;
@@ -318,8 +235,9 @@ void BodyChecker::report_no_match(const Call& call, const std::vector<Candidate>
     std::string types;
     for (const Argument& argument : call.arguments)
         types += (types.empty() ? "" : ", ") +
-                 (argument.is_function() ? "function " + std::string(context.sources.text(argument.tree->span))
-                                         : to_string(argument.tree->type));
+                 (argument.is_open         ? "_"
+                  : argument.is_function() ? "function " + std::string(context.sources.text(argument.tree->span))
+                                           : to_string(argument.tree->type));
     diagnostics.error(call.tree.span, "no-matching-function", "no " + name + " takes (" + types + ")",
                       listed(same_count));
 }
@@ -348,11 +266,36 @@ bool BodyChecker::takes(std::string_view name, const Call& call) const
 {
     uint32_t components = 0;
     for (const Argument& argument : call.arguments) {
+        if (argument.is_open) continue;
         if (!argument.is_function() && argument.tree->type.is_error()) return false;
         components += argument.tree->type.components();
     }
     if (const auto type = type_named(name)) return components == type->components();
     return std::ranges::any_of(scope.functions(name), [&](const Candidate& candidate) { return call.fits(candidate); });
+}
+
+// What stands before the '.' of a name that is called, and is the prefix of no import.
+void BodyChecker::report_unknown_prefix(const Call& call, const PrefixedName& parts)
+{
+    const std::string prefix(parts.prefix), name(parts.name);
+    const Span span{call.callee.span.file, call.callee.span.begin,
+                    call.callee.span.begin + static_cast<uint32_t>(prefix.size())};
+    const Symbol* const value = find(prefix);
+    if (!value) return report_unknown_name(span, prefix);
+    mark_read(prefix);
+    if (value->type.is_error()) return diagnostics.count_consequence();
+    if (std::holds_alternative<GradCall>(call.tree.node)) return report_grad(call.callee.span);
+    std::string arguments = prefix;
+    for (const Argument& argument : call.arguments)
+        arguments += ", " + printable(context.sources.text(argument.tree->span));
+    diagnostics.error(call.tree.span, "not-callable", "values have no functions of their own",
+                      "write " + name + "(" + arguments + ")"); // GLSL's q.length() counts components
+}
+
+void BodyChecker::report_grad(Span span)
+{
+    diagnostics.error(span, "grad", "grad takes the name of a function",
+                      "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)");
 }
 
 void BodyChecker::report_unknown_function(const Call& call)
@@ -367,13 +310,16 @@ void BodyChecker::report_unknown_function(const Call& call)
                           "to multiply, write " + name + " * (...)");
         return;
     }
-    if (name == "grad") {
-        diagnostics.error(span, "grad", "grad takes the name of a function",
-                          "put the expression into a function, float f(vec3 q) { return ...; }, and write grad(f)(q)");
+    if (name == "grad") return report_grad(span);
+    const PrefixedName parts(name);
+    if (!parts.prefix.empty() && !scope.by_prefix.contains(parts.prefix)) return report_unknown_prefix(call, parts);
+    if (scope.by_prefix.contains(name)) {
+        diagnostics.error(span, "not-a-function", quoted(name) + " is the prefix of an import, expected a function",
+                          "write " + name + ". and the name of a function of its file");
         return;
     }
-    if (std::ranges::any_of(scope.layers, &Declarations::lacks_functions) || may_be_unread(name) ||
-        context.unknown_functions.contains(name) || diagnostics.full())
+    if (scope.may_be_function(name) || may_be_unread(name) || context.unknown_functions.contains(name) ||
+        diagnostics.full())
         return diagnostics.count_consequence();
     Diagnostic& reported = diagnostics.error(span, "unknown-function", "unknown function " + quoted(name));
     if (const ForeignWord* foreign = foreign_word(ForeignKind::function, name)) {
@@ -391,15 +337,20 @@ void BodyChecker::report_unknown_function(const Call& call)
         if (takes(stem, call)) reported.fix = FixIt{span, std::string(stem)};
         return;
     }
-    std::vector<std::string_view> names(types_of_numbers.begin(), types_of_numbers.end());
-    names.push_back("grad");
-    for (const Declarations* layer : scope.layers)
-        for (const auto& [known, structure] : layer->structs) names.push_back(known);
-    for (const Declarations* layer : scope.layers)
+    std::vector<std::string_view> names;
+    if (parts.prefix.empty()) {
+        names.assign(types_of_numbers.begin(), types_of_numbers.end());
+        names.push_back("grad");
+        for (const Declarations* layer : scope.layers)
+            for (const auto& [known, structure] : layer->structs) names.push_back(known);
+        for (const auto& [known, overloads] : builtin_overloads()) names.push_back(known);
+    }
+    for (const Declarations* layer : scope.layers_of(parts.prefix))
         for (const auto& [known, functions] : layer->functions) names.push_back(known);
-    for (const auto& [known, overloads] : builtin_overloads()) names.push_back(known);
-    const NearName near = near_name(name, names);
+    NearName near = near_name(parts.name, names);
+    const std::string behind_prefix = std::string(parts.prefix) + "." + std::string(near.name);
     if (near.name.empty()) context.unknown_functions.insert(name);
+    if (!near.name.empty() && !parts.prefix.empty()) near.name = behind_prefix;
     propose(reported, span, near, takes(near.name, call));
 }
 

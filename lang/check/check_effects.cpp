@@ -75,7 +75,8 @@ void BodyChecker::note_ranges(const FunctionInfo& callee, const std::vector<Expr
         if (!is_integer(parameter.type) || parameter.is_function) continue;
         ir::IntRange here = full_range(parameter.type);
         const bool is_left_out = !arguments.empty() && std::holds_alternative<LeftOut>(arguments[i]->node);
-        if (!arguments.empty() && !is_left_out && converts(*arguments[i], parameter.type)) {
+        if (!arguments.empty() && !is_left_out && !is_left_open(*arguments[i]) &&
+            converts(*arguments[i], parameter.type)) {
             here = range_over_calls(*arguments[i]);
         } else if (is_left_out && !parameter.value_parts.empty()) {
             const auto number = static_cast<int64_t>(as_number(parameter.value_parts.front(), parameter.type));

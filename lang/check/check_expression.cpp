@@ -200,6 +200,10 @@ Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
     if (symbol ? symbol->kind == SymbolKind::function : !scope.functions(node.name).empty())
         return fail(e.span, "not-a-value", quoted(node.name) + " is a function, expected a value",
                     "call it: " + node.name + "(...)");
+    if (!symbol && node.name == "_")
+        return fail(e.span, "open-argument",
+                    "'_' stands for an argument of a function that is passed, expected a value",
+                    "a function that is passed stands as it is: fbm(cellular(_, 0.2), q, 4, 2.0, 0.5)");
     if (!symbol) {
         report_unknown_name(e.span, node.name);
         return Type::error();

@@ -73,7 +73,7 @@ void BodyChecker::check(Span, Declaration& node)
     const bool is_constant = is_sound && node.is_const && !varies;
     Symbol& symbol = declare(node.name, is_constant ? SymbolKind::constant : SymbolKind::local, type);
     node.symbol = &symbol;
-    if (value) symbol.is_read = !is_sound; // that it is not used is then not worth saying
+    if (value) symbol.is_read |= !is_sound; // that it is not used is then not worth saying
     if (node.is_const) symbol.read_only = "it is constant";
     if (is_constant) {
         symbol.value = context.constants.value(*value, type);

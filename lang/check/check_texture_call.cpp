@@ -41,7 +41,7 @@ Type BodyChecker::texture_call(Expression& e, CallExpression& call)
     call.target.function_arguments.assign(call.arguments.size(), {});
     if (!is_sound || diagnostics.reports() > reports) return Type::error();
     write(Candidate(*callee), call.arguments, targets, e.span);
-    mentions.push_back({callee, call.callee.span, 0, nullptr});
+    mentions.push_back({callee, call.callee.span, 0});
     note_ranges(*callee, call.arguments);
     return float_type;
 }

@@ -1,9 +1,9 @@
 #include "lang/check/preset.h"
 
 #include "lang/check/body_checker.h"
+#include "lang/check/call_order.h"
 
 #include <algorithm>
-#include <functional>
 
 namespace haptel::lang {
 
@@ -43,16 +43,44 @@ StatementPtr body_of(const Preset& preset, const std::vector<TextureParameter>& 
     return body;
 }
 
-const Texture* find_texture(const std::vector<CheckFile>& files, const CheckFile& file, const std::string& name)
+const Texture* find_texture(const std::vector<CheckFile>& files, const CheckFile& file, const std::string& written)
 {
-    const auto in = [&](const CheckFile& one) -> const Texture* {
+    const auto [prefix, name] = PrefixedName(written);
+    const auto in = [name = name](const CheckFile& one) -> const Texture* {
         const auto found = std::ranges::find(one.tree.textures, name, [](const Texture& t) { return t.name.text; });
         return found == one.tree.textures.end() ? nullptr : &*found;
     };
-    if (const Texture* own = in(file)) return own;
-    for (const uint32_t imported : file.imported)
-        if (const Texture* found = in(files[imported])) return found;
+    if (const Texture* own = prefix.empty() ? in(file) : nullptr) return own;
+    for (const CheckFile::Imported& imported : file.imported)
+        if (const Texture* found = imported.prefix == prefix ? in(files[imported.file]) : nullptr) return found;
     return nullptr;
+}
+
+// Of a texture that is not found. A file that could not be read may hold it, which is told.
+void report_unknown(const std::vector<CheckFile>& files, const CheckFile& file, const Name& written,
+                    Diagnostics& diagnostics)
+{
+    const auto [prefix, name] = PrefixedName(written.text);
+    const auto is_read = [&](const Import& import) {
+        return std::ranges::find(file.imported, import.prefix.text, &CheckFile::Imported::prefix) !=
+               file.imported.end();
+    };
+    std::vector<std::string> known;
+    for (const Import& import : file.tree.imports) {
+        if (import.prefix.text.empty()) continue;
+        if (import.prefix.text == prefix && !is_read(import)) return diagnostics.count_consequence();
+        if (import.prefix.text != prefix) known.push_back(import.prefix.text + "." + std::string(name));
+    }
+    for (const CheckFile::Imported& imported : file.imported)
+        for (const Texture& texture : files[imported.file].tree.textures)
+            if (!prefix.empty() && imported.prefix == prefix)
+                known.push_back(imported.prefix + "." + texture.name.text);
+    Diagnostic& reported = diagnostics.error(
+        written.span, "unknown-texture",
+        "there is no texture " + quoted(written.text) + (prefix.empty() ? " above or in an imported file" : ""),
+        prefix.empty() ? "a preset stands below the texture or preset that it is of"
+                       : "what stands before the '.' is the prefix of an import: import \"wood.haptel\" as wood;");
+    if (!prefix.empty()) propose(reported, written.span, near_name(written.text, {known.begin(), known.end()}));
 }
 
 void give_defaults(Texture& made, Preset& preset, Diagnostics& diagnostics)
@@ -88,9 +116,8 @@ void add_presets(std::vector<CheckFile>& files, size_t i, Diagnostics& diagnosti
     for (Preset& preset : files[i].tree.presets) {
         const Texture* of = find_texture(files, files[i], preset.of.text);
         if (!of) {
-            diagnostics.error(preset.of.span, "unknown-texture",
-                              "there is no texture " + quoted(preset.of.text) + " above or in an imported file",
-                              "a preset stands below the texture or preset that it is of");
+            files[i].tree.unread.insert(preset.name.text);
+            report_unknown(files, files[i], preset.of, diagnostics);
             continue;
         }
         if (of->damage.any) { // told; what the preset would be is not known
@@ -115,14 +142,7 @@ void add_presets(std::vector<CheckFile>& files, size_t i, Diagnostics& diagnosti
 
 void add_presets(std::vector<CheckFile>& files, Diagnostics& diagnostics)
 {
-    std::vector<bool> is_begun(files.size());
-    const std::function<void(size_t)> add = [&](size_t i) {
-        if (is_begun[i]) return;
-        is_begun[i] = true;
-        for (const uint32_t imported : files[i].imported) add(imported); // of at most 256 files
-        add_presets(files, i, diagnostics);
-    };
-    for (size_t i = 0; i < files.size(); ++i) add(i);
+    for (const uint32_t i : imported_first(files)) add_presets(files, i, diagnostics);
 }
 
 } // namespace haptel::lang

@@ -20,38 +20,144 @@ constexpr size_t value_count_max = 250'000;
 // ones.
 constexpr bool images_last[] = {false, true};
 
-// What is passed by value, as parameters of the function; nothing where it is only written.
-std::vector<Values> declared(ir::Builder& builder, const std::vector<ParameterInfo>& parameters)
+// A function that is bound to another may have others bound to it in turn: so many functions and values in all.
+constexpr size_t bound_max = 1000;
+
+// The parameters that are values, as the IR takes them: `by` first, images last.
+std::vector<size_t> in_order(const std::vector<ParameterInfo>& parameters, size_t by)
 {
-    std::vector<const ParameterInfo*> values;
-    for (const ParameterInfo& parameter : parameters)
-        if (!parameter.is_function) values.push_back(&parameter);
-    std::vector<Values> arguments(values.size());
-    uint32_t& first_size = builder.function().first_argument_size;
+    std::vector<size_t> order;
+    const auto add = [&](size_t i, bool are_images) {
+        const ParameterInfo& parameter = parameters[i];
+        const bool is_value = !parameter.is_function && parameter.passing != Passing::out;
+        if (is_value && (parameter.type == image_type) == are_images) order.push_back(i);
+    };
+    if (by < parameters.size()) add(by, false);
     for (const bool are_images : images_last)
-        for (size_t p = 0; p < values.size(); ++p) {
-            const Type type = values[p]->type;
-            if ((type == image_type) != are_images || values[p]->passing == Passing::out) continue;
-            if (first_size == 0 && !are_images) first_size = type.components();
-            for (const ir::Type part : ir_types(type)) arguments[p].push_back(builder.parameter(part));
-        }
-    return arguments;
+        for (size_t i = 0; i < parameters.size(); ++i)
+            if (i != by || are_images) add(i, are_images);
+    return order;
 }
 
-uint32_t reads_of(const FunctionReference& reference)
+// The first parameter that is a number and not bound: what a derivative is by.
+size_t first_number(const BoundFunction& function)
 {
-    auto source = std::get_if<const FunctionInfo*>(&reference);
-    return source ? (*source)->reads : 0;
+    const std::vector<ParameterInfo>& parameters = function.parameters();
+    size_t i = 0;
+    while (i < parameters.size() &&
+           (parameters[i].is_function || parameters[i].type == image_type || function.is_bound(i)))
+        ++i;
+    return i;
+}
+
+// What is passed by value, as parameters of the function, by parameter; nothing where it is only written.
+std::vector<Values> declared(ir::Builder& builder, const std::vector<ParameterInfo>& parameters, size_t by)
+{
+    std::vector<Values> arguments(parameters.size());
+    uint32_t& first_size = builder.function().first_argument_size;
+    for (const size_t p : in_order(parameters, by)) {
+        const Type type = parameters[p].type;
+        if (first_size == 0 && type != image_type) first_size = type.components();
+        for (const ir::Type part : ir_types(type)) arguments[p].push_back(builder.parameter(part));
+    }
+    return arguments;
 }
 
 } // namespace
 
+// ---- functions with what is bound to them
+
+const std::vector<ParameterInfo>& BoundFunction::parameters() const
+{
+    if (auto source = std::get_if<const FunctionInfo*>(&function)) return (*source)->parameters;
+    return std::get<const BuiltinOverload*>(function)->parameters;
+}
+
+void BoundFunction::add_values(Values& flat) const
+{
+    for (const Values& value : values) flat.insert(flat.end(), value.begin(), value.end());
+    for (const BoundFunction& inner : functions) inner.add_values(flat);
+}
+
+void BoundFunction::add_key(std::vector<uintptr_t>& key) const
+{
+    key.push_back(reinterpret_cast<uintptr_t>(identity(function)));
+    for (size_t i = 0; i < values.size(); ++i)
+        if (is_bound(i)) key.push_back(i + 1);
+    key.push_back(0);
+    for (const BoundFunction& inner : functions) inner.add_key(key);
+}
+
+uint32_t BoundFunction::reads() const
+{
+    auto source = std::get_if<const FunctionInfo*>(&function);
+    uint32_t all = source ? (*source)->reads : 0;
+    for (const BoundFunction& inner : functions) all |= inner.reads();
+    return all;
+}
+
+size_t BoundFunction::size() const
+{
+    size_t all = 1;
+    for (const Values& value : values) all += value.size();
+    for (const BoundFunction& inner : functions) all += inner.size();
+    return all;
+}
+
+// "cellular(_,=)"
+std::string BoundFunction::name() const
+{
+    std::string list;
+    size_t inner = 0;
+    const std::vector<ParameterInfo>& all = parameters();
+    for (size_t i = 0; i < all.size(); ++i)
+        list += (i > 0 ? "," : "") + (all[i].is_function ? functions[inner++].name() : is_bound(i) ? "=" : "_");
+    const bool is_all_open = list.find_first_not_of("_,") == list.npos;
+    return name_of(function) + (is_all_open ? "" : "(" + list + ")");
+}
+
 // ---- in a body
 
-FunctionReference BodyLowering::resolved(const FunctionReference& reference) const
+BoundFunction BodyLowering::resolved(const FunctionReference& reference)
 {
     if (auto parameter = std::get_if<const Symbol*>(&reference)) return functions[(*parameter)->slot];
-    return reference;
+    auto bound = std::get_if<const CallExpression*>(&reference);
+    if (!bound) return {reference};
+    BoundFunction made = resolved((*bound)->target.function);
+    bind(made, (*bound)->target, (*bound)->arguments);
+    return made;
+}
+
+// The arguments stand for what is not bound yet, and are computed where they stand.
+void BodyLowering::bind(BoundFunction& function, const CallTarget& target, const std::vector<ExpressionPtr>& arguments)
+{
+    const std::vector<ParameterInfo>& parameters = function.parameters();
+    const bool has_functions = !function.functions.empty();
+    function.values.resize(parameters.size());
+    size_t at = 0;
+    for (size_t i = 0; i < parameters.size(); ++i) {
+        const ParameterInfo& parameter = parameters[i];
+        if (parameter.is_function ? has_functions : function.is_bound(i)) continue;
+        const Expression& argument = *arguments[at];
+        if (parameter.is_function)
+            function.functions.push_back(resolved(target.function_arguments[at]));
+        else if (parameter.passing != Passing::out && (target.is_open.empty() || !target.is_open[at]))
+            function.values[i] = converted(argument, parameter.type);
+        ++at;
+    }
+}
+
+void BodyLowering::bind_functions(const std::vector<BoundFunction>& passed)
+{
+    functions = passed;
+    for (BoundFunction& function : functions) make_parameters(function);
+}
+
+void BodyLowering::make_parameters(BoundFunction& function)
+{
+    for (size_t i = 0; i < function.values.size(); ++i)
+        for (Value& value : function.values[i]) value = builder.parameter(ir_type(function.parameters()[i].type));
+    for (BoundFunction& inner : function.functions) make_parameters(inner);
 }
 
 Values BodyLowering::lower(const Expression& e, const CallExpression& node)
@@ -102,29 +208,27 @@ Values BodyLowering::call(const Expression& e, const CallTarget& target, const s
                           uint32_t order, GivenInputs given)
 {
     const Span here = builder.span;
-    const FunctionReference callee = resolved(target.function);
-    const std::vector<ParameterInfo>& parameters = std::holds_alternative<const FunctionInfo*>(callee)
-                                                       ? std::get<const FunctionInfo*>(callee)->parameters
-                                                       : std::get<const BuiltinOverload*>(callee)->parameters;
-    std::vector<Values> values;
-    std::vector<FunctionReference> passed;
-    for (size_t i = 0; i < arguments.size(); ++i) {
-        if (parameters[i].is_function)
-            passed.push_back(resolved(target.function_arguments[i]));
-        else if (parameters[i].passing != Passing::out)
-            values.push_back(converted(*arguments[i], parameters[i].type));
-    }
+    BoundFunction callee = resolved(target.function);
+    const std::vector<ParameterInfo>& parameters = callee.parameters();
+    const size_t by = first_number(callee);
+    bind(callee, target, arguments);
     builder.span = here;
-    if (auto builtin = std::get_if<const BuiltinOverload*>(&callee); builtin && order == 0)
-        return lower_builtin(owner, builder, **builtin, values);
+    auto builtin = std::get_if<const BuiltinOverload*>(&callee.function);
+    if (builtin && order == 0) return lower_builtin(owner, builder, **builtin, callee.values);
 
     if (owner.is_too_large(here)) return zeros(e.type);
-    const LoweredFunction function = owner.function(callee, passed, order);
+    if (callee.size() > bound_max) {
+        owner.diagnostics.error(here, "too-large",
+                                "the functions that are passed here have more than " + std::to_string(bound_max) +
+                                    " functions and numbers bound to them",
+                                "a function that is bound to two others is there twice");
+        return zeros(e.type);
+    }
+    const LoweredFunction function = owner.function(callee, order, by);
     Values flat;
-    for (const bool are_images : images_last)
-        for (const Values& value : values)
-            if ((builder.type(value[0]) == ir::Type::image) == are_images)
-                flat.insert(flat.end(), value.begin(), value.end());
+    for (const size_t i : in_order(parameters, order > 0 ? by : SIZE_MAX))
+        flat.insert(flat.end(), callee.values[i].begin(), callee.values[i].end());
+    for (const BoundFunction& passed : callee.functions) passed.add_values(flat);
     for (uint32_t name = 0; name < input_name_count; ++name) {
         if (!(function.reads >> name & 1)) continue;
         const auto own = std::ranges::find(given, static_cast<InputName>(name), [](auto& one) { return one.first; });
@@ -170,41 +274,65 @@ bool ModuleLowering::is_too_large(Span span, size_t under_work)
     return true;
 }
 
-LoweredFunction ModuleLowering::function(const FunctionReference& reference,
-                                         const std::vector<FunctionReference>& passed, uint32_t order)
+LoweredFunction ModuleLowering::function(const BoundFunction& function, uint32_t order, size_t by)
 {
-    Key key{{identity(reference)}, order};
-    for (const FunctionReference& argument : passed) key.functions.push_back(identity(argument));
+    if (order == 0) by = SIZE_MAX;
+    Key key{order, by};
+    key.push_back(reinterpret_cast<uintptr_t>(identity(function.function)));
+    for (const BoundFunction& passed : function.functions) passed.add_key(key);
     if (const auto known = functions.find(key); known != functions.end()) return known->second;
     LoweredFunction made;
-    if (order > 0)
-        made = make_derivative(function(reference, passed, order - 1));
-    else if (auto source = std::get_if<const FunctionInfo*>(&reference))
-        made = make(**source, passed);
+    if (order > 1)
+        made = make_derivative(this->function(function, order - 1, by));
+    else if (order > 0)
+        made = make_derivative(make_by(function, by));
+    else if (auto source = std::get_if<const FunctionInfo*>(&function.function))
+        made = make(**source, function.functions);
     else
-        made = make(*std::get<const BuiltinOverload*>(reference));
+        made = make(*std::get<const BuiltinOverload*>(function.function));
     functions[key] = made;
     return made;
 }
 
-LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector<FunctionReference>& passed)
+// The function with the parameter `by` in the first place, where derivatives are by.
+LoweredFunction ModuleLowering::make_by(const BoundFunction& function, size_t by)
+{
+    const LoweredFunction of = this->function(function);
+    const std::vector<ParameterInfo>& parameters = function.parameters();
+    const std::vector<size_t> order = in_order(parameters, by);
+    if (order == in_order(parameters, SIZE_MAX)) return of;
+    ir::Builder builder(module, unique(module.functions[of.index].name + " by " + parameters[by].name));
+    const std::vector<Values> values = declared(builder, parameters, by);
+    Values flat;
+    for (const size_t i : in_order(parameters, SIZE_MAX)) flat.insert(flat.end(), values[i].begin(), values[i].end());
+    const ir::Function& source = module.functions[of.index];
+    for (size_t i = flat.size(); i < source.parameters.size(); ++i)
+        flat.push_back(builder.parameter(source.type(source.parameters[i])));
+    builder.function().is_library = source.is_library;
+    return {builder.finish(builder.call(of.index, flat)), of.reads, of.depth + 1};
+}
+
+LoweredFunction ModuleLowering::make(const FunctionInfo& info, const std::vector<BoundFunction>& passed)
 {
     std::string name = signature_of(info);
     LoweredFunction made;
     made.reads = info.reads;
     if (!passed.empty()) {
         std::string list;
-        for (const FunctionReference& argument : passed) {
-            list += (list.empty() ? "" : ",") + name_of(argument);
-            made.reads |= reads_of(argument);
+        for (const BoundFunction& argument : passed) {
+            list += (list.empty() ? "" : ",") + argument.name();
+            made.reads |= argument.reads();
         }
         name.insert(info.name.size(), "<" + list + ">");
     }
     BodyLowering body(*this, unique(std::move(name)), info.slot_count);
     ir::Function& function = body.builder.function();
-    body.value_parameters(declared(body.builder, info.parameters));
-    body.input_parameters(made.reads);
+    std::vector<Values> arguments = declared(body.builder, info.parameters, SIZE_MAX);
+    for (size_t i = info.parameters.size(); i-- > 0;)
+        if (info.parameters[i].is_function) arguments.erase(arguments.begin() + static_cast<std::ptrdiff_t>(i));
+    body.value_parameters(std::move(arguments));
     body.bind_functions(passed);
+    body.input_parameters(made.reads);
     function.is_library = info.is_library;
     if (info.tree->facts && info.result != void_type)
         function.facts.assign(info.result.components(), *info.tree->facts);
@@ -233,7 +361,7 @@ LoweredFunction ModuleLowering::make(const BuiltinOverload& overload)
 {
     ir::Builder builder(module, unique(to_string(Candidate(overload))));
     builder.function().is_library = true;
-    const std::vector<Values> arguments = declared(builder, overload.parameters);
+    const std::vector<Values> arguments = declared(builder, overload.parameters, SIZE_MAX);
     return {builder.finish(lower_builtin(*this, builder, overload, arguments)), 0, 0};
 }
 

@@ -21,6 +21,23 @@ namespace haptel::lang {
 // The components of a value.
 using Values = std::vector<ir::Value>;
 
+// A function that is called or passed, in the body at hand: of the source or built in, with those of its arguments that
+// are bound. Whoever makes the function that it is passed to adds them behind that one's own arguments.
+struct BoundFunction {
+    FunctionReference function = {};
+    std::vector<Values> values = {};           // by parameter; none: it is open, only written, or a function
+    std::vector<BoundFunction> functions = {}; // what its parameters are that are functions
+
+    const std::vector<ParameterInfo>& parameters() const;
+    bool is_bound(size_t parameter) const { return parameter < values.size() && !values[parameter].empty(); }
+    // Of itself and of what is bound to it: the values one behind the other, and what tells it from others.
+    void add_values(Values& flat) const;
+    void add_key(std::vector<uintptr_t>& key) const;
+    uint32_t reads() const;
+    size_t size() const; // in functions and values
+    std::string name() const;
+};
+
 struct LoweredFunction {
     uint32_t index = 0;
     uint32_t reads = 0; // HAPTEL_READS_*: inputs that are passed behind the arguments, in the order of the bits
@@ -49,10 +66,9 @@ class ModuleLowering {
 public:
     ModuleLowering(ir::Module& target, Diagnostics& sink) : module(target), diagnostics(sink), differentiator(target) {}
 
-    // `function` and what is passed to it are no parameters any more, but functions of the source or built in. `order`
-    // counts derivatives with respect to the first argument.
-    LoweredFunction function(const FunctionReference& function,
-                             const std::vector<FunctionReference>& function_arguments, uint32_t order);
+    // What the values of `function` are does not matter. `order` counts derivatives with respect to the parameter `by`,
+    // which stands first then.
+    LoweredFunction function(const BoundFunction& function, uint32_t order = 0, size_t by = 0);
     void texture(const CheckedTexture& texture);
     bool refuse_contact(const ir::Texture& texture);
     // One table per component of the elements.
@@ -69,13 +85,10 @@ public:
     uint32_t nesting = 0; // of the lowering itself, over all bodies under work
 
 private:
-    struct Key {
-        std::vector<const void*> functions;
-        uint32_t order;
-        auto operator<=>(const Key&) const = default;
-    };
-    LoweredFunction make(const FunctionInfo& info, const std::vector<FunctionReference>& function_arguments);
+    using Key = std::vector<uintptr_t>;
+    LoweredFunction make(const FunctionInfo& info, const std::vector<BoundFunction>& passed);
     LoweredFunction make(const BuiltinOverload& overload);
+    LoweredFunction make_by(const BoundFunction& function, size_t by);
     LoweredFunction make_derivative(const LoweredFunction& of);
     std::string unique(std::string name);
 
@@ -95,7 +108,8 @@ public:
     // Parameters first: values, then inputs. A texture has neither: it reads.
     void value_parameters(std::vector<Values> arguments) { std::ranges::move(arguments, variables.begin()); }
     void input_parameters(uint32_t reads);
-    void bind_functions(const std::vector<FunctionReference>& passed) { functions = passed; }
+    // What is bound to them become parameters.
+    void bind_functions(const std::vector<BoundFunction>& passed);
     Values& variable(const Symbol& local) { return variables[local.slot]; }
     void clear(const Symbol& local) { variables[local.slot] = zeros(local.type); }
     void hold(const Symbol& local, ir::IntRange range); // a whole number, whatever it was given
@@ -143,7 +157,9 @@ private:
     Values call(const ast::Expression& e, const CallTarget& target, const std::vector<ast::ExpressionPtr>& arguments,
                 uint32_t order, GivenInputs given = {});
     Values constructor(const ast::Expression& e, const ast::CallExpression& node);
-    FunctionReference resolved(const FunctionReference& reference) const;
+    BoundFunction resolved(const FunctionReference& reference);
+    void bind(BoundFunction& function, const CallTarget& target, const std::vector<ast::ExpressionPtr>& arguments);
+    void make_parameters(BoundFunction& function);
 
     // ---- statements. Besides the variables four more slots hold the flow: whether the function has returned, with
     // what, whether the loop was left, and whether this turn of it is over.
@@ -174,8 +190,8 @@ private:
     uint32_t turned_slot() const { return static_cast<uint32_t>(variables.size()) - 1; }
 
     ModuleLowering& owner;
-    std::vector<Values> variables;            // by Symbol::slot, then the four of the flow
-    std::vector<FunctionReference> functions; // parameters that are functions, by Symbol::slot
+    std::vector<Values> variables;        // by Symbol::slot, then the four of the flow
+    std::vector<BoundFunction> functions; // parameters that are functions, by Symbol::slot
     Values passed_inputs[input_name_count];
     std::map<const ast::Expression*, ir::Value> located; // indices of what a call is about to write
     Type result_type;

@@ -15,10 +15,15 @@ namespace haptel::lang {
 
 struct CheckedLibrary;
 
-// One file of the compilation as the parser left it, with the files whose names it sees.
+// One file of the compilation as the parser left it, with the files whose names it sees; not transitive.
 struct CheckFile {
+    struct Imported {
+        uint32_t file;
+        std::string prefix; // of the names in it; empty: none
+        bool operator==(const Imported&) const = default;
+    };
     ast::File tree;
-    std::vector<uint32_t> imported; // indices of files; not transitive
+    std::vector<Imported> imported;
 };
 
 struct CheckedParameter {

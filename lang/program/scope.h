@@ -56,15 +56,28 @@ std::string to_string(const ParameterInfo& parameter, const std::string& name = 
 // "fbm(vec3,int)": name and types, as overloads are told apart.
 std::string signature_of(const FunctionInfo& function);
 
-// What one file sees: its own declarations first, then imports, then the library; the language's built-ins last.
+// "oak.rings" is the name "rings" behind the prefix of an import; a name without one has no prefix.
+struct PrefixedName {
+    explicit PrefixedName(std::string_view written);
+    std::string_view prefix, name;
+};
+
+// What one file sees: its own declarations first, then imports, then the library; the language's built-ins last. Behind
+// the prefix of an import stand the declarations of that file and nothing else.
 struct FileScope {
-    std::vector<const Declarations*> layers; // nearest first
+    std::vector<const Declarations*> layers;                           // nearest first
+    std::map<std::string, const Declarations*, std::less<>> by_prefix; // null: the file could not be read
 
     // Every function of that name; of equal signatures only the nearest, so that a file may replace what it imports.
     std::vector<Candidate> functions(std::string_view name) const;
-    FunctionInfo* texture(std::string_view name) const;        // null: none has that name
+    FunctionInfo* texture(std::string_view name) const;  // null: none has that name
     StructDeclaration* structure(std::string_view name) const; // likewise
-    bool is_unread(std::string_view name) const;               // it may be declared in text that could not be read
+    const Symbol* constant(std::string_view name) const; // likewise
+    bool is_unread(std::string_view name) const;         // it may be declared in text that could not be read
+    bool may_be_function(std::string_view name) const;   // likewise, and nothing is known of its head
+    bool is_constant_below(std::string_view name) const; // it is declared, but not yet
+    // Those that a name with this prefix may be found in, nearest first.
+    std::span<const Declarations* const> layers_of(std::string_view prefix) const;
 };
 
 } // namespace haptel::lang

@@ -308,6 +308,7 @@ struct Struct {
 };
 struct Import {
     std::string path; // "wood/oak.haptel"
+    Name prefix;      // "as oak": what stands before the file's names; none: they stand alone
     Span span;
 };
 

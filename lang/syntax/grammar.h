@@ -41,6 +41,7 @@ private:
 
     // parse_declaration.cpp
     void import_declaration(ast::File& result);
+    void find_prefixes();
     void texture(ast::File& result);
     void read_as_function(ast::Texture& texture, size_t body);
     void preset(ast::File& result, ast::Texture head, Span first);
@@ -133,6 +134,8 @@ private:
     ast::ExpressionPtr number();
     ast::ExpressionPtr brace_list();
     ast::ExpressionPtr name_or_call();
+    bool at_prefixed_name(size_t ahead = 0, Token called_by = Token::left_paren) const;
+    ast::Name prefixed_name();
     ast::ExpressionPtr grad_call(Span first);
     std::vector<ast::ExpressionPtr> arguments(std::vector<ast::Name>* names = nullptr);
     ast::ExpressionPtr array_constructor(ast::Name type);
@@ -197,9 +200,10 @@ private:
     mutable size_t alias_steps = 0;           // from a name to what it stands for; beyond many, it stands for itself
 
     std::set<std::string, std::less<>> struct_names; // of those that stand above
-    bool has_own_grad = false;                       // a function of that name stands above
-    uint32_t told_type = UINT32_MAX;                 // where a type begins of which enough is said
-    bool are_types_behind = false;                   // in the head of this function, and that is told
+    std::set<std::string_view> import_prefixes; // anywhere in the file
+    bool has_own_grad = false;                  // a function of that name stands above
+    uint32_t told_type = UINT32_MAX;            // where a type begins of which enough is said
+    bool are_types_behind = false;              // in the head of this function, and that is told
 
     // Of the function or texture that is being read:
     std::string_view one_size;                 // what `any_size` stands for; empty: nothing

@@ -81,7 +81,22 @@ void Grammar::array_suffix(TypeName& type)
     }
 }
 
-// import = "import" string ";"
+// Imports may stand below what uses them.
+void Grammar::find_prefixes()
+{
+    const std::vector<PlacedToken>& all = list.tokens;
+    const auto word = [&](size_t i) { return sources.text({file, all[i].begin, all[i].end}); };
+    bool is_import = false;
+    for (size_t i = 0; i + 2 < all.size(); ++i) {
+        if (all[i].kind == Token::kw_import || all[i].kind == Token::semicolon)
+            is_import = all[i].kind == Token::kw_import;
+        const bool has_prefix = is_import && all[i].kind == Token::name && word(i) == "as" &&
+                                all[i + 1].kind == Token::name && all[i + 2].kind == Token::semicolon;
+        if (has_prefix) import_prefixes.insert(word(i + 1));
+    }
+}
+
+// import = "import" string ["as" name] ";"
 void Grammar::import_declaration(File& result)
 {
     const Span first = span();
@@ -92,16 +107,26 @@ void Grammar::import_declaration(File& result)
         import.path = quoted.substr(1, quoted.size() - 2);
         if (import.path.empty()) diagnostics.error(span(), "import", "expected a path between the quotes");
         advance();
-        expect_semicolon("the import");
+        if (text() == "as") {
+            advance();
+            import.prefix = name("after 'as'");
+        }
+        if (!lost) expect_semicolon("the import");
     } else { // "wood.oak": files are known by their paths, there are no modules
         Diagnostic& reported = error(span(), "import", "expected a path in quotes after 'import'" + found());
         std::string path;
         for (bool is_name = true; at(is_name ? Token::name : Token::dot); is_name = !is_name, advance())
             path += is_name ? text() : "/";
-        reported.hint = "write the path of a file: import \"" + (path.empty() ? "wood/oak" : path) + ".haptel\";";
+        std::string prefix;
+        if (text() == "as" && kind(1) == Token::name) {
+            import.prefix = {std::string(text(1)), span(1)};
+            prefix = " as " + import.prefix.text;
+        }
+        reported.hint =
+            "write the path of a file: import \"" + (path.empty() ? "wood/oak" : path) + ".haptel\"" + prefix + ";";
     }
     import.span = since(first);
-    if (!import.path.empty()) result.imports.push_back(std::move(import));
+    if (!import.path.empty() || !import.prefix.text.empty()) result.imports.push_back(std::move(import));
 }
 
 // constants = "const" type name [...] "=" initializer {"," ...} ";"
@@ -297,7 +322,12 @@ void Grammar::texture(File& result)
 // preset = "texture" name "=" name "(" [name "=" expression {"," name "=" expression}] ")" ";"        Behind "=".
 void Grammar::preset(File& result, Texture head, Span first)
 {
-    Preset made{std::move(head.doc), std::move(head.name), name("of a texture"), {}, {}, {}};
+    Preset made{std::move(head.doc),
+                std::move(head.name),
+                at_prefixed_name() ? prefixed_name() : name("of a texture"),
+                {},
+                {},
+                {}};
     if (lost || !expect(Token::left_paren, "and other defaults of the texture")) return;
     made.values = arguments(&made.names);
     made.names.resize(made.values.size());

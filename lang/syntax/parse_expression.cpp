@@ -15,7 +15,8 @@ ExpressionPtr Grammar::expression()
     ExpressionPtr result = conditional();
     if (at(Token::assign) && kind(1) == Token::greater && !lost) {
         error(join(span(), span(1)), "foreign-word", "there are no functions without a name in Haptel",
-              "write a function, and pass its name: float wave(vec3 q) { return ...; } ... fbm(wave, q, 4)");
+              "pass a function by its name, fbm(wave, q, 4, 2.0, 0.5), or what '_' leaves of it, fbm(wave(_, 0.2), q, "
+              "4, 2.0, 0.5)");
     } else if (at(Token::assign) && !lost) {
         error(span(), "assignment-in-expression", "expected the end of the expression, found '='",
               "to compare, write '=='; an assignment is a statement of its own");
@@ -241,10 +242,24 @@ bool Grammar::makes_structs(std::string_view type) const
     return kind(closer) == Token::right_bracket && kind(closer + 1) == Token::left_paren;
 }
 
-// name_or_call = name | name "(" [expression {"," expression}] ")" | grad_call
+// "oak.rings" is one name where "oak" is the prefix of an import, or must be one since the whole is called.
+bool Grammar::at_prefixed_name(size_t ahead, Token called_by) const
+{
+    return kind(ahead) == Token::name && kind(ahead + 1) == Token::dot && kind(ahead + 2) == Token::name &&
+           (kind(ahead + 3) == called_by || import_prefixes.contains(text(ahead)));
+}
+
+Name Grammar::prefixed_name()
+{
+    Name made{std::string(text()) + "." + std::string(text(2)), join(span(), span(2))};
+    advance(3);
+    return made;
+}
+
+// name_or_call = name | name "(" [expression {"," expression}] ")" | grad_call            name = [name "."] name
 ExpressionPtr Grammar::name_or_call()
 {
-    Name callee = name("");
+    Name callee = at_prefixed_name() ? prefixed_name() : name("");
     if (at(Token::left_bracket) && (is_own_type(callee.text) || makes_structs(callee.text)))
         return array_constructor(std::move(callee));
     if (at(Token::less) && is_own_type(callee.text)) skip_type_arguments();
@@ -290,9 +305,13 @@ ExpressionPtr Grammar::grad_call(Span first)
     size_t ahead = 0;
     for (; kind(ahead) == Token::name && text(ahead) == "grad" && kind(ahead + 1) == Token::left_paren; ahead += 2)
         ++call.order;
+    const size_t first_name = ahead;
     bool closed = kind(ahead) == Token::name;
+    const bool has_prefix = at_prefixed_name(ahead, Token::right_paren);
+    if (has_prefix) ahead += 2;
     for (uint32_t i = 1; i <= call.order; ++i) closed = closed && kind(ahead + i) == Token::right_paren;
-    if (has_own_grad && closed) closed = kind(ahead + 1 + call.order) == Token::left_paren; // else it is called
+    if ((has_own_grad || has_prefix) && closed) // else it is called, or "grad(p.x)"
+        closed = kind(ahead + 1 + call.order) == Token::left_paren;
     if (!closed) {
         const uint32_t reports = diagnostics.reports();
         std::vector<ExpressionPtr> values = arguments();
@@ -303,8 +322,9 @@ ExpressionPtr Grammar::grad_call(Span first)
         arguments();
         return unknown(since(first));
     }
-    call.function = {std::string(sources.text(span(ahead))), span(ahead)};
-    advance(ahead + 1 + call.order);
+    advance(first_name);
+    call.function = has_prefix ? prefixed_name() : name("");
+    advance(call.order);
     if (!accept(Token::left_paren)) {
         error(since(first), "grad", "the derivative of a function is a function: expected its arguments" + found(),
               "write grad(" + call.function.text + ")(q)");

@@ -34,6 +34,7 @@ File Grammar::parse_file()
         note_unread(from);
         result.unread.merge(unread);
     };
+    find_prefixes();
     while (!at(Token::end)) {
         begin_declaration();
         const size_t first_position = position;

@@ -16,6 +16,7 @@
 namespace haptel::lang {
 
 namespace ast {
+struct CallExpression;
 struct Function;
 struct Expression;
 struct Name;
@@ -104,10 +105,12 @@ struct Symbol {
     uint64_t parts_assigned = 0; // behind its declaration, by text read so far or by a loop round it; see parts_of()
 };
 
-// A function that is called or passed: from source, built in, or a parameter of the function around the call.
-using FunctionReference = std::variant<std::monostate, const FunctionInfo*, const BuiltinOverload*, const Symbol*>;
+// A function that is called or passed: from source, built in, a parameter of the function around the call, or what a
+// call with open arguments leaves, "f(_, 2.0)".
+using FunctionReference = std::variant<std::monostate, const FunctionInfo*, const BuiltinOverload*, const Symbol*,
+                                       const ast::CallExpression*>;
 
-// What tells functions of the source and built-in ones apart; null: a parameter.
+// What tells functions of the source and built-in ones apart; null: another.
 inline const void* identity(const FunctionReference& reference)
 {
     if (auto source = std::get_if<const FunctionInfo*>(&reference)) return *source;
@@ -119,6 +122,7 @@ struct CallTarget {
     bool is_constructor = false; // then the expression's type says of what
     FunctionReference function;
     std::vector<FunctionReference> function_arguments; // one per argument; empty where the argument is a value
+    std::vector<bool> is_open;                         // one per argument, "_"; empty: none, and this is a call
 };
 
 // A loop whose trip count is bounded: `for (int i = start; i < bound; i += step)`, or with <=, > or >=. The counter may
@@ -141,8 +145,8 @@ struct FunctionInfo {
     struct Mention {
         const FunctionInfo* function = nullptr; // null: built in, or a parameter
         Span span;
-        uint32_t order = 0;                    // how often grad is applied to it
-        const FunctionInfo* through = nullptr; // the function it is passed to, which may differentiate it
+        uint32_t order = 0;                            // how often grad is applied to it
+        std::vector<const FunctionInfo*> through = {}; // functions it is passed to, which may differentiate it
     };
 
     std::string name;

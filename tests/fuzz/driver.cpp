@@ -133,29 +133,12 @@ private:
     void change(std::string& text)
     {
         static const char* const pieces[] = {
-            "(",           ")",
-            "{",           "}",
-            "[",           "]",
-            ";",           ",",
-            "..",          "grad(",
-            "float ",      "vec3",
-            "int ",        "mat2(",
-            "for ",        "if (",
-            "else ",       "break;",
-            "return ",     "const ",
-            "texture ",    "import \"",
-            "///",         "/*",
-            "@facts",      "0",
-            "1e308",       "-0.0",
-            "4294967295u", "2147483647",
-            "/ 0.0",       "p",
-            "= {",         "out ",
-            "detach(",     "\n",
-            "\xff",        "\xe2\x88\x92",
-            "..",          "? ",
-            ": ",          "in ",
-            "%x",          "yield ",
-            "for %i",
+            "(",     ")",      "{",       "}",      "[",        "]",         ";",           ",",
+            "..",    "grad(",  "float ",  "vec3",   "int ",     "mat2(",     "for ",        "if (",
+            "else ", "break;", "return ", "const ", "texture ", "import \"", "\" as ",      "_, ",
+            "///",   "/*",     "@facts",  "0",      "1e308",    "-0.0",      "4294967295u", "2147483647",
+            "/ 0.0", "p",      "= {",     "out ",   "detach(",  "\n",        "\xff",        "\xe2\x88\x92",
+            "..",    "? ",     ": ",      "in ",    "%x",       "yield ",    "for %i",
         };
         const size_t at = below(text.size() + 1), length = std::min<size_t>(text.size() - at, 1 + below(20));
         switch (below(9)) {

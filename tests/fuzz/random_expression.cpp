@@ -173,7 +173,14 @@ std::string ExpressionWriter::real_of_calls(int depth)
 {
     if (const Callable* const two = any_callable(Shape::of_two)) {
         const std::string x = tame(depth), y = tame(depth);
-        switch (below(4)) {
+        switch (below(6)) {
+        case 4:
+            return one_of({"by_one(", "slope_of("}) + two->name + one_of({"(_, " + y + ")", "(" + y + ", _)"}) + ", " +
+                   x + ")";
+        case 5: // of what is bound itself, and of what is built in
+            return one_of({"by_one(by_one(" + two->name + "(_, " + y + "), _)", "slope_of(by_two(" + two->name + ", _)",
+                           "by_two(clamp(_, -0.5, _)", "by_one(mix(" + y + ", _, 0.25)"}) +
+                   ", " + x + ")";
         case 0: return "grad(" + two->name + ")(" + x + ", " + y + ")";
         case 1: return "by_two(" + two->name + ", " + x + ")";
         default: return two->name + "(" + x + ", " + y + ")";

@@ -26,6 +26,8 @@ public:
         line("Pair pair(Mark m, float x) { return Pair(m, x, float[2](0.5 * x, x)); }");
         line("void swap(inout Pair a, out Mark b) { b = a.mark; b.c.zx = a.mark.c.xy; a.r += a.w[1]; }");
         line("float by_two(float f(float, float), float x) { return f(x, 0.5) - f(0.25, x); }");
+        line("float by_one(float f(float), float x) { return f(0.5 * x) - 0.25 * f(f(x)); }");
+        line("float slope_of(float f(float), float x) { return grad(f)(0.5 - x); }");
         line("float over(float f(vec3), const vec3 v) { return f(v.zxy) - 0.5 * f(v); }");
         line("float across(float f(vecN), const vecN v) { vecN w = vecN(0.5) - v; return f(w) - 0.5 * f(v); }");
         for (int i = static_cast<int>(below(4)); i > 0; --i) function();

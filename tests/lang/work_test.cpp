@@ -121,6 +121,11 @@ TEST_CASE("work: a file that is imported again is not read again, and many impor
         {"main.haptel", repeated(1000, "import \"a.haptel\";\n") + "texture t() { return 1mm * f(1.0); }"}, options);
     CHECK(result.program);
     CHECK(reads == 1);
+
+    std::string prefixed;
+    for (int i = 0; i < 20'000; ++i) prefixed += "import \"a.haptel\" as a" + std::to_string(i) + ";\n";
+    CHECK(compile({"main.haptel", prefixed + "texture t() { return 1mm * a7.f(1.0); }"}, options).program);
+    CHECK(reads == 2);
 }
 
 TEST_CASE("limits: what is imported is read up to 64 MiB, and the same file in many ways of writing its path too")
@@ -140,6 +145,21 @@ TEST_CASE("limits: what is imported is read up to 64 MiB, and the same file in m
     };
     CHECK(result_of([](size_t i) { return std::to_string(i); }) == "5 too-large");
     CHECK(result_of([](size_t i) { return std::string(i, '/') + "a"; }) == "5 too-large");
+}
+
+TEST_CASE("limits: functions that are bound to each other are there as often as that")
+{
+    const auto chain = [](size_t length) { // each binds what it has been passed twice
+        std::string all = "float both(float a(float), float b(float), float x) { return a(x) + b(x); }\n";
+        for (size_t i = 0; i < length; ++i)
+            all += "float f" + std::to_string(i) + "(float f(float), float x) { return " +
+                   (i == 0 ? "f(x)" : "f" + std::to_string(i - 1) + "(both(f, f, _), x)") + "; }\n";
+        return all + "texture t() { return 1m * f" + std::to_string(length - 1) + "(sin, p.x / 1m); }";
+    };
+    CHECK(compile({"main.haptel", chain(6)}, {}).program);
+    const CompileResult result = compile({"main.haptel", chain(100)}, {});
+    REQUIRE(result.diagnostics.has_errors());
+    CHECK(result.diagnostics.all().front().code == "too-large");
 }
 
 TEST_CASE("limits: what is too large to compile is refused by the formatter")

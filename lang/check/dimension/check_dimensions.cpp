@@ -9,7 +9,7 @@
 
 namespace haptel::lang {
 
-DimensionInstance& DimensionChecker::function(const FunctionInfo& info, const FunctionReferences& passed,
+DimensionInstance& DimensionChecker::function(const FunctionInfo& info, const PassedFunctions& passed,
                                               const Dimensions& arguments)
 {
     const auto [place, is_new] = instances.try_emplace({&info, passed, arguments});
@@ -80,7 +80,7 @@ void check_dimensions(const SourceSet& sources, const CheckedProgram& program, D
         const auto functions =
             static_cast<size_t>(std::ranges::count(function.parameters, true, &ParameterInfo::is_function));
         const Dimensions anything(function.parameters.size() - functions, Dimension::any());
-        report(checker.function(function, FunctionReferences(functions), anything), diagnostics);
+        report(checker.function(function, PassedFunctions(functions), anything), diagnostics);
     }
     if (!checker.spend(0))
         diagnostics.note({}, "dimension-limit", "this program is too large for all its dimensions to be checked");

@@ -7,11 +7,71 @@ namespace haptel::lang {
 
 using namespace ast;
 
-FunctionReference DimensionBody::resolved(const FunctionReference& reference) const
+namespace {
+
+// More is not looked into: lowering refuses it.
+constexpr size_t bound_max = 1000;
+
+const std::vector<ParameterInfo>* parameters_of(const PassedFunction& function)
 {
-    auto parameter = std::get_if<const Symbol*>(&reference);
-    if (!parameter) return reference;
-    return (*parameter)->slot < functions.size() ? functions[(*parameter)->slot] : FunctionReference{};
+    if (auto source = std::get_if<const FunctionInfo*>(&function.function)) return &(*source)->parameters;
+    if (auto overload = std::get_if<const BuiltinOverload*>(&function.function)) return &(*overload)->parameters;
+    return nullptr;
+}
+
+} // namespace
+
+std::strong_ordering PassedFunction::operator<=>(const PassedFunction& other) const
+{
+    if (const auto order = function <=> other.function; order != 0) return order;
+    if (const auto order = values <=> other.values; order != 0) return order;
+    return std::lexicographical_compare_three_way(functions.begin(), functions.end(), other.functions.begin(),
+                                                  other.functions.end());
+}
+
+size_t PassedFunction::size() const
+{
+    size_t all = 1 + values.size();
+    for (const PassedFunction& inner : functions) all += inner.size();
+    return all;
+}
+
+PassedFunction DimensionBody::resolved(const FunctionReference& reference)
+{
+    if (auto parameter = std::get_if<const Symbol*>(&reference))
+        return (*parameter)->slot < functions.size() ? functions[(*parameter)->slot] : PassedFunction{};
+    auto bound = std::get_if<const CallExpression*>(&reference);
+    if (!bound) return {reference};
+    PassedFunction made = resolved((*bound)->target.function);
+    bind(made, (*bound)->target, (*bound)->arguments);
+    return made.size() <= bound_max ? made : PassedFunction{};
+}
+
+// The arguments stand for what is not bound yet.
+void DimensionBody::bind(PassedFunction& function, const CallTarget& target,
+                         const std::vector<ExpressionPtr>& arguments)
+{
+    const std::vector<ParameterInfo>* const parameters = parameters_of(function);
+    const bool has_functions = !function.functions.empty();
+    if (parameters) function.values.resize(parameters->size());
+    const auto is_bound = [&](size_t i) {
+        return (*parameters)[i].is_function ? has_functions : function.values[i].is_given();
+    };
+    for (size_t at = 0, i = 0; at < arguments.size(); ++at, ++i) {
+        while (parameters && is_bound(i)) ++i;
+        const Expression& argument = *arguments[at];
+        if (!std::holds_alternative<std::monostate>(target.function_arguments[at])) {
+            PassedFunction passed = resolved(target.function_arguments[at]);
+            if (parameters) function.functions.push_back(std::move(passed));
+            continue;
+        }
+        if (!target.is_open.empty() && target.is_open[at]) continue;
+        const bool is_read = !parameters || (*parameters)[i].passing != Passing::out;
+        const bool counts = std::holds_alternative<const FunctionInfo*>(function.function) &&
+                            (*parameters)[i].type.scalar != Scalar::float_ && !(*parameters)[i].type.structure;
+        const Dimension found = is_read ? expression(argument) : Dimension::any();
+        if (parameters) function.values[i] = {counts ? Dimension::plain() : found, &argument};
+    }
 }
 
 Dimension DimensionBody::constructor(const Expression& e, const CallExpression& node)
@@ -32,24 +92,27 @@ Dimension DimensionBody::constructor(const Expression& e, const CallExpression& 
 Dimension DimensionBody::call(const Expression& e, const std::string& name, const CallTarget& target,
                               const std::vector<ExpressionPtr>& arguments, uint32_t order)
 {
-    const FunctionReference callee = resolved(target.function);
-    auto source = std::get_if<const FunctionInfo*>(&callee);
+    PassedFunction callee = resolved(target.function);
+    const std::vector<ParameterInfo>* const parameters = parameters_of(callee);
+    size_t by = 0; // the first number that is not bound: what a derivative is by
+    const auto is_by = [&](size_t i) {
+        const bool is_given = i < callee.values.size() && callee.values[i].is_given();
+        return !is_given && !(*parameters)[i].is_function && (*parameters)[i].type != image_type;
+    };
+    while (parameters && by < parameters->size() && !is_by(by)) ++by;
+    bind(callee, target, arguments);
+    if (!parameters) return Dimension::any();
+    auto source = std::get_if<const FunctionInfo*>(&callee.function);
     Call call{e.span, name};
-    for (size_t i = 0; i < arguments.size(); ++i) {
-        if (!std::holds_alternative<std::monostate>(target.function_arguments[i])) {
-            call.passed.push_back(resolved(target.function_arguments[i]));
-            continue;
-        }
-        const Type of = source ? (*source)->parameters[i].type : float_type;
-        const bool counts = of.scalar != Scalar::float_ && !of.structure;
-        const bool is_read = !source || (*source)->parameters[i].passing != Passing::out;
-        const Dimension found = is_read ? expression(*arguments[i]) : Dimension::any();
-        call.values.push_back(arguments[i].get());
-        call.dimensions.push_back(counts ? Dimension::plain() : found);
+    call.passed = callee.functions;
+    for (size_t i = 0; i < parameters->size(); ++i) {
+        if ((*parameters)[i].is_function) continue;
+        call.values.push_back(callee.values[i].written);
+        call.dimensions.push_back(callee.values[i].dimension);
     }
 
     Dimension result = Dimension::any();
-    if (auto overload = std::get_if<const BuiltinOverload*>(&callee)) {
+    if (auto overload = std::get_if<const BuiltinOverload*>(&callee.function)) {
         const bool is_power = (*overload)->builtin->id == BuiltinId::pow && order == 0;
         if (is_power && !call.dimensions[0].is_any() && !call.dimensions[0].is_plain()) return power(call);
         result = built_in(call, **overload);
@@ -70,9 +133,7 @@ Dimension DimensionBody::call(const Expression& e, const std::string& name, cons
                 if (!std::holds_alternative<LeftOut>(arguments[i]->node)) give(*arguments[i], written, *arguments[i]);
             }
     }
-    const auto is_number = [](const Expression* value) { return value->type != image_type; };
-    const auto by = std::ranges::find_if(call.values, is_number) - call.values.begin(); // a derivative's
-    for (uint32_t i = 0; i < order; ++i) result = result / call.dimensions[static_cast<size_t>(by)];
+    for (uint32_t i = 0; i < order; ++i) result = result / callee.values[by].dimension;
     return result;
 }
 

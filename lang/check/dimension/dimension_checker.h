@@ -12,6 +12,7 @@
 #include "lang/program/checked_program.h"
 #include "lang/text/diagnostic.h"
 
+#include <compare>
 #include <map>
 #include <optional>
 #include <string>
@@ -21,7 +22,30 @@
 namespace haptel::lang {
 
 using Dimensions = std::vector<Dimension>;
-using FunctionReferences = std::vector<FunctionReference>;
+
+// A value that is passed: two are alike if their dimensions are.
+struct PassedValue {
+    Dimension dimension = Dimension::any();
+    const ast::Expression* written = nullptr; // null: none is passed
+    bool is_given() const { return written; }
+    bool operator==(const PassedValue& other) const { return std::is_eq(*this <=> other); }
+    std::strong_ordering operator<=>(const PassedValue& other) const
+    {
+        if (is_given() != other.is_given()) return is_given() <=> other.is_given();
+        return dimension <=> other.dimension;
+    }
+};
+
+// A function that is called or passed, with what is bound of its arguments: as BoundFunction in lowering.
+struct PassedFunction {
+    FunctionReference function = {};            // of the source or built in; empty: it is not known
+    std::vector<PassedValue> values = {};       // by parameter
+    std::vector<PassedFunction> functions = {}; // what its parameters are that are functions
+    std::strong_ordering operator<=>(const PassedFunction& other) const; // a default one would ask itself
+    bool operator==(const PassedFunction& other) const { return std::is_eq(*this <=> other); }
+    size_t size() const; // in functions and values
+};
+using PassedFunctions = std::vector<PassedFunction>;
 
 // How to mend something.
 struct DimensionHint {
@@ -58,8 +82,7 @@ public:
 
     // `arguments` by the parameters that are values, `passed` by those that are functions; no function is a parameter
     // any more, but it may be unknown.
-    DimensionInstance& function(const FunctionInfo& info, const FunctionReferences& passed,
-                                const Dimensions& arguments);
+    DimensionInstance& function(const FunctionInfo& info, const PassedFunctions& passed, const Dimensions& arguments);
     bool has_seen(const FunctionInfo& function) const { return choices.contains(&function); }
     // False once more work was spent than a program of sensible size can need: then everything fits.
     bool spend(size_t steps) { return (work += steps) <= work_max; }
@@ -73,7 +96,7 @@ public:
 private:
     struct Key {
         const FunctionInfo* function;
-        FunctionReferences passed;
+        PassedFunctions passed;
         Dimensions arguments;
         auto operator<=>(const Key&) const = default;
     };
@@ -90,7 +113,7 @@ public:
     {
     }
 
-    void function(const FunctionInfo& info, const FunctionReferences& passed, const Dimensions& arguments);
+    void function(const FunctionInfo& info, const PassedFunctions& passed, const Dimensions& arguments);
     void texture(const CheckedTexture& texture);
     void declaration(const ast::Declaration& node);
 
@@ -109,7 +132,7 @@ private:
         const std::string& name;
         std::vector<const ast::Expression*> values = {}; // that are passed
         Dimensions dimensions = {};                      // theirs
-        FunctionReferences passed = {};
+        PassedFunctions passed = {};
     };
     using Variables = std::vector<Variable>; // by Symbol::slot
     using Flow = std::optional<Variables>;   // nothing: not reached
@@ -132,7 +155,8 @@ private:
     Dimension built_in(const Call& call, const BuiltinOverload& overload);
     Dimension power(const Call& call);
     void blame_call(const Call& call, const FunctionInfo& callee);
-    FunctionReference resolved(const FunctionReference& reference) const;
+    PassedFunction resolved(const FunctionReference& reference);
+    void bind(PassedFunction& function, const CallTarget& target, const std::vector<ast::ExpressionPtr>& arguments);
 
     // ---- statements
     void statement(const ast::Statement& s);
@@ -159,7 +183,7 @@ private:
     DimensionChecker& owner;
     DimensionInstance& instance;
     bool is_library;
-    FunctionReferences functions; // parameters that are functions, by Symbol::slot
+    PassedFunctions functions; // parameters that are functions, by Symbol::slot
     Flow flow;
     std::vector<Flow*> loop_exits, loop_turns; // innermost last: what break and what continue brings together
     std::unordered_map<const ast::For*, Variables> heads;

@@ -18,7 +18,7 @@ constexpr int passes_max = 16;
 
 } // namespace
 
-void DimensionBody::function(const FunctionInfo& info, const FunctionReferences& passed, const Dimensions& arguments)
+void DimensionBody::function(const FunctionInfo& info, const PassedFunctions& passed, const Dimensions& arguments)
 {
     functions = passed;
     info_of = &info;

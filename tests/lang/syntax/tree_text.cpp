@@ -171,7 +171,8 @@ std::string tree_text(const Statement& statement)
 std::string tree_text(const File& file)
 {
     std::string text;
-    for (const Import& import : file.imports) text += "import " + import.path + "\n";
+    for (const Import& import : file.imports)
+        text += "import " + import.path + (import.prefix.text.empty() ? "" : " as " + import.prefix.text) + "\n";
     for (const Struct& structure : file.structs) {
         text += "struct " + structure.name.text;
         for (const Struct::Member& member : structure.members)

@@ -73,7 +73,7 @@ TEST_CASE("check --watch goes on while a file is gone, and follows imports")
 {
     Watched watched;
     const Folder& folder = watched.folder;
-    folder.write("flat.haptel", "import \"depth.haptel\";\ntexture flat() { return DEPTH; }\n");
+    folder.write("flat.haptel", "import \"depth.haptel\" as depth;\ntexture flat() { return depth.DEPTH; }\n");
     folder.write("depth.haptel", "const float DEPTH = 10um;\n");
     const std::string flat = watched.quoted("flat.haptel"), kept = watched.quoted("kept");
     watched.wait_for(1);
