@@ -155,8 +155,11 @@ void BodyLowering::bind_functions(const std::vector<BoundFunction>& passed)
 
 void BodyLowering::make_parameters(BoundFunction& function)
 {
-    for (size_t i = 0; i < function.values.size(); ++i)
-        for (Value& value : function.values[i]) value = builder.parameter(ir_type(function.parameters()[i].type));
+    for (size_t i = 0; i < function.values.size(); ++i) {
+        const std::vector<ir::Type> types = ir_types(function.parameters()[i].type);
+        for (size_t part = 0; part < function.values[i].size(); ++part)
+            function.values[i][part] = builder.parameter(types[part]);
+    }
     for (BoundFunction& inner : function.functions) make_parameters(inner);
 }
 
