@@ -150,6 +150,7 @@ private:
     Type check(ast::Expression& e, ast::GradCall& node);
     Type check(ast::Expression& e, ast::Member& node) { return member(e, node, all_parts); }
     Type check(ast::Expression& e, ast::Index& node);
+    uint64_t column_of(const ast::Expression& object, int64_t column) const;
     Type check(ast::Expression& e, ast::BraceList& node);
     Type check(ast::Expression&, ast::LeftOut& node) { return node.parameter->type; }
     Type read(ast::Expression& e, ast::NameExpression& node, uint64_t parts);
@@ -233,7 +234,10 @@ private:
     Type array_of(ast::Expression& e, ast::BraceList& list, const ast::TypeName& written, Type element,
                   const std::string& name);
     Type in_body(Type type, Span span);
-    std::optional<uint32_t> size_of_array(const ast::TypeName& type);
+    std::optional<uint32_t> size_of_array(const std::shared_ptr<ast::ArraySize>& written);
+    std::optional<Type> with_sizes(const ast::TypeName& written, Type element);
+    bool is_row(ast::Expression& cell, ast::BraceList& list, const ast::TypeName& written, Type& row);
+    bool add_cells(const ast::BraceList& list, Type element, std::vector<ConstantPart>* cells);
 
     // ---- loops
     std::vector<const ast::NameExpression*> assigned_in(const ast::StatementPtr& s) const;
@@ -261,6 +265,7 @@ private:
     uint32_t slot_count = 0; // of variables declared so far: no slot is used twice
     uint32_t loop_depth = 0;
     Flow* switch_exit = nullptr;                            // of the switch that a break leaves; null: it leaves a loop
+    uint64_t columns_read = all_parts;                      // of the array of arrays that is read next
     uint32_t choice_depth = 0;                              // of operands that may not be evaluated, or more than once
     std::vector<const Symbol*>* written_by_calls = nullptr; // in the innermost statement
     std::vector<const Symbol*> must_be_written;             // parameters of the function

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <utility>
 
 namespace haptel::lang {
 
@@ -55,8 +56,9 @@ std::string part_name(Type type, uint32_t part)
             }
     }
     if (type.is_vector()) return std::string(".") + "xyzw"[part];
-    if (!type.is_matrix()) return "[" + std::to_string(part) + "]";
-    return "[" + std::to_string(part / type.size) + "][" + std::to_string(part % type.size) + "]";
+    if (!type.is_matrix() && !type.has_rows()) return "[" + std::to_string(part) + "]";
+    const uint32_t size = type.has_rows() ? type.row_size : type.size;
+    return "[" + std::to_string(part / size) + "][" + std::to_string(part % size) + "]";
 }
 
 std::string operator_hint(BinaryOp op, Type left, Type right)
@@ -235,10 +237,11 @@ Type BodyChecker::read(Expression& e, NameExpression& node, uint64_t parts)
     const std::string type = to_string(symbol->type), count = std::to_string(symbol->type.array_size);
     diagnostics
         .error(e.span, "unassigned", quoted(node.name + part) + " is read here before it has a value on every path",
-               symbol->type.is_array() ? "give each element one: for (int i = 0; i < " + count + "; ++i) " + node.name +
-                                             "[i] = " + zero_of(symbol->type.element()) + ";"
-                                       : "give it one where it is declared: " + type + " " + node.name + " = " +
-                                             zero_of(symbol->type) + ";")
+               symbol->type.has_rows() ? "give each element one, in a loop over rows and one over the elements of a row"
+               : symbol->type.is_array() ? "give each element one: for (int i = 0; i < " + count + "; ++i) " +
+                                               node.name + "[i] = " + zero_of(symbol->type.element()) + ";"
+                                         : "give it one where it is declared: " + type + " " + node.name + " = " +
+                                               zero_of(symbol->type) + ";")
         .related.push_back({symbol->span, quoted(node.name) + " is declared here"});
     return symbol->type;
 }
@@ -349,14 +352,30 @@ Type BodyChecker::check(Expression& e, Conditional& node)
                 conversion_hint(b, a, excerpt(*node.when_false), operand(*node.when_false)));
 }
 
+// The parts that "[...][column]" may pick of an array of arrays, whose rows are all that is known; of others all.
+uint64_t BodyChecker::column_of(const Expression& object, int64_t column) const
+{
+    auto name = std::get_if<NameExpression>(&object.node);
+    const Symbol* symbol = name ? find(name->name) : nullptr;
+    if (!symbol || !symbol->type.has_rows() || symbol->type.cell_count() > 64) return all_parts;
+    uint64_t parts = 0;
+    for (uint32_t row = 0; row < symbol->type.array_size; ++row)
+        if (column >= 0 && column < symbol->type.row_size)
+            parts |= uint64_t{1} << (row * symbol->type.row_size + static_cast<uint32_t>(column));
+    return parts;
+}
+
 Type BodyChecker::check(Expression& e, Index& node)
 {
     auto name = std::get_if<NameExpression>(&node.object->node);
+    const uint64_t columns = std::exchange(columns_read, all_parts);
     const Type index = expression(*node.index); // first: it says which part is read
     const Symbol* symbol = name ? find(name->name) : nullptr;
     const ir::IntRange at = range(*node.index);
     const bool is_one_part = symbol && is_integer(index) && at.is_constant();
-    const uint64_t parts = is_one_part ? parts_at(symbol->type, at.minimum) : all_parts;
+    const uint64_t parts = (is_one_part ? parts_at(symbol->type, at.minimum) : all_parts) & columns;
+    if (auto row = std::get_if<Index>(&node.object->node); row && is_integer(index) && at.is_constant())
+        columns_read = column_of(*row->object, at.minimum);
     const Type object = node.object->type = name ? read(*node.object, *name, parts) : expression(*node.object);
     if (object.is_error()) return object;
     if (object.is_scalar() || object.is_struct())

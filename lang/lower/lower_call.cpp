@@ -3,6 +3,7 @@
 #include "lang/ir/op_info.h"
 #include "lang/lower/lowering.h"
 #include "lang/program/scope.h"
+#include "lang/text/limits.h"
 
 #include <algorithm>
 
@@ -19,9 +20,6 @@ constexpr size_t value_count_max = 250'000;
 // Functions of the IR take images behind their other arguments: derivatives and facts are with respect to the first
 // ones.
 constexpr bool images_last[] = {false, true};
-
-// A function that is bound to another may have others bound to it in turn: so many functions and values in all.
-constexpr size_t bound_max = 1000;
 
 // The parameters that are values, as the IR takes them: `by` first, images last.
 std::vector<size_t> in_order(const std::vector<ParameterInfo>& parameters, size_t by)
@@ -410,7 +408,7 @@ const std::vector<uint32_t>& ModuleLowering::tables(const Symbol& symbol)
 {
     std::vector<uint32_t>& made = component_tables[&symbol];
     if (!made.empty()) return made;
-    const Type element = symbol.type.element();
+    const Type element = symbol.type.cell();
     const std::vector<ir::Type> types = ir_types(element);
     for (uint32_t component = 0; component < element.components(); ++component) {
         ir::Table table;

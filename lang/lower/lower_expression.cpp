@@ -38,6 +38,13 @@ Value conversion(ir::Builder& builder, Value value, Scalar from, Scalar to)
     return value;
 }
 
+// Null: the expression is no constant table.
+const Symbol* table_of(const Expression& e)
+{
+    auto name = std::get_if<NameExpression>(&e.node);
+    return name && name->symbol->kind == SymbolKind::table ? name->symbol : nullptr;
+}
+
 // So cheap that choosing between two of them needs no branch.
 bool is_leaf(const Expression& e)
 {
@@ -68,7 +75,7 @@ std::vector<ir::Type> ir_types(Type type)
 {
     if (!type.structure) return std::vector<ir::Type>(type.components(), ir_type(type));
     std::vector<ir::Type> types;
-    const uint32_t count = type.is_array() ? type.array_size : 1;
+    const uint32_t count = type.is_array() ? type.cell_count() : 1;
     for (uint32_t i = 0; i < count; ++i)
         for (const StructMember& member : type.structure->members) {
             const std::vector<ir::Type> more = ir_types(member.type);
@@ -379,18 +386,41 @@ void BodyLowering::locate(const Expression& target)
             located[index->index.get()] = index_within(*index->index, whole->type.element_count());
 }
 
+// Of a constant table, at indices in range.
+Values BodyLowering::cell(const Symbol& table, Value row, Value column)
+{
+    if (table.type.has_rows()) {
+        const Value size = builder.i32(static_cast<int32_t>(table.type.row_size));
+        row = builder.operation(Op::iadd, {builder.operation(Op::imul, {row, size}), column});
+        row = builder.clamp_index(row, table.type.cell_count());
+    }
+    Values made;
+    const std::vector<ir::Type> types = ir_types(table.type.cell());
+    for (uint32_t component : owner.tables(table)) {
+        const Value part = builder.table(component, row);
+        const bool is_truth = types[made.size()] == ir::Type::boolean; // which no table holds
+        made.push_back(is_truth ? binary_scalar(BinaryOp::not_equal, part, builder.i32(0)) : part);
+    }
+    return made;
+}
+
 Values BodyLowering::lower(const Expression& e, const Index& node)
 {
-    auto name = std::get_if<NameExpression>(&node.object->node);
-    if (name && name->symbol->kind == SymbolKind::table) {
-        const Value at = index_within(*node.index, name->symbol->type.array_size);
+    auto row = std::get_if<Index>(&node.object->node);
+    if (const Symbol* table = row ? table_of(*row->object) : nullptr; table && table->type.has_rows()) {
+        const Value at = index_within(*row->index, table->type.array_size);
+        const Value column = index_within(*node.index, table->type.row_size);
         builder.span = e.span;
+        return cell(*table, at, column);
+    }
+    if (const Symbol* table = table_of(*node.object)) {
+        const Value at = index_within(*node.index, table->type.array_size);
+        builder.span = e.span;
+        if (!table->type.has_rows()) return cell(*table, at, builder.i32(0));
         Values made;
-        const std::vector<ir::Type> types = ir_types(e.type);
-        for (uint32_t table : owner.tables(*name->symbol)) {
-            const Value cell = builder.table(table, at);
-            const bool is_truth = types[made.size()] == ir::Type::boolean; // which no table holds
-            made.push_back(is_truth ? binary_scalar(BinaryOp::not_equal, cell, builder.i32(0)) : cell);
+        for (uint32_t column = 0; column < table->type.row_size; ++column) {
+            const Values more = cell(*table, at, builder.i32(static_cast<int32_t>(column)));
+            made.insert(made.end(), more.begin(), more.end());
         }
         return made;
     }

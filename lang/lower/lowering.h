@@ -142,6 +142,7 @@ private:
     }
     Values convert(const Values& parts, Type from, Type to);
     Values binary(ast::BinaryOp op, const Values& a, Type a_type, const Values& b, Type b_type);
+    Values cell(const Symbol& table, ir::Value row, ir::Value column);
     Values linear_product(const Values& left, const Values& right, size_t size);
     ir::Value binary_scalar(ast::BinaryOp op, ir::Value a, ir::Value b);
     ir::Value integer(ir::Op op, ir::Value a, ir::Value b); // signed operation, on the bits where operands are u32

@@ -39,12 +39,14 @@ struct ArraySize {
     std::optional<uint32_t> number; // nothing after an error
 };
 
-// "vec3", "float[3]", "const float A[3]": the base name and, for arrays, the size (absent in `float A[] = {...}`). All
-// names of one declaration have their type's size in common: it is read and checked once, however many they are.
+// "vec3", "float[3]", "const float A[3][4]": the base name and, for arrays, the sizes (absent in `float A[] = {...}`).
+// All names of one declaration have their type's sizes in common: each is read and checked once, however many they are.
 struct TypeName {
     Name base;
     bool is_array = false;
-    std::shared_ptr<ArraySize> array_size;
+    std::shared_ptr<ArraySize> array_size = {};
+    bool has_rows = false; // "[3][4]"
+    std::shared_ptr<ArraySize> row_size = {};
 };
 
 enum class UnaryOp { negate, plus, logical_not, bit_not };

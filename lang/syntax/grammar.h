@@ -132,7 +132,7 @@ private:
     ast::ExpressionPtr postfix();
     ast::ExpressionPtr primary();
     ast::ExpressionPtr number();
-    ast::ExpressionPtr brace_list();
+    ast::ExpressionPtr brace_list(bool is_row = false);
     ast::ExpressionPtr name_or_call();
     bool at_prefixed_name(size_t ahead = 0, Token called_by = Token::left_paren) const;
     ast::Name prefixed_name();

@@ -41,7 +41,7 @@ Name Grammar::name_after(TypeName& type)
     return result;
 }
 
-// type = name ["[" [expression] "]"]
+// type = name ["[" [expression] "]" ["[" [expression] "]"]]
 TypeName Grammar::type_name()
 {
     TypeName type;
@@ -62,23 +62,30 @@ TypeName Grammar::type_name()
     return type;
 }
 
+// As in GLSL "float[4] a[3]" is "float a[3][4]".
 void Grammar::array_suffix(TypeName& type)
 {
+    std::vector<std::shared_ptr<ArraySize>> sizes; // null: it is counted
+    const size_t known = type.has_rows ? 2 : type.is_array ? 1 : 0;
     while (at(Token::left_bracket)) {
         const Span opener = span();
-        if (type.is_array) {
-            error(opener, "nested-table", "tables have one dimension",
+        if (sizes.size() + known == 2) {
+            error(opener, "nested-table", "tables have at most two dimensions",
                   "write the rows one behind the other and index by row * columns + column");
             type.base.text.clear(); // of no type: nothing more is said about it
         }
         const Nesting nesting(*this, Nesting::bracket);
         advance();
-        type.is_array = true;
-        type.array_size.reset();
-        if (!at(Token::right_bracket))
-            type.array_size = std::make_shared<ArraySize>(ArraySize{expression(), false, {}});
+        sizes.push_back(nullptr);
+        if (!at(Token::right_bracket)) sizes.back() = std::make_shared<ArraySize>(ArraySize{expression(), false, {}});
         close(Token::right_bracket, opener);
     }
+    if (sizes.empty()) return;
+    if (type.is_array) sizes.push_back(type.array_size);
+    type.is_array = true;
+    type.array_size = sizes[0];
+    type.has_rows |= sizes.size() > 1;
+    if (sizes.size() > 1) type.row_size = sizes[1];
 }
 
 // Imports may stand below what uses them.

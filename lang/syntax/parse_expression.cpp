@@ -206,8 +206,8 @@ ExpressionPtr Grammar::number()
                                      std::string(sources.text(where))});
 }
 
-// brace_list = "{" [expression {"," expression} [","]] "}"
-ExpressionPtr Grammar::brace_list()
+// brace_list = "{" [element {"," element} [","]] "}"                    element = expression | brace_list
+ExpressionPtr Grammar::brace_list(bool is_row)
 {
     const Span opener = span();
     BraceList list_of;
@@ -215,11 +215,11 @@ ExpressionPtr Grammar::brace_list()
     advance();
     while (!at(Token::right_brace) && !at(Token::end)) {
         if (at(Token::left_brace)) {
-            error(span(), "nested-table", "tables have one dimension",
-                  "write the rows one behind the other and index by row * columns + column");
-            const Span inner = span();
-            brace_list();
-            list_of.elements.push_back(unknown(since(inner)));
+            if (is_row)
+                error(span(), "nested-table", "tables have at most two dimensions",
+                      "write the rows one behind the other and index by row * columns + column");
+            list_of.elements.push_back(brace_list(true));
+            if (is_row) list_of.elements.back() = unknown(list_of.elements.back()->span);
         } else {
             list_of.elements.push_back(expression());
         }

@@ -317,7 +317,9 @@ bool Grammar::at_declaration() const
     if (!at(Token::name)) return false;
     if (kind(1) == Token::name) return true;
     if (kind(1) == Token::left_bracket) {
-        const size_t closer = closer_ahead(1);
+        size_t closer = closer_ahead(1);
+        if (kind(closer) == Token::right_bracket && kind(closer + 1) == Token::left_bracket)
+            closer = closer_ahead(closer + 1);
         return kind(closer) == Token::right_bracket && kind(closer + 1) == Token::name;
     }
     return is_own_type(text()) && kind(1) != Token::left_paren && kind(1) != Token::dot;

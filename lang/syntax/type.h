@@ -19,6 +19,7 @@ struct Type {
     uint32_t array_size = 0;               // 0: not an array
     uint8_t columns = 1;                   // 2 to 4: square matrix of floats, column after column as in GLSL
     const StructInfo* structure = nullptr; // of a struct, which is its members one behind the other
+    uint32_t row_size = 0; // of an array of arrays: how many elements each has; 0: its elements are no arrays
 
     static constexpr Type error() { return {}; }
     bool is_error() const { return scalar == Scalar::error; }
@@ -29,12 +30,16 @@ struct Type {
     bool is_struct() const { return structure && !is_array(); }
     bool is_numeric() const { return scalar == Scalar::float_ || is_whole(); }
     bool is_whole() const { return scalar == Scalar::int_ || scalar == Scalar::uint_; } // or of whole numbers
+    bool has_rows() const { return row_size > 0; }
     // What an index picks: an element of an array, a column of a matrix, a component of a vector.
     constexpr Type element() const
     {
-        if (array_size > 0) return {scalar, size, 0, columns, structure};
+        if (array_size > 0) return {scalar, size, row_size, columns, structure, 0};
         return {scalar, columns > 1 ? size : uint8_t{1}, 0, 1};
     }
+    // Of an array, what is in it after all indices, and how many of that.
+    constexpr Type cell() const { return {scalar, size, 0, columns, structure}; }
+    uint32_t cell_count() const { return array_size * (has_rows() ? row_size : 1); }
     uint32_t element_count() const { return is_array() ? array_size : is_matrix() ? columns : size; }
     uint32_t components() const;
     bool operator==(const Type&) const = default;
@@ -83,13 +88,16 @@ struct StructInfo {
 inline uint32_t Type::components() const
 {
     const uint32_t of_element = structure ? structure->components : uint32_t{size} * columns;
-    return of_element * (is_array() ? array_size : 1);
+    return of_element * (is_array() ? cell_count() : 1);
 }
 
 // As written in source: "mat3", "ivec3", "float[4]".
 inline std::string to_string(Type type)
 {
-    if (type.is_array()) return to_string(type.element()) + "[" + std::to_string(type.array_size) + "]";
+    const auto in_brackets = [](uint32_t count) { return "[" + std::to_string(count) + "]"; };
+    if (type.is_array())
+        return to_string(type.cell()) + in_brackets(type.array_size) +
+               (type.has_rows() ? in_brackets(type.row_size) : "");
     if (type.is_matrix()) return "mat" + std::to_string(type.size);
     if (type.is_vector()) {
         const Scalar of = type.scalar;

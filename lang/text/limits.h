@@ -21,6 +21,9 @@ constexpr size_t overloads_max = 256;
 constexpr size_t parameters_max = 1'000;
 // Variables of one body: every `if` and `for` asks what each of them is behind it.
 constexpr size_t variables_max = 1'000;
+// Functions and numbers that are bound to a function that is passed, and to those bound to it in turn: one that is
+// bound to two others is there twice.
+constexpr size_t bound_max = 1'000;
 // IR instructions of a texture's body with all it calls, and of its entries once derivatives are made: machine code of
 // one program takes about a tenth of a millisecond for each.
 constexpr size_t instructions_max = 20'000, entry_instructions_max = 100'000;

@@ -142,7 +142,9 @@ std::string ExpressionWriter::real(int depth)
     case 18: return "mod(" + a() + ", " + one_of({"1.5", "0.7", "-2.0"}) + ")";
     case 19: return "atan(" + a() + ", " + a() + ")";
     case 20: return choice(Kind::real, depth);
-    case 21: return "T[" + index(4, depth) + "]";
+    case 21:
+        if (below(2)) return "R[" + index(2, depth) + "][" + index(3, depth) + "]";
+        return "T[" + index(4, depth) + "]";
     case 22: return one_of({"float(", "1e-3 * float(", "sin("}) + "(" + whole(depth - 1) + ") & 15)";
     case 23: return "fma(" + a() + ", " + a() + ", " + a() + ")";
     case 24: return real_of_calls(depth);
@@ -223,7 +225,7 @@ std::string ExpressionWriter::whole(int depth)
     case 4: return one_of({"min(", "max("}) + a() + ", " + a() + ")";
     case 5: return one_of({"abs(", "~(", "sign(", "-("}) + a() + ")";
     case 6: return "int(" + one_of({"3.0 * ", "1e9 * ", ""}) + real(depth - 1) + ")";
-    case 7: return "W[" + index(4, depth) + "]";
+    case 7: return below(2) ? "P[" + index(2, depth) + "][" + index(2, depth) + "]" : "W[" + index(4, depth) + "]";
     default:
         if (const Callable* const one = any_callable(Shape::of_ints))
             return one->name + "(" + a() + ", " + word(depth - 1) + ")";

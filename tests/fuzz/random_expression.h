@@ -59,6 +59,7 @@ protected:
     std::string whole_number();
     std::string swizzle(int from, int size); // ".xy", of a vector of `from` components
     const Callable* any_callable(Shape shape);
+    std::string reals(int size, int depth); // a list of arguments
 
 private:
     std::mt19937_64 random;
@@ -68,7 +69,6 @@ private:
     std::string choice(Kind kind, int depth);
     std::string real_of_parts(int depth);
     std::string real_of_calls(int depth);
-    std::string reals(int size, int depth); // a list of arguments
 };
 
 } // namespace haptel::fuzz

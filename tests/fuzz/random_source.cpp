@@ -16,6 +16,8 @@ public:
         line("const uint[3] U = {1u, 4294967295u, 0x10u};");
         line("const vec2 V[3] = {vec2(0.5), vec2(1.0, -2.0), vec2(" + number() + ")};");
         line("const mat2 M[2] = {mat2(0.6, 0.8, -0.8, 0.6), mat2(2.0)};");
+        line("const float R[2][3] = {{0.5, " + number() + ", -1.0}, {2.0, 0.25, " + number() + "},};");
+        line("const int P[][] = {{1, -2}, {3, " + whole_number() + "}, {0, 7}};");
         line("const float C1 = " + number() + " * 0.5, C2 = 1.0 - " + number() + ";");
         line("const int FEW = 1 + 2;");
         line("const ivec3 C[2] = {ivec3(1, -2, 3), ivec3(2147483647, " + whole_number() + ", 0)};");
@@ -437,8 +439,22 @@ private:
         scope.push_back({element, Kind::real, true});
     }
 
+    // Its elements, like those of a list.
+    void rows()
+    {
+        const std::string name = fresh(), element = fresh();
+        line("float " + name + "[2][3]" +
+             one_of({";", " = R;", " = {{" + reals(3, 1) + "}, float[3](" + reals(3, 1) + ")};"}));
+        line("for (int i = 0; i < 2; ++i) for (int j = 0; j < 3; ++j) " + name + "[i][j] = " + tame(1) + ";");
+        line(name + "[" + index(2, 2) + "][" + index(3, 1) + "]" + one_of({" = ", " += "}) + tame(2) + ";");
+        line(name + "[" + index(2, 1) + "] = float[3](" + reals(3, 1) + ");");
+        line("float " + element + " = " + name + "[" + index(2, 1) + "][" + index(3, 1) + "] - " + name + "[1][2];");
+        scope.push_back({element, Kind::real, true});
+    }
+
     void array()
     {
+        if (below(3) == 0) return rows();
         const std::string name = fresh(), whole_copy = fresh();
         line(one_of({"float " + name + "[3]", "float[3] " + name, "float[] " + name}) + " = {" + real(2) + ", " +
              real(1) + ", " + number() + "};");

@@ -1,5 +1,6 @@
 // Dimensions of calls: by the rules of what is built in, by looking into what is written.
 #include "lang/check/dimension/dimension_checker.h"
+#include "lang/text/limits.h"
 
 #include <algorithm>
 
@@ -8,9 +9,6 @@ namespace haptel::lang {
 using namespace ast;
 
 namespace {
-
-// More is not looked into: lowering refuses it.
-constexpr size_t bound_max = 1000;
 
 const std::vector<ParameterInfo>* parameters_of(const PassedFunction& function)
 {
@@ -44,7 +42,7 @@ PassedFunction DimensionBody::resolved(const FunctionReference& reference)
     if (!bound) return {reference};
     PassedFunction made = resolved((*bound)->target.function);
     bind(made, (*bound)->target, (*bound)->arguments);
-    return made.size() <= bound_max ? made : PassedFunction{};
+    return made.size() <= bound_max ? made : PassedFunction{}; // lowering refuses it
 }
 
 // The arguments stand for what is not bound yet.

@@ -42,6 +42,8 @@ TEST_CASE("format: spaces")
           "bool f(bool a, int b)\n{\n    return !a && (b & 1) == ~b || a ? true : false;\n}\n");
     CHECK(formatted("import\"a.haptel\";import \"b.haptel\" ;const float A[2]={1.0,2.0,};") ==
           "import \"a.haptel\";\nimport \"b.haptel\";\nconst float A[2] = {1.0, 2.0,};\n");
+    CHECK(formatted("const float A[ 2 ] [2]={ {1.0,2.0},{ 3.0 , 4.0 } , };") ==
+          "const float A[2][2] = {{1.0, 2.0}, {3.0, 4.0},};\n");
     CHECK(formatted("import \"a.haptel\"as  a;float f(float x){return a . f(x)*a .K+grad( a.f )(x);}") ==
           "import \"a.haptel\" as a;\n\nfloat f(float x)\n{\n    return a.f(x) * a.K + grad(a.f)(x);\n}\n");
     CHECK(formatted("float f(float x){ if(x>0.0)++x;else--x; return x; }") ==

@@ -166,8 +166,10 @@ TEST_CASE("habits of other languages get one message each, and what to write")
     CHECK(in_body("bool2 b = lessThan(p.xy, q.xy);") == "2:1-6 foreign-word: 'bool2' is not a type of Haptel\n");
     CHECK(in_body("float *a = &b;") == "2:7 no-pointers: there are no pointers or references in Haptel\n");
     CHECK(in_body("a = b->c;") == "2:6-8 no-pointers: there are no pointers in Haptel\n");
-    CHECK(in_body("float A[2][2];") == "2:11 nested-table: tables have one dimension\n");
-    CHECK(in_body("const float A[4] = {{1, 2}, {3, 4}};") == "2:21 nested-table: tables have one dimension\n");
+    CHECK(in_body("float A[2][2][2];") == "2:14 nested-table: tables have at most two dimensions\n");
+    CHECK(in_body("float[2][2] A[2];") == "2:14 nested-table: tables have at most two dimensions\n");
+    CHECK(in_body("const float A[2][2] = {{1, {2}}, {3, 4}};") ==
+          "2:28 nested-table: tables have at most two dimensions\n");
     CHECK(in_file("#include \"a\"\nfloat f() { return 1.0; }") == "1:1-9 preprocessor: Haptel has no '#include'\n");
     CHECK(in_file("struct S { float a; vec3 b; } s;\nfloat f() { return 1.0; }") ==
           "1:31 struct: a struct is declared on its own, found 's'\n");

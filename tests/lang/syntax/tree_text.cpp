@@ -61,7 +61,10 @@ std::string list(const std::vector<ExpressionPtr>& expressions)
 std::string type_text(const TypeName& type)
 {
     if (!type.is_array) return type.base.text;
-    return type.base.text + "[" + (type.array_size ? tree_text(*type.array_size->written) : "") + "]";
+    const auto in_brackets = [](const std::shared_ptr<ArraySize>& size) {
+        return "[" + (size ? tree_text(*size->written) : "") + "]";
+    };
+    return type.base.text + in_brackets(type.array_size) + (type.has_rows ? in_brackets(type.row_size) : "");
 }
 
 struct ExpressionText {

@@ -146,7 +146,7 @@ TEST_CASE("diagnostics: what follows from a mistake is not said")
         {"const afloat A = 1.0;\nconst float B = A > 0.0 ? 1.0 : 2.0;\ntexture t() { return 1mm * B; }",
          "1:7 unknown-type"},
         {"const float A[] = float[3](1.0, 2.0);\ntexture t() { return A[0] * 1mm; }", "1:25 table-size"},
-        {"const float A[2][2] = {{1.0, 2.0}, {3.0, 4.0}};\ntexture t() { return A[0] * 1mm; }", "1:17 nested-table"},
+        {"const float A[2] = {{1.0, 2.0}, {3.0, 4.0}};\ntexture t() { return A[0] * 1mm; }", "1:21 nested-table"},
     };
     for (const auto& [text, expected] : cases) {
         CAPTURE(text);
