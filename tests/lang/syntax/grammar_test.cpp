@@ -81,7 +81,7 @@ TEST_CASE("grammar: what it derives, the parser accepts")
                       strings[] = {"\"a.haptel\"", "\"wood/oak.haptel\""},
                       numbers[] = {"1", "0x1fu", "2.5", ".5", "1e-3", "0.8mm", "90deg", "3u", "1.0f"};
     std::set<std::string> used;
-    for (int round = 0; round < 3000; ++round) {
+    for (int round = 0; round < 5000; ++round) {
         std::string text;
         for (const std::string& terminal : grammar.derive("file", random, used)) {
             text += terminal == "name"     ? names[random() % std::size(names)]
@@ -98,7 +98,10 @@ TEST_CASE("grammar: what it derives, the parser accepts")
         if (diagnostics.has_errors()) FAIL(rendered(diagnostics, sources)); // empty bodies are warned of
         if (round % 5 == 0) check_format(text, grammar);
     }
-    for (const std::string& rule : grammar.rules()) CHECK(used.count(rule) == 1);
+    for (const std::string& rule : grammar.rules()) {
+        CAPTURE(rule);
+        CHECK(used.count(rule) == 1);
+    }
 }
 
 TEST_CASE("grammar: the library and the examples can be derived")
