@@ -28,7 +28,8 @@ bool call_a_texture()
     const TextureResult made = jit::make_binding(compiled.program, "ripple", request);
     if (!made.binding) return fmt::print("{}", made.diagnostics), false;
 
-    const haptel_point point{{0.0031, 0.0042, 0}, {}, {}, 0, {}, {}};
+    haptel_point point{};
+    point.p[0] = 3.1e-3, point.p[1] = 4.2e-3;
     haptel_sample sample{};
     made.binding->texture->height_gradient(&point, made.binding->block, &sample);
     fmt::print("ripple at 3.1 mm, 4.2 mm: height {:.2f} um, slope {:.4f} in x and {:.4f} in y, never above {:.2f} um\n",

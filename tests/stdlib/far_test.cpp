@@ -53,7 +53,18 @@ Far far_from(const std::shared_ptr<const jit::CompiledProgram>& program, const T
     Far far;
     double largest = 0;
     for (int i = 0; i < 60; ++i) {
-        haptel_point point{{place(random), place(random), place(random)}, {0.6, 0.48, 0.64}, {0.3, 0.7}, 0, {}, {}};
+        haptel_point point{{place(random), place(random), place(random)},
+                           {0.6, 0.48, 0.64},
+                           {0.3, 0.7},
+                           0,
+                           {},
+                           {},
+                           {},
+                           0,
+                           0,
+                           {},
+                           {},
+                           0};
         for (double& coordinate : point.p)
             if (grid_m != 0) coordinate = std::round(coordinate / grid_m) * grid_m;
         haptel_sample found{};

@@ -262,7 +262,8 @@ TEST_CASE("iterations in lanes: every texture's height is the same with and with
             size_t unequal = 0, differs = 0;
             double largest = 0, off = 0;
             for (int k = 0; k < 300; ++k) {
-                const haptel_point point{{place(random), place(random), place(random)}, {0, 0, 1}, {}, 0, {}, {}};
+                const haptel_point point{
+                    {place(random), place(random), place(random)}, {0, 0, 1}, {}, 0, {}, {}, {}, 0, 0, {}, {}, 0};
                 haptel_sample both{}, height{}, in_order{};
                 texture.height_gradient(&point, bound.binding->block, &both);
                 texture.height(&point, bound.binding->block, &height);

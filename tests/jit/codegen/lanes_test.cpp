@@ -164,7 +164,8 @@ TEST_CASE("mixed precision keeps its place within a cell, however far away; f32 
             double largest = 0, off[2] = {};
             const haptel_block_head block{};
             for (int k = 0; k < 1000; ++k) {
-                const haptel_point point{{place(random), place(random), place(random)}, {}, {}, 0, {}, {}};
+                const haptel_point point{
+                    {place(random), place(random), place(random)}, {}, {}, 0, {}, {}, {}, 0, 0, {}, {}, 0};
                 haptel_sample truth{}, found{};
                 texture.height_gradient(&point, &block, &truth);
                 for (const auto& [program, worst] : {std::pair{&mixed, &off[0]}, std::pair{&single, &off[1]}}) {
@@ -201,7 +202,8 @@ TEST_CASE("mixed precision keeps its place in every texture of the library and o
             std::uniform_real_distribution<double> place(-1e3, 1e3); // wavelengths are some millimetres
             double largest = 0, off = 0, highest = 0, height_off = 0;
             for (int k = 0; k < 500; ++k) {
-                const haptel_point point{{place(random), place(random), place(random)}, {0, 0, 1}, {}, 0, {}, {}};
+                const haptel_point point{
+                    {place(random), place(random), place(random)}, {0, 0, 1}, {}, 0, {}, {}, {}, 0, 0, {}, {}, 0};
                 haptel_sample truth{}, found{};
                 texture.height_gradient(&point, bound.binding->block, &truth);
                 mixed.program->textures()[i].height_gradient(&point, bound.binding->block, &found);

@@ -52,7 +52,7 @@ TEST_CASE("every kind of picture has the size asked for, whatever the texture")
                 TextureView view;
                 view.title = "test";
                 view.on_plane = [](const glm::dvec3& p_m) {
-                    return haptel_point{{p_m.x, p_m.y, p_m.z}, {}, {}, 0, {}, {}};
+                    return haptel_point{{p_m.x, p_m.y, p_m.z}, {}, {}, 0, {}, {}, {}, 0, 0, {}, {}, 0};
                 };
                 view.samples = [&](std::span<const haptel_point> points, std::span<haptel_sample> samples) {
                     std::transform(points.begin(), points.end(), samples.begin(), [&](const haptel_point& point) {
