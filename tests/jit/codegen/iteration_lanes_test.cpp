@@ -342,8 +342,18 @@ TEST_CASE("a draft, which has no lanes, gives the bits of lanes", "[code]")
                     size_t unequal = 0;
                     for (int k = 0; k < 20; ++k) {
                         const double scale = k < 10 ? 1 : 0.01;
-                        const haptel_point point{
-                            {scale * place(random), scale * place(random), place(random)}, {0, 0, 1}, {}, 0, {}, {}};
+                        const haptel_point point{{scale * place(random), scale * place(random), place(random)},
+                                                 {0, 0, 1},
+                                                 {},
+                                                 0,
+                                                 {},
+                                                 {},
+                                                 {},
+                                                 0,
+                                                 0,
+                                                 {},
+                                                 {},
+                                                 0};
                         haptel_sample of_lanes{}, of_draft{};
                         a.height_gradient(&point, bound.binding->block, &of_lanes);
                         b.height_gradient(&point, bound.binding->block, &of_draft);

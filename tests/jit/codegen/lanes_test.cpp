@@ -72,7 +72,7 @@ TEST_CASE("reals to whole numbers: lanes saturate as one point does, in every pr
     for (double x : {0.0, 0.9, -0.9, 1.0, -1.5, 2147483520.0, 2147483646.0, 2147483647.0, 2147483648.0, -2147483648.0,
                      -2147483649.0, 4294967040.0, 4294967295.0, 4294967296.0, 1e30, -1e30, double(INFINITY),
                      -double(INFINITY), double(NAN)})
-        points.push_back({{x, 0, 0}, {}, {}, 0, {}, {}});
+        points.push_back({{x, 0, 0}, {}, {}, 0, {}, {}, {}, 0, 0, {}, {}, 0});
     for (const auto precision : {jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32})
         for (const char* expression : {"float(int(p.x / 1m))", "float(uint(p.x / 1m))"}) {
             jit::TextureOptions options;
@@ -108,7 +108,7 @@ TEST_CASE("reals to whole numbers: what is too large becomes the greatest there 
     std::vector<haptel_point> points;
     for (double x : {-1e30, -2147483648.0, -2147483520.0, 0.0, 2147483520.0, 2147483648.0, 4294967040.0, 4294967296.0,
                      1e30, double(INFINITY)})
-        points.push_back({{x, 0, 0}, {}, {}, 0, {}, {}});
+        points.push_back({{x, 0, 0}, {}, {}, 0, {}, {}, {}, 0, 0, {}, {}, 0});
     for (const auto precision : {jit::Precision::f64, jit::Precision::mixed, jit::Precision::f32}) {
         jit::TextureOptions options;
         options.entries = jit::Entries::both_and_batches;
