@@ -70,12 +70,12 @@ struct FileScope {
 
     // Every function of that name; of equal signatures only the nearest, so that a file may replace what it imports.
     std::vector<Candidate> functions(std::string_view name) const;
-    FunctionInfo* texture(std::string_view name) const;  // null: none has that name
+    FunctionInfo* texture(std::string_view name) const;        // null: none has that name
     StructDeclaration* structure(std::string_view name) const; // likewise
-    const Symbol* constant(std::string_view name) const; // likewise
-    bool is_unread(std::string_view name) const;         // it may be declared in text that could not be read
-    bool may_be_function(std::string_view name) const;   // likewise, and nothing is known of its head
-    bool is_constant_below(std::string_view name) const; // it is declared, but not yet
+    const Symbol* constant(std::string_view name) const;       // likewise
+    bool is_unread(std::string_view name) const;               // it may be declared in text that could not be read
+    bool may_be_function(std::string_view name) const;         // likewise, and nothing is known of its head
+    bool is_constant_below(std::string_view name) const;       // it is declared, but not yet
     // Those that a name with this prefix may be found in, nearest first.
     std::span<const Declarations* const> layers_of(std::string_view prefix) const;
 };

@@ -200,10 +200,10 @@ private:
     mutable size_t alias_steps = 0;           // from a name to what it stands for; beyond many, it stands for itself
 
     std::set<std::string, std::less<>> struct_names; // of those that stand above
-    std::set<std::string_view> import_prefixes; // anywhere in the file
-    bool has_own_grad = false;                  // a function of that name stands above
-    uint32_t told_type = UINT32_MAX;            // where a type begins of which enough is said
-    bool are_types_behind = false;              // in the head of this function, and that is told
+    std::set<std::string_view> import_prefixes;      // anywhere in the file
+    bool has_own_grad = false;                       // a function of that name stands above
+    uint32_t told_type = UINT32_MAX;                 // where a type begins of which enough is said
+    bool are_types_behind = false;                   // in the head of this function, and that is told
 
     // Of the function or texture that is being read:
     std::string_view one_size;                 // what `any_size` stands for; empty: nothing
