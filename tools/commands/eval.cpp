@@ -1,5 +1,6 @@
 // haptel eval: height and gradient of a texture at points, by any engine.
 #include "jit/check/oracle.h"
+#include "lang/abi/contact_limits.h"
 #include "lang/abi/evaluate.h"
 #include "lang/abi/outputs.h"
 #include "tools/arguments/precisions.h"
@@ -29,7 +30,8 @@ struct EvalOptions {
     std::string points;
     glm::dvec3 normal{0, 0, 1};
     glm::dvec2 uv{0};
-    double footprint_m = 0, box_m = 0.2;
+    glm::dvec3 velocity_m_per_s{0};
+    double normal_force_n = 0, tool_radius_m = 0, footprint_m = 0, box_m = 0.2;
     std::string engine = "jit", precision = "f64";
     bool json = false;
 };
@@ -107,7 +109,10 @@ haptel_point point_at(const EvalOptions& options, const glm::dvec3& p_m)
         point.p[axis] = p_m[axis];
         point.n[axis] = options.normal[axis];
     }
+    for (int axis = 0; axis < 3; ++axis) point.velocity[axis] = options.velocity_m_per_s[axis];
     for (int axis = 0; axis < 2; ++axis) point.uv[axis] = options.uv[axis];
+    point.normal_force_n = options.normal_force_n;
+    point.tool_radius_m = options.tool_radius_m;
     return point;
 }
 
@@ -286,6 +291,15 @@ Command eval_command(CLI::App& app)
     add_parsed<glm::dvec2>(
         *command, "--uv", "U,V", parse_vector2, [options](const glm::dvec2& uv) { options->uv = uv; },
         "The input uv [0,0]");
+    add_parsed<glm::dvec3>(
+        *command, "--velocity", "X,Y,Z", parse_vector,
+        [options](const glm::dvec3& velocity) { options->velocity_m_per_s = velocity; },
+        "The input velocity, m/s [0,0,0]");
+    command->add_option("--normal-force", options->normal_force_n, "The input normal_force, newtons [0]")
+        ->type_name("N")
+        ->check(CLI::Range(0.0, normal_force_max_n));
+    add_length(*command, "--tool-radius", options->tool_radius_m, "The input tool_radius [0]",
+               NumberRange::not_negative);
     add_length(*command, "--footprint", options->footprint_m, "Smallest wavelength worth rendering [0]",
                NumberRange::not_negative);
     add_length(*command, "--box", options->box_m, "Side of the cube that center and extent describe [0.2m]");

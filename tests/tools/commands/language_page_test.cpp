@@ -53,9 +53,11 @@ void check_value(const std::string& file, const Evaluation& wanted)
     const Json checked = Json::parse(run_command("check --json '" + file + "'").out);
     REQUIRE(!checked["textures"].empty());
     const haptel_point& at = wanted.point;
-    std::string arguments = fmt::format("eval '{}:{}' --json --at {},{},{} --normal {},{},{}", file,
-                                        checked["textures"].back()["name"].get<std::string>(), at.p[0], at.p[1],
-                                        at.p[2], at.n[0], at.n[1], at.n[2]);
+    std::string arguments = fmt::format("eval '{}:{}' --json --at {},{},{} --normal {},{},{} --velocity {},{},{} "
+                                        "--normal-force {} --tool-radius {}",
+                                        file, checked["textures"].back()["name"].get<std::string>(), at.p[0], at.p[1],
+                                        at.p[2], at.n[0], at.n[1], at.n[2], at.velocity[0], at.velocity[1],
+                                        at.velocity[2], at.normal_force_n, at.tool_radius_m);
     for (const auto& [name, value] : wanted.parameters) arguments += " --set " + name + "=" + value;
     const Ran ran = run_command(arguments);
     INFO(ran.err);
@@ -65,6 +67,9 @@ void check_value(const std::string& file, const Evaluation& wanted)
     found.height = json["height_m"];
     found.gradient = json["gradient"].get<std::array<double, 3>>();
     found.faults = json["faults"];
+    for (const auto& [name, components] : wanted.outputs)
+        if (const OutputInfo* const output = find_output(name); output && json.contains(name) && components.size() == 1)
+            components_of(found.sample, *output)[0] = json[name];
     CHECK(value_differences(wanted, "compiled", found) == "");
 }
 
