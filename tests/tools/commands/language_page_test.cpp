@@ -68,8 +68,9 @@ void check_value(const std::string& file, const Evaluation& wanted)
     found.gradient = json["gradient"].get<std::array<double, 3>>();
     found.faults = json["faults"];
     for (const auto& [name, components] : wanted.outputs)
-        if (const OutputInfo* const output = find_output(name); output && json.contains(name) && components.size() == 1)
-            components_of(found.sample, *output)[0] = json[name];
+        if (const haptel::OutputInfo* const output = haptel::find_output(name);
+            output && json.contains(name) && components.size() == 1)
+            haptel::components_of(found.sample, *output)[0] = json[name];
     CHECK(value_differences(wanted, "compiled", found) == "");
 }
 
