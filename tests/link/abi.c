@@ -35,12 +35,18 @@ int main(void)
     texture.height(&point, &block, &sample);
     if (sample.height_m != 0.125) wrong = 1;
 
-    expect("haptel_point", 192, sizeof(haptel_point));
+    expect("haptel_point", 288, sizeof(haptel_point));
     expect("haptel_point.n", 24, offsetof(haptel_point, n));
     expect("haptel_point.uv", 48, offsetof(haptel_point, uv));
     expect("haptel_point.time_s", 64, offsetof(haptel_point, time_s));
     expect("haptel_point.n_dp", 72, offsetof(haptel_point, n_dp));
     expect("haptel_point.uv_dp", 144, offsetof(haptel_point, uv_dp));
+    expect("haptel_point.velocity", 192, offsetof(haptel_point, velocity));
+    expect("haptel_point.normal_force_n", 216, offsetof(haptel_point, normal_force_n));
+    expect("haptel_point.tool_radius_m", 224, offsetof(haptel_point, tool_radius_m));
+    expect("haptel_point.tangent", 232, offsetof(haptel_point, tangent));
+    expect("haptel_point.bitangent", 256, offsetof(haptel_point, bitangent));
+    expect("haptel_point.curvature_per_m", 280, offsetof(haptel_point, curvature_per_m));
     expect("haptel_sample.gradient", 8, offsetof(haptel_sample, gradient));
     expect("haptel_sample.stiffness_scale", 32, offsetof(haptel_sample, stiffness_scale));
     expect("haptel_sample.friction_scale", 40, offsetof(haptel_sample, friction_scale));
@@ -50,8 +56,11 @@ int main(void)
     expect("haptel_sample.damping_scale", 72, offsetof(haptel_sample, damping_scale));
     expect("haptel_sample.friction_along_scale", 80, offsetof(haptel_sample, friction_along_scale));
     expect("haptel_sample.friction_direction", 88, offsetof(haptel_sample, friction_direction));
+    expect("haptel_sample.vibration_n", 112, offsetof(haptel_sample, vibration_n));
+    expect("haptel_sample.vibration_hz", 120, offsetof(haptel_sample, vibration_hz));
     expect("haptel_samples.faults", 48, offsetof(haptel_samples, faults));
     expect("haptel_samples.friction_direction", 88, offsetof(haptel_samples, friction_direction));
+    expect("haptel_samples.vibration_n", 112, offsetof(haptel_samples, vibration_n));
     expect("haptel_block_head.extent", 24, offsetof(haptel_block_head, extent));
     expect("haptel_block_head.footprint_m", 48, offsetof(haptel_block_head, footprint_m));
     expect("haptel_block_head", 56, sizeof(haptel_block_head));
