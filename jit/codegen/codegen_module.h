@@ -1,11 +1,10 @@
 // An LLVM module in the making: the functions and tables of one IR module that its entries reach, in one form.
 #pragma once
 
-#include "lang/ir/dead_code.h"
-
 #include "jit/codegen/codegen.h"
 #include "jit/codegen/iteration_lanes.h"
 #include "jit/codegen/llvm.h"
+#include "lang/ir/dead_code.h"
 
 #include <map>
 #include <memory>

@@ -103,12 +103,12 @@ bool ModuleLowering::refuse_contact(const ir::Texture& texture)
             std::ranges::any_of(made.results, [&](ir::Value result) { return bool(needed[result.index]); });
         if (uses && matters && !std::exchange(is_found, true)) span = made.span;
     });
-    diagnostics.error(span, "contact-input",
-                      "the height or stiffness of '" + texture.name + "' depends on '" +
-                          std::string(input_name(std::get<ir::ReadInput>(read->kind).input)) +
-                          "' here, expected one that depends on the place alone",
-                      "what a surface stores must be of the place, or it gives energy to the hand; use it for outputs: "
-                      "friction_scale, damping_scale or vibration_n");
+    diagnostics.error(
+        span, "contact-input",
+        "the height or stiffness of '" + texture.name + "' depends on '" +
+            std::string(input_name(std::get<ir::ReadInput>(read->kind).input)) + "' here, which is for other outputs",
+        "what a surface stores is of the place alone, and has a gradient there; use it for friction_scale, "
+        "damping_scale or vibration_n");
     return true;
 }
 
