@@ -31,6 +31,7 @@ struct AnalysedCube {
 struct SeenJump {
     double height_m; // > 0
     double p_m[3];
+    double time_s;
 };
 using JumpSearch = std::function<std::optional<SeenJump>()>;
 

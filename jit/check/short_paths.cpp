@@ -85,7 +85,7 @@ void ShortPaths::halve(Touch a, Touch b, bool by_height)
             std::copy(a.point.p, a.point.p + 3, roughest_p_m);
         }
         if (by_height && (!highest_jump || left > highest_jump->height_m))
-            highest_jump = Jump{left, {a.point.p[0], a.point.p[1], a.point.p[2]}};
+            highest_jump = Jump{left, {a.point.p[0], a.point.p[1], a.point.p[2]}, a.point.time_s};
     }
     const bool is_promised = binding.facts.continuity == HAPTEL_CONTINUITY_C1;
     const double length = distance(a.point.p, b.point.p), turned = distance(a.sample.gradient, b.sample.gradient);

@@ -16,6 +16,7 @@ namespace haptel::jit {
 struct Jump {
     double height_m; // > 0: from one side to the other
     double p_m[3];   // where, to 2^-26 of the path
+    double time_s;   // when
 };
 
 class ShortPaths {

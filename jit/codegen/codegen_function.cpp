@@ -47,7 +47,6 @@ Value* FunctionEmitter::value(ir::Value used)
 Value* FunctionEmitter::value(ir::Value used, Form wanted)
 {
     Value* held = value(used);
-    if (source.type(used) == ir::Type::image) return held;
     if (source.type(used) == ir::Type::real) held = rounded(held, wanted.is_single);
     return wanted.in_lanes && !forms[used].in_lanes ? builder.CreateVectorSplat(module.lanes, held) : held;
 }

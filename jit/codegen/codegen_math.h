@@ -21,8 +21,8 @@ llvm::Value* call_elementary(llvm::IRBuilder<>& builder, ir::Op op, llvm::ArrayR
 // double, and so are the operations; those on floats are fused where `fuses`.
 llvm::Value* emit_turn(llvm::IRBuilder<>& builder, ir::Op op, llvm::Value* way, llvm::Type* result, bool fuses);
 
-// Any other operation, in instructions (jit/codegen/codegen_operation.cpp): on scalars, or on vectors of as many lanes;
-// an image is the same for all lanes. `real`: double or float, as the reals among the operands are; the result is so
+// Any other operation, in instructions (jit/codegen/codegen_operation.cpp): on scalars, or on vectors of as many lanes.
+// `real`: double or float, as the reals among the operands are; the result is so
 // too, but for sinturn and costurn, which give a float where `result` is one, by fused operations where `fuses`.
 llvm::Value* emit_operation(llvm::IRBuilder<>& builder, ir::Op op, llvm::ArrayRef<llvm::Value*> operands,
                             llvm::Type* real, llvm::Type* result, bool fuses);

@@ -57,7 +57,7 @@ llvm::Type* ModuleEmitter::type(ir::Type type, Form held)
     case ir::Type::i32:
     case ir::Type::u32: return lanes_of(llvm::Type::getInt32Ty(context));
     case ir::Type::boolean: return lanes_of(llvm::Type::getInt1Ty(context));
-    case ir::Type::image: return llvm::PointerType::getUnqual(context); // the same for every point
+    case ir::Type::image: return lanes_of(llvm::PointerType::getUnqual(context));
     }
     return nullptr;
 }

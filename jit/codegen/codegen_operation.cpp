@@ -236,6 +236,8 @@ Value* Emitter::emit(ir::Op op, llvm::Type* result, bool fuses)
     case Op::r_to_i: return saturate(true);
     case Op::r_to_u: return saturate(false);
     case Op::spline: return read_image("haptel_spline", builder.getDoubleTy());
+    case Op::image_channel: return read_image("haptel_image_channel", builder.getPtrTy());
+    case Op::image_coarser: return read_image("haptel_image_coarser", builder.getPtrTy());
     case Op::image_width: return read_image("haptel_image_width", builder.getInt32Ty());
     case Op::image_height: return read_image("haptel_image_height", builder.getInt32Ty());
     case Op::i_as_u:
@@ -259,6 +261,8 @@ std::span<const LibraryFunction> code_library()
     static const LibraryFunction functions[] = {
         {"haptel_reduce_angles", address(&ir::elementary::reduce_huge_angles)},
         {"haptel_spline", address(&spline_of_doubles)},
+        {"haptel_image_channel", address(&ir::image_channel)},
+        {"haptel_image_coarser", address(&ir::image_coarser)},
         {"haptel_image_width", address(&ir::image_width)},
         {"haptel_image_height", address(&ir::image_height)},
         // What the instruction selector calls by itself where the processor has no such instruction. All are exact or

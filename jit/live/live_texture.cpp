@@ -183,10 +183,12 @@ private:
         std::vector<UsedPicture> pictures;
         const haptel_texture* texture = program.find(reference.texture);
         if (!texture) return pictures;
+        const ir::ImageParts parts = ir::parts_read(program.module());
         for (const ir::Parameter& parameter : program.source_of(*texture).parameters)
             for (const auto& [name, value] : request.parameters)
                 if (parameter.type == ir::Type::image && name == parameter.name)
-                    pictures.push_back({image_file(value, request.folder), read_image(value, request.folder).image});
+                    pictures.push_back(
+                        {image_file(value, request.folder), read_image(value, request.folder, parts).image});
         return pictures;
     }
 

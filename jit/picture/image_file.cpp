@@ -24,13 +24,15 @@ ImageFile fail(std::string error, std::string hint = {})
     return {nullptr, std::move(error), std::move(hint), {}};
 }
 
-ImageFile decode(const std::string& bytes, const std::string& shown)
+ImageFile decode(const std::string& bytes, const std::string& shown, ir::ImageParts parts)
 {
-    const Picture picture = read_picture(bytes);
+    const Picture picture = read_picture(bytes, parts.channels ? Colours::kept : Colours::ignored);
     if (!picture.error.empty()) return fail("'" + shown + "' " + lang::printable(picture.error), picture.hint);
     ImageFile made;
     made.grain = grain_of(picture);
-    made.image = ir::SplineImage::make(picture.gray, picture.width, picture.height, made.error);
+    const auto& [red, green, blue, alpha] = picture.colours;
+    made.image = ir::SplineImage::make({picture.gray, {red, green, blue, alpha}, picture.width, picture.height}, parts,
+                                       made.error);
     if (!made.image) made.error = "'" + shown + "': " + made.error;
     return made;
 }
@@ -61,7 +63,7 @@ std::string micrometres(double height_m)
 std::shared_ptr<const ir::SplineImage> image_of(double texel)
 {
     std::string error;
-    return ir::SplineImage::make({&texel, 1}, 1, 1, error);
+    return ir::SplineImage::make({{&texel, 1}, {}, 1, 1}, {}, error);
 }
 
 } // namespace
@@ -72,10 +74,10 @@ std::string image_file(const std::string& path, const std::string& folder)
     return fs::absolute(fs::path(folder) / path, fault).lexically_normal().string();
 }
 
-ImageFile read_image(const std::string& path, const std::string& folder)
+ImageFile read_image(const std::string& path, const std::string& folder, ir::ImageParts parts)
 {
     static std::mutex mutex;
-    static std::map<std::string, Known> all; // by absolute path
+    static std::map<std::pair<std::string, ir::ImageParts>, Known> all; // by absolute path
 
     const std::string shown = lang::printable(path);
     std::error_code fault;
@@ -85,7 +87,7 @@ ImageFile read_image(const std::string& path, const std::string& folder)
 
     const std::lock_guard lock(mutex);
     std::erase_if(all, [](const auto& known) { return known.second.image.expired(); });
-    Known& known = all[file.string()];
+    Known& known = all[{file.string(), parts}];
     const auto image = known.image.lock();
     if (image && known.size == size && known.written == written && known.read > written + tick_longest)
         return {image, {}, {}, known.grain};
@@ -102,7 +104,8 @@ ImageFile read_image(const std::string& path, const std::string& folder)
     case input::Refusal::too_large: return fail("'" + shown + "' " + refused.why);
     }
     const ContentHash content = content_hash(bytes);
-    ImageFile made = image && known.content == content ? ImageFile{image, {}, {}, known.grain} : decode(bytes, shown);
+    ImageFile made =
+        image && known.content == content ? ImageFile{image, {}, {}, known.grain} : decode(bytes, shown, parts);
     known = {written, now, size, content, made.image, made.grain};
     return made;
 }

@@ -35,9 +35,9 @@ struct ImageFile {
 
 // Gray values of a PNG, JPEG, BMP, TGA or PGM file of 8 or 16 bits, or a TIFF of up to 32, black 0 to white 1 (numbers
 // with a sign: -1 to 1); of an EXR or a TIFF of real numbers, as they are. A colour counts by its brightness,
-// transparency not at all. A relative path starts from `folder`, or from the working directory where that is empty.
-// What was read is kept as long as a binding uses it and the file does not change.
-ImageFile read_image(const std::string& path, const std::string& folder = {});
+// transparency not at all; its channels are `parts`. A relative path starts from `folder`, or from the working
+// directory where that is empty. What was read is kept as long as a binding uses it and the file does not change.
+ImageFile read_image(const std::string& path, const std::string& folder, ir::ImageParts parts);
 inline constexpr uintmax_t image_bytes_max = 256u << 20;
 
 // Where read_image() looks for it.

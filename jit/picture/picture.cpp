@@ -56,16 +56,22 @@ Picture picture_of(int64_t width, int64_t height)
     return made;
 }
 
-Picture read_picture(std::string_view bytes)
+void keep_colours(Picture& picture, size_t samples)
+{
+    for (size_t i = 0; i < picture.colours.size(); ++i)
+        if (i < 3 ? samples >= 3 : samples % 2 == 0) picture.colours[i].resize(picture.gray.size());
+}
+
+Picture read_picture(std::string_view bytes, Colours colours)
 {
     using namespace std::string_view_literals;
     const std::string_view head = bytes.substr(0, 4);
     const bool is_tiff = head == "II*\0"sv || head == "MM\0*"sv || head == "II+\0"sv || head == "MM\0+"sv;
     const bool is_pnm = head.starts_with("P5") || head.starts_with("P6");
-    return is_tiff                      ? read_tiff(bytes)
-           : head == "\x76\x2f\x31\x01" ? read_exr(bytes)
-           : is_pnm                     ? read_pnm(bytes)
-                                        : read_common_picture(bytes);
+    return is_tiff                      ? read_tiff(bytes, colours)
+           : head == "\x76\x2f\x31\x01" ? read_exr(bytes, colours)
+           : is_pnm                     ? read_pnm(bytes, colours)
+                                        : read_common_picture(bytes, colours);
 }
 
 namespace {
@@ -154,7 +160,7 @@ const char* picture_damage(std::string_view bytes)
 
 } // namespace
 
-Picture read_common_picture(std::string_view bytes)
+Picture read_common_picture(std::string_view bytes, Colours colours)
 {
     const auto* data = reinterpret_cast<const stbi_uc*>(bytes.data());
     const int size = static_cast<int>(bytes.size()); // image_bytes_max fits
@@ -169,20 +175,24 @@ Picture read_common_picture(std::string_view bytes)
     if (!made.error.empty()) return made;
     // Twice, as it grows by doubling: the file's own bytes, and 4 channels of 16 bits for each texel.
     allocation_max += 2 * (bytes.size() + 8 * made.gray.size() + static_cast<size_t>(made.height));
-    const std::unique_ptr<stbi_us, void (*)(void*)> gray(
-        stbi_load_16_from_memory(data, size, &width, &height, &channels, 1), stbi_image_free);
-    if (!gray && std::string_view(stbi_failure_reason()) == "Out of memory")
+    const std::unique_ptr<stbi_us, void (*)(void*)> texels(
+        stbi_load_16_from_memory(data, size, &width, &height, &channels, 0), stbi_image_free);
+    if (!texels && std::string_view(stbi_failure_reason()) == "Out of memory")
         return no_picture("is damaged: it unpacks to more than " + std::to_string(width) + " x " +
                               std::to_string(height) + " texels",
                           formats);
-    if (!gray) return no_picture(std::string("is damaged: ") + stbi_failure_reason(), formats);
+    if (!texels) return no_picture(std::string("is damaged: ") + stbi_failure_reason(), formats);
     made.levels = stbi_is_16_bit_from_memory(data, size) ? 65535 : 255;
     made.has_blocks = bytes.starts_with("\xff\xd8\xff");
     if (width != made.width || height != made.height) return no_picture("is damaged: it has two sizes");
-    const stbi_us* from = gray.get();
+    if (colours == Colours::kept) keep_colours(made, static_cast<size_t>(channels));
+    const stbi_us* from = texels.get();
     for (int64_t row = height; row-- > 0;) // files begin at the top
-        for (int64_t column = 0; column < width; ++column)
-            made.gray[static_cast<size_t>(row * width + column)] = *from++ / 65535.0;
+        for (int64_t column = 0; column < width; ++column, from += channels) {
+            double samples[4] = {};
+            for (int i = 0; i < channels; ++i) samples[i] = from[i] / 65535.0;
+            put_texel(made, static_cast<size_t>(row * width + column), {samples, static_cast<size_t>(channels)});
+        }
     return made;
 }
 

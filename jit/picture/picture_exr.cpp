@@ -24,16 +24,17 @@ std::vector<std::string> channels_of(const Imf::ChannelList& channels)
     return ++next == channels.end() ? std::vector<std::string>{first.name()} : std::vector<std::string>{};
 }
 
-Picture read(Imf::InputFile& file)
+Picture read(Imf::InputFile& file, Colours kept)
 {
     const Imath::Box2i window = file.header().dataWindow();
     const int64_t width = int64_t{window.max.x} - window.min.x + 1, height = int64_t{window.max.y} - window.min.y + 1;
     Picture made = picture_of(width, height);
     if (!made.error.empty()) return made;
     const Imf::ChannelList& all = file.header().channels();
-    const std::vector<std::string> names = channels_of(all);
+    std::vector<std::string> names = channels_of(all);
     constexpr const char* which = "EXR with a channel Y, with R, G and B, or with one channel";
     if (names.empty()) return no_picture("has no channel that says how bright it is", which);
+    if (kept == Colours::kept && all.findChannel("A") && names[0] != "A") names.push_back("A");
     for (const std::string& name : names)
         if (all[name].xSampling != 1 || all[name].ySampling != 1)
             return no_picture("has not all of its texels in channel " + name, which);
@@ -48,17 +49,20 @@ Picture read(Imf::InputFile& file)
     file.setFrameBuffer(frame);
     file.readPixels(window.min.y, window.max.y);
 
+    if (kept == Colours::kept) keep_colours(made, names.size());
     const float* from = texels.data();
     for (int64_t row = height; row-- > 0;) // files begin at the top
-        for (int64_t column = 0; column < width; ++column, ++from)
-            made.gray[static_cast<size_t>(row * width + column)] =
-                names.size() == 1 ? static_cast<double>(*from) : brightness(*from, from[count], from[2 * count]);
+        for (int64_t column = 0; column < width; ++column, ++from) {
+            double values[4] = {};
+            for (size_t i = 0; i < names.size(); ++i) values[i] = from[i * count];
+            put_texel(made, static_cast<size_t>(row * width + column), {values, names.size()});
+        }
     return made;
 }
 
 } // namespace
 
-Picture read_exr(std::string_view bytes)
+Picture read_exr(std::string_view bytes, Colours colours)
 try {
     // Of the process, but always the same: the library takes memory for its tables before it can be asked for the size.
     constexpr int side = ir::SplineImage::side_max;
@@ -67,7 +71,7 @@ try {
     Imf::StdISStream stream;
     stream.str(std::string(bytes));
     Imf::InputFile file(stream, 0);
-    return read(file);
+    return read(file, colours);
 } catch (const std::exception& problem) {
     return no_picture(std::string("is damaged: ") + problem.what());
 }

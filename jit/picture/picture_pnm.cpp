@@ -9,7 +9,7 @@
 
 namespace haptel::jit {
 
-Picture read_pnm(std::string_view bytes)
+Picture read_pnm(std::string_view bytes, Colours kept)
 {
     // Width, height and greatest value, in digits, and one character. What is no digit parts them, and lines from '#'
     // on.
@@ -32,6 +32,7 @@ Picture read_pnm(std::string_view bytes)
     bytes.remove_prefix(std::min(at + 1, bytes.size()));
     if (bytes.size() / (colours * value_bytes) < made.gray.size())
         return no_picture("is damaged: it ends before its last texel");
+    if (kept == Colours::kept) keep_colours(made, colours);
 
     const auto* from = reinterpret_cast<const uint8_t*>(bytes.data());
     const auto value = [&] {
@@ -42,8 +43,7 @@ Picture read_pnm(std::string_view bytes)
         for (int64_t column = 0; column < width; ++column) {
             double values[3] = {};
             for (size_t i = 0; i < colours; ++i) values[i] = value();
-            made.gray[static_cast<size_t>(row * width + column)] =
-                colours == 1 ? values[0] : brightness(values[0], values[1], values[2]);
+            put_texel(made, static_cast<size_t>(row * width + column), {values, colours});
         }
     return made;
 }

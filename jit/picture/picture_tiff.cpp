@@ -158,27 +158,32 @@ double sample_at(const Layout& layout, const std::byte* at)
 }
 
 // Block by block, a row or a tile: several of them side by side where colours are stored apart.
-bool read_plain(TIFF* tiff, const Layout& layout, Picture& made)
+bool read_plain(TIFF* tiff, const Layout& layout, Picture& made, Colours kept)
 {
     uint32_t across = layout.width, down = 1;
     if (layout.tiled &&
         (!TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &across) || !TIFFGetField(tiff, TIFFTAG_TILELENGTH, &down)))
         return false;
     const tmsize_t bytes = layout.tiled ? TIFFTileSize(tiff) : TIFFScanlineSize(tiff);
-    if (across < 1 || down < 1 || bytes < 1 || bytes > memory_max / 3) return false;
+    if (across < 1 || down < 1 || bytes < 1 || bytes > memory_max / 4) return false;
     const bool is_apart = layout.planes == PLANARCONFIG_SEPARATE;
     const auto plane_size = static_cast<size_t>(bytes);
     const size_t sample_size = layout.bits / 8, pixel_size = sample_size * (is_apart ? 1 : layout.samples);
     if (plane_size < uint64_t{across} * down * pixel_size) return false;
-    const uint16_t planes = is_apart && layout.is_rgb() ? 3 : 1;
+    const auto lights = static_cast<uint16_t>(layout.is_rgb() ? 3 : 1); // then an alpha
+    const auto samples = static_cast<uint16_t>(lights + (kept == Colours::kept && layout.samples > lights));
+    if (kept == Colours::kept) keep_colours(made, samples);
+    const auto planes = static_cast<uint16_t>(is_apart ? samples : 1);
     const bool is_inverted = layout.meaning == PHOTOMETRIC_MINISWHITE && !layout.is_real();
     std::vector<std::byte> block(planes * plane_size);
-    const auto gray = [&](size_t pixel) {
+    const auto put = [&](size_t place, size_t pixel) {
         const auto sample = [&](size_t i) {
             return sample_at(layout, block.data() + pixel * pixel_size + i * (is_apart ? plane_size : sample_size));
         };
-        if (layout.is_rgb()) return brightness(sample(0), sample(1), sample(2));
-        return is_inverted ? 1 - sample(0) : sample(0);
+        double values[4] = {};
+        for (size_t i = 0; i < samples; ++i) values[i] = sample(i);
+        if (is_inverted) values[0] = 1 - values[0];
+        put_texel(made, place, {values, samples});
     };
 
     for (uint32_t top = 0; top < layout.height; top += down)
@@ -191,27 +196,31 @@ bool read_plain(TIFF* tiff, const Layout& layout, Picture& made)
             }
             for (uint32_t y = 0; y < std::min(down, layout.height - top); ++y)
                 for (uint32_t x = 0; x < std::min(across, layout.width - left); ++x)
-                    made.gray[layout.place(top + y, left + x)] = gray(size_t{y} * across + x);
+                    put(layout.place(top + y, left + x), size_t{y} * across + x);
         }
     return true;
 }
 
 // What is packed, indexed or compressed as colours, in 8 bits.
-bool read_converted(TIFF* tiff, const Layout& layout, Picture& made)
+bool read_converted(TIFF* tiff, const Layout& layout, Picture& made, Colours kept)
 {
+    if (kept == Colours::kept) keep_colours(made, 4);
     std::vector<uint32_t> pixels(made.gray.size());
     // Asked for in its own orientation it comes in the order of the file: the library turns no rows into columns.
     if (!TIFFReadRGBAImageOriented(tiff, layout.width, layout.height, pixels.data(), layout.orientation, 1))
         return false;
-    for (size_t i = 0; i < pixels.size(); ++i)
-        made.gray[layout.place(i / layout.width, i % layout.width)] =
-            brightness(TIFFGetR(pixels[i]), TIFFGetG(pixels[i]), TIFFGetB(pixels[i])) / 255;
+    for (size_t i = 0; i < pixels.size(); ++i) {
+        const uint32_t pixel = pixels[i];
+        const double samples[] = {TIFFGetR(pixel) / 255.0, TIFFGetG(pixel) / 255.0, TIFFGetB(pixel) / 255.0,
+                                  TIFFGetA(pixel) / 255.0};
+        put_texel(made, layout.place(i / layout.width, i % layout.width), samples);
+    }
     return true;
 }
 
 } // namespace
 
-Picture read_tiff(std::string_view bytes)
+Picture read_tiff(std::string_view bytes, Colours colours)
 {
     Source source{bytes, 0, {}};
     const Tiff tiff = open(source);
@@ -227,13 +236,13 @@ Picture read_tiff(std::string_view bytes)
     TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_COMPRESSION, &compression);
     made.levels = layout.levels();
     made.has_blocks = compression == COMPRESSION_JPEG || compression == COMPRESSION_OJPEG;
-    if (layout.is_plain()) return read_plain(tiff.get(), layout, made) ? made : damaged();
+    if (layout.is_plain()) return read_plain(tiff.get(), layout, made, colours) ? made : damaged();
     char reason[1024] = "";
     if (!TIFFRGBAImageOK(tiff.get(), reason))
         return no_picture("is a TIFF of a kind that is not read, of " + std::to_string(layout.bits) +
                               " bits a sample, " + (layout.is_real() ? "real" : "whole") + ": " + reason,
                           readable);
-    return read_converted(tiff.get(), layout, made) ? made : damaged();
+    return read_converted(tiff.get(), layout, made, colours) ? made : damaged();
 }
 
 } // namespace haptel::jit

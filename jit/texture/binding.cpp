@@ -86,7 +86,8 @@ std::string place_of(std::string_view name, const ir::Texture& texture)
 
 // By Texture::parameters: the defaults, then what the request says. An image without a picture is flat, which is worth
 // a warning.
-std::vector<Argument> arguments_of(const ir::Texture& texture, const TextureRequest& request, Findings& findings)
+std::vector<Argument> arguments_of(const ir::Texture& texture, const TextureRequest& request, ir::ImageParts parts,
+                                   Findings& findings)
 {
     std::vector<Argument> arguments;
     for (const ir::Parameter& parameter : texture.parameters) arguments.push_back({parameter.value, nullptr});
@@ -103,7 +104,7 @@ std::vector<Argument> arguments_of(const ir::Texture& texture, const TextureRequ
             if (!values[i].warning.empty())
                 findings.remark("warning: " + of + values[i].warning, "it is taken as it is: is the unit meant?");
             ImageFile read;
-            if (set[i].type == ir::Type::image) read = read_image(text, request.folder);
+            if (set[i].type == ir::Type::image) read = read_image(text, request.folder, parts);
             if (!read.error.empty()) findings.error(of + read.error, read.hint);
             arguments[static_cast<size_t>(&set[i] - texture.parameters.data())] = {
                 values[i].value, std::move(read.image), lang::printable(text), read.grain};
@@ -206,7 +207,7 @@ TextureResult make_binding(const std::shared_ptr<const CompiledProgram>& program
     const ir::Texture& source = program->source_of(*texture);
     auto storage = std::make_shared<BindingStorage>();
     storage->program = program;
-    storage->arguments = arguments_of(source, request, findings);
+    storage->arguments = arguments_of(source, request, ir::parts_read(program->module()), findings);
     const haptel_block_head head = head_of(request, findings);
     if (!findings.errors.empty()) return refuse();
 

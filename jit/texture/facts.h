@@ -29,6 +29,9 @@ haptel_facts facts_over_box(const ir::Module& module, const ir::Texture& texture
 // 32 places: octaves are faded or left out.
 bool is_band_limited(const TextureBinding& binding, const TextureRequest& request);
 
+// What one call of the binding's height_gradient takes, at places of the request's object.
+double median_call_s(const TextureBinding& binding, const TextureRequest& request);
+
 // Why this binding of that program, made for this request, is too slow for the request's servo, with the figure
 // measured; empty: it is not, or no servo waits for it. Code is optimised before it is refused. Faults the code's and
 // the block's pages in on the way.

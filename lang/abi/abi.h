@@ -70,10 +70,15 @@ enum { HAPTEL_EDGE_CLAMPED = 0, HAPTEL_EDGE_TILED = 1, HAPTEL_EDGE_MIRRORED = 2 
 /* A picture as textures read it: the cubic B-spline that goes through its texels. Texel (0, 0) is the lower left one,
  * rows follow each other upwards.
  */
-typedef struct {
+typedef struct haptel_image {
     const double* coefficients[3]; /* by HAPTEL_EDGE_*; width * height each, finite. Clamped: (width + 2) * (height +
                                       2), the first row and column below and left of texel (0, 0) */
     int32_t width, height;         /* in texels, at least 1 */
+    /* What else there is of the same picture; null: nothing, and this stands for all of it. By channel (0: brightness,
+     * 1 to 4: red, green, blue, alpha), then by level: each of half as many texels a side as the one before it. */
+    const struct haptel_image* parts;
+    int32_t channels, levels; /* of parts */
+    int32_t channel, level;   /* of this one among them */
 } haptel_image;
 
 /* haptel_facts::continuity */

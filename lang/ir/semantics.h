@@ -328,6 +328,8 @@ inline void execute(Op op, Slot<T>& result, const Slot<T>& a, const Slot<T>& b, 
     case Op::u_as_i: result.bits = a.bits; return;
     case Op::b_to_i: result.bits = a.bits; return;
     case Op::spline: result.real = spline(a.image, b.real, c.real, d.bits); return;
+    case Op::image_channel: result.image = image_channel(a.image, static_cast<int32_t>(b.bits)); return;
+    case Op::image_coarser: result.image = image_coarser(a.image, static_cast<int32_t>(b.bits)); return;
     case Op::image_width: result.bits = static_cast<uint32_t>(image_width(a.image)); return;
     case Op::image_height: result.bits = static_cast<uint32_t>(image_height(a.image)); return;
     case Op::detach: result.real = a.real; return;

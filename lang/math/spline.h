@@ -39,6 +39,25 @@ inline int32_t image_height(const haptel_image* image)
     return image ? image->height : 1;
 }
 
+// What else there is of the same picture. Total: numbers count as the nearest that there is.
+inline const haptel_image* image_part(const haptel_image* image, int32_t channel, int32_t level)
+{
+    const int32_t nearest_channel = channel < image->channels ? channel : image->channels - 1;
+    const int32_t nearest_level = level < image->levels ? level : image->levels - 1;
+    return image->parts + nearest_channel * image->levels + nearest_level;
+}
+inline const haptel_image* image_channel(const haptel_image* image, int32_t colour)
+{
+    if (!image || !image->parts) return image;
+    return image_part(image, 1 + (colour < 0 ? 0 : colour > 3 ? 3 : colour), image->level);
+}
+inline const haptel_image* image_coarser(const haptel_image* image, int32_t levels)
+{
+    if (!image || !image->parts) return image;
+    const int32_t left = image->levels - image->level;
+    return image_part(image, image->channel, image->level + (levels < 0 ? 0 : levels < left ? levels : left));
+}
+
 // How much each of four neighbouring coefficients counts, `fraction` (0 to 1) of the way from the second to the third.
 template <typename T>
 void spline_weights(const T& fraction, uint32_t order, T (&weights)[spline_support])

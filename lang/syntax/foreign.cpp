@@ -76,8 +76,9 @@ constexpr ForeignWord meanings[] = {
     {function, "floatBitsToInt floatBitsToUint intBitsToFloat uintBitsToFloat asuint asint asfloat", "",
      "the bits of a float depend on its precision: write hash(q), of the cell that q is in, or hash(i, j)"},
     {function, "dFdx dFdy fwidth ddx ddy Du Dv", "", "derivatives are exact: write grad(f)(q)"},
-    {function, "tex2D texture2D textureLod", "",
-     "write sample(picture, uv), a float; outside of 0 .. 1 sample_tiled repeats"},
+    {function, "tex2D texture2D", "",
+     "write sample(picture, uv), a float, or sample_rgba(picture, uv); outside of 0 .. 1 sample_tiled repeats"},
+    {function, "textureLod tex2Dlod", "", "write sample(coarser(picture, level), uv), a float"},
     {function, "texelFetch", "", "write texel(picture, column, row), a float"},
     {function, "textureSize", "", "write image_width(picture) and image_height(picture)"},
 

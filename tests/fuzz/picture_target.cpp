@@ -11,16 +11,23 @@ namespace haptel::fuzz {
 
 void read_picture(std::string_view bytes)
 {
-    const jit::Picture picture = jit::read_picture(bytes);
+    const jit::Picture picture = jit::read_picture(bytes, jit::Colours::kept);
     if (picture.error.empty() == picture.gray.empty()) fail("neither a picture nor a reason, or both");
     if (picture.gray.size() != static_cast<size_t>(picture.width * picture.height)) fail("a picture of two sizes");
     count(picture.error.empty() ? "pictures" : "refused");
     std::string error;
-    const auto image = ir::SplineImage::make(picture.gray, picture.width, picture.height, error);
+    for (const auto& colour : picture.colours)
+        if (!colour.empty() && colour.size() != picture.gray.size()) fail("a colour of another size");
+    const auto& [red, green, blue, alpha] = picture.colours;
+    const auto image = ir::SplineImage::make({picture.gray, {red, green, blue, alpha}, picture.width, picture.height},
+                                             {.channels = true, .levels = true}, error);
     if (!image) return;
-    for (const double place : {-1e9, -0.5, 0.25, 3.0, 1e9})
-        if (!std::isfinite(ir::spline(&image->view(), place, 2 * place, ir::spline_order(0, 0))))
-            fail("a height that is not finite");
+    for (int32_t colour = 0; colour < 4; ++colour)
+        for (int32_t level : {0, 1, 20})
+            for (const double place : {-1e9, -0.5, 0.25, 3.0, 1e9})
+                if (!std::isfinite(ir::spline(ir::image_coarser(ir::image_channel(&image->view(), colour), level),
+                                              place, 2 * place, ir::spline_order(0, 0))))
+                    fail("a height that is not finite");
 }
 
 std::vector<std::string> picture_corpus()

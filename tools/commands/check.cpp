@@ -1,6 +1,7 @@
 // haptel check: what is wrong with a texture file, and what is known of its textures before anybody touches them.
 #include "jit/check/short_paths.h"
 #include "jit/picture/image_file.h"
+#include "jit/texture/facts.h"
 #include "jit/texture/source_file.h"
 #include "jit/texture/texture.h"
 #include "lang/parameter_value.h"
@@ -76,7 +77,8 @@ public:
 private:
     void fix(const std::string& path);
     // Defaults, but for what --set says.
-    std::vector<jit::ImageFile> images_of(const std::string& path, const ir::Texture& texture);
+    std::vector<jit::ImageFile> images_of(const std::string& path, const lang::Program& program,
+                                          const ir::Texture& texture);
     // What a hand may feel of the pictures' files.
     void note_grain(const CheckedTexture& checked, std::span<const double> values,
                     const std::vector<jit::ImageFile>& images);
@@ -147,15 +149,17 @@ std::vector<double> CheckRun::values_of(const std::string& path, const ir::Textu
 }
 
 // Null where none is set: then bounds are those of any image.
-std::vector<jit::ImageFile> CheckRun::images_of(const std::string& path, const ir::Texture& texture)
+std::vector<jit::ImageFile> CheckRun::images_of(const std::string& path, const lang::Program& program,
+                                                const ir::Texture& texture)
 {
+    const ir::ImageParts parts = ir::parts_read(program.module);
     std::vector<jit::ImageFile> images;
     for (const ir::Parameter& parameter : texture.parameters) {
         images.emplace_back();
         if (parameter.type != ir::Type::image) continue;
         for (const auto& [name, text] : options.parameters) {
             if (name != parameter.name) continue;
-            jit::ImageFile read = jit::read_image(text);
+            jit::ImageFile read = jit::read_image(text, {}, parts);
             files.insert(text);
             if (!read.image)
                 say("bad-value", "--set " + name + " for " + texture.name + ": " + read.error, read.hint, path);
@@ -215,7 +219,7 @@ lang::JumpSearch CheckRun::jump_search(const TextureBinding& felt) const
         std::fill(box.maximum_m, box.maximum_m + 3, options.box_m / 2);
         const std::optional<jit::Jump> jump = jit::find_jump(felt, box);
         if (!jump) return std::nullopt;
-        return lang::SeenJump{jump->height_m, {jump->p_m[0], jump->p_m[1], jump->p_m[2]}};
+        return lang::SeenJump{jump->height_m, {jump->p_m[0], jump->p_m[1], jump->p_m[2]}, jump->time_s};
     };
 }
 
@@ -256,7 +260,7 @@ void CheckRun::check(const std::string& path)
         for (const ir::Texture& texture : textures) {
             progress.show(static_cast<double>(&texture - textures.data()) / static_cast<double>(textures.size()));
             const std::vector<double> values = values_of(path, texture);
-            const auto images = images_of(path, texture);
+            const auto images = images_of(path, *result.program, texture);
             std::vector<const ir::SplineImage*> views;
             std::vector<std::string> any_picture;
             for (size_t i = 0; i < images.size(); ++i) {
@@ -280,6 +284,10 @@ void CheckRun::check(const std::string& path)
                 report.textures.back().heights = {{found.minimum_m, found.maximum_m},
                                                   {hand->facts.height_min_m, hand->facts.height_max_m},
                                                   hand->shoulder_m[0] > 0 || hand->shoulder_m[1] > 0};
+            if (options.cost && felt.binding) {
+                compiled.program->optimise();
+                report.textures.back().call_s = jit::median_call_s(*felt.binding, request);
+            }
             if (options.error_max && !diagnostics.has_errors()) pick_precision(report.textures.back());
         }
         progress.hide();
@@ -365,7 +373,8 @@ Command check_command(CLI::App& app)
     options->explain = command->add_option("--explain", options->code, "Explain a code; without CODE list all")
                            ->expected(0, 1)
                            ->type_name("[CODE]");
-    command->add_flag("--cost", options->cost, "Worst-case cost of each line, the most expensive first");
+    command->add_flag("--cost", options->cost,
+                      "Measured time of a call, and worst-case cost of each line, the most expensive first");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel check rock.haptel\n"
                            "  haptel check --strict examples/textures/*.haptel\n"

@@ -34,6 +34,7 @@ struct CheckedTexture {
     lang::Analysis analysis;
     std::vector<std::string> any_picture;           // image parameters that nobody set
     std::optional<CheckedHeights> heights = {};     // without a value where a picture is missing
+    std::optional<double> call_s = {};              // measured, of the code that a hand has; where costs are asked for
     std::optional<CheckedPrecision> precision = {}; // where a precision is asked for
 };
 

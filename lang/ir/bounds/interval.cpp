@@ -186,6 +186,8 @@ Interval value_of(Op op, std::span<const Interval> x)
     case Op::length3:
     case Op::length4: return length(x);
     case Op::spline: return everything(Type::real); // images are the evaluator's to know
+    case Op::image_channel:
+    case Op::image_coarser: return any_image;
     case Op::i_to_r:
     case Op::u_to_r:
     case Op::detach: return a;
@@ -246,6 +248,13 @@ bool are_close(const Interval& a, const Interval& b, double greatest)
 {
     const double apart = std::max(std::fabs(a.maximum - b.minimum), std::fabs(b.maximum - a.minimum));
     return !a.may_be_nan && !b.may_be_nan && apart <= rounding_share * greatest;
+}
+
+ImagePart ImagePart::of(double number)
+{
+    const auto whole = static_cast<int64_t>(number), by_channel = whole / levels;
+    return {static_cast<int32_t>(by_channel / channels), static_cast<int32_t>(by_channel % channels),
+            static_cast<int32_t>(whole % levels)};
 }
 
 Interval everything(Type type)

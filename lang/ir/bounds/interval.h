@@ -30,7 +30,16 @@ struct Interval {
 inline constexpr Interval no_value{infinity, -infinity};
 inline constexpr Interval no_number{infinity, -infinity, true}; // of an operation on what it is not defined for
 
-// Of an image: the index of the texture parameter that it is.
+// Of an image: which part of which texture parameter it is, as a number that rises by parameter, channel and level.
+// Counts of channels and levels as haptel_image has them: what is beyond a picture's last level is that level.
+struct ImagePart {
+    static constexpr int32_t channels = 8, levels = 32;
+
+    int32_t parameter = 0, channel = 0, level = 0;
+
+    double number() const { return (double{channels} * parameter + channel) * levels + level; }
+    static ImagePart of(double number);
+};
 inline constexpr Interval any_image{-1, -1};
 
 Interval everything(Type type);

@@ -108,17 +108,39 @@ void IntervalEvaluator::block(Frame& frame, const Block& source)
     }
 }
 
-// An image is the index of a texture parameter, and the box knows the image.
+// The box knows the image of each texture parameter.
 Interval IntervalEvaluator::of_image(Op op, std::span<const Interval> operands) const
 {
-    const Interval& which = operands[0];
-    const bool is_known =
-        box && which.is_point() && which.minimum >= 0 && which.minimum < static_cast<double>(box->images.size());
-    const SplineImage* image = is_known ? box->images[static_cast<size_t>(which.minimum)] : nullptr;
+    if (operands[0].minimum < 0 || operands[0].is_empty()) return evaluate(op, operands);
+    const ImagePart first = ImagePart::of(operands[0].minimum), last = ImagePart::of(operands[0].maximum);
+    if (first.parameter != last.parameter) return evaluate(op, operands);
+    const bool is_one_channel = first.channel == last.channel;
+    if (op == Op::image_channel || op == Op::image_coarser) {
+        const auto part = [&](ImagePart of, double by, int32_t any_level) {
+            if (op == Op::image_channel)
+                return ImagePart{of.parameter, 1 + static_cast<int32_t>(std::clamp(by, 0.0, 3.0)),
+                                 is_one_channel ? of.level : any_level};
+            of.level = static_cast<int32_t>(std::clamp(of.level + std::max(by, 0.0), 0.0, ImagePart::levels - 1.0));
+            return of;
+        };
+        return {part(first, operands[1].minimum, 0).number(),
+                part(last, operands[1].maximum, ImagePart::levels - 1).number()};
+    }
+    const bool is_known = box && static_cast<size_t>(first.parameter) < box->images.size();
+    const SplineImage* image = is_known ? box->images[static_cast<size_t>(first.parameter)] : nullptr;
     if (!image || (op == Op::spline && !operands[3].is_point())) return evaluate(op, operands);
-    if (op == Op::image_width) return exactly(image->view().width);
-    if (op == Op::image_height) return exactly(image->view().height);
-    return image->bounds(operands[1], operands[2], static_cast<uint32_t>(operands[3].minimum));
+    const auto of_part = [&](const SplineImage& part) {
+        if (op == Op::image_width) return exactly(part.view().width);
+        if (op == Op::image_height) return exactly(part.view().height);
+        return part.bounds(operands[1], operands[2], static_cast<uint32_t>(operands[3].minimum));
+    };
+    const int32_t coarsest = std::max(image->view().levels - 1, 0);
+    const int32_t from = is_one_channel ? std::min(first.level, coarsest) : 0;
+    const int32_t to = is_one_channel ? std::min(last.level, coarsest) : coarsest;
+    Interval all = no_value;
+    for (int32_t channel = first.channel; channel <= last.channel; ++channel)
+        for (int32_t level = from; level <= to; ++level) all = join(all, of_part(image->part(channel, level)));
+    return all;
 }
 
 void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const Operation& operation)
@@ -173,7 +195,7 @@ void IntervalEvaluator::visit(Frame& frame, const Instruction& made, const ReadP
     const Value result = made.results[0];
     const Type type = frame.function.type(result);
     const bool is_known = box && read.parameter < box->parameters.size();
-    frame.values[result.index] = type == Type::image ? exactly(read.parameter)
+    frame.values[result.index] = type == Type::image ? exactly(ImagePart{static_cast<int32_t>(read.parameter)}.number())
                                  : is_known          ? box->parameters[read.parameter]
                                                      : everything(type);
     if (varying && seams)

@@ -216,6 +216,7 @@ const Interval& SplineImage::over_all(uint32_t orders) const
 {
     const uint32_t edge = spline_edge(orders);
     const uint32_t by_x = spline_order_along(orders, 0), by_y = spline_order_along(orders, 1);
+    const haptel_image& image = view();
     Known& all = known[edge][by_x][by_y];
     std::call_once(all.asked, [&] {
         // beyond the image: where a tiled or mirrored one goes on and a clamped one becomes flat
@@ -237,6 +238,7 @@ Interval SplineImage::bounds(const Interval& x, const Interval& y, uint32_t orde
         (repeats && !(std::isfinite(x.maximum - x.minimum) && std::isfinite(y.maximum - y.minimum)));
     if (spline_order_along(orders, 0) > 3 || spline_order_along(orders, 1) > 3) return {0, 0, may_be_nan};
 
+    const haptel_image& image = view();
     const Interval columns = places(x, image.width, repeats), rows = places(y, image.height, repeats);
     const bool is_wide = cells(columns) * cells(rows) > scan_max;
     Interval found = is_wide ? over_all(orders) : extremes(image, columns, rows, orders);

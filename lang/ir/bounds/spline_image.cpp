@@ -1,7 +1,11 @@
 #include "lang/ir/bounds/spline_image.h"
 
+#include "lang/math/spline.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
 namespace haptel::ir {
 namespace {
@@ -86,11 +90,47 @@ std::vector<double> framed(std::span<const double> texels, size_t columns, size_
     return all;
 }
 
+int64_t halved(int64_t count)
+{
+    return (count + 1) / 2;
+}
+
+// Half as many numbers a row, turned: columns become rows. Each new one is the mean of what lies under it, so that the
+// mean of all stays.
+std::vector<double> halved(const std::vector<double>& all, int64_t rows, int64_t columns)
+{
+    const int64_t left = halved(columns);
+    const double width = static_cast<double>(columns) / static_cast<double>(left); // of a new one in old ones
+    std::vector<double> result(static_cast<size_t>(left * rows));
+    for (int64_t i = 0; i < left; ++i) {
+        const double from = static_cast<double>(i) * width, to = static_cast<double>(i + 1) * width;
+        for (int64_t k = static_cast<int64_t>(from); k < columns && static_cast<double>(k) < to; ++k) {
+            const double share =
+                (std::min(to, static_cast<double>(k + 1)) - std::max(from, static_cast<double>(k))) / width;
+            for (int64_t row = 0; row < rows; ++row)
+                result[static_cast<size_t>(i * rows + row)] += share * all[static_cast<size_t>(row * columns + k)];
+        }
+    }
+    return result;
+}
+
 } // namespace
 
-std::shared_ptr<const SplineImage> SplineImage::make(std::span<const double> texels, int64_t width, int64_t height,
-                                                     std::string& error)
+ImageParts parts_read(const Module& module)
 {
+    ImageParts parts;
+    for (const Function& function : module.functions)
+        for_each_instruction(function.body, [&](const Instruction& made) {
+            const auto* operation = std::get_if<Operation>(&made.kind);
+            parts.channels |= operation && operation->op == Op::image_channel;
+            parts.levels |= operation && operation->op == Op::image_coarser;
+        });
+    return parts;
+}
+
+std::shared_ptr<const SplineImage> SplineImage::make(const ImageTexels& texels, ImageParts wanted, std::string& error)
+{
+    const auto [width, height] = std::pair(texels.width, texels.height);
     const auto fail = [&](std::string reason) {
         error = std::move(reason);
         return nullptr;
@@ -100,12 +140,23 @@ std::shared_ptr<const SplineImage> SplineImage::make(std::span<const double> tex
         return fail("it is too large: expected at most " + std::to_string(side_max) + " texels a side and " +
                     std::to_string(texels_max) + " in all, found " + std::to_string(width) + " x " +
                     std::to_string(height));
-    if (texels.size() != static_cast<size_t>(width * height)) return fail("its rows are not whole");
-    for (size_t i = 0; i < texels.size(); ++i)
-        if (!(std::fabs(texels[i]) < 1e100)) // so that no sum of texels overflows
-            return fail("texel (" + std::to_string(i % static_cast<size_t>(width)) + ", " +
-                        std::to_string(i / static_cast<size_t>(width)) + ") is not a number of reasonable size");
+    std::vector<std::span<const double>> all = {texels.brightness};
+    for (const std::span<const double> colour : texels.colours)
+        if (!colour.empty()) all.push_back(colour);
+    for (const std::span<const double> numbers : all) {
+        if (numbers.size() != static_cast<size_t>(width * height)) return fail("its rows are not whole");
+        for (size_t i = 0; i < numbers.size(); ++i)
+            if (!(std::fabs(numbers[i]) < 1e100)) // so that no sum of texels overflows
+                return fail("texel (" + std::to_string(i % static_cast<size_t>(width)) + ", " +
+                            std::to_string(i / static_cast<size_t>(width)) + ") is not a number of reasonable size");
+    }
+    std::shared_ptr<SplineImage> made = make_one(texels.brightness, width, height);
+    if (wanted.channels || wanted.levels) made->add_parts(texels, wanted);
+    return made;
+}
 
+std::shared_ptr<SplineImage> SplineImage::make_one(std::span<const double> texels, int64_t width, int64_t height)
+{
     std::shared_ptr<SplineImage> made(new SplineImage);
     const auto columns = static_cast<size_t>(width), rows = static_cast<size_t>(height);
     auto& [clamped, tiled, mirrored] = made->coefficients;
@@ -114,9 +165,62 @@ std::shared_ptr<const SplineImage> SplineImage::make(std::span<const double> tex
     tiled = mirrored = {texels.begin(), texels.end()};
     solve_both(tiled, columns, rows, solve_tiled);
     solve_both(mirrored, columns, rows, solve_mirrored);
-    made->image = {
-        {clamped.data(), tiled.data(), mirrored.data()}, static_cast<int32_t>(width), static_cast<int32_t>(height)};
+    haptel_image view{};
+    for (size_t edge = 0; edge < std::size(view.coefficients); ++edge)
+        view.coefficients[edge] = made->coefficients[edge].data();
+    view.width = static_cast<int32_t>(width);
+    view.height = static_cast<int32_t>(height);
+    made->views = {view};
     return made;
+}
+
+void SplineImage::add_parts(const ImageTexels& texels, ImageParts wanted)
+{
+    using Levels = std::vector<const SplineImage*>;
+    const auto levels_of = [&](std::span<const double> finest, const SplineImage* first) {
+        Levels levels;
+        std::vector<double> numbers{finest.begin(), finest.end()};
+        for (int64_t width = texels.width, height = texels.height;;) {
+            if (!first || !levels.empty()) made.push_back(make_one(numbers, width, height));
+            levels.push_back(first && levels.empty() ? first : made.back().get());
+            if (!wanted.levels || (width == 1 && height == 1)) return levels;
+            numbers = halved(halved(numbers, height, width), halved(width), height);
+            width = halved(width);
+            height = halved(height);
+        }
+    };
+    const Levels brightness = levels_of(texels.brightness, this);
+    std::vector<Levels> channels = {brightness};
+    for (size_t i = 0; wanted.channels && i < std::size(texels.colours); ++i) {
+        if (!texels.colours[i].empty())
+            channels.push_back(levels_of(texels.colours[i], nullptr));
+        else if (i < 3)
+            channels.push_back(brightness);
+        else
+            channels.push_back(Levels(brightness.size(), made.emplace_back(make_one(std::array{1.0}, 1, 1)).get()));
+    }
+    const auto count = [](const auto& all) { return static_cast<int32_t>(all.size()); };
+    for (int32_t channel = 0; channel < count(channels); ++channel)
+        for (int32_t level = 0; level < count(brightness); ++level)
+            parts.push_back(channels[static_cast<size_t>(channel)][static_cast<size_t>(level)]);
+    std::vector<haptel_image> linked;
+    for (const SplineImage* part : parts) linked.push_back(part->views[0]);
+    for (size_t i = 0; i < linked.size(); ++i) {
+        haptel_image& view = linked[i];
+        view.parts = linked.data();
+        view.channels = count(channels);
+        view.levels = count(brightness);
+        view.channel = static_cast<int32_t>(i) / view.levels;
+        view.level = static_cast<int32_t>(i) % view.levels;
+    }
+    views = std::move(linked);
+}
+
+const SplineImage& SplineImage::part(int32_t channel, int32_t level) const
+{
+    const haptel_image& image = view();
+    if (!image.parts) return *this;
+    return *parts[static_cast<size_t>(image_part(&image, channel, level) - image.parts)];
 }
 
 } // namespace haptel::ir

@@ -5,6 +5,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -33,9 +34,9 @@ double smooth(int column, int row)
     return 0.5 + 0.3 * std::sin(0.4 * column) + 0.15 * std::cos(0.5 * row + 0.1 * column);
 }
 
-jit::Picture decoded(const std::string& bytes)
+jit::Picture decoded(const std::string& bytes, jit::Colours colours = jit::Colours::ignored)
 {
-    return jit::read_picture(bytes);
+    return jit::read_picture(bytes, colours);
 }
 
 // The largest difference to `value` over all texels.
@@ -193,7 +194,7 @@ TEST_CASE("picture: numbers that are none are told, with their place")
     folder.write("hole.exr", exr(5, 4, false, {{"Y"}}, [](int column, int row) {
                      return column == 3 && row == 1 ? std::numeric_limits<double>::quiet_NaN() : 1.0;
                  }));
-    const jit::ImageFile read = jit::read_image(folder.file("hole.exr"));
+    const jit::ImageFile read = jit::read_image(folder.file("hole.exr"), {}, {});
     CHECK_FALSE(read.image);
     CHECK(read.error.find("'") == 0);
     CHECK(read.error.find("texel (3, 1) is not a number") != std::string::npos);
@@ -370,4 +371,69 @@ TEST_CASE("image: more texels than can be felt are refused by the picture's own 
     const jit::Picture picture = decoded(packed_png(8192, 8192, 8, "none"));
     CHECK(picture.error == "is too large: 8192 x 8192 texels");
     CHECK(picture.hint.find("16777216") != std::string::npos);
+}
+
+// The specifications of PNG and TGA, as another writer has them; of TIFF and EXR, as pictures.h has them.
+TEST_CASE("picture: red, green, blue and alpha, where the file has them and they are asked for")
+{
+    using Colours = jit::Colours;
+    const auto value = [](int column, int row, int channel) {
+        return (7 * column + 5 * row + 60 * channel) % 256 / 255.0;
+    };
+    for (const int channels : {1, 2, 3, 4}) {
+        std::vector<uint8_t> texels;
+        for (int row = height - 1; row >= 0; --row)
+            for (int column = 0; column < width; ++column)
+                for (int i = 0; i < channels; ++i)
+                    texels.push_back(static_cast<uint8_t>(std::lround(255 * value(column, row, i))));
+        std::string png, tga;
+        stbi_write_png_to_func(append, &png, width, height, channels, texels.data(), width * channels);
+        stbi_write_tga_to_func(append, &tga, width, height, channels, texels.data());
+        for (const std::string& bytes : {png, tga}) {
+            CAPTURE(channels, bytes == png);
+            const jit::Picture picture = decoded(bytes, Colours::kept);
+            for (size_t i = 0; i < 4; ++i) {
+                const bool is_there = i < 3 ? channels >= 3 : channels % 2 == 0;
+                REQUIRE(picture.colours[i].size() == (is_there ? picture.gray.size() : 0));
+                const int channel = i < 3 ? static_cast<int>(i) : channels - 1;
+                for (int row = 0; is_there && row < height; ++row)
+                    for (int column = 0; column < width; ++column)
+                        REQUIRE(std::fabs(picture.colours[i][static_cast<size_t>(row * width + column)] -
+                                          value(column, row, channel)) < 1e-15);
+            }
+            const Texels brightness = [&](int column, int row) {
+                if (channels < 3) return value(column, row, 0);
+                return 0.299 * value(column, row, 0) + 0.587 * value(column, row, 1) + 0.114 * value(column, row, 2);
+            };
+            CHECK(furthest_from(picture, brightness) < 1e-15);
+            const jit::Picture plain = decoded(bytes);
+            CHECK(plain.gray == picture.gray);
+            for (const auto& colour : plain.colours) CHECK(colour.empty());
+        }
+    }
+    const auto is_tinted = [](const std::string& bytes, std::array<double, 4> tint) {
+        const jit::Picture picture = decoded(bytes, Colours::kept);
+        REQUIRE(picture.error.empty());
+        for (size_t i = 0; i < 4; ++i) {
+            REQUIRE(picture.colours[i].size() == (tint[i] > 0 ? picture.gray.size() : 0));
+            for (int row = 0; tint[i] > 0 && row < height; ++row)
+                for (int column = 0; column < width; ++column)
+                    REQUIRE(std::fabs(picture.colours[i][static_cast<size_t>(row * width + column)] -
+                                      tint[i] * smooth(column, row)) < 1e-4);
+        }
+    };
+    for (const bool apart : {false, true}) {
+        TiffKind kind{16, Numbers::unsigned_whole};
+        kind.colour = true;
+        kind.planes_apart = apart;
+        is_tinted(tiff(width, height, kind, smooth), {tiff_tint[0], tiff_tint[1], tiff_tint[2], 0});
+    }
+    is_tinted(exr(width, height, false, {{"A", 0.125}, {"B", 0.25}, {"G", 0.5}, {"R", 1}}, smooth),
+              {1, 0.5, 0.25, 0.125});
+    is_tinted(exr(width, height, false, {{"A", 0.125}, {"Y"}}, smooth), {0, 0, 0, 0.125});
+    const jit::Picture map = decoded("P6\n2 1\n255\n" + std::string("\x00\x33\xff\xff\x66\x00", 6), Colours::kept);
+    CHECK(map.colours[0] == std::vector{0.0, 1.0});
+    CHECK(map.colours[1] == std::vector{0.2, 0.4});
+    CHECK(map.colours[2] == std::vector{1.0, 0.0});
+    CHECK(map.colours[3].empty());
 }

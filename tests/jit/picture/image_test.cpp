@@ -254,8 +254,8 @@ TEST_CASE("image: one file is read once, and again when it changes")
     const Pictures pictures;
     const TextureBinding first = pictures.bound("pressed", {{"picture", "a.pgm"}}),
                          second = pictures.bound("tiled", {{"picture", "a.pgm"}});
-    CHECK(jit::read_image("a.pgm", pictures.folder.path.string()).image ==
-          jit::read_image(pictures.folder.file("a.pgm")).image);
+    CHECK(jit::read_image("a.pgm", pictures.folder.path.string(), {}).image ==
+          jit::read_image(pictures.folder.file("a.pgm"), {}, {}).image);
     pictures.folder.replace("a.pgm", pgm(3, 2, [](int, int) { return 1.0; }));
     CHECK(std::fabs(at(pictures.bound("pressed", {{"picture", "a.pgm"}}), 0.1, 0.7) - 1e-3) < 1e-15);
     CHECK(std::fabs(at(first, 0.5 / width, 0.5 / height) - 1e-3 * texel(0, 0)) < 1e-15); // keeps what it was made of

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <set>
 
 using namespace haptel::test;
 using haptel::tools::Json;
@@ -34,9 +35,12 @@ TEST_CASE("check: what each line costs adds up to the whole")
     CHECK(sum == texture["operations_max"].get<uint64_t>());
     CHECK(lines[3] % 10 == 0); // ten times at most
     CHECK(lines[3] >= 30);
-    CHECK(lines[10] > 1000); // eight octaves
+    CHECK(lines[10] > 1000);         // eight octaves
+    CHECK(texture["call_s"] > 1e-9); // hundreds of operations take more than a few cycles
+    CHECK(texture["call_s"] < 1e-3); // and no servo period
     const std::string text = run_command("check --cost '" + file + "'").out;
     CHECK(text.find("return 1um * (h + fbm") < text.find("return sin(x) * sin(x);"));
+    CHECK(contains(text, " ns a call on this machine, measured"));
 }
 
 TEST_CASE("check: a constant that is not finite is found")
@@ -225,4 +229,34 @@ TEST_CASE("check: a jump is told where it is, as high as it is")
     REQUIRE(std::sscanf(message.c_str(), "the height of 't' jumps by %lf um at (%lf,", &height_um, &x_mm) == 2);
     CHECK(std::abs(height_um - 30) < 0.01);
     CHECK(std::abs(x_mm - 3) < 1e-3);
+}
+
+TEST_CASE("check: a jump that was seen is told beside what may be not a number, and with the time of one that moves")
+{
+    const Folder folder;
+    const std::string domain = folder.write(
+        "domain.haptel", "texture t() { vec2 q = p.xy / 10mm; return 50um * mod(q.y * 7.0, sin(q.x)); }\n");
+    std::set<std::string> codes;
+    for (const Json& said : Json::parse(run_command("check --json '" + domain + "'").out)["diagnostics"])
+        codes.insert(said["code"]);
+    CHECK((codes.contains("jump") && codes.contains("domain")));
+
+    const std::string moving =
+        folder.write("moving.haptel", "texture t() { return 50um * floor(p.x / 10mm + 0.37 * time / 1s); }\n");
+    double x = 0, y = 0, z = 0, time = 0;
+    for (const Json& said : Json::parse(run_command("check --json '" + moving + "'").out)["diagnostics"])
+        if (said["code"] == "jump") {
+            const auto message = said["message"].get<std::string>();
+            CAPTURE(message);
+            REQUIRE(std::sscanf(message.c_str() + message.find('('), "(%lf, %lf, %lf) mm at %lf s", &x, &y, &z,
+                                &time) == 4);
+        }
+    REQUIRE(time != 0);
+    const auto height = [&](double to_the_right_mm) {
+        char place[160];
+        std::snprintf(place, sizeof place, " --at '%.9gmm,%.9gmm,%.9gmm' --time %.9g", x + to_the_right_mm, y, z, time);
+        return Json::parse(run_command("eval --json '" + moving + "'" + place).out)["height_m"]
+            .get<double>();
+    };
+    CHECK(std::fabs(height(0.05) - height(-0.05) - 50e-6) < 1e-12);
 }

@@ -24,7 +24,7 @@ struct Drawing {
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x) texels.push_back(texel(x, y));
         std::string error;
-        auto made = SplineImage::make(texels, width, height, error);
+        auto made = SplineImage::make({texels, {}, width, height}, {}, error);
         REQUIRE(made);
         return made;
     }

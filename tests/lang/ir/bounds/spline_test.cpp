@@ -21,7 +21,7 @@ namespace {
 std::shared_ptr<const SplineImage> image_of(std::vector<double> texels, int64_t width, int64_t height)
 {
     std::string error;
-    auto made = SplineImage::make(texels, width, height, error);
+    auto made = SplineImage::make({texels, {}, width, height}, {}, error);
     INFO(error);
     REQUIRE(made);
     return made;
@@ -169,11 +169,11 @@ TEST_CASE("spline: damaged images are refused with the reason")
 {
     std::string error;
     const double bad[] = {0, 1, std::numeric_limits<double>::quiet_NaN(), 3};
-    CHECK(!SplineImage::make(bad, 2, 2, error));
+    CHECK(!SplineImage::make({bad, {}, 2, 2}, {}, error));
     CHECK(error.find("texel (0, 1)") != std::string::npos);
-    CHECK(!SplineImage::make(bad, 0, 2, error));
-    CHECK(!SplineImage::make(bad, 3, 2, error));
-    CHECK(!SplineImage::make(bad, int64_t{1} << 40, int64_t{1} << 40, error));
+    CHECK(!SplineImage::make({bad, {}, 0, 2}, {}, error));
+    CHECK(!SplineImage::make({bad, {}, 3, 2}, {}, error));
+    CHECK(!SplineImage::make({bad, {}, int64_t{1} << 40, int64_t{1} << 40}, {}, error));
     CHECK(error.find("too large") != std::string::npos);
 }
 
