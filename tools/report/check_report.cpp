@@ -189,6 +189,12 @@ std::string shown_class(const CheckedTexture& checked)
     return fmt::format("{}, at {}:{}:{}", meaning, sources.file(bounds.cause.span.file).name, at.line, at.column);
 }
 
+// By more than a twentieth of the range.
+bool is_lowered_more(const ir::Interval& felt, const ir::Interval& proven)
+{
+    return felt.maximum - felt.minimum > 1.05 * (proven.maximum - proven.minimum);
+}
+
 } // namespace
 
 std::vector<std::string> inputs_of(const ir::Texture& texture)
@@ -257,7 +263,10 @@ Json CheckReport::to_json() const
         all.push_back(checked_json(checked));
         const bool reads_normal = (checked.texture->reads & HAPTEL_READS_NORMAL) != 0;
         all.back()["normal_turn_max_per_m"] = reads_normal ? Json(normal_turn_per_m) : Json(nullptr);
-        if (with_cost) all.back()["cost"] = cost_json(checked);
+        if (with_cost) {
+            all.back()["cost"] = cost_json(checked);
+            all.back()["call_s"] = checked.call_s ? Json(*checked.call_s) : Json(nullptr);
+        }
         all.back()["precision"] = checked.precision ? precision_json(*checked.precision) : Json(nullptr);
     }
     return {{"diagnostics", std::move(diagnostics)}, {"textures", std::move(all)}};
@@ -278,6 +287,9 @@ std::string CheckReport::to_text() const
             text += fmt::format("  felt       {}: found were {}, and what lies beyond is bent to stay within\n",
                                 shown_range(checked.heights->felt, shown_length),
                                 shown_range(checked.heights->found, shown_length));
+        else if (checked.heights && is_lowered_more(checked.heights->felt, here.height))
+            text += fmt::format("  felt       {}: what a hand waits for is a shorter proof\n",
+                                shown_range(checked.heights->felt, shown_length));
         text += fmt::format("  slope      {}\n", shown_bounds(here.slope_max, ranges.slope_max, ""));
         constexpr double infinity = std::numeric_limits<double>::infinity();
         if (has_curvature(here))
@@ -300,6 +312,8 @@ std::string CheckReport::to_text() const
         text += fmt::format("  cost       at most {} operations; reads {}{}\n", operations_of(checked),
                             inputs.empty() ? "nothing" : fmt::format("{}", fmt::join(inputs, ", ")),
                             outputs.empty() ? "" : fmt::format(", writes {}", fmt::join(outputs, ", ")));
+        if (checked.call_s)
+            text += fmt::format("             {:.3g} ns a call on this machine, measured\n", *checked.call_s * 1e9);
         if (with_cost) text += cost_text(checked);
         if (checked.precision) text += precision_text(*checked.precision);
     }

@@ -6,12 +6,14 @@
 
 #include "lang/ir/bounds/bounds.h"
 #include "lang/ir/bounds/cell_ranges.h"
+#include "lang/ir/bounds/polynomial.h"
 #include "lang/ir/bounds/seams.h"
 #include "lang/ir/derive/activity.h"
 
 #include <map>
 #include <optional>
 #include <set>
+#include <unordered_map>
 
 namespace haptel::ir {
 
@@ -50,8 +52,15 @@ public:
 
     // Of a function's text, by Value::index.
     struct Structure {
-        std::vector<const Instruction*> makers; // null: a parameter
-        std::vector<bool> is_part_of_result;    // and not only compared
+        std::vector<const Instruction*> makers;               // null: a parameter
+        std::vector<bool> is_part_of_result;                  // and not only compared
+        std::unordered_map<uint32_t, Polynomial> polynomials; // what is one of values that stand in it twice
+
+        const Polynomial* polynomial_of(Value value) const
+        {
+            const auto found = polynomials.find(value.index);
+            return found == polynomials.end() ? nullptr : &found->second;
+        }
     };
     // Of one evaluation of it, likewise.
     struct Frame {

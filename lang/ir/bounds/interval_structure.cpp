@@ -9,9 +9,6 @@
 namespace haptel::ir {
 namespace {
 
-// How far a sum of multiples is written out: enough for the edges of a smoothstep.
-constexpr uint32_t linear_steps_max = 16;
-
 // Backward from what a function returns: which numbers become part of another. Those that are only compared, or made
 // whole numbers of, may be infinite or NaN without a fault.
 std::vector<bool> parts_of_results(const Function& function, const std::vector<const Instruction*>& makers)
@@ -35,55 +32,9 @@ std::vector<bool> parts_of_results(const Function& function, const std::vector<c
     return is_part;
 }
 
-// A difference of terms that share others, as (r + k) - (r - k), is narrower than its parts are far apart: as exact
-// numbers would have it, and as far around as code may be off that. Nothing where no term is shared.
-std::optional<Interval> of_linear_sum(const IntervalEvaluator::Frame& frame, Value whole)
+bool is_sum_or_product(Op op)
 {
-    struct Term {
-        Value value;
-        double factor;
-    };
-    Term open[linear_steps_max + 2] = {{whole, 1}}, terms[linear_steps_max + 2];
-    size_t open_count = 1, term_count = 0;
-    double constant = 0, rounding = 0;
-    bool are_shared = false;
-    const auto known = [&](Value value) -> const Interval& { return frame.values[value.index]; };
-    const auto is_constant = [&](Value value) { return known(value).is_point() && known(value).is_finite(); };
-    for (uint32_t steps = 0; open_count > 0; ++steps) {
-        const auto [value, factor] = open[--open_count];
-        if (value != whole) {
-            if (!known(value).is_finite()) return std::nullopt;
-            rounding += std::numeric_limits<double>::epsilon() * std::fabs(factor) * size_of(known(value));
-        }
-        const Instruction* made = frame.makers[value.index];
-        const std::optional<Op> op = steps < linear_steps_max ? op_of(made) : std::nullopt;
-        const auto part = [&](size_t i) { return made->operands[i]; };
-        if (value != whole && is_constant(value)) {
-            constant += factor * known(value).minimum;
-        } else if (op == Op::add || op == Op::sub) {
-            open[open_count++] = {part(0), factor};
-            open[open_count++] = {part(1), op == Op::sub ? -factor : factor};
-        } else if (op == Op::neg) {
-            open[open_count++] = {part(0), -factor};
-        } else if (op == Op::mul && (is_constant(part(0)) || is_constant(part(1)))) {
-            const size_t by = is_constant(part(0)) ? 0 : 1;
-            open[open_count++] = {part(1 - by), factor * known(part(by)).minimum};
-        } else if (op == Op::div && is_constant(part(1)) && known(part(1)).minimum != 0) {
-            open[open_count++] = {part(0), factor / known(part(1)).minimum};
-        } else {
-            Term* same = std::ranges::find(terms, terms + term_count, value, &Term::value);
-            if (same == terms + term_count)
-                terms[term_count++] = {value, factor};
-            else
-                same->factor += factor, are_shared = true;
-        }
-    }
-    if (!are_shared) return std::nullopt;
-    Interval sum{constant, constant};
-    for (const Term& term : std::span(terms, term_count))
-        sum = add(sum, multiply(known(term.value), {term.factor, term.factor}));
-    const double slack = 4 * rounding;
-    return std::isfinite(slack) ? std::optional(add(sum, {-slack, slack})) : std::nullopt;
+    return op == Op::add || op == Op::sub || op == Op::mul;
 }
 
 } // namespace
@@ -98,6 +49,12 @@ const IntervalEvaluator::Structure& IntervalEvaluator::structure_of(uint32_t ind
         for (Value result : made.results) known.makers[result.index] = &made;
     });
     known.is_part_of_result = parts_of_results(function, known.makers);
+    for_each_instruction(function.body, [&](const Instruction& made) {
+        const std::optional<Op> op = op_of(&made);
+        if (!op || !is_sum_or_product(*op)) return;
+        if (auto polynomial = Polynomial::of(known.makers, made.results[0]))
+            known.polynomials.emplace(made.results[0].index, std::move(*polynomial));
+    });
     return known;
 }
 
@@ -120,9 +77,10 @@ Interval IntervalEvaluator::sharpened(const Frame& frame, const Instruction& mad
     const Instruction* second = made.operands.size() > 1 ? frame.makers[made.operands[1].index] : nullptr;
     if (op == Op::sub && op_of(second) == Op::detach && second->operands[0] == a && frame.values[a.index].is_finite())
         sharp = {0, 0}; // x - detach(x): a derivative, no value
-    if (op == Op::sub || op == Op::add)
-        if (const auto sum = of_linear_sum(frame, made.results[0]))
-            sharp = {std::max(sharp.minimum, sum->minimum), std::min(sharp.maximum, sum->maximum), sharp.may_be_nan};
+    if (const Polynomial* polynomial = is_sum_or_product(op) ? frame.structure.polynomial_of(made.results[0]) : nullptr)
+        if (const auto range = polynomial->range(frame.values))
+            sharp = {std::max(sharp.minimum, range->minimum), std::min(sharp.maximum, range->maximum),
+                     sharp.may_be_nan};
     if (op == Op::mul && a == made.operands[1]) sharp.minimum = std::max(sharp.minimum, 0.0);
     const std::optional<Op> divisor = op == Op::div ? op_of(second) : std::nullopt;
     if (divisor && is_length(*divisor) && std::ranges::find(second->operands, a) != second->operands.end())

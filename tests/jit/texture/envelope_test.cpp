@@ -124,7 +124,7 @@ texture grain() { return 2um * noise(p / 1mm) + 200um * smoothstep(0.0, 0.2mm, 0
 texture high() { return 2um * noise(p / 1mm) + 2mm * smoothstep(0.0, 0.2mm, 0.8mm - length(p - vec3(7mm, 3mm, 2mm))); }
 texture ridge() { return 3um * noise(p / 1mm) + 900um * smoothstep(0.0, 0.1mm, 0.1mm - abs(p.x - 13.3mm)); }
 texture tip() { vec3 q = (p - vec3(7mm, 3mm, 2mm)) / 0.3mm; return 100um / (1.0 + dot(q, q)); }
-texture late() { return 1um * noise(p / 1mm) + 100um * smoothstep(0.0, 1.0, time - 90.0s); }
+texture late() { return 1um * noise(p / 1mm) + 90um * smoothstep(0.0, 1.0, time - 90.0s); }
 )");
     for (const haptel_texture& texture : program->textures())
         for (const double side_m : {0.05, 0.2}) {

@@ -244,9 +244,9 @@ TEST_CASE("bounds: the slope that is declared bounds the value about the middle 
 
 TEST_CASE("bounds: fewer operations give wider bounds, that still hold")
 {
-    // x (10 - x), whose factors move together: 0 .. 25 over 0 .. 10
-    const Bounded texture("", "%x = input p_x %ten = real 10 %y = sub %ten, %x %h = mul %x, %y return %h", {0, 10},
-                          {1, 4}, "0");
+    // |x| (10 - x), whose factors move together: 0 .. 25 over 0 .. 10
+    const Bounded texture("", "%x = input p_x %ten = real 10 %a = abs %x %y = sub %ten, %x %h = mul %a, %y return %h",
+                          {0, 10}, {1, 4}, "0");
     Interval wider{-infinity, infinity};
     for (uint64_t operations : {1, 100, 1'000, 100'000}) {
         HeightPlaces places;

@@ -1,0 +1,145 @@
+// Values that stand in sums of products more than once: against closed forms, and against values in long double.
+#include "lang/ir/bounds/bounds.h"
+#include "tests/lang/ir/ir_support.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <random>
+
+using namespace ir_test;
+
+namespace {
+
+// Of an entry of p, in one evaluation: nothing is cut.
+Interval height(const std::string& body, const Interval (&p)[3])
+{
+    const Module module = parsed("function \"body\" () {\n" + body + R"(
+    }
+    texture "t" {
+      block 56 reads 0 writes 0
+      body "body"
+    })");
+    REQUIRE(verify(module) == "");
+    BoundsBox box;
+    for (size_t i = 0; i < 3; ++i) box.input[i] = p[i];
+    return height_bounds(module, module.textures[0], box, 1);
+}
+
+constexpr const char* inputs =
+    "%x = input p_x %y = input p_y %t = input p_z %one = real 1 %two = real 2 %three = real 3 ";
+
+void check_range(const std::string& body, const Interval (&p)[3], double minimum, double maximum)
+{
+    CAPTURE(body);
+    const Interval found = height(inputs + body, p);
+    const double size = std::max({std::fabs(minimum), std::fabs(maximum), 1.0});
+    CHECK(found.minimum <= minimum);
+    CHECK(found.maximum >= maximum);
+    CHECK(found.minimum > minimum - 1e-12 * size);
+    CHECK(found.maximum < maximum + 1e-12 * size);
+}
+
+// A random sum of products of x, y, t and constants, none squared where `is_affine`: as text, and as what it means.
+struct Expression {
+    std::string text;
+    std::string name;
+    std::function<long double(const long double (&)[3])> value;
+    uint32_t in = 0; // which of x, y and t stand in it, a bit each
+};
+
+class Maker {
+public:
+    Maker(uint32_t seed, bool affine) : random(seed), is_affine(affine) {}
+
+    Expression make(int depth)
+    {
+        if (depth == 0 || below(5) == 0) return leaf();
+        Expression a = make(depth - 1), b = make(depth - 1);
+        const char* op = below(2) == 0 ? "mul" : below(2) == 0 ? "add" : "sub";
+        if (is_affine && *op == 'm' && (a.in & b.in)) op = "add";
+        Expression made;
+        made.name = fresh();
+        made.text = a.text + b.text + made.name + " = " + op + " " + a.name + ", " + b.name + "\n";
+        made.in = a.in | b.in;
+        made.value = [op, a, b](const long double(&at)[3]) {
+            const long double left = a.value(at), right = b.value(at);
+            return *op == 'm' ? left * right : *op == 'a' ? left + right : left - right;
+        };
+        return made;
+    }
+    double real(double low, double high) { return std::uniform_real_distribution(low, high)(random); }
+
+private:
+    Expression leaf()
+    {
+        static constexpr const char* names[] = {"%x", "%y", "%t"};
+        if (below(4) == 0) {
+            const double constant = std::round(real(-8, 8)) / 2;
+            Expression made{"", fresh(), [constant](const long double(&)[3]) { return constant; }, 0};
+            made.text = made.name + " = real " + std::to_string(constant) + "\n";
+            return made;
+        }
+        const size_t which = below(3);
+        return {"", names[which], [which](const long double(&at)[3]) { return at[which]; }, 1u << which};
+    }
+    size_t below(size_t end) { return std::uniform_int_distribution<size_t>(0, end - 1)(random); }
+    std::string fresh() { return "%v" + std::to_string(count++); }
+
+    std::mt19937 random;
+    bool is_affine;
+    int count = 0;
+};
+
+} // namespace
+
+TEST_CASE("bounds: a mixture lies between what is mixed, and a smooth step between 0 and 1")
+{
+    const char* const mix = "%s = sub %one, %t %a = mul %x, %s %b = mul %y, %t %h = add %a, %b return %h";
+    check_range(mix, {{2, 3}, {-1, 5}, {0, 1}}, -1, 5);
+    check_range(mix, {{0, 1}, {0, 1}, {0, 1}}, 0, 1);
+    check_range(mix, {{0, 1}, {0, 1}, {-1, 2}}, -1, 2); // beyond both: 2 x - y at t = -1, 2 y - x at 2
+    check_range("%d = sub %y, %x %b = mul %t, %d %h = add %x, %b return %h", {{0, 1}, {0, 1}, {0, 1}}, 0, 1);
+    const char* const cubic =
+        "%u = mul %two, %t %v = sub %three, %u %a = mul %t, %t %h = mul %a, %v return %h"; // t t (3 - 2 t)
+    check_range(cubic, {{0, 0}, {0, 0}, {0, 1}}, 0, 1);
+    check_range(cubic, {{0, 0}, {0, 0}, {0.25, 0.5}}, 0.15625, 0.5);
+    const char* const quintic =
+        "%six = real 6 %ten = real 10 %fif = real 15 %a = mul %t, %six %b = sub %a, %fif "
+        "%c = mul %t, %b %d = add %c, %ten %e = mul %t, %t %f = mul %e, %t %h = mul %f, %d return %h";
+    check_range(quintic, {{0, 0}, {0, 0}, {0, 1}}, 0, 1);
+    check_range(quintic, {{0, 0}, {0, 0}, {0.5, 0.75}}, 0.5, 0.896484375);
+}
+
+TEST_CASE("bounds: sums of products hold what they are, however they are written")
+{
+    size_t sharper = 0;
+    for (uint32_t seed = 0; seed < 3000; ++seed) {
+        const bool is_affine = seed % 2 == 0;
+        Maker maker(seed, is_affine);
+        const Expression made = maker.make(4);
+        Interval p[3];
+        for (Interval& at : p) {
+            const double middle = maker.real(-3, 3), reach = seed % 5 == 0 ? 0 : maker.real(0, 2);
+            at = {middle - reach, middle + reach};
+        }
+        CAPTURE(seed, made.text);
+        const Interval found =
+            height("%x = input p_x %y = input p_y %t = input p_z\n" + made.text + "return " + made.name, p);
+        double least = infinity, most = -infinity;
+        for (int i = 0; i < 60; ++i) {
+            long double at[3];
+            for (int k = 0; k < 3; ++k)
+                at[k] = i < 8 ? (i >> k & 1 ? p[k].maximum : p[k].minimum) : maker.real(p[k].minimum, p[k].maximum);
+            const auto value = static_cast<double>(made.value(at));
+            least = std::min(least, value);
+            most = std::max(most, value);
+        }
+        REQUIRE(found.minimum <= least);
+        REQUIRE(found.maximum >= most);
+        // linear in each, it is least and greatest at corners, which are among the places
+        const double size = std::max({std::fabs(least), std::fabs(most), 1.0});
+        sharper += is_affine && found.maximum - most < 1e-9 * size && least - found.minimum < 1e-9 * size;
+    }
+    CHECK(sharper > 1450); // of 1500; what is left has more terms than are written out
+}
