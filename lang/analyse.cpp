@@ -150,12 +150,22 @@ std::string place_of(const double (&p_m)[3])
     return text.data();
 }
 
-// Whether it does, or may for all that is known.
+std::string when_of(const ir::Texture& texture, double time_s)
+{
+    if (!(texture.reads & HAPTEL_READS_TIME)) return {};
+    std::array<char, 48> text;
+    std::snprintf(text.data(), text.size(), " at %.4g s", time_s);
+    return text.data();
+}
+
+// Whether it does, or may for all that is known. `is_told`: another finding stands there; only a jump that was seen is
+// worse.
 bool report_jump(const ir::Texture& texture, const ir::Cause& cause, const std::string& by, const JumpSearch& seek_jump,
-                 Diagnostics& diagnostics)
+                 bool is_told, Diagnostics& diagnostics)
 {
     const std::string height = "the height of '" + texture.name + "' ";
     const std::optional<SeenJump> seen = seek_jump ? seek_jump() : std::nullopt;
+    if (is_told && !seen) return !seek_jump;
     if (seek_jump && !seen) {
         diagnostics.note(cause.span, "seam",
                          height + "is not shown to be continuous here, " + by + "; a search found no jump",
@@ -165,8 +175,8 @@ bool report_jump(const ir::Texture& texture, const ir::Cause& cause, const std::
     std::array<char, 32> size;
     if (seen) std::snprintf(size.data(), size.size(), "%.3g um", 1e6 * seen->height_m);
     diagnostics.warning(cause.span, "jump",
-                        seen ? height + "jumps by " + size.data() + " at " + place_of(seen->p_m) + ", " + by +
-                                   " or the like: an impulse in the hand"
+                        seen ? height + "jumps by " + size.data() + " at " + place_of(seen->p_m) +
+                                   when_of(texture, seen->time_s) + ", " + by + " or the like: an impulse in the hand"
                              : height + "may jump here, " + by + ": an impulse in the hand",
                         smooth_form(cause));
     return true;
@@ -225,11 +235,11 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
     const auto is_same_place = [&](const ir::Undefined& undefined) {
         return undefined.span.file == cause.span.file && undefined.span.begin == cause.span.begin;
     };
-    if (std::any_of(said.begin(), said.end(), is_same_place)) return found;
+    const bool is_told = std::any_of(said.begin(), said.end(), is_same_place);
     const auto by = [&] { return "by " + what_of(cause, program.sources); };
     if (found.at_values.continuity == ir::Continuity::jump)
-        found.no_jump_found = !report_jump(texture, cause, by(), seek_jump, diagnostics);
-    if (found.at_values.continuity == ir::Continuity::c0)
+        found.no_jump_found = !report_jump(texture, cause, by(), seek_jump, is_told, diagnostics);
+    if (found.at_values.continuity == ir::Continuity::c0 && !is_told)
         diagnostics.note(cause.span, "kink",
                          "the slope of '" + texture.name + "' may step here, " + by() + ": a tick in the hand",
                          smooth_form(cause));

@@ -2,9 +2,11 @@
 #include "lang/check/body_checker.h"
 #include "lang/syntax/foreign.h"
 #include "lang/syntax/operators.h"
+#include "lang/text/number.h"
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 namespace haptel::lang {
@@ -73,6 +75,7 @@ std::string operator_hint(BinaryOp op, Type left, Type right)
         const StructInfo& info = *(left.is_struct() ? left : right).structure;
         return "a struct is used by its members, as ." + info.members.front().name;
     }
+    if (left == image_type || right == image_type) return "an image is read at a place: sample(picture, uv)";
     if (left.is_whole() && right.is_whole() && left.scalar != right.scalar)
         return "int and uint do not mix: write " + to_string(vec(right.size, left.scalar)) + "(...) round the second";
     switch (op) {
@@ -178,8 +181,33 @@ void BodyChecker::require(Expression& e, Type wanted, const std::string& where)
                           conversion_hint(e.type, wanted, excerpt(e), operand(e)));
 }
 
+// "0.142857142857", which in GLSL is the float nearest to 1 / 7, and here is less than that: floor(7.0 * x) is another
+// number. 0: it is no such fraction, or as near to one as numbers are here.
+static int denominator_meant(const NumberLiteral& node)
+{
+    constexpr int most = 1024;
+    const auto digits = std::ranges::count_if(node.text, is_digit);
+    if (!node.unit.empty() || digits < 8 || node.value <= 1.0 / most || node.value > 0.5) return 0;
+    const auto whole = static_cast<int>(std::lround(1 / node.value));
+    int odd = whole; // what is left of 2 and 5 has endless decimals
+    for (const int factor : {2, 5})
+        while (odd % factor == 0) odd /= factor;
+    const bool is_float = static_cast<float>(node.value) == static_cast<float>(1.0 / whole);
+    return odd > 1 && is_float && node.value != 1.0 / whole ? whole : 0;
+}
+
 Type BodyChecker::check(Expression& e, NumberLiteral& node)
 {
+    if (const int whole = node.kind == NumberLiteral::Kind::real ? denominator_meant(node) : 0) {
+        const std::string meant = "1.0 / " + std::to_string(whole) + ".0";
+        diagnostics
+            .note(e.span, "near-fraction",
+                  quoted(node.text) + " is " + meant + " in the precision of GLSL, and a little " +
+                      (node.value * whole < 1 ? "less" : "more") +
+                      " here: floor() of what it multiplies may be another number",
+                  "write (" + meant + ")")
+            .fix = FixIt{e.span, "(" + meant + ")"};
+    }
     if (node.kind == NumberLiteral::Kind::real) return float_type;
     const bool is_unsigned = node.kind == NumberLiteral::Kind::unsigned_integer;
     const bool is_bits = node.text.starts_with("0x") || node.text.starts_with("0X");

@@ -15,6 +15,11 @@ Type BodyChecker::texture_call(Expression& e, CallExpression& call)
     if (!callee || !callee->is_valid) {
         for (ExpressionPtr& argument : call.arguments) expression(*argument);
         if (callee || may_be_unread(call.callee.text) || diagnostics.reports() > reports) return Type::error();
+        for (const Name& name : call.names)
+            if (!name.text.empty() && find(name.text))
+                return fail(name.span, "assignment-in-expression",
+                            "an assignment to " + quoted(name.text) + " is a statement of its own, not part of a call",
+                            "write it on a line before");
         return fail(call.callee.span, "named-argument",
                     "only a texture takes arguments by name, and there is no texture " + quoted(call.callee.text),
                     "leave the names out");

@@ -66,10 +66,11 @@ FunctionInfo* FileScope::texture(std::string_view written) const
     return nullptr;
 }
 
-StructDeclaration* FileScope::structure(std::string_view name) const
+StructDeclaration* FileScope::structure(std::string_view written) const
 {
-    for (const Declarations* layer : layers)
-        if (const auto found = layer->structs.find(name); found != layer->structs.end()) return found->second;
+    const PrefixedName parts(written);
+    for (const Declarations* layer : layers_of(parts.prefix))
+        if (const auto found = layer->structs.find(parts.name); found != layer->structs.end()) return found->second;
     return nullptr;
 }
 

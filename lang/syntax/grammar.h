@@ -122,6 +122,7 @@ private:
     const Range* argument_here() const;
     ast::ExpressionPtr read_range(Range range, const Use* names, const std::string& what);
     std::string_view alias_of(std::string_view word) const;
+    void leave_semicolon_out(Macro& macro);
     void note_constant(Span whole, const ast::Name& name, const Macro& macro);
 
     // parse_expression.cpp
@@ -135,6 +136,7 @@ private:
     ast::ExpressionPtr brace_list(bool is_row = false);
     ast::ExpressionPtr name_or_call();
     bool at_prefixed_name(size_t ahead = 0, Token called_by = Token::left_paren) const;
+    bool at_prefixed_type() const;
     ast::Name prefixed_name();
     ast::ExpressionPtr grad_call(Span first);
     std::vector<ast::ExpressionPtr> arguments(std::vector<ast::Name>* names = nullptr);
@@ -149,6 +151,7 @@ private:
     void foreign_statement(const ForeignWord& word, Statements& into);
     void read_misspelt_keyword();
     void read_misspelt_in();
+    void read_decimal_comma();
     void skip_metadata();
     void read_type_behind_name(bool is_told);
     bool skip_word_of_function();

@@ -46,7 +46,7 @@ TypeName Grammar::type_name()
 {
     TypeName type;
     skip_foreign_qualifiers();
-    type.base = name("of a type");
+    type.base = at_prefixed_type() ? prefixed_name() : name("of a type");
     if (type.base.text.empty()) return type;
     if (const ForeignWord* foreign = foreign_word(ForeignKind::type, type.base.text)) {
         if (type.base.span.begin != told_type) {
@@ -221,6 +221,7 @@ void Grammar::function(File& result)
     Function made;
     const size_t first_token = position;
     are_types_behind = skip_word_of_function();
+    if (lost) return;
     made.result = type_name();
     const Span first = made.result.base.span;
     if (made.result.base.text.empty()) stand_again();
@@ -375,6 +376,7 @@ TextureParameter Grammar::texture_parameter()
         parameter.value = unknown(previous_span());
     } else if (accept(Token::assign)) {
         parameter.value = expression();
+        read_decimal_comma();
     } else if (needs_default && !lost && find_output(parameter.name.text)) {
         parameter.is_output = true;
         diagnostics.error(parameter.name.span, "missing-default",

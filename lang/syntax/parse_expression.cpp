@@ -182,6 +182,17 @@ ExpressionPtr Grammar::primary()
         advance();
         return unary(); // which may be sound
     }
+    if (at(Token::kw_out) && kind(1) == Token::name) {
+        slip(first, "foreign-word", "a call names what is written as it names what is read", "leave 'out' out").fix =
+            FixIt{{file, first.begin, span(1).begin}, ""};
+        advance();
+        return unary();
+    }
+    if (at(Token::greater) && previous_kind() == Token::assign && previous_span().end == first.begin) {
+        error(join(previous_span(), first), "foreign-word", "there is no '=>' in Haptel",
+              "a function stands at the top of a file, float f(vec3 q) { return ...; }, and is passed by its name");
+        return unknown(first);
+    }
     Diagnostic& reported = error(first, "expected-expression", "expected an expression" + found());
     if (at(Token::kw_texture) && kind(1) == Token::left_paren)
         reported.hint = foreign_word(ForeignKind::function, "texture2D")->hint;
@@ -237,7 +248,7 @@ ExpressionPtr Grammar::brace_list(bool is_row)
 // At '[' behind a struct's name: whether "(" follows the "]", as in "Cell[2](a, b)".
 bool Grammar::makes_structs(std::string_view type) const
 {
-    if (!struct_names.contains(type)) return false;
+    if (!struct_names.contains(type) && type.find('.') == type.npos) return false;
     const size_t closer = closer_ahead(0);
     return kind(closer) == Token::right_bracket && kind(closer + 1) == Token::left_paren;
 }
@@ -247,6 +258,12 @@ bool Grammar::at_prefixed_name(size_t ahead, Token called_by) const
 {
     return kind(ahead) == Token::name && kind(ahead + 1) == Token::dot && kind(ahead + 2) == Token::name &&
            (kind(ahead + 3) == called_by || import_prefixes.contains(text(ahead)));
+}
+
+// "oak.Cell": a struct of the file behind that prefix.
+bool Grammar::at_prefixed_type() const
+{
+    return kind() == Token::name && kind(1) == Token::dot && kind(2) == Token::name;
 }
 
 Name Grammar::prefixed_name()

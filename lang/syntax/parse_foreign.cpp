@@ -124,10 +124,25 @@ bool Grammar::skip_word_of_function()
 {
     const ForeignWord* word = foreign_word(ForeignKind::type, text());
     if (!word || word != foreign_word(ForeignKind::type, "fn") || kind(1) != Token::name) return false;
+    if (text() == "def") { // of a language without braces: nothing that follows is read
+        error(span(), "foreign-word", not_in_haptel(), word->hint);
+        return false;
+    }
     if (kind(2) != Token::name) return true;
     slip(span(), "foreign-word", not_in_haptel(), word->hint).fix = FixIt{{file, span().begin, span(1).begin}, ""};
     advance();
     return false;
+}
+
+// "float depth = 1,5mm", behind the 1.
+void Grammar::read_decimal_comma()
+{
+    const bool is_one = previous_kind() == Token::number && at(Token::comma) && kind(1) == Token::number && !lost;
+    if (!is_one || previous_span().end != span().begin || span().end != span(1).begin) return;
+    const std::string meant = std::string(sources.text(previous_span())) + "." + std::string(text(1));
+    slip(join(previous_span(), span(1)), "syntax", "decimals stand behind a point", "write " + meant).fix =
+        FixIt{span(), "."};
+    advance(2);
 }
 
 // "a and b"; nothing but an operator can stand here.

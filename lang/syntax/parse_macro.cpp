@@ -35,6 +35,7 @@ void Grammar::definition()
     made.end = position;
     const Span whole = since(first);
     accept(Token::line_end);
+    leave_semicolon_out(made);
     if (made.first == made.end && !made.takes_arguments) {
         macros.erase(word.text);
         lost = false;
@@ -43,6 +44,22 @@ void Grammar::definition()
     if (!lost) note_constant(whole, word, made);
     macros.insert_or_assign(sources.text(made.name), std::move(made));
     lost = false;
+}
+
+// "#define HALF(x) (0.5 * (x));": behind an expression it is one too many, wherever the name is used.
+void Grammar::leave_semicolon_out(Macro& macro)
+{
+    const auto value = std::span(list.tokens).subspan(macro.first, macro.end - macro.first);
+    const auto makes_statements = [](const PlacedToken& token) {
+        return token.kind == Token::semicolon || token.kind == Token::left_brace || is_assignment(token.kind);
+    };
+    if (value.size() < 2 || value.back().kind != Token::semicolon ||
+        std::ranges::any_of(value.first(value.size() - 1), makes_statements))
+        return;
+    const Span there{file, value.back().begin, value.back().end};
+    diagnostics.note(there, "directive", "the ';' is read as none: a name stands for an expression", "leave it out")
+        .fix = FixIt{there, ""};
+    --macro.end;
 }
 
 // What is a constant of plain type is better written as one.

@@ -315,9 +315,11 @@ bool Grammar::at_declaration() const
 {
     if (at(Token::kw_const)) return true;
     if (!at(Token::name)) return false;
-    if (kind(1) == Token::name) return true;
-    if (kind(1) == Token::left_bracket) {
-        size_t closer = closer_ahead(1);
+    const bool is_cut_off = kind(3) == Token::name && kind(4) == Token::name; // "q.x" and, without a ';', "float y"
+    const size_t behind = at_prefixed_type() && !is_cut_off ? 3 : 1;
+    if (kind(behind) == Token::name) return true;
+    if (kind(behind) == Token::left_bracket) {
+        size_t closer = closer_ahead(behind);
         if (kind(closer) == Token::right_bracket && kind(closer + 1) == Token::left_bracket)
             closer = closer_ahead(closer + 1);
         return kind(closer) == Token::right_bracket && kind(closer + 1) == Token::name;

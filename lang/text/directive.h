@@ -1,13 +1,13 @@
 // Lines that begin with '#', as other shading languages write them: which of the text such lines leave out.
 //
 // #define and #undef are left to the grammar (parse_macro.cpp), since a value must be an expression here; #ifdef,
-// #ifndef, #if with 0, 1 or defined(NAME), #else and #endif choose text; #version, #extension, #pragma and #line change
-// nothing.
+// #ifndef, #if and #elif with a condition of whole numbers, #else and #endif choose text; #version, #extension, #pragma
+// and #line change nothing.
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
-#include <set>
 #include <string_view>
 #include <vector>
 
@@ -15,9 +15,9 @@ namespace haptel::lang {
 
 class Conditions {
 public:
-    void define(std::string_view name) { defined.insert(name); }
-    void undefine(std::string_view name) { defined.erase(name); }
-    // What "#ifdef A", "#if !defined(A)", "#if 0" say; nothing: it is something else. `line` without a comment.
+    void define(std::string_view name, std::string_view value) { values.insert_or_assign(name, value); }
+    void undefine(std::string_view name) { values.erase(name); }
+    // What "#ifdef A", "#if !defined(A) && B > 2" say; nothing: it is something else. `line` without a comment.
     std::optional<bool> chosen(std::string_view word, std::string_view line) const;
 
     struct Open {                    // a choice whose end has not been met
@@ -27,7 +27,9 @@ public:
     std::vector<Open> open; // innermost last
 
 private:
-    std::set<std::string_view> defined;
+    class Reader;
+    std::map<std::string_view, std::string_view> values{
+        {"__VERSION__", "300"}}; // of GLSL: the language is nearest to that
 };
 
 } // namespace haptel::lang

@@ -278,7 +278,8 @@ private:
         const std::optional<bool> chosen =
             conditions.chosen(word, line.substr(0, std::min(line.find("//"), line.find("/*"))));
         if (!chosen)
-            refuse(where, "expected 0, 1 or defined(NAME) after '#if'", "keep the lines that are meant, without it");
+            refuse(where, "expected a condition of whole numbers after '#if'",
+                   "such as defined(A) && B > 2; or keep the lines that are meant, without it");
         return chosen.value_or(true);
     }
 
@@ -358,12 +359,14 @@ private:
             while (is_name_part(peek())) ++at;
         const uint32_t name_end = at;
         if (name_begin == name_end) return refuse(where, "expected a name after '#define'", "#define WIDTH 0.5");
-        conditions.define(text.substr(name_begin, name_end - name_begin));
+        const std::string_view name = text.substr(name_begin, name_end - name_begin);
         take_spaces();
         const uint32_t value = at;
         const bool is_empty = at_line_end() || rest().starts_with("//");
-        at = where.end;
+        const std::string_view line = rest_of_line();
+        conditions.define(name, line.substr(0, std::min(line.find("//"), line.find("/*"))));
         if (is_empty) return static_cast<void>(at = value);
+        at = where.end;
         push(Token::define, where.begin);
         at = name_end;
         push(Token::name, name_begin);

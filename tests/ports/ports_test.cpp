@@ -271,7 +271,7 @@ TEST_CASE("ports: patterns that jump are told so, and no others")
             std::fill_n(box.maximum_m, 3, reach_m);
             const std::optional<jit::Jump> jump = jit::find_jump(pattern.binding, box);
             if (!jump) return std::nullopt;
-            return lang::SeenJump{jump->height_m, {jump->p_m[0], jump->p_m[1], jump->p_m[2]}};
+            return lang::SeenJump{jump->height_m, {jump->p_m[0], jump->p_m[1], jump->p_m[2]}, jump->time_s};
         };
         lang::analyse(*result.program, texture, values, {}, {.normal_turn_max_per_m = 1 / reach_m, .evaluations = 16},
                       said, seek_jump);
