@@ -73,7 +73,13 @@ ExitCode run(int argc, char** argv)
 int main(int argc, char** argv)
 {
     try {
-        return static_cast<int>(run(argc, argv));
+        char help[] = "--help"; // "help check" is "check --help"
+        std::vector<char*> words(argv, argv + argc);
+        if (argc > 1 && std::string_view(argv[1]) == "help") {
+            words.erase(words.begin() + 1);
+            words.push_back(help);
+        }
+        return static_cast<int>(run(static_cast<int>(words.size()), words.data()));
     } catch (const std::exception& error) {
         // Layers report errors as data; what still arrives here is the system's: no memory, a full disk.
         say_error(error.what());

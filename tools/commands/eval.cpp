@@ -31,7 +31,7 @@ struct EvalOptions {
     glm::dvec3 normal{0, 0, 1};
     glm::dvec2 uv{0};
     glm::dvec3 velocity_m_per_s{0};
-    double normal_force_n = 0, tool_radius_m = 0, footprint_m = 0, box_m = 0.2;
+    double time_s = 0, normal_force_n = 0, tool_radius_m = 0, footprint_m = 0, box_m = 0.2;
     std::string engine = "jit", precision = "f64";
     bool json = false;
 };
@@ -111,6 +111,7 @@ haptel_point point_at(const EvalOptions& options, const glm::dvec3& p_m)
     }
     for (int axis = 0; axis < 3; ++axis) point.velocity[axis] = options.velocity_m_per_s[axis];
     for (int axis = 0; axis < 2; ++axis) point.uv[axis] = options.uv[axis];
+    point.time_s = options.time_s;
     point.normal_force_n = options.normal_force_n;
     point.tool_radius_m = options.tool_radius_m;
     return point;
@@ -295,6 +296,7 @@ Command eval_command(CLI::App& app)
         *command, "--velocity", "X,Y,Z", parse_vector,
         [options](const glm::dvec3& velocity) { options->velocity_m_per_s = velocity; },
         "The input velocity, m/s [0,0,0]");
+    command->add_option("--time", options->time_s, "The input time, seconds [0]")->type_name("S");
     command->add_option("--normal-force", options->normal_force_n, "The input normal_force, newtons [0]")
         ->type_name("N")
         ->check(CLI::Range(0.0, normal_force_max_n));

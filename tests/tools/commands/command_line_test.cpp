@@ -12,6 +12,9 @@ TEST_CASE("help and version go to standard output with exit code 0")
     CHECK(version.err.empty());
 
     const Ran help = run_command("--help");
+    CHECK(run_command("help").out == help.out);
+    CHECK(run_command("help check").out == run_command("check --help").out);
+    CHECK(contains(run_command("help chek").err, "did you mean 'check'?"));
     CHECK(help.code == 0);
     CHECK(contains(help.out, "--version"));
     CHECK(help.err.empty());
