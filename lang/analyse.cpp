@@ -158,14 +158,12 @@ std::string when_of(const ir::Texture& texture, double time_s)
     return text.data();
 }
 
-// Whether it does, or may for all that is known. `is_told`: another finding stands there; only a jump that was seen is
-// worse.
+// Whether it does, or may for all that is known.
 bool report_jump(const ir::Texture& texture, const ir::Cause& cause, const std::string& by, const JumpSearch& seek_jump,
-                 bool is_told, Diagnostics& diagnostics)
+                 Diagnostics& diagnostics)
 {
     const std::string height = "the height of '" + texture.name + "' ";
     const std::optional<SeenJump> seen = seek_jump ? seek_jump() : std::nullopt;
-    if (is_told && !seen) return !seek_jump;
     if (seek_jump && !seen) {
         diagnostics.note(cause.span, "seam",
                          height + "is not shown to be continuous here, " + by + "; a search found no jump",
@@ -232,14 +230,16 @@ Analysis analyse(const Program& program, const ir::Texture& texture, std::span<c
     const std::vector<ir::Undefined> said = ir::undefined_in(program.module, texture, over_ranges);
     for (const ir::Undefined& undefined : said) report(undefined, diagnostics);
     const ir::Cause& cause = found.at_values.cause;
-    const auto is_same_place = [&](const ir::Undefined& undefined) {
+    const auto is_same_place = [&](const ir::Undefined& undefined) { // what is no number somewhere may jump elsewhere
+        if (undefined.why == ir::Undefined::Why::domain && found.at_values.continuity == ir::Continuity::jump)
+            return false;
         return undefined.span.file == cause.span.file && undefined.span.begin == cause.span.begin;
     };
-    const bool is_told = std::any_of(said.begin(), said.end(), is_same_place);
+    if (std::any_of(said.begin(), said.end(), is_same_place)) return found;
     const auto by = [&] { return "by " + what_of(cause, program.sources); };
     if (found.at_values.continuity == ir::Continuity::jump)
-        found.no_jump_found = !report_jump(texture, cause, by(), seek_jump, is_told, diagnostics);
-    if (found.at_values.continuity == ir::Continuity::c0 && !is_told)
+        found.no_jump_found = !report_jump(texture, cause, by(), seek_jump, diagnostics);
+    if (found.at_values.continuity == ir::Continuity::c0)
         diagnostics.note(cause.span, "kink",
                          "the slope of '" + texture.name + "' may step here, " + by() + ": a tick in the hand",
                          smooth_form(cause));

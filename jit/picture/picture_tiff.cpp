@@ -105,6 +105,17 @@ struct Layout {
     }
     bool is_real() const { return format == SAMPLEFORMAT_IEEEFP; }
     bool is_rgb() const { return meaning == PHOTOMETRIC_RGB && samples >= 3; }
+    // The sample that is alpha; 0: none is. Others beside the colours may be anything.
+    uint16_t alpha(TIFF* tiff) const
+    {
+        uint16_t count = 0;
+        const uint16_t* kinds = nullptr;
+        if (!TIFFGetField(tiff, TIFFTAG_EXTRASAMPLES, &count, &kinds) || count >= samples) return 0;
+        for (uint16_t i = 0; i < count; ++i)
+            if (kinds[i] == EXTRASAMPLE_ASSOCALPHA || kinds[i] == EXTRASAMPLE_UNASSALPHA)
+                return static_cast<uint16_t>(samples - count + i);
+        return 0;
+    }
     // The file's rows are the picture's columns.
     bool is_turned() const { return orientation >= ORIENTATION_LEFTTOP; }
     // Where in the picture, whose rows begin at the bottom, a pixel of the file belongs.
@@ -165,20 +176,23 @@ bool read_plain(TIFF* tiff, const Layout& layout, Picture& made, Colours kept)
         (!TIFFGetField(tiff, TIFFTAG_TILEWIDTH, &across) || !TIFFGetField(tiff, TIFFTAG_TILELENGTH, &down)))
         return false;
     const tmsize_t bytes = layout.tiled ? TIFFTileSize(tiff) : TIFFScanlineSize(tiff);
-    if (across < 1 || down < 1 || bytes < 1 || bytes > memory_max / 4) return false;
+    if (across < 1 || down < 1 || bytes < 1) return false;
     const bool is_apart = layout.planes == PLANARCONFIG_SEPARATE;
     const auto plane_size = static_cast<size_t>(bytes);
     const size_t sample_size = layout.bits / 8, pixel_size = sample_size * (is_apart ? 1 : layout.samples);
     if (plane_size < uint64_t{across} * down * pixel_size) return false;
-    const auto lights = static_cast<uint16_t>(layout.is_rgb() ? 3 : 1); // then an alpha
-    const auto samples = static_cast<uint16_t>(lights + (kept == Colours::kept && layout.samples > lights));
+    const auto lights = static_cast<uint16_t>(layout.is_rgb() ? 3 : 1);
+    const uint16_t alpha = kept == Colours::kept ? layout.alpha(tiff) : 0;
+    const auto samples = static_cast<uint16_t>(lights + (alpha > 0));
     if (kept == Colours::kept) keep_colours(made, samples);
     const auto planes = static_cast<uint16_t>(is_apart ? samples : 1);
+    if (bytes > memory_max / planes) return false;
     const bool is_inverted = layout.meaning == PHOTOMETRIC_MINISWHITE && !layout.is_real();
     std::vector<std::byte> block(planes * plane_size);
     const auto put = [&](size_t place, size_t pixel) {
         const auto sample = [&](size_t i) {
-            return sample_at(layout, block.data() + pixel * pixel_size + i * (is_apart ? plane_size : sample_size));
+            const size_t behind = is_apart ? i * plane_size : (i < lights ? i : alpha) * sample_size;
+            return sample_at(layout, block.data() + pixel * pixel_size + behind);
         };
         double values[4] = {};
         for (size_t i = 0; i < samples; ++i) values[i] = sample(i);
@@ -190,8 +204,9 @@ bool read_plain(TIFF* tiff, const Layout& layout, Picture& made, Colours kept)
         for (uint32_t left = 0; left < layout.width; left += across) {
             for (uint16_t plane = 0; plane < planes; ++plane) {
                 std::byte* const to = block.data() + plane * plane_size;
+                const uint16_t from = plane < lights ? plane : alpha;
                 const tmsize_t got =
-                    layout.tiled ? TIFFReadTile(tiff, to, left, top, 0, plane) : TIFFReadScanline(tiff, to, top, plane);
+                    layout.tiled ? TIFFReadTile(tiff, to, left, top, 0, from) : TIFFReadScanline(tiff, to, top, from);
                 if (got < 0) return false;
             }
             for (uint32_t y = 0; y < std::min(down, layout.height - top); ++y)

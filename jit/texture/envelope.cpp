@@ -27,7 +27,7 @@ constexpr double is_pole = 8, before_pole = 16;
 // A range is proven well enough if it is no wider than so many times the one found: sums of octaves, whose peaks hardly
 // ever meet, are proven to twice what anybody finds, and are felt well. So is one that lowers the surface by no more
 // than a tenth of what a hand sinks in that presses with 1 N on 1000 N/m.
-constexpr double wide_proof = 2, deep_proof_m = 0.1e-3;
+constexpr double wide_proof = 3, deep_proof_m = 0.1e-3;
 // Of the range found: heights up to so far beyond are felt as they are, and a shoulder goes on from there.
 constexpr double margin = 0.2, shoulder = 0.2;
 // Nothing was found where all heights were equal; so much is felt of what a search missed.

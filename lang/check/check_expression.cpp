@@ -186,14 +186,16 @@ void BodyChecker::require(Expression& e, Type wanted, const std::string& where)
 static int denominator_meant(const NumberLiteral& node)
 {
     constexpr int most = 1024;
-    const auto digits = std::ranges::count_if(node.text, is_digit);
-    if (!node.unit.empty() || digits < 8 || node.value <= 1.0 / most || node.value > 0.5) return 0;
+    const size_t first = std::min(node.text.find_first_of("123456789"), node.text.size());
+    const auto digits = std::ranges::count_if(node.text.substr(first), is_digit); // that count
+    if (!node.unit.empty() || digits < 9 || node.value <= 1.0 / most || node.value > 0.5) return 0;
     const auto whole = static_cast<int>(std::lround(1 / node.value));
     int odd = whole; // what is left of 2 and 5 has endless decimals
     for (const int factor : {2, 5})
         while (odd % factor == 0) odd /= factor;
     const bool is_float = static_cast<float>(node.value) == static_cast<float>(1.0 / whole);
-    return odd > 1 && is_float && node.value != 1.0 / whole ? whole : 0;
+    const bool is_as_near = std::fabs(node.value * whole - 1) < 1e-15;
+    return odd > 1 && is_float && !is_as_near ? whole : 0;
 }
 
 Type BodyChecker::check(Expression& e, NumberLiteral& node)

@@ -78,7 +78,7 @@ constexpr ForeignWord meanings[] = {
     {function, "dFdx dFdy fwidth ddx ddy Du Dv", "", "derivatives are exact: write grad(f)(q)"},
     {function, "tex2D texture2D", "",
      "write sample(picture, uv), a float, or sample_rgba(picture, uv); outside of 0 .. 1 sample_tiled repeats"},
-    {function, "textureLod tex2Dlod", "", "write sample(coarser(picture, level), uv), a float"},
+    {function, "textureLod tex2Dlod", "", "write sample(coarser(picture, int(level)), uv), a float"},
     {function, "texelFetch", "", "write texel(picture, column, row), a float"},
     {function, "textureSize", "", "write image_width(picture) and image_height(picture)"},
 

@@ -2,6 +2,7 @@
 // anew from the tokens of the value, and an argument from those where it is written, as if in parentheses; so a
 // mistake is told where it stands.
 #include "lang/syntax/grammar.h"
+#include "lang/syntax/operators.h"
 #include "lang/text/limits.h"
 
 #include <algorithm>

@@ -21,8 +21,9 @@ struct Operator {
     int precedence;
 };
 // Longer ones before those that they begin with.
-constexpr Operator operators[] = {{"||", 1}, {"&&", 2}, {"==", 3}, {"!=", 3}, {"<=", 4}, {">=", 4}, {"<", 4},
-                                  {">", 4},  {"+", 5},  {"-", 5},  {"*", 6},  {"/", 6},  {"%", 6}};
+constexpr Operator operators[] = {{"||", 1}, {"&&", 2}, {"==", 6}, {"!=", 6}, {"<=", 7}, {">=", 7},
+                                  {"<<", 8}, {">>", 8}, {"|", 3},  {"^", 4},  {"&", 5},  {"<", 7},
+                                  {">", 7},  {"+", 9},  {"-", 9},  {"*", 10}, {"/", 10}, {"%", 10}};
 
 } // namespace
 
@@ -41,7 +42,11 @@ public:
 private:
     void skip_spaces()
     {
-        while (at < text.size() && std::string_view(" \t\r\n\\").find(text[at]) != text.npos) ++at;
+        for (;;) {
+            while (at < text.size() && std::string_view(" \t\r\n\\").find(text[at]) != text.npos) ++at;
+            if (!text.substr(at).starts_with("/*")) return;
+            at = std::min(text.find("*/", at + 2), text.size() - 2) + 2;
+        }
     }
     bool take(std::string_view word)
     {
@@ -65,7 +70,10 @@ private:
             const auto op = std::ranges::find_if(operators, is_next);
             if (op == std::end(operators) || op->precedence < lowest) break;
             at += op->text.size();
+            const bool is_decided = op->text == "&&" ? !left : op->text == "||" && left;
+            unread += is_decided;
             left = applied(op->text, left, binary(op->precedence + 1));
+            unread -= is_decided;
         }
         return left;
     }
@@ -85,7 +93,12 @@ private:
         if (op == "+") return wrapped(x + y);
         if (op == "-") return wrapped(x - y);
         if (op == "*") return wrapped(x * y);
-        if (b == 0) return fail();
+        if (op == "&") return a & b;
+        if (op == "|") return a | b;
+        if (op == "^") return a ^ b;
+        if (op == "<<") return y < 64 ? wrapped(x << y) : 0;
+        if (op == ">>") return y < 64 ? a >> y : a < 0 ? -1 : 0;
+        if (b == 0) return unread > 0 ? 0 : fail();
         if (b == -1) return op == "/" ? wrapped(0 - x) : 0;
         return op == "/" ? a / b : a % b;
     }
@@ -102,6 +115,7 @@ private:
         if (take("!")) return !unary();
         if (take("-")) return static_cast<int64_t>(0 - static_cast<uint64_t>(unary()));
         if (take("+")) return unary();
+        if (take("~")) return ~unary();
         if (take("(")) {
             const int64_t value = binary(1);
             return take(")") ? value : fail();
@@ -129,13 +143,18 @@ private:
         if (is_hex) word.remove_prefix(2);
         while (!word.empty() && std::string_view("uUlL").find(word.back()) != word.npos) word.remove_suffix(1);
         int64_t value = 0;
-        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value, is_hex ? 16 : 10);
+        const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value,
+                                                  is_hex                  ? 16
+                                                  : word.starts_with('0') ? 8
+                                                                          : 10);
         return error == std::errc() && end == word.data() + word.size() ? value : fail();
     }
     int64_t value_of(std::string_view name)
     {
         const auto known = names.values.find(name);
-        if (known == names.values.end()) return 0;
+        if (known == names.values.end() || unread > 0) return 0;
+        if (names.characters_left < known->second.size() + 1) return fail();
+        names.characters_left -= static_cast<uint32_t>(known->second.size()) + 1;
         const auto value = Reader(names, known->second, nesting + 1).whole();
         return value ? *value : fail();
     }
@@ -144,6 +163,7 @@ private:
     const std::string_view text;
     size_t at = 0;
     uint32_t nesting;
+    uint32_t unread = 0; // operators round it whose left side has decided
     bool is_sound = true;
 };
 

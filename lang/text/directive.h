@@ -28,6 +28,8 @@ public:
 
 private:
     class Reader;
+    // Of values that conditions of this text may still read: a name may stand for two, and each of these for two.
+    mutable uint32_t characters_left = 1 << 20;
     std::map<std::string_view, std::string_view> values{
         {"__VERSION__", "300"}}; // of GLSL: the language is nearest to that
 };

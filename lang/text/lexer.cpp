@@ -275,8 +275,7 @@ private:
 
     bool choose(Span where, std::string_view word, std::string_view line)
     {
-        const std::optional<bool> chosen =
-            conditions.chosen(word, line.substr(0, std::min(line.find("//"), line.find("/*"))));
+        const std::optional<bool> chosen = conditions.chosen(word, line.substr(0, line.find("//")));
         if (!chosen)
             refuse(where, "expected a condition of whole numbers after '#if'",
                    "such as defined(A) && B > 2; or keep the lines that are meant, without it");
@@ -308,7 +307,7 @@ private:
             while (at < text.size() && (is_space(text[at]))) ++at;
             const uint32_t begin = at;
             const std::string_view line = rest_of_line();
-            const size_t comment = line.find("/*"), ended = line.rfind("*/");
+            const size_t comment = line.substr(0, line.find("//")).find("/*"), ended = line.rfind("*/");
             if (comment != line.npos && (ended == line.npos || ended < comment)) {
                 const size_t end = text.find("*/", at);
                 at = end == text.npos ? size() : static_cast<uint32_t>(end + 2);
@@ -364,7 +363,7 @@ private:
         const uint32_t value = at;
         const bool is_empty = at_line_end() || rest().starts_with("//");
         const std::string_view line = rest_of_line();
-        conditions.define(name, line.substr(0, std::min(line.find("//"), line.find("/*"))));
+        conditions.define(name, line.substr(0, line.find("//")));
         if (is_empty) return static_cast<void>(at = value);
         at = where.end;
         push(Token::define, where.begin);

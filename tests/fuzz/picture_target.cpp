@@ -20,7 +20,7 @@ void read_picture(std::string_view bytes)
         if (!colour.empty() && colour.size() != picture.gray.size()) fail("a colour of another size");
     const auto& [red, green, blue, alpha] = picture.colours;
     const auto image = ir::SplineImage::make({picture.gray, {red, green, blue, alpha}, picture.width, picture.height},
-                                             {.channels = true, .levels = true}, error);
+                                             {.channels = 15, .levels = true}, error);
     if (!image) return;
     for (int32_t colour = 0; colour < 4; ++colour)
         for (int32_t level : {0, 1, 20})

@@ -102,11 +102,11 @@ public:
             else if (op == Op::div)
                 for (Term& term : terms) {
                     term.times.factor /= other[0].times.factor;
-                    term.times.magnitude /= other[0].times.magnitude;
+                    term.times.magnitude = scaled(term.times.magnitude, 1 / other[0].times.magnitude);
                 }
             else
                 add(terms, other, op == Op::add ? 1 : -1);
-            if (terms.size() > terms_max) return std::nullopt;
+            if (terms.size() > terms_max || std::ranges::any_of(terms, is_lost)) return std::nullopt;
             known.emplace_back(value, std::move(terms));
         }
         Polynomial made;
@@ -132,6 +132,14 @@ private:
         }
     }
 
+    // Infinite where it is so small that what it was made of may have been lost, or too large.
+    static double scaled(double magnitude, double by)
+    {
+        const double product = magnitude * by;
+        return magnitude > 0 && by > 0 && product < 1e-250 ? infinity : product;
+    }
+    static bool is_lost(const Term& term) { return !std::isfinite(term.times.magnitude); }
+
     static Terms product(const Terms& a, const Terms& b)
     {
         Terms all;
@@ -139,7 +147,7 @@ private:
             Terms line = b;
             for (Term& term : line) {
                 term.times.factor *= left.times.factor;
-                term.times.magnitude *= left.times.magnitude;
+                term.times.magnitude = scaled(term.times.magnitude, left.times.magnitude);
                 for (size_t i = 0; i < parts_max; ++i)
                     term.powers[i] = static_cast<uint8_t>(std::min(term.powers[i] + left.powers[i], 255));
             }
@@ -320,8 +328,15 @@ std::optional<Interval> Polynomial::range(std::span<const Interval> values) cons
     const auto is_finite = [&](Value part) { return values[part.index].is_finite(); };
     if (!std::ranges::all_of(parts, is_finite) || !std::ranges::all_of(alone, is_finite, &Alone::part))
         return std::nullopt;
-    // Each operation is off by half a unit in the last place of what is added up, at most.
-    const double slack = 4.0 * operations * std::numeric_limits<double>::epsilon() * magnitude(values);
+    // Each operation is off by half a unit in the last place of what is added up, at most; or of the least number, and
+    // that may be multiplied by all that there is.
+    double most = 1;
+    for (const Coefficient& times : coefficients) most = std::max(most, times.magnitude);
+    for (const Value part : parts)
+        for (size_t i = 0; i < (is_of_powers ? coefficients.size() : 1); ++i)
+            most *= std::max(1.0, size_of(values[part.index]));
+    using Limits = std::numeric_limits<double>;
+    const double slack = 4.0 * operations * (Limits::epsilon() * magnitude(values) + Limits::denorm_min() * most);
     if (!std::isfinite(slack)) return std::nullopt;
     const Interval found = is_of_powers ? of_one_part(values[parts[0].index]) : of_corners(values);
     return Interval{found.minimum - slack, found.maximum + slack};

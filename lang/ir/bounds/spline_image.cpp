@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <unordered_map>
 #include <utility>
 
 namespace haptel::ir {
@@ -118,13 +119,21 @@ std::vector<double> halved(const std::vector<double>& all, int64_t rows, int64_t
 
 ImageParts parts_read(const Module& module)
 {
+    constexpr uint8_t every = 15;
     ImageParts parts;
-    for (const Function& function : module.functions)
+    for (const Function& function : module.functions) {
+        std::unordered_map<uint32_t, uint32_t> constants; // by Value::index
         for_each_instruction(function.body, [&](const Instruction& made) {
+            if (const auto* constant = std::get_if<WordConstant>(&made.kind))
+                constants[made.results[0].index] = constant->bits;
             const auto* operation = std::get_if<Operation>(&made.kind);
-            parts.channels |= operation && operation->op == Op::image_channel;
-            parts.levels |= operation && operation->op == Op::image_coarser;
+            if (!operation) return;
+            parts.levels |= operation->op == Op::image_coarser;
+            if (operation->op != Op::image_channel) return;
+            const auto colour = constants.find(made.operands[1].index);
+            parts.channels |= colour != constants.end() && colour->second < 4 ? uint8_t(1u << colour->second) : every;
         });
+    }
     return parts;
 }
 
@@ -192,7 +201,9 @@ void SplineImage::add_parts(const ImageTexels& texels, ImageParts wanted)
     const Levels brightness = levels_of(texels.brightness, this);
     std::vector<Levels> channels = {brightness};
     for (size_t i = 0; wanted.channels && i < std::size(texels.colours); ++i) {
-        if (!texels.colours[i].empty())
+        if (!(wanted.channels >> i & 1))
+            channels.push_back(brightness); // nobody reads it
+        else if (!texels.colours[i].empty())
             channels.push_back(levels_of(texels.colours[i], nullptr));
         else if (i < 3)
             channels.push_back(brightness);

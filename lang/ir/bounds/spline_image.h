@@ -13,9 +13,11 @@
 
 namespace haptel::ir {
 
-// What a program reads of a picture besides its brightness, and what is made for it.
+// What a program reads of a picture besides its brightness: red, green, blue, alpha, a bit each, and coarser levels. No
+// more is made of a file, as each costs what the brightness does.
 struct ImageParts {
-    bool channels = false, levels = false;
+    uint8_t channels = 0;
+    bool levels = false;
     auto operator<=>(const ImageParts&) const = default;
 };
 
@@ -31,7 +33,7 @@ struct ImageTexels {
 class SplineImage {
 public:
     static constexpr int32_t side_max = 1 << 15;
-    // Of some 4000 a side: they take a quarter of a microsecond and 32 bytes each.
+    // Of some 4000 a side: they take a quarter of a microsecond and 32 bytes each, in each channel.
     static constexpr int64_t texels_max = int64_t{1} << 24;
 
     // Null, with the reason in `error`: sides below 1 or beyond the greatest, texels that are no finite numbers.

@@ -103,7 +103,7 @@ double at(const TextureBinding& binding, double u, double v)
 std::shared_ptr<const ir::SplineImage> image_of(const std::vector<double>& texels, int64_t columns, int64_t rows)
 {
     std::string error;
-    return ir::SplineImage::make({texels, {}, columns, rows}, {.channels = true, .levels = true}, error);
+    return ir::SplineImage::make({texels, {}, columns, rows}, {.channels = 15, .levels = true}, error);
 }
 
 } // namespace

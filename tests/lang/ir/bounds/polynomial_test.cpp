@@ -111,6 +111,18 @@ TEST_CASE("bounds: a mixture lies between what is mixed, and a smooth step betwe
     check_range(quintic, {{0, 0}, {0, 0}, {0.5, 0.75}}, 0.5, 0.896484375);
 }
 
+TEST_CASE("bounds: factors that together are too small for a number do not make a sum nothing")
+{
+    // (1e-162 x) (2e-162 x) of x near e^375, and a square that is 0 in doubles, times what makes it a number again
+    const Interval small = height(
+        "%a = real 1e-162 %b = real 2e-162 %x = input p_x %c = mul %x, %a %d = mul %x, %b %h = mul %c, %d return %h",
+        {{7e162, 8e162}, {0, 0}, {0, 0}});
+    CHECK((small.minimum <= 98 && small.maximum >= 128));
+    const Interval lost = height("%x = input p_x %a = real 1e300 %c = mul %x, %x %h = mul %c, %a return %h",
+                                 {{0, 1e-170}, {0, 0}, {0, 0}});
+    CHECK((lost.minimum <= 0 && lost.maximum >= 1e-40)); // and code has 0
+}
+
 TEST_CASE("bounds: sums of products hold what they are, however they are written")
 {
     size_t sharper = 0;
