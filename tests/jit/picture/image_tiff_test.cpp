@@ -109,6 +109,44 @@ TEST_CASE("picture: a TIFF in which white is 0 is turned over where it has whole
     CHECK(read(PHOTOMETRIC_MINISBLACK, whole, uint8_t{51}, uint8_t{255}) == Grays{0.2, 1});
 }
 
+// TIFF 6.0, ExtraSamples: 0 is of no meaning, 1 and 2 are alpha.
+TEST_CASE("picture: of a TIFF's extra samples the one that is alpha is, wherever it stands, and no other")
+{
+    const Folder folder;
+    const std::string file = folder.file("extra.tif");
+    for (const uint16_t planes : std::array<uint16_t, 2>{PLANARCONFIG_CONTIG, PLANARCONFIG_SEPARATE}) {
+        const auto read = [&](std::vector<uint16_t> extra) {
+            TIFF* const tiff = TIFFOpen(file.c_str(), "w");
+            REQUIRE(tiff);
+            const auto samples = static_cast<uint16_t>(3 + extra.size());
+            TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, uint32_t{1});
+            TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, uint32_t{1});
+            TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, uint16_t{8});
+            TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, samples);
+            TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_RGB);
+            TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, planes);
+            TIFFSetField(tiff, TIFFTAG_EXTRASAMPLES, static_cast<uint16_t>(extra.size()), extra.data());
+            std::vector<uint8_t> texel;
+            for (uint16_t i = 0; i < samples; ++i) texel.push_back(static_cast<uint8_t>(51 * i));
+            if (planes == PLANARCONFIG_CONTIG)
+                CHECK(TIFFWriteScanline(tiff, texel.data(), 0, 0) == 1);
+            else
+                for (uint16_t i = 0; i < samples; ++i) CHECK(TIFFWriteScanline(tiff, &texel[i], 0, i) == 1);
+            TIFFClose(tiff);
+            std::ifstream in(file, std::ios::binary);
+            jit::Picture picture =
+                jit::read_tiff(std::string{std::istreambuf_iterator<char>(in), {}}, jit::Colours::kept);
+            CHECK(picture.error.empty());
+            CHECK(picture.colours[2] == std::vector<double>{0.4});
+            return picture.colours[3];
+        };
+        CAPTURE(planes);
+        CHECK(read({EXTRASAMPLE_UNSPECIFIED}).empty());
+        CHECK(read({EXTRASAMPLE_UNASSALPHA}) == std::vector<double>{0.6});
+        CHECK(read({EXTRASAMPLE_UNSPECIFIED, EXTRASAMPLE_UNASSALPHA}) == std::vector<double>{0.8});
+    }
+}
+
 namespace {
 
 // Three columns and two rows as they stand in the file, of so many bits a sample; the numbers are in steps of 1/10.
