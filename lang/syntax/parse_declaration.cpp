@@ -407,10 +407,12 @@ void Grammar::range_of(TextureParameter& parameter)
         bracketed_range(parameter);
     else
         parameter.minimum = binary(1);
+    read_decimal_comma();
     if (parameter.maximum) return; // told
     if (!lost && at(Token::dot_dot)) {
         advance();
         parameter.maximum = binary(1);
+        read_decimal_comma();
     } else {
         error(span(), "range", "expected '..' and the upper end of the range" + found(),
               "a range is written 0.2mm .. 5mm");

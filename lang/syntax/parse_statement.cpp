@@ -340,6 +340,7 @@ ExpressionPtr Grammar::initializer(Statements& before)
 {
     const size_t first = position;
     ExpressionPtr value = conditional();
+    read_decimal_comma();
     if (!is_assignment(kind()) || lost) return value;
     position = first;
     before.push_back(assignment_or_expression());
