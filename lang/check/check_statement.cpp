@@ -45,9 +45,11 @@ void BodyChecker::check(Span, Declaration& node)
     const std::string& written = node.type.base.text;
     const std::string_view prefix = PrefixedName(written).prefix;
     if (!prefix.empty() &&
-        (find_local(prefix) || std::ranges::find(context.inputs, prefix, &Symbol::name) != context.inputs.end()))
+        (find_local(prefix) || std::ranges::find(context.inputs, prefix, &Symbol::name) != context.inputs.end())) {
         fail(node.type.base.span, "unknown-type", quoted(written) + " is a value, expected a type",
              "is a ';' or an operator missing behind it?");
+        in_damaged_body = true; // what is read or not is a consequence
+    }
     const bool is_told = !type_named(written) && !scope.structure(written) && may_be_unread(written);
     if (is_told) diagnostics.count_consequence();
     Type type = is_told ? Type::error() : value_type(context, node.type, "a variable holds a value", false);
