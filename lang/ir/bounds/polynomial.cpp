@@ -12,6 +12,7 @@ namespace {
 // How far operations are written out: enough for the noise of four corners, and for the edges of a smoothstep.
 constexpr uint32_t steps_max = 18;
 constexpr size_t terms_max = 32;
+constexpr double least_magnitude = 1e-250; // of a coefficient: far above where numbers lose their digits
 
 const double* constant_of(const Instruction* made)
 {
@@ -136,7 +137,7 @@ private:
     static double scaled(double magnitude, double by)
     {
         const double product = magnitude * by;
-        return magnitude > 0 && by > 0 && product < 1e-250 ? infinity : product;
+        return magnitude > 0 && by > 0 && product < least_magnitude ? infinity : product;
     }
     static bool is_lost(const Term& term) { return !std::isfinite(term.times.magnitude); }
 
@@ -329,14 +330,17 @@ std::optional<Interval> Polynomial::range(std::span<const Interval> values) cons
     if (!std::ranges::all_of(parts, is_finite) || !std::ranges::all_of(alone, is_finite, &Alone::part))
         return std::nullopt;
     // Each operation is off by half a unit in the last place of what is added up, at most; or of the least number, and
-    // that may be multiplied by all that there is.
+    // that may be multiplied by all that there is, and by what makes the least coefficient on the way the one at the
+    // end.
     double most = 1;
     for (const Coefficient& times : coefficients) most = std::max(most, times.magnitude);
+    for (const Alone& one : alone) most = std::max(most, one.times.magnitude);
     for (const Value part : parts)
         for (size_t i = 0; i < (is_of_powers ? coefficients.size() : 1); ++i)
             most *= std::max(1.0, size_of(values[part.index]));
     using Limits = std::numeric_limits<double>;
-    const double slack = 4.0 * operations * (Limits::epsilon() * magnitude(values) + Limits::denorm_min() * most);
+    const double lost = Limits::denorm_min() / least_magnitude * most;
+    const double slack = 4.0 * operations * (Limits::epsilon() * magnitude(values) + lost);
     if (!std::isfinite(slack)) return std::nullopt;
     const Interval found = is_of_powers ? of_one_part(values[parts[0].index]) : of_corners(values);
     return Interval{found.minimum - slack, found.maximum + slack};
