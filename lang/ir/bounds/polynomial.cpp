@@ -31,6 +31,15 @@ bool is_written_out(std::span<const Instruction* const> makers, const Instructio
     return divisor && *divisor != 0;
 }
 
+// Whether the two are cosine and sine of one angle.
+bool is_circle(const Instruction* a, const Instruction* b)
+{
+    const auto* cosine = a ? std::get_if<Operation>(&a->kind) : nullptr;
+    const auto* sine = b ? std::get_if<Operation>(&b->kind) : nullptr;
+    if (!cosine || !sine || a->operands[0] != b->operands[0]) return false;
+    return (cosine->op == Op::cos && sine->op == Op::sin) || (cosine->op == Op::costurn && sine->op == Op::sinturn);
+}
+
 } // namespace
 
 struct Polynomial::Term {
@@ -65,12 +74,12 @@ public:
         return met.size() <= parts_max;
     }
 
-    // How often parts stand in it beyond once each.
+    // How often parts stand in it beyond once each; a cosine and its sine are two coordinates of one point.
     uint32_t shared() const
     {
         uint32_t more = 0;
         for (const Met& one : met) more += one.times - 1;
-        return more;
+        return more + (circle().has_value() ? 1 : 0);
     }
 
     // As it is written out so far; nothing where that is too long.
@@ -78,6 +87,11 @@ public:
     {
         std::vector<Value> parts;
         for (const Met& one : met) parts.push_back(one.value);
+        const auto on_circle = circle();
+        if (on_circle) {
+            std::swap(parts[0], parts[on_circle->first]);
+            std::ranges::iter_swap(parts.begin() + 1, std::ranges::find(parts, met[on_circle->second].value));
+        }
         // Operands before what is made of them.
         std::vector<Value> order = written;
         std::ranges::sort(order, {}, &Value::index);
@@ -111,7 +125,10 @@ public:
             known.emplace_back(value, std::move(terms));
         }
         Polynomial made;
-        if (!made.set(parts, known.back().second)) return std::nullopt;
+        if (!on_circle || !made.set(parts, known.back().second, 2)) {
+            made = {}; // a circle among more than there is room for
+            if (!made.set(parts, known.back().second, 0)) return std::nullopt;
+        }
         made.operations = static_cast<uint32_t>(written.size() + known.back().second.size() + degree_max);
         return made;
     }
@@ -158,6 +175,15 @@ private:
         return all;
     }
 
+    // Where in `met` a cosine is, and its sine.
+    std::optional<std::pair<size_t, size_t>> circle() const
+    {
+        for (size_t i = 0; i < met.size(); ++i)
+            for (size_t j = 0; j < met.size(); ++j)
+                if (is_circle(makers[met[i].value.index], makers[met[j].value.index])) return std::pair{i, j};
+        return std::nullopt;
+    }
+
     Value latest() const
     {
         Value found{none};
@@ -174,8 +200,9 @@ private:
     std::vector<Met> met;
 };
 
-// Takes the terms, where range() knows how: of powers of one part, or of products of different ones.
-bool Polynomial::set(std::span<const Value> all, std::span<const Term> terms)
+// Takes the terms, where range() knows how: of powers of one part, or of products of different ones. The first
+// `of_circle` (two, or none) of all are a cosine and its sine.
+bool Polynomial::set(std::span<const Value> all, std::span<const Term> terms, size_t of_circle)
 {
     const auto is_in = [&](const Term& term) {
         std::vector<size_t> in;
@@ -184,6 +211,11 @@ bool Polynomial::set(std::span<const Value> all, std::span<const Term> terms)
         return in;
     };
     std::array<uint8_t, parts_max> bit{}; // of those that multiply others, from 1 on
+    has_circle = of_circle > 0;
+    for (size_t i = 0; i < of_circle; ++i) {
+        parts.push_back(all[i]);
+        bit[i] = static_cast<uint8_t>(parts.size());
+    }
     for (const Term& term : terms) {
         const std::vector<size_t> in = is_in(term);
         for (const size_t i : in) {
@@ -280,12 +312,21 @@ Interval Polynomial::of_one_part(const Interval& at) const
 }
 
 // Linear in each part, it is least and greatest where each is: at an end. Part by part the coefficients become values
-// at both.
+// at both. Of a circle, which is the first and hence the last that is left, c + a cos + b sin + d cos sin is within
+// hypot(a, b) + |d| / 2 of c.
 Interval Polynomial::of_corners(std::span<const Interval> values) const
 {
     std::array<double, size_t{1} << corners_max> corner;
     for (size_t i = 0; i < coefficients.size(); ++i) corner[i] = coefficients[i].factor;
-    for (size_t k = 0; k < parts.size(); ++k) {
+    Interval circle{-infinity, infinity};
+    for (size_t k = parts.size(); k-- > 0;) {
+        if (k == 1 && has_circle) {
+            circle = no_value;
+            for (size_t i = 0; i < coefficients.size(); i += 4) {
+                const double radius = std::hypot(corner[i + 1], corner[i + 2]) + std::fabs(corner[i + 3]) / 2;
+                circle = join(circle, {corner[i] - radius, corner[i] + radius});
+            }
+        }
         const Interval& at = values[parts[k].index];
         for (size_t i = 0, bit = size_t{1} << k; i < coefficients.size(); ++i) {
             if (i & bit) continue;
@@ -295,7 +336,7 @@ Interval Polynomial::of_corners(std::span<const Interval> values) const
         }
     }
     const auto [least, most] = std::minmax_element(corner.begin(), corner.begin() + std::ssize(coefficients));
-    Interval all{*least, *most};
+    Interval all{std::max(*least, circle.minimum), std::min(*most, circle.maximum)};
     for (const auto& [part, times] : alone) {
         const Interval& at = values[part.index];
         const double a = times.factor * at.minimum, b = times.factor * at.maximum;
