@@ -101,11 +101,19 @@ DeviceResult open_simulated(std::string_view variant, const DeviceRequest& reque
 
     Hand hand(holding->impedance, Stroke(std::move(curve), request.surface_below, *start), request.press_n,
               1 / request.rate_hz);
-    runtime::DeviceInfo info{request.name,    preset->model.force_max_n, preset->model.stiffness_max_n_per_m, 0,
-                             request.press_n, preset->model.encoder_m};
-    return {std::make_unique<SimulatedDevice>(
-                std::move(info), preset->model, std::move(hand),
-                SimulatedDevice::Options{request.rate_hz, request.stylus_length_m, request.gripper}),
+    const DeviceModel& model = preset->model;
+    runtime::DeviceInfo info{.name = request.name,
+                             .force_max_n = model.force_max_n,
+                             .stiffness_max_n_per_m = model.stiffness_max_n_per_m,
+                             .press_n = request.press_n,
+                             .position_resolution_m = model.encoder_m,
+                             .axes = model.axes};
+    SimulatedDevice::Options options{
+        .rate_hz = request.rate_hz, .stylus_length_m = request.stylus_length_m, .gripper = request.gripper};
+    options.delay_periods = std::max(1, static_cast<int>(std::lround(model.delay_s * request.rate_hz)));
+    if (model.update_hz > 0)
+        options.hold_periods = std::max(1, static_cast<int>(std::lround(request.rate_hz / model.update_hz)));
+    return {std::make_unique<SimulatedDevice>(std::move(info), model, std::move(hand), options),
             {},
             std::move(warning),
             DeviceKey::stylus_length};

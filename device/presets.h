@@ -5,6 +5,7 @@
 #pragma once
 
 #include "device/hand.h"
+#include "runtime/hand/haptic_device.h"
 
 #include <span>
 #include <string_view>
@@ -19,6 +20,9 @@ struct DeviceModel {
     double encoder_m = 0; // step of the measured position; 0: exact
     double force_max_n = 0;
     double stiffness_max_n_per_m = 0; // recommended at 1 kHz
+    double update_hz = 0;             // how often it takes a new force; 0: as often as it is sent one
+    double delay_s = 0;               // from a force that is sent to the motor; a period at least
+    runtime::DeviceAxes axes = {};
 };
 
 struct DevicePreset {

@@ -30,11 +30,13 @@ SimulatedDevice::SimulatedDevice(runtime::DeviceInfo info, const DeviceModel& mo
     , hand_(std::move(hand))
     , period_s_(1 / options.rate_hz)
     , substeps_(std::max(1, static_cast<int>(std::ceil(period_s_ / substep_max_s - 1e-6))))
-    , delay_periods_(options.delay_periods)
+    , hold_periods_(options.hold_periods)
     , gripper_(options.gripper)
+    , free_(glm::mix(glm::dvec3(0), glm::dvec3(1), model.axes.senses))
     , open_m_(options.stylus_length_m * (gripper_ ? gripper_direction : stylus_direction))
-    , tip_{hand_.aim_m(1)}
+    , tip_{free_ * hand_.aim_m(1)}
     , opening_{open_m_}
+    , on_the_way_(static_cast<std::size_t>(options.delay_periods) + 1)
 {
 }
 
@@ -49,26 +51,27 @@ runtime::DeviceStatus SimulatedDevice::read(runtime::DevicePose& pose) noexcept
 
 runtime::DeviceStatus SimulatedDevice::write(const glm::dvec3& force_n, const glm::dvec3&) noexcept
 {
-    const glm::dvec3 late_n = written_n_;
-    written_n_ = runtime::finite(force_n) ? force_n : glm::dvec3(0);
-    if (const double size_n = glm::length(written_n_); size_n > model_.force_max_n)
-        written_n_ *= model_.force_max_n / size_n;
-    acting_n_ = delay_periods_ == 0 ? written_n_ : late_n;
+    Sent sent{runtime::finite(force_n) ? glm::mix(glm::dvec3(0), force_n, model_.axes.pushes) : glm::dvec3(0),
+              grip_written_n_};
+    if (const double size_n = glm::length(sent.force_n); size_n > model_.force_max_n)
+        sent.force_n *= model_.force_max_n / size_n;
+    std::shift_left(on_the_way_.begin(), on_the_way_.end(), 1);
+    on_the_way_.back() = sent;
+    if (held_periods_++ % hold_periods_ == 0) acting_ = on_the_way_.front();
     return runtime::DeviceStatus::ok;
 }
 
 void SimulatedDevice::write_grip(double grip_force_n) noexcept
 {
-    const double late_n = grip_written_n_;
     grip_written_n_ =
         std::isfinite(grip_force_n) ? std::clamp(grip_force_n, -model_.force_max_n, model_.force_max_n) : 0;
-    grip_acting_n_ = delay_periods_ == 0 ? grip_written_n_ : late_n;
 }
 
 void SimulatedDevice::stop() noexcept
 {
-    written_n_ = acting_n_ = glm::dvec3(0);
-    grip_written_n_ = grip_acting_n_ = 0;
+    std::ranges::fill(on_the_way_, Sent());
+    acting_ = {};
+    grip_written_n_ = 0;
 }
 
 // Damping and friction are implicit, which makes sticking exact: the mass stands still when, and only when, friction
@@ -98,10 +101,10 @@ void SimulatedDevice::advance_period() noexcept
         const double opened = hand_.opened(share);
         const glm::dvec3 push_n = gripper_ ? glm::dvec3(0) : hand_.push_n(share);
         const glm::dvec3 held(1, 1, gripper_ ? opened : 1); // the arm goes where the fingers find their balance
-        step(tip_, acting_n_ + push_n + towards_aim_n +
-                       hand.stiffness_n_per_m * (held * (hand_.aim_m(share) - tip_.position_m)));
+        step(tip_, free_ * (acting_.force_n + push_n + towards_aim_n +
+                            hand.stiffness_n_per_m * (held * (hand_.aim_m(share) - tip_.position_m))));
         if (!gripper_) continue;
-        step(opening_, (grip_acting_n_ - hand_.squeeze_n(share)) * gripper_direction +
+        step(opening_, (acting_.grip_n - hand_.squeeze_n(share)) * gripper_direction +
                            opened * hand.stiffness_n_per_m * (open_m_ - opening_.position_m));
         if (glm::dot(opening_.position_m, gripper_direction) < 0) opening_ = {}; // the fingers meet
     }

@@ -1,5 +1,7 @@
 // A device and the hand that holds it, as a mass with damping and dry friction: the default device of every scene.
 //
+// Along the axes that the device senses:
+//
 //   M dv/dt = u - b v - c v/|v| + k (aim - x) + b_hand (aim' - v) + push,    M = device + hand
 //
 // A gripper's first finger is such a mass, and what it is open is another one, of the same figures. The hand does not
@@ -14,6 +16,8 @@
 #include "device/hand.h"
 #include "device/presets.h"
 
+#include <vector>
+
 namespace haptel::device {
 
 class SimulatedDevice final : public runtime::HapticDevice {
@@ -22,7 +26,8 @@ public:
         double rate_hz = 1000;
         double stylus_length_m = 0; // 0: point probe, no tail; of a gripper: how far it opens
         bool gripper = false;       // its second finger is below the first
-        int delay_periods = 1;      // 0 or 1: whether a force acts in the period after it was written, or in the next
+        int delay_periods = 1;      // 0: a force acts in the period after it was written; 1: in the next ...
+        int hold_periods = 1;       // how often one is taken
     };
 
     SimulatedDevice(runtime::DeviceInfo info, const DeviceModel& model, Hand hand, const Options& options);
@@ -44,6 +49,11 @@ private:
         glm::dvec3 position_m{0}, velocity_m_per_s{0};
     };
 
+    struct Sent {
+        glm::dvec3 force_n{0};
+        double grip_n = 0;
+    };
+
     void advance_period() noexcept;
     void step(Mass& mass, const glm::dvec3& force_n) const noexcept; // one substep
 
@@ -52,12 +62,14 @@ private:
     Hand hand_;
     double period_s_;
     int substeps_; // of at most 10 us
-    int delay_periods_;
+    int hold_periods_, held_periods_ = 0;
     bool gripper_;
+    glm::dvec3 free_;   // 1 along each axis that it senses, else 0
     glm::dvec3 open_m_; // of a stylus and of an open gripper: its tail from its tip
     Mass tip_, opening_;
-    glm::dvec3 written_n_{0}, acting_n_{0};
-    double grip_written_n_ = 0, grip_acting_n_ = 0;
+    std::vector<Sent> on_the_way_; // the first is the next to act, the last was written last
+    double grip_written_n_ = 0;    // for the next force
+    Sent acting_;
     bool started_ = false;
 };
 

@@ -55,7 +55,7 @@ struct StrokeTarget {
     double press = 0;           // share of press_n, 0 .. 1
 };
 
-using SurfaceBelow = std::function<std::optional<runtime::SurfaceHit>(double x_m, double y_m)>;
+using runtime::SurfaceBelow;
 
 // The hit nearest to the centre of the box: its centre, or the nearest point of a grid of 101 x 101. Nothing if all
 // miss.

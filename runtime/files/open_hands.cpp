@@ -1,5 +1,6 @@
 #include "runtime/files/open_hands.h"
 
+#include "runtime/hand/fewer_axes.h"
 #include "runtime/surface/surface.h"
 
 #include <algorithm>
@@ -84,6 +85,23 @@ void warn_of_press(const DeviceInfo& info, const Scene& scene, const toml::sourc
                                    (by_device ? "" : ", or raise `force_limit_n`"));
 }
 
+// What the device lacks is held by an imagined finger; without the normal that feels the slopes alone.
+void complete(LoadedHand& hand, const DeviceText& device, const Scene& scene, FileMessages& messages)
+{
+    const DeviceInfo& info = hand.device->info();
+    if (info.axes.all()) return;
+    if (device.probe.has_tail())
+        messages.error(device.where(DeviceKey::stylus_length),
+                       "`" + info.name +
+                           "` has too few axes for a stylus or a gripper: write `kind = \"point\"` or "
+                           "`\"sphere\"` under [probe]");
+    if (!info.axes.senses.z || !info.axes.pushes.z) hand.settings.force_model = ForceModel::lateral;
+    // newtons per metre of the hand's way, as all stiffnesses are
+    const double press_depth_m = device.request.press_n / scene.objects.front().material.stiffness_n_per_m;
+    hand.device = std::make_unique<FewerAxes>(std::move(hand.device), device.request.surface_below, press_depth_m,
+                                              scene.servo.rate_hz);
+}
+
 } // namespace
 
 std::vector<LoadedHand> open_hands(std::vector<DeviceText>& texts, const std::shared_ptr<const Scene>& scene,
@@ -105,6 +123,7 @@ std::vector<LoadedHand> open_hands(std::vector<DeviceText>& texts, const std::sh
         warn_of_press(opened.device->info(), *scene, device.where(DeviceKey::press), messages);
         warn_of_stiffness(opened.device->info(), *scene, stiffness_at, messages);
         hands.push_back({std::move(opened.device), std::move(device.hand)});
+        complete(hands.back(), device, *scene, messages);
     }
     return hands;
 }

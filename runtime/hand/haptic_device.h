@@ -27,6 +27,13 @@ struct DevicePose {
     Degradation degradation = Degradation::none;
 };
 
+// Along x, y and z of the device's frame. What a device does not sense or push is left to FewerAxes.
+struct DeviceAxes {
+    glm::bvec3 senses{true}, pushes{true};
+
+    bool all() const { return glm::all(senses) && glm::all(pushes); }
+};
+
 struct DeviceInfo {
     std::string name;                 // as given in the scene: "simulated:premium"
     double force_max_n = 0;           // what the motors can hold for a moment
@@ -34,6 +41,7 @@ struct DeviceInfo {
     double workspace_radius_m = 0;    // 0: unbounded
     double press_n = 0;               // with which a simulated hand presses; 0: another hand, not known
     double position_resolution_m = 0; // the step of its position sensors; 0: not known
+    DeviceAxes axes = {};
 };
 
 enum class DeviceStatus : uint8_t {
@@ -65,6 +73,9 @@ struct SurfaceHit {
     glm::dvec3 facet_normal{0, 0, 1};
 };
 
+// First hit from +z at (x, y), or nothing. Allocates nothing.
+using SurfaceBelow = std::function<std::optional<SurfaceHit>(double x_m, double y_m)>;
+
 // All that a driver may need to know of the scene it is opened for.
 struct DeviceRequest {
     std::string name;   // "simulated:premium", "replay:FILE" (path resolved), "falcon"
@@ -76,8 +87,7 @@ struct DeviceRequest {
     double stylus_length_m = 0;                    // or from finger to finger of a gripper; 0: point probe
     bool gripper = false;                          // what has that length has fingers at its ends
     glm::dvec3 box_minimum_m{0}, box_maximum_m{0}; // of the object that the stroke explores, world frame
-    // First hit from +z at (x, y), or nothing. Allocates nothing; may be called from read().
-    std::function<std::optional<SurfaceHit>(double x_m, double y_m)> surface_below;
+    SurfaceBelow surface_below;                    // may be called from read()
 };
 
 // What of a request a driver speaks of, so that its words stand where that is written.

@@ -27,6 +27,7 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
     , hand_(refused_.empty() ? hand : HandSettings())
     , workspace_moves_(hand_.workspace.moves())
     , probe_(hand_.probe.value_or(scene_->probe))
+    , force_rule_(scene_->servo.force)
     , period_s_(1 / scene_->servo.rate_hz)
     , force_limit_n_(hand_.force_max_n > 0 ? std::min(hand_.force_max_n, scene_->servo.force_limit_n)
                                            : scene_->servo.force_limit_n)
@@ -37,6 +38,7 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
     , velocity_(period_s_)
     , tail_velocity_(period_s_)
 {
+    if (hand_.force_model) force_rule_.model = *hand_.force_model;
     for (Body& body : bodies_) {
         body.asleep = scene_->servo.skips.objects;
         turn_max_rad_per_s_ = std::max(turn_max_rad_per_s_, body.turn_rad_per_s);

@@ -195,6 +195,7 @@ private:
     HandSettings hand_;
     bool workspace_moves_; // hand_.workspace.moves(), asked in each tick
     ProbeSettings probe_;
+    ForceRule force_rule_;
     double period_s_;
     double force_limit_n_;
     std::vector<Touched> objects_;

@@ -59,7 +59,7 @@ void Renderer::add_force(TickResult& result, const DevicePose& pose, double alon
 // Felt as the smooth surface for which its facets stand.
 bool Renderer::is_smooth(const Surface& surface) const noexcept
 {
-    return surface.normal_turn_max_per_m > 0 && scene_->servo.force.shading == ForceShading::smooth;
+    return surface.normal_turn_max_per_m > 0 && force_rule_.shading == ForceShading::smooth;
 }
 
 // One object, of all `contacts` of its body those with it.
@@ -246,7 +246,7 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     result.textured = textured;
     result.band_limited =
         textured && (touched.texture.from().binding.band_limited || touched.texture.to().binding.band_limited);
-    const ModelForce elastic = model_force(scene_->servo.force, foot, stiffness, texture);
+    const ModelForce elastic = model_force(force_rule_, foot, stiffness, texture);
     const double felt_stiffness = stiffness * texture.stiffness_scale;
 
     result.height_m = texture.height_m;
