@@ -1,0 +1,88 @@
+#include "device/usb/usb_devices.h"
+
+#include "device/usb/usb_context.h"
+#include "device/usb/usb_handle.h"
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <fstream>
+#include <libusb.h>
+#include <unistd.h>
+
+namespace haptel::device {
+
+namespace {
+
+UsbListed listed(libusb_device* device, const UsbIds& ids)
+{
+    UsbListed entry;
+    entry.ids = ids;
+    entry.bus = libusb_get_bus_number(device);
+    entry.address = libusb_get_device_address(device);
+    int code = LIBUSB_SUCCESS;
+    const UsbHandle handle = open_usb_handle(device, code);
+    if (handle)
+        entry.serial = usb_serial(handle.get());
+    else
+        entry.error = usb_open_failure(code, ids, entry.bus, entry.address);
+    return entry;
+}
+
+} // namespace
+
+UsbList list_usb_devices(std::span<const UsbIds> kinds)
+{
+    UsbList list;
+    const UsbContext context = make_usb_context(UsbDiscovery::on, list.error);
+    if (!context) return list;
+    for (const UsbDevicePtr& device : usb_devices(context.get())) {
+        const UsbIds ids = usb_ids(device.get());
+        for (const UsbIds& kind : kinds)
+            if (ids == kind) list.devices.push_back(listed(device.get(), ids));
+    }
+    return list;
+}
+
+std::string usb_open_failure(int libusb_code, UsbIds ids, int bus, int address)
+{
+    const std::string place =
+        fmt::format("USB device {:04x}:{:04x} (bus {}, device {})", ids.vendor, ids.product, bus, address);
+    switch (usb_error(libusb_code)) {
+    case UsbError::denied:
+        return fmt::format("{}: no permission to open it. Install the udev rule (device/udev/60-haptel.rules into "
+                           "/etc/udev/rules.d), run `udevadm control --reload` as root and plug the device in again",
+                           place);
+    case UsbError::busy: {
+        const std::string users = usb_device_users(bus, address);
+        return fmt::format("{}: in use by {}. Close that first", place, users.empty() ? "another program" : users);
+    }
+    case UsbError::gone: return fmt::format("{}: unplugged", place);
+    case UsbError::not_found: return fmt::format("{}: it lacks the interface that this driver talks to", place);
+    default: return fmt::format("{}: cannot be opened ({})", place, libusb_error_name(libusb_code));
+    }
+}
+
+// Who holds a file open is told by the links in /proc/PID/fd.
+std::string usb_device_users(int bus, int address)
+{
+    namespace fs = std::filesystem;
+    const fs::path node = fmt::format("/dev/bus/usb/{:03}/{:03}", bus, address);
+    std::string users;
+    std::error_code none;
+    for (fs::directory_iterator process("/proc", none), end; process != end; process.increment(none)) {
+        const std::string id = process->path().filename();
+        if (id.find_first_not_of("0123456789") != id.npos || id == std::to_string(getpid())) continue;
+        for (fs::directory_iterator open(process->path() / "fd", none); !none && open != end; open.increment(none)) {
+            std::error_code unreadable;
+            if (fs::read_symlink(open->path(), unreadable) != node) continue;
+            std::string name;
+            std::getline(std::ifstream(process->path() / "comm"), name);
+            users += fmt::format("{}{} (process {})", users.empty() ? "" : ", ", name, id);
+            break;
+        }
+        none.clear();
+    }
+    return users;
+}
+
+} // namespace haptel::device
