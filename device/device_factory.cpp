@@ -1,5 +1,6 @@
 #include "device/device_factory.h"
 
+#include "device/falcon/open_falcon.h"
 #include "device/replay_device.h"
 #include "device/simulated_device.h"
 #include "lang/text/near_name.h"
@@ -125,12 +126,18 @@ DeviceResult open_recording(std::string_view file, const DeviceRequest& request)
     return open_replay(request.name, file, request.rate_hz);
 }
 
+DeviceResult open_connected_falcon(std::string_view serial, const DeviceRequest& request)
+{
+    return open_falcon(request, serial);
+}
+
 // One entry per driver.
 struct Driver {
     std::string_view name;
     DeviceResult (*open)(std::string_view variant, const DeviceRequest& request);
 };
-constexpr std::array<Driver, 2> drivers = {{{"simulated", open_simulated}, {"replay", open_recording}}};
+constexpr std::array<Driver, 3> drivers = {
+    {{"simulated", open_simulated}, {"replay", open_recording}, {"falcon", open_connected_falcon}}};
 
 } // namespace
 
@@ -139,7 +146,8 @@ DeviceResult open_device(const DeviceRequest& request)
     const auto [name, variant] = split(request.name);
     for (const Driver& driver : drivers)
         if (driver.name == name) return driver.open(variant, request);
-    return refused(unknown("device", name, names_of(drivers)) + "; write simulated:premium, or replay:trace.csv");
+    return refused(unknown("device", name, names_of(drivers)) +
+                   "; write simulated:premium, replay:trace.csv or falcon");
 }
 
 std::vector<std::string> device_names()
@@ -147,6 +155,7 @@ std::vector<std::string> device_names()
     std::vector<std::string> names;
     for (const DevicePreset& preset : device_presets()) names.push_back(fmt::format("simulated:{}", preset.name));
     names.push_back("replay:FILE");
+    names.push_back("falcon[:SERIAL]");
     return names;
 }
 

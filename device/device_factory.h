@@ -2,6 +2,7 @@
 //
 //   simulated[:PRESET[:HAND]]   simulated:premium:firm is the default
 //   replay:FILE                 a trace.csv
+//   falcon[:SERIAL]             a Novint Falcon on the USB
 #pragma once
 
 #include "runtime/hand/haptic_device.h"
