@@ -7,6 +7,7 @@
 
 #include "device/falcon/falcon_driver.h"
 #include "device/falcon/falcon_kinematics.h"
+#include "device/falcon/falcon_place_filter.h"
 #include "runtime/hand/haptic_device.h"
 
 #include <string>
@@ -40,11 +41,9 @@ private:
 
     runtime::DeviceInfo info_;
     // The servo's thread alone.
-    glm::dvec3 place_m_ = falcon_centre_m, angles_rad_{0};
-    glm::dvec3 doubtful_m_{0};
-    int64_t place_ns_ = 0;
+    FalconPlaceFilter filter_;
+    glm::dvec3 angles_rad_{0}; // at the place that was believed last
     uint32_t session_ = 0;
-    bool has_place_ = false, is_doubtful_ = false;
     bool has_pose_ = false;   // the last read gave one
     bool interrupted_ = true; // told of with the next pose
     std::atomic<uint64_t> late_{0};

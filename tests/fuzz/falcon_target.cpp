@@ -73,8 +73,9 @@ std::vector<std::string> falcon_corpus()
 {
     std::vector<std::string> corpus;
     std::string stream = "1`"; // the converter's status
-    for (const int16_t number : {0, 1, -1, 2000, -2000, 32767}) {
-        for (const uint8_t byte : encode({{number, number, 0}, 0x70})) stream += static_cast<char>(byte);
+    for (const FalconCounts& numbers :
+         {FalconCounts{0, 1, -1}, FalconCounts{2000, -2000, 500}, FalconCounts{32767, -32768, 0}}) {
+        for (const uint8_t byte : encode({numbers, 0x70})) stream += static_cast<char>(byte);
         corpus.push_back(stream);
     }
     const auto image = synthetic_firmware(5);

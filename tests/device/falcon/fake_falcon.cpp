@@ -186,10 +186,7 @@ void FakeFalcon::obey(const std::string& packet)
     if ((flags_ & 1) && ++homing_packets_ >= packets_to_home_) homed_ = true;
 
     std::string reply = "<";
-    for (std::size_t arm = 0; arm < 3; ++arm) {
-        const int encoder = encoders_[arm] ^ false_bits_[arm];
-        falsified_ += false_bits_[arm] != 0;
-        false_bits_[arm] = 0;
+    for (const int encoder : encoders_) {
         int rest = encoder < 0 ? encoder + 65536 : encoder;
         for (int digit = 0; digit < 4; ++digit, rest /= 16) reply += static_cast<char>('A' + rest % 16);
     }
@@ -230,18 +227,6 @@ void FakeFalcon::set_buttons(int buttons)
 {
     const std::lock_guard lock(mutex_);
     buttons_ = buttons;
-}
-
-void FakeFalcon::falsify_next_reply(std::size_t arm, int bits)
-{
-    const std::lock_guard lock(mutex_);
-    false_bits_[arm] = bits;
-}
-
-uint64_t FakeFalcon::falsified() const
-{
-    const std::lock_guard lock(mutex_);
-    return falsified_;
 }
 
 uint64_t FakeFalcon::operations() const

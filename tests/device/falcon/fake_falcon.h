@@ -48,7 +48,6 @@ public:
     void plug_in(); // with the power off in between: the program is lost
     void set_encoders(const std::array<int, 3>& encoders);
     void set_buttons(int buttons);
-    void falsify_next_reply(std::size_t arm, int bits); // those of one encoder are turned over, once
 
     // What it saw.
     uint64_t operations() const;
@@ -60,7 +59,6 @@ public:
     uint64_t packets() const;                  // that it answered
     uint64_t packets_with_force() const;
     uint64_t violations() const; // forces on arms that are not homed, motors out of range, packets broken by the host
-    uint64_t falsified() const;  // replies
     std::vector<Motors> commands() const; // all since the start
 
 private:
@@ -83,8 +81,6 @@ private:
     std::size_t words_left_ = 0;
     std::deque<std::pair<uint8_t, uint64_t>> to_host_; // byte, and the operation from which on it may be read
     std::array<int, 3> encoders_{};
-    std::array<int, 3> false_bits_{};
-    uint64_t falsified_ = 0;
     int buttons_ = 0, flags_ = 0;
     Motors motors_{};
     std::vector<Motors> commands_;

@@ -9,8 +9,6 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
-#include <optional>
-#include <random>
 #include <thread>
 
 using namespace haptel::device;
@@ -206,58 +204,4 @@ TEST_CASE("one that stays away is disconnected, one that cannot be loaded is a f
     CHECK(unloadable.state() == "the Falcon cannot be used: its boot loader does not answer");
     DevicePose pose;
     CHECK(unloadable.write({0, 0, 1}, dvec3(0)) == DeviceStatus::fault);
-}
-
-// Whether the next places that differ come with a warning. Nothing if the test itself was late: then it may have moved.
-std::optional<bool> warns_of_jump(FalconDevice& device, FakeFalcon& falcon, double to_x_m)
-{
-    falcon.set_encoders(encoders_at({to_x_m, 0, 0.125}));
-    auto last = std::chrono::steady_clock::now();
-    for (int i = 0; i < 1000; ++i) {
-        device.write(dvec3(0), dvec3(0));
-        std::this_thread::sleep_for(std::chrono::microseconds(200));
-        DevicePose pose;
-        if (device.read(pose) != DeviceStatus::ok) continue;
-        const auto now = std::chrono::steady_clock::now();
-        if (now - std::exchange(last, now) > std::chrono::milliseconds(5)) return std::nullopt;
-        if (std::abs(pose.tip_m.x - to_x_m) < 1e-3) return pose.interrupted;
-    }
-    return false;
-}
-
-TEST_CASE("a reply from far away is not believed at once, and then with a warning to begin anew")
-{
-    FakeFalcon falcon(true);
-    falcon.set_encoders(encoders_at({-0.04, 0, 0.125}));
-    FalconDevice device("falcon", open_fake(falcon), quick_options());
-    REQUIRE(becomes(device, DeviceStatus::ok));
-    int warned = 0, judged = 0;
-    for (int i = 0; i < 40 && judged < 10; ++i) {
-        const auto warning = warns_of_jump(device, falcon, i % 2 == 0 ? 0.04 : -0.04);
-        judged += warning.has_value();
-        warned += warning.value_or(false);
-    }
-    CHECK(judged > 0);
-    CHECK(warned == judged);
-}
-
-// One reply of many is wrong in a way that its form does not show: as much as one bit of the highest digits.
-TEST_CASE("a wrong reply among right ones moves nothing")
-{
-    FakeFalcon falcon(true);
-    falcon.set_encoders(encoders_at({0, 0, 0.125}));
-    FalconDevice device("falcon", open_fake(falcon), quick_options());
-    REQUIRE(becomes(device, DeviceStatus::ok));
-    double farthest_m = 0;
-    for (int i = 0; i < 300; ++i) {
-        falcon.falsify_next_reply(static_cast<std::size_t>(i % 3), i % 2 == 0 ? 0x400 : 0x800);
-        for (int tick = 0; tick < 3; ++tick) {
-            device.write(dvec3(0), dvec3(0));
-            std::this_thread::sleep_for(std::chrono::microseconds(300));
-            DevicePose pose;
-            if (device.read(pose) == DeviceStatus::ok) farthest_m = std::max(farthest_m, glm::length(pose.tip_m));
-        }
-    }
-    CHECK(falcon.falsified() > 100);
-    CHECK(farthest_m < 0.1e-3);
 }
