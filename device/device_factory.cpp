@@ -131,13 +131,25 @@ DeviceResult open_connected_falcon(std::string_view serial, const DeviceRequest&
     return open_falcon(request, serial);
 }
 
+void list_connected_falcons(ConnectedDevices& found)
+{
+    const UsbList list = list_falcons();
+    if (!list.error.empty()) found.errors.push_back("Novint Falcon: " + list.error);
+    for (const UsbListed& one : list.devices)
+        found.devices.push_back({one.serial.empty() ? "falcon" : "falcon:" + one.serial, "Novint Falcon",
+                                 fmt::format("USB bus {} device {}", one.bus, one.address), one.error});
+}
+
 // One entry per driver.
 struct Driver {
-    std::string_view name;
+    std::string_view name, syntax, what;
     DeviceResult (*open)(std::string_view variant, const DeviceRequest& request);
+    void (*list)(ConnectedDevices& found); // null: nothing is connected
 };
 constexpr std::array<Driver, 3> drivers = {
-    {{"simulated", open_simulated}, {"replay", open_recording}, {"falcon", open_connected_falcon}}};
+    {{"simulated", "simulated[:PRESET[:HAND]]", "a hand and a device in the computer", open_simulated, nullptr},
+     {"replay", "replay:FILE", "the hand of an earlier run", open_recording, nullptr},
+     {"falcon", "falcon[:SERIAL]", "Novint Falcon, three axes, USB", open_connected_falcon, list_connected_falcons}}};
 
 } // namespace
 
@@ -146,17 +158,37 @@ DeviceResult open_device(const DeviceRequest& request)
     const auto [name, variant] = split(request.name);
     for (const Driver& driver : drivers)
         if (driver.name == name) return driver.open(variant, request);
-    return refused(unknown("device", name, names_of(drivers)) +
-                   "; write simulated:premium, replay:trace.csv or falcon");
+    return refused(unknown("device", name, names_of(drivers)) + "; `haptel devices` lists what is connected");
 }
 
 std::vector<std::string> device_names()
 {
     std::vector<std::string> names;
     for (const DevicePreset& preset : device_presets()) names.push_back(fmt::format("simulated:{}", preset.name));
-    names.push_back("replay:FILE");
-    names.push_back("falcon[:SERIAL]");
+    for (const Driver& driver : drivers)
+        if (driver.name != "simulated") names.emplace_back(driver.syntax);
     return names;
+}
+
+std::vector<SupportedDevice> supported_devices()
+{
+    std::vector<SupportedDevice> all;
+    for (const Driver& driver : drivers) {
+        std::string what(driver.what);
+        if (driver.name == "simulated")
+            what += fmt::format(": {}; hands: {}", fmt::join(names_of(device_presets()), ", "),
+                                fmt::join(names_of(hand_presets()), ", "));
+        all.push_back({std::string(driver.syntax), std::move(what)});
+    }
+    return all;
+}
+
+ConnectedDevices connected_devices()
+{
+    ConnectedDevices found;
+    for (const Driver& driver : drivers)
+        if (driver.list) driver.list(found);
+    return found;
 }
 
 } // namespace haptel::device

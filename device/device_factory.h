@@ -3,6 +3,7 @@
 //   simulated[:PRESET[:HAND]]   simulated:premium:firm is the default
 //   replay:FILE                 a trace.csv
 //   falcon[:SERIAL]             a Novint Falcon on the USB
+//   falcon[:SERIAL]             a Novint Falcon on the USB
 #pragma once
 
 #include "runtime/hand/haptic_device.h"
@@ -17,5 +18,23 @@ runtime::DeviceResult open_device(const runtime::DeviceRequest& request);
 
 // Names for help and lists: "simulated:premium", ..., "replay:FILE".
 std::vector<std::string> device_names();
+
+struct SupportedDevice {
+    std::string name; // as for open_device; what may be left out in brackets
+    std::string what; // one line
+};
+std::vector<SupportedDevice> supported_devices();
+
+struct ConnectedDevice {
+    std::string name; // that open_device opens it by
+    std::string what, at;
+    std::string refused; // why it cannot be opened, and what to do about it; empty: it can
+};
+
+struct ConnectedDevices {
+    std::vector<ConnectedDevice> devices;
+    std::vector<std::string> errors; // what could not be looked for, and why
+};
+ConnectedDevices connected_devices();
 
 } // namespace haptel::device
