@@ -102,7 +102,8 @@ DeviceResult open_simulated(std::string_view variant, const DeviceRequest& reque
 
     Hand hand(holding->impedance, Stroke(std::move(curve), request.surface_below, *start), request.press_n,
               1 / request.rate_hz);
-    const DeviceModel& model = preset->model;
+    DeviceModel model = preset->model;
+    if (request.exact_positions) model.encoder_m = 0;
     runtime::DeviceInfo info{.name = request.name,
                              .force_max_n = model.force_max_n,
                              .stiffness_max_n_per_m = model.stiffness_max_n_per_m,

@@ -84,6 +84,7 @@ struct DeviceRequest {
     double press_n = 1.0;
     uint64_t seed = 1;
     double rate_hz = 1000;
+    bool exact_positions = false;                  // of a simulated device: not rounded to the steps of its sensors
     double stylus_length_m = 0;                    // or from finger to finger of a gripper; 0: point probe
     bool gripper = false;                          // what has that length has fingers at its ends
     glm::dvec3 box_minimum_m{0}, box_maximum_m{0}; // of the object that the stroke explores, world frame

@@ -37,6 +37,8 @@ TEST_CASE("every simulated device opens by its name, with its limits")
             CHECK(opened.device->info().position_resolution_m == preset.model.encoder_m);
         }
     DeviceRequest request = request_on_plane("simulated");
+    request.exact_positions = true;
+    CHECK(open_device(request).device->info().position_resolution_m == 0);
     request.press_n = 9;
     const DeviceResult opened = open_device(request);
     CHECK(opened.device->info().force_max_n == 8.5);

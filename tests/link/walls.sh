@@ -14,7 +14,7 @@ houses=(
     'jit: codegen engine picture texture live check | input lang stdlib'
     'runtime: geometry hand surface surface/build contact texture scene force files render servo | input lang/abi lang/text/near_name.h'
     'device: . | !runtime/files runtime lang/abi lang/text/near_name.h'
-    'tools: output arguments plot report commands . | input lang stdlib jit runtime device bench'
+    'tools: output arguments plot sound report commands . | input lang stdlib jit runtime device bench'
     'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h runtime/servo/allocation_count.h lang stdlib'
     'tests/runtime: . | tests/support runtime lang/abi'
 )
@@ -24,7 +24,7 @@ declare -A home=(
     [llvm/]='jit tests/jit' [llvm-c/]='jit' [libusb]='device' [toml++/]='runtime/files'
     [assimp/]='runtime/files' [boost/]='lang/math tests' [stb/]='jit/picture tests' [tiff]='jit/picture tests'
     [OpenEXR/]='jit/picture' [Imath/]='jit/picture' [CLI/]='tools' [cairo]='tools/plot'
-    [nlohmann/]='tools tests bench'
+    [nlohmann/]='tools tests bench' [sndfile]='device tests' [alsa/]='device'
 )
 
 declare -A floor outside # by room: its place in its house; by house: what else it may use
