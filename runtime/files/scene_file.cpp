@@ -116,11 +116,13 @@ ObjectText read_object(const toml::table& source, double rate_hz, FileMessages& 
     return text;
 }
 
-SceneText read_scene(const toml::table& root, const std::filesystem::path& folder, FileMessages& messages)
+SceneText read_scene(const toml::table& root, const std::filesystem::path& folder, const SceneChanges& changes,
+                     FileMessages& messages)
 {
     SceneText text;
     text.probe = read_probe(table_named(root, "probe", messages), "[probe]", messages);
     text.servo = read_servo(root, messages);
+    text.servo.rate_hz = changes.rate_hz.value_or(text.servo.rate_hz);
     text.devices = read_devices(root, text.probe, folder, messages);
     text.regions = read_regions(root, text.servo.rate_hz, messages);
 
@@ -251,7 +253,7 @@ double hand_speed_max_m_per_s(const SceneText& scene)
 }
 
 LoadedScene load(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
-                 SurfaceCache* surfaces, const Loading& loading, FileMessages& messages)
+                 SurfaceCache* surfaces, const Loading& loading, const SceneChanges& changes, FileMessages& messages)
 {
     LoadedScene loaded;
     if (file.extension().string().starts_with(".haptel")) { // with or without ":NAME" behind it
@@ -274,7 +276,7 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
     SceneText text;
     try {
-        text = read_scene(toml::parse(source.bytes), folder, messages);
+        text = read_scene(toml::parse(source.bytes), folder, changes, messages);
     } catch (const toml::parse_error& problem) {
         messages.error(problem.source(), said_of_syntax(problem));
     }
@@ -345,13 +347,13 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
 } // namespace
 
 LoadedScene load_scene(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
-                       SurfaceCache* surfaces, const Loading& loading)
+                       SurfaceCache* surfaces, const Loading& loading, const SceneChanges& changes)
 {
     start_fork_server(); // a mesh may come into the scene while a servo runs
     FileMessages messages(file);
     LoadedScene loaded;
     try {
-        loaded = load(file, textures, devices, surfaces, loading, messages);
+        loaded = load(file, textures, devices, surfaces, loading, changes, messages);
     } catch (const std::exception& problem) {
         messages.error(std::string("the scene could not be loaded: ") + problem.what());
     }

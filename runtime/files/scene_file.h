@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,11 +33,16 @@ struct LoadedScene {
     std::string diagnostics;
 };
 
+// What is asked of a scene in the place of what its file says.
+struct SceneChanges {
+    std::optional<double> rate_hz; // of the servo, within the range of the file's key
+};
+
 // Reads, checks, loads the meshes, asks `textures` for every texture and `devices` for each device. Either may be
 // empty: objects are then smooth, and no device is opened. `surfaces`: what it holds is not built again, what is built
 // it keeps. `loading` hears what takes long, and may end it: then there is no scene. Never throws.
 LoadedScene load_scene(const std::filesystem::path& file, const TextureResolver& textures, const DeviceFactory& devices,
-                       SurfaceCache* surfaces = nullptr, const Loading& loading = {});
+                       SurfaceCache* surfaces = nullptr, const Loading& loading = {}, const SceneChanges& changes = {});
 
 // Some hundred thousand objects. What the parser makes of a file takes some thirty times its size.
 inline constexpr std::uintmax_t scene_bytes_max = 16 << 20;

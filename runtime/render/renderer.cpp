@@ -70,6 +70,7 @@ TickResult Renderer::tick(const DevicePose& pose) noexcept
     if (!workspace_moves_) return tick_in_scene(pose);
     TickResult result = tick_in_scene(workspace.to_scene(pose));
     result.force_n = workspace.direction_to_hand(result.force_n);
+    result.normal = workspace.direction_to_hand(result.normal);
     result.unlimited_force_n = workspace.direction_to_hand(result.unlimited_force_n);
     result.torque_n_m = workspace.torque_to_hand(result.torque_n_m);
     result.unlimited_torque_n_m = workspace.torque_to_hand(result.unlimited_torque_n_m);

@@ -58,6 +58,7 @@ struct TickResult {
     uint32_t contacts = 0; // objects touched
     double depth_m = 0;    // below the base surface, of the deepest object touched
     double height_m = 0;   // of the texture there, as published
+    glm::dvec3 normal{0};  // of the base surface there, as shaded: unit, outward, world frame; 0 without contact
     uint64_t binding = 0;  // serial of the texture of that object, else of the first one
     uint32_t faults = 0;
 };
@@ -124,6 +125,7 @@ private:
     struct ObjectForce {
         glm::dvec3 force_n{0}; // world frame
         double height_m = 0;
+        glm::dvec3 normal{0}; // of the base surface there, as shaded; world frame
         // What the texture leaves of the friction coefficients: its own scales, times the share of the depth below the
         // base surface that is also below the texture.
         double static_share = 0, dynamic_share = 0;

@@ -113,6 +113,7 @@ void Renderer::render_object(Body& body, std::span<const Contact> contacts, cons
         if (result.contacts > 1 && contact.depth_m <= result.depth_m) continue;
         result.depth_m = contact.depth_m;
         result.height_m = force.height_m;
+        result.normal = force.normal;
         result.binding = touched.texture.to().serial;
     }
 }
@@ -168,6 +169,7 @@ Renderer::ObjectForce Renderer::force_by_shaft(const Body& body, const Material&
     const double stiffness = material.stiffness_n_per_m / hand_.workspace.scale;
     const double damping =
         damping_n(body, material.damping_n_s_per_m, placement, contact, contact.normal, contact.depth_m, stiffness);
+    result.normal = placement.direction_to_world(contact.normal);
     result.force_n = placement.direction_to_world((stiffness * contact.depth_m + damping) * contact.normal);
     result.held_j = stiffness * contact.depth_m * contact.depth_m / 2;
     return result;
@@ -204,6 +206,7 @@ void Renderer::ObjectForce::mix_in(const ObjectForce& other, double share, const
     surface_j = std::lerp(surface_j, other.surface_j, share);
     held_j = std::lerp(held_j, other.held_j, share);
     height_m = std::lerp(height_m, other.height_m, share);
+    normal = glm::normalize(glm::mix(normal, other.normal, share)); // less than a right angle apart
     static_share = std::lerp(static_share, other.static_share, share);
     dynamic_share = std::lerp(dynamic_share, other.dynamic_share, share);
     grain = mixed(grain, other.grain, share);
@@ -250,6 +253,7 @@ Renderer::ObjectForce Renderer::force_at(const Foot& foot, const Body& body, Tou
     const double felt_stiffness = stiffness * texture.stiffness_scale;
 
     result.height_m = texture.height_m;
+    result.normal = placement.direction_to_world(foot.normal);
     result.faults = texture.faults;
     const double below = contact.depth_m > 0 ? std::min(1.0, elastic.depth_m / contact.depth_m) : 0.0;
     result.static_share = texture.static_friction_scale * below;

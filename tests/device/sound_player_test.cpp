@@ -93,6 +93,5 @@ TEST_CASE("a card that is not there, or cannot, is told with what to do")
     CHECK(said("nosuch", 1).find("there is no sound device 'nosuch' (Unknown PCM nosuch): `aplay -L` lists") == 0);
     CHECK(said("hw:77", 1).find("there is no sound device 'hw:77'") == 0);
     CHECK(said("", 1).find("there is no sound device ''") == 0);
-    CHECK(said("file:/no/such/folder/x,raw", 1).find("file:/no/such/folder/x,raw") != std::string::npos);
     CHECK(said("null", 4) == "");
 }

@@ -7,13 +7,12 @@
 #include "tools/commands/explore_hands.h"
 #include "tools/commands/explore_scene.h"
 #include "tools/commands/explore_textures.h"
+#include "tools/commands/interrupt.h"
 #include "tools/output/terminal.h"
 #include "tools/report/explore_status.h"
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <csignal>
 #include <cstddef>
 #include <filesystem>
 #include <fmt/format.h>
@@ -35,16 +34,6 @@ struct ExploreOptions {
     double seconds = std::numeric_limits<double>::infinity();
     bool json = false;
 };
-
-std::atomic<bool> interrupted = false;
-static_assert(std::atomic<bool>::is_always_lock_free); // set by a signal
-
-// The first Ctrl-C, or the terminal's end, asks for a clean end; the second one gets what it always gets.
-extern "C" void on_interrupt(int signal)
-{
-    interrupted = true;
-    std::signal(signal, SIG_DFL);
-}
 
 std::optional<runtime::LoadedScene> load(const ExploreOptions& options, ExploreTextures& textures,
                                          runtime::SurfaceCache& surfaces)
@@ -91,11 +80,7 @@ ExitCode explore(const ExploreOptions& options)
     runtime::SurfaceCache surfaces;
     std::optional<runtime::LoadedScene> read = load(options, textures, surfaces);
     if (!read) return ExitCode::findings;
-    // Until here a signal ends the program as it ends any: nothing is felt yet, and nothing half written.
-    interrupted = false;
-    std::signal(SIGINT, on_interrupt);
-    std::signal(SIGTERM, on_interrupt);
-    if (std::signal(SIGHUP, on_interrupt) == SIG_IGN) std::signal(SIGHUP, SIG_IGN); // nohup: the terminal may go
+    listen_for_interrupts(); // until here nothing is felt yet, and nothing half written
     runtime::LoadedScene& loaded = *read;
     textures.watch(*loaded.scene);
     ExploreHands hands(std::move(loaded.scene), std::move(loaded.hands), servo_options(options), options.out);
@@ -109,7 +94,7 @@ ExitCode explore(const ExploreOptions& options)
                                       surfaces, textures, hands);
     hands.start();
     while (hands.running()) {
-        if (interrupted) hands.request_stop();
+        if (interrupted()) hands.request_stop();
         if (const std::string messages = scene->take_messages() + textures.take_messages(); !messages.empty())
             status.say(messages);
         if (!hands.drain(status)) std::this_thread::sleep_for(std::chrono::milliseconds(2));

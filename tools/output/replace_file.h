@@ -10,4 +10,10 @@ namespace haptel::tools {
 // could not be done; empty: it is done.
 std::string replace_file(const std::string& path, std::string_view text);
 
+// The same of a file that may not exist yet; its folder does. What is no regular file is never replaced.
+std::string write_file(const std::string& path, std::string_view bytes);
+
+// Why write_file would refuse, before the work; empty: it would not.
+std::string why_not_written(const std::string& path);
+
 } // namespace haptel::tools

@@ -310,6 +310,28 @@ TEST_CASE("a scene of one line has the defaults of the documentation")
     CHECK(device->stylus_length_m == 0);
 }
 
+TEST_CASE("a scene is loaded for another rate than it says, and the device hears of it")
+{
+    const Folder folder;
+    double device_hz = 0;
+    const auto open = [&](const DeviceRequest& request) {
+        device_hz = request.rate_hz;
+        return open_scripted(request);
+    };
+    // A vibration that is too fast at the file's rate is none at that one.
+    const auto file = folder.write("scene.toml", "[servo]\nrate_hz = 500\n[[object]]\nshape = \"plane\"\nvibration = "
+                                                 "{ force_n = 1, frequency_hz = 300 }\n");
+    CHECK(!load_scene(file, resolve_flat, open).scene);
+    const LoadedScene loaded = load_scene(file, resolve_flat, open, nullptr, {}, {.rate_hz = 48'000});
+    CHECK(loaded.diagnostics.empty());
+    REQUIRE(loaded.scene);
+    CHECK(loaded.scene->servo.rate_hz == 48'000);
+    CHECK(device_hz == 48'000);
+    CHECK(!load_scene(folder.write("bad.toml", "[servo]\nrate_hz = 1\n[[object]]\nshape = \"plane\"\n"), resolve_flat,
+                      open, nullptr, {}, {.rate_hz = 48'000})
+               .scene); // the file is still wrong
+}
+
 TEST_CASE("force models, creases and the turning of normals reach the scene")
 {
     CHECK(diagnostics_of("[servo]\nlateral_depth_m = 0.1\n[[object]]\nshape = \"plane\"\n") ==

@@ -102,10 +102,26 @@ TEST_CASE("the force turns with the object")
     Renderer a(shared(std::move(straight))), b(shared(std::move(turned)));
     for (int i = 0; i < 300; ++i) {
         const glm::dvec3 tip(i * 1e-5, 0.002, i < 20 ? 1e-3 : -1e-3 + 1e-4 * part(random));
-        const glm::dvec3 here = a.tick({tip, tip}).force_n;
-        const glm::dvec3 there = b.tick({to_world(tip), to_world(tip)}).force_n;
-        CHECK(glm::length(there - rotation * here) < 1e-7);
+        const TickResult here = a.tick({tip, tip}), there = b.tick({to_world(tip), to_world(tip)});
+        CHECK(glm::length(there.force_n - rotation * here.force_n) < 1e-7);
+        CHECK(here.normal == glm::dvec3(0, 0, here.contacts > 0 ? 1 : 0));
+        CHECK(glm::length(there.normal - rotation * here.normal) < 1e-7);
     }
+}
+
+TEST_CASE("the normal that a tick tells is that of the round thing for which facets stand")
+{
+    constexpr double size_m = 0.1;
+    Renderer renderer(shared(bare_scene(ball_mesh(4, size_m))));
+    double furthest = 0;
+    for (int i = 0; i <= 2000; ++i) { // from its top down one side, a millimetre deep
+        const double angle = i * 5e-4;
+        const glm::dvec3 out(std::sin(angle), 0.01, std::cos(angle));
+        const glm::dvec3 tip = (i == 0 ? 0.52 : 0.49) * size_m * glm::normalize(out);
+        const TickResult result = renderer.tick({tip, tip});
+        if (i > 0) furthest = std::max(furthest, glm::length(result.normal - glm::normalize(out)));
+    }
+    CHECK(furthest < 0.3 * pi / 180);
 }
 
 TEST_CASE("friction sticks up to the static coefficient and slides with the dynamic one")

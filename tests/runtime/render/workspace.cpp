@@ -120,6 +120,7 @@ TEST_CASE("a world twice as large, seen through a scale of two, is the same to t
                 largest_n = std::max(largest_n, glm::length(a.force_n));
                 in_contact += a.contacts > 0;
                 CHECK(a.contacts == b.contacts);
+                CHECK((glm::distance(a.normal, b.normal) < 1e-5 || probe == ProbeKind::sphere));
                 CHECK(std::abs(scale * a.depth_m - b.depth_m) < 1e-9 * scale);
             }
             CAPTURE(static_cast<int>(probe), scale, worst_n, largest_n, in_contact);
