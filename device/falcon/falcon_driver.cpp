@@ -67,9 +67,11 @@ bool FalconDriver::connect_and_stream(int& failures)
 
     if (result.end == BringUpEnd::ready) {
         absent_since_ns_ = 0;
-        stream(*opened.transport);
-        failures = link_.replies_of_session() > 0 ? 0 : failures + 1;
-        return true;
+        result.error = stream(*opened.transport);
+        if (link_.replies_of_session() > 0) failures = 0;
+        if (link_.replies_of_session() > 0 || link_.quitting()) return true;
+        result.reason =
+            result.error == UsbError::gone ? words_of(result.error) : "it answered once, and not when it was asked on";
     }
     if (!opened.transport || result.error == UsbError::gone) { // absent: it may come back
         const int64_t now_ns = runtime::monotonic_ns();
@@ -84,7 +86,7 @@ bool FalconDriver::connect_and_stream(int& failures)
     return !hopeless;
 }
 
-void FalconDriver::stream(Transport& transport)
+UsbError FalconDriver::stream(Transport& transport)
 {
     link_.begin_session();
     enter(FalconPhase::streaming, "connected");
@@ -96,6 +98,7 @@ void FalconDriver::stream(Transport& transport)
     // The motors hold what they heard last.
     FtdiSerial serial(transport, options_.bring_up.transfer_ms);
     serial.write(encode({{}, falcon_green}));
+    return error;
 }
 
 } // namespace haptel::device

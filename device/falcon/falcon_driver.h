@@ -46,7 +46,7 @@ public:
 private:
     void run();
     bool connect_and_stream(int& failures); // false: there is no use in going on
-    void stream(Transport& transport);
+    UsbError stream(Transport& transport);
     void enter(FalconPhase phase, std::string state);
     void wait_before_next_try();
 

@@ -78,7 +78,6 @@ private:
     int modem_ = 0;
     std::string heard_;
     std::vector<uint8_t> image_;
-    std::size_t words_left_ = 0;
     std::deque<std::pair<uint8_t, uint64_t>> to_host_; // byte, and the operation from which on it may be read
     std::array<int, 3> encoders_{};
     int buttons_ = 0, flags_ = 0;

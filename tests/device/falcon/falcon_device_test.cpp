@@ -202,6 +202,5 @@ TEST_CASE("one that stays away is disconnected, one that cannot be loaded is a f
     FalconDevice unloadable("falcon", open_fake(broken), quick_options());
     CHECK(becomes(unloadable, DeviceStatus::fault));
     CHECK(unloadable.state() == "the Falcon cannot be used: its boot loader does not answer");
-    DevicePose pose;
     CHECK(unloadable.write({0, 0, 1}, dvec3(0)) == DeviceStatus::fault);
 }
