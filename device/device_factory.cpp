@@ -123,7 +123,7 @@ DeviceResult open_simulated(std::string_view variant, const DeviceRequest& reque
 
 DeviceResult open_recording(std::string_view file, const DeviceRequest& request)
 {
-    if (file.empty()) return refused("replay needs a file: replay:trace.csv");
+    if (file.empty()) return refused("replay needs a file: replay:run.haptrace or replay:trace.csv");
     return open_replay(request.name, file, request.rate_hz);
 }
 

@@ -1,8 +1,7 @@
 // Opens a device by its name, as written in a scene or after --device:
 //
 //   simulated[:PRESET[:HAND]]   simulated:premium:firm is the default
-//   replay:FILE                 a trace.csv
-//   falcon[:SERIAL]             a Novint Falcon on the USB
+//   replay:FILE                 a recording of `haptel record`, or a trace.csv
 //   falcon[:SERIAL]             a Novint Falcon on the USB
 #pragma once
 

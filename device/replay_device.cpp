@@ -1,7 +1,5 @@
 #include "device/replay_device.h"
 
-#include "runtime/servo/recording.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -79,7 +77,12 @@ runtime::DeviceStatus ReplayDevice::write(const glm::dvec3&, const glm::dvec3&) 
 
 runtime::DeviceResult open_replay(std::string name, const std::filesystem::path& trace, double rate_hz)
 {
-    const runtime::TraceResult recorded = runtime::read_trace(trace);
+    return replay_of(std::move(name), trace, runtime::read_trace(trace), rate_hz);
+}
+
+runtime::DeviceResult replay_of(std::string name, const std::filesystem::path& trace,
+                                const runtime::TraceResult& recorded, double rate_hz)
+{
     if (!recorded.error.empty()) return {nullptr, recorded.error};
     const auto& records = recorded.records;
     if (records.empty()) return {nullptr, fmt::format("{}: the trace holds no tick", trace.string())};
@@ -100,7 +103,10 @@ runtime::DeviceResult open_replay(std::string name, const std::filesystem::path&
                          static_cast<runtime::Degradation>(record.degradation)});
     }
     runtime::DeviceInfo info{std::move(name), records.front().device_force_max_n, 0, 0};
-    return {std::make_unique<ReplayDevice>(std::move(info), std::move(poses)), {}, missing_ticks(trace, records)};
+    std::string warning = recorded.note;
+    if (const std::string missing = missing_ticks(trace, records); !missing.empty())
+        warning += (warning.empty() ? "" : "; ") + missing;
+    return {std::make_unique<ReplayDevice>(std::move(info), std::move(poses)), {}, std::move(warning)};
 }
 
 } // namespace haptel::device

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "runtime/hand/haptic_device.h"
+#include "runtime/servo/recording.h"
 
 #include <cstddef>
 #include <filesystem>
@@ -28,8 +29,13 @@ private:
     std::size_t next_ = 0;
 };
 
-// Reads trace.csv. An error if the file is no trace, is empty, holds a pose that is not finite or was recorded at
-// another rate than `rate_hz`; a warning if ticks are missing in it. The device can do what the recorded one could.
+// Reads a recording or a trace.csv. An error if the file is none or is damaged, is empty, holds a pose that is not
+// finite or was recorded at another rate than `rate_hz`; a warning if ticks are missing in it or it was cut. The device
+// can do what the recorded one could.
 runtime::DeviceResult open_replay(std::string name, const std::filesystem::path& trace, double rate_hz);
+
+// The same of a file that was read already.
+runtime::DeviceResult replay_of(std::string name, const std::filesystem::path& trace,
+                                const runtime::TraceResult& recorded, double rate_hz);
 
 } // namespace haptel::device

@@ -59,6 +59,7 @@ struct TickResult {
     double depth_m = 0;    // below the base surface, of the deepest object touched
     double height_m = 0;   // of the texture there, as published
     glm::dvec3 normal{0};  // of the base surface there, as shaded: unit, outward, world frame; 0 without contact
+    uint32_t object = 0;   // that object's number in the scene, from 1; 0: none is touched
     uint64_t binding = 0;  // serial of the texture of that object, else of the first one
     uint32_t faults = 0;
 };

@@ -114,6 +114,7 @@ void Renderer::render_object(Body& body, std::span<const Contact> contacts, cons
         result.depth_m = contact.depth_m;
         result.height_m = force.height_m;
         result.normal = force.normal;
+        result.object = body.objects.number(part.part) + 1;
         result.binding = touched.texture.to().serial;
     }
 }

@@ -143,7 +143,9 @@ void ServoThread::keep_deadlines()
     int64_t deadline_ns = monotonic_ns() + period_ns;
     while (!over()) {
         const int64_t now_ns = wait_until(deadline_ns, spin_ns);
-        report_.wake_late_ns.add(static_cast<uint64_t>(now_ns - deadline_ns));
+        woken_ns_ = static_cast<uint64_t>(now_ns);
+        wake_late_ns_ = static_cast<uint64_t>(now_ns - deadline_ns);
+        report_.wake_late_ns.add(wake_late_ns_);
         ++periods_since_pose_;
         if (!tick()) return;
         ++periods_;
@@ -252,7 +254,10 @@ void ServoThread::record(const DevicePose& pose, const TickResult& result, uint6
     row.contact = result.contacts;
     row.depth_m = result.depth_m;
     row.height_m = result.height_m;
+    row.object = result.object;
     row.compute_ns = compute_ns;
+    row.woken_ns = woken_ns_;
+    row.wake_late_ns = wake_late_ns_;
     row.binding = result.binding;
     row.faults = result.faults;
     telemetry_.push(row);

@@ -93,9 +93,10 @@ private:
     glm::dvec3 last_along_{0}, last_torque_n_m_{0}; // of the stylus, the torque about its tip
     double last_length_m_ = 0, last_grip_n_ = 0;    // the same of a gripper
     bool has_last_tip_ = false;
-    uint64_t periods_ = 0;            // gone by, missed deadlines included
-    uint64_t periods_since_pose_ = 0; // of the device; missed deadlines included
-    bool interrupted_ = false;        // the device was not ready since
+    uint64_t periods_ = 0;                     // gone by, missed deadlines included
+    uint64_t periods_since_pose_ = 0;          // of the device; missed deadlines included
+    uint64_t woken_ns_ = 0, wake_late_ns_ = 0; // for the tick that runs
+    bool interrupted_ = false;                 // the device was not ready since
     double force_squared_sum_ = 0, grip_squared_sum_ = 0;
 };
 

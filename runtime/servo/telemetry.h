@@ -24,7 +24,10 @@ struct TickRecord {
     uint32_t contact = 0;          // number of objects touched
     double depth_m = 0;            // below the base surface, of the deepest object touched
     double height_m = 0;           // of its texture, as published (not shifted to the envelope)
+    uint32_t object = 0;           // which one that is: its number in the scene, from 1; 0: none
     uint64_t compute_ns = 0;       // pose in hand to force computed
+    uint64_t woken_ns = 0;         // by the system's monotonic clock, for the tick; 0: on the virtual clock
+    uint64_t wake_late_ns = 0;     // after the tick's deadline the system woke the servo; 0: in time, or no deadlines
     uint64_t binding = 0;          // serial of the texture that is felt, or that is being faded in
     uint32_t faults = 0;           // bits of TickResult::faults
     double device_force_max_n = 0; // what the motors can do: a limit of force_n; 0: unknown

@@ -1,6 +1,6 @@
 #include "device/device_factory.h"
 #include "runtime/render/renderer.h"
-#include "runtime/servo/recording.h"
+#include "runtime/servo/trace_csv.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"
 #include "tests/support/touch_scenes.h"
@@ -182,6 +182,9 @@ TEST_CASE("a replay of what is no regular file, or of a line without end, is ref
     CHECK(error(folder.path.string()) == expected + "the trace is a folder");
     CHECK(error(folder.file("none")) == expected + "the trace does not exist");
     CHECK(error(sparse) == expected + "a line of more than 16384 bytes is none of a trace");
-    const std::string torn = folder.write("torn.csv", std::string(trace_columns) + "\n" + std::string(100'000, '1'));
+    const std::string torn =
+        folder.write("torn.csv", "tick,time_s,x_m,y_m,z_m,tail_x_m,tail_y_m,tail_z_m,fx_n,fy_n,fz_n,"
+                                 "contact,depth_m,height_m,compute_ns,binding\n" +
+                                     std::string(100'000, '1'));
     CHECK(error(torn) == ":2: a line of more than 16384 bytes is none of a trace");
 }

@@ -1,6 +1,6 @@
 // The same scene and the same hand give the same bits: twice, from a trace, and with every compiler.
 #include "device/device_factory.h"
-#include "runtime/servo/recording.h"
+#include "runtime/servo/trace_csv.h"
 #include "tests/surface/textured.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 #include "tools/report/explore_files.h"
 
-#include "runtime/servo/recording.h"
+#include "runtime/servo/trace_csv.h"
 
 #include <fmt/format.h>
 #include <system_error>

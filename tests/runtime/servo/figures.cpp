@@ -1,8 +1,8 @@
 // What the servo measures and writes down: histogram, ring, trace, allocations.
 #include "runtime/servo/allocation_count.h"
 #include "runtime/servo/histogram.h"
-#include "runtime/servo/recording.h"
 #include "runtime/servo/telemetry.h"
+#include "runtime/servo/trace_csv.h"
 #include "tests/support/catch.h"
 
 #include <algorithm>
@@ -177,15 +177,18 @@ TEST_CASE("a trace may have its columns in another order and more of them")
 
 TEST_CASE("what is wrong with a trace is said with its line")
 {
-    const std::string header(trace_columns);
+    std::ostringstream header_line;
+    write_trace_header(header_line);
+    const std::string header = header_line.str();
     CHECK(read_text("").error ==
           "FILE:1: expected a trace (a CSV file as `haptel explore --out` writes it), but the file is empty");
     CHECK(read_text("tick,time_s\n").error == "FILE:1: the trace has no column `x_m`");
-    CHECK(read_text(header + "\n1,2\n").error == "FILE:2: expected 24 values, found 2");
-    CHECK(read_text(header +
-                    "\n1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,0,7,0,1,2,3,4,0\n1,2,abc,4,5,6,7,8,9,10,11,12,13,14,"
-                    "15,16,0,7,0,1,2,3,4,0\n")
-              .error == "FILE:3: expected a number in column `x_m`, found `abc`");
+    CHECK(read_text(header + "1,2\n").error == "FILE:2: expected 28 values, found 2");
+    CHECK(
+        read_text(header +
+                  "1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,0,7,0,1,2,3,4,0,0,0,0,0\n1,2,abc,4,5,6,7,8,9,10,11,12,13,14,"
+                  "15,16,0,7,0,1,2,3,4,0,0,0,0,0\n")
+            .error == "FILE:3: expected a number in column `x_m`, found `abc`");
     CHECK(read_text(std::string("\0\xff\x80garbage", 10)).error.starts_with("FILE:1: "));
 }
 

@@ -177,7 +177,7 @@ TEST_CASE("who waits for a small force is told so, in the report, the trace and 
     CHECK(waited > 0);
     uint64_t rows_waiting = 0;
     for (const std::string& row : felt(stage.out("wait")))
-        rows_waiting += row.ends_with(",1,0,0,0,0,0,"); // no torque, no grip, not degraded
+        rows_waiting += row.ends_with(",1,0,0,0,0,0,0,0,0,0,"); // no torque, no grip, not degraded, no object, no fault
     CHECK(rows_waiting == waited);
     CHECK(contains(run_command("explore " + scene + " --seconds 0.2 --clock virtual").out,
                    "waited       " + std::to_string(waited) + " ticks"));
