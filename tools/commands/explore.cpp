@@ -1,4 +1,6 @@
 // haptel explore: the main job. A scene, a device, textures that follow their files, and the servo between them.
+#include "tools/commands/explore.h"
+
 #include "device/device_factory.h"
 #include "runtime/files/scene_file.h"
 #include "runtime/servo/allocation_count.h"
@@ -8,6 +10,7 @@
 #include "tools/commands/explore_scene.h"
 #include "tools/commands/explore_textures.h"
 #include "tools/commands/interrupt.h"
+#include "tools/commands/traced_files.h"
 #include "tools/output/terminal.h"
 #include "tools/report/explore_status.h"
 
@@ -17,7 +20,6 @@
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <thread>
@@ -26,14 +28,6 @@
 namespace haptel::tools {
 
 namespace {
-
-struct ExploreOptions {
-    std::string scene, out;
-    std::vector<std::string> devices; // in place of the scene's, from the first on
-    std::string clock = "wall";
-    double seconds = std::numeric_limits<double>::infinity();
-    bool json = false;
-};
 
 std::optional<runtime::LoadedScene> load(const ExploreOptions& options, ExploreTextures& textures,
                                          runtime::SurfaceCache& surfaces)
@@ -74,51 +68,21 @@ runtime::ServoOptions servo_options(const ExploreOptions& options)
     return servo;
 }
 
-ExitCode explore(const ExploreOptions& options)
+std::string recorded_line(const std::string& recording)
 {
-    ExploreTextures textures;
-    runtime::SurfaceCache surfaces;
-    std::optional<runtime::LoadedScene> read = load(options, textures, surfaces);
-    if (!read) return ExitCode::findings;
-    listen_for_interrupts(); // until here nothing is felt yet, and nothing half written
-    runtime::LoadedScene& loaded = *read;
-    textures.watch(*loaded.scene);
-    ExploreHands hands(std::move(loaded.scene), std::move(loaded.hands), servo_options(options), options.out);
-    if (!hands.error().empty()) {
-        say_error(hands.error());
-        return ExitCode::findings;
-    }
+    return recording.empty() ? "" : fmt::format("recorded     haptel replay {}\n", recording);
+}
 
-    ExploreStatus status(stderr_is_terminal());
-    std::optional<ExploreScene> scene(std::in_place, options.scene, std::move(loaded.meshes), std::move(loaded.probes),
-                                      surfaces, textures, hands);
-    hands.start();
-    while (hands.running()) {
-        if (interrupted()) hands.request_stop();
-        if (const std::string messages = scene->take_messages() + textures.take_messages(); !messages.empty())
-            status.say(messages);
-        if (!hands.drain(status)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-    const std::string last_messages = scene->take_messages();
-    scene.reset();
-    status.say(last_messages);
-    ExploreOutcome outcome;
-    outcome.scene = std::filesystem::path(options.scene).filename().string();
-    outcome.clock = options.clock;
-    outcome.hands = hands.wait(status);
-    status.say(textures.take_messages());
-    outcome.textures_compiled = textures.compiled();
-
-    hands.finish(outcome);
-    if (!hands.error().empty()) say_error(hands.error());
-    if (options.json)
-        print_json(to_json(outcome));
-    else
-        fmt::print("{}", to_lines(outcome));
-    const bool faulted = std::any_of(outcome.hands.begin(), outcome.hands.end(), [](const HandOutcome& hand) {
-        return hand.servo.state == runtime::ServoState::faulted;
-    });
-    return faulted || !hands.error().empty() ? ExitCode::findings : ExitCode::fine;
+// The files are hashed as they are now, moments after they were read.
+ExploreKept kept_of(const ExploreOptions& options, const runtime::LoadedScene& loaded)
+{
+    ExploreKept kept{options.out, options.recording, {}};
+    if (options.recording.empty()) return kept;
+    kept.origin.haptel = HAPTEL_VERSION;
+    kept.origin.rate_hz = loaded.scene->servo.rate_hz;
+    kept.origin.clock = options.clock;
+    kept.origin.files = traced_files(options.recording, options.scene, loaded);
+    return kept;
 }
 
 void add_seconds(CLI::App& command, double& seconds)
@@ -138,29 +102,84 @@ void add_seconds(CLI::App& command, double& seconds)
 
 } // namespace
 
+ExitCode explore(const ExploreOptions& options)
+{
+    ExploreTextures textures;
+    runtime::SurfaceCache surfaces;
+    std::optional<runtime::LoadedScene> read = load(options, textures, surfaces);
+    if (!read) return ExitCode::findings;
+    listen_for_interrupts(); // until here nothing is felt yet, and nothing half written
+    runtime::LoadedScene& loaded = *read;
+    textures.watch(*loaded.scene);
+    ExploreKept kept = kept_of(options, loaded);
+    ExploreHands hands(std::move(loaded.scene), std::move(loaded.hands), servo_options(options), std::move(kept));
+    if (!hands.error().empty()) {
+        say_error(hands.error());
+        return ExitCode::findings;
+    }
+
+    ExploreStatus status(stderr_is_terminal());
+    std::optional<ExploreScene> scene(std::in_place, options.scene, std::move(loaded.meshes), std::move(loaded.probes),
+                                      surfaces, textures, hands);
+    hands.start();
+    while (hands.running()) {
+        if (interrupted() || hands.is_recording_lost()) hands.request_stop();
+        if (const std::string messages = scene->take_messages() + textures.take_messages(); !messages.empty())
+            status.say(messages);
+        if (!hands.drain(status)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    const std::string last_messages = scene->take_messages();
+    scene.reset();
+    status.say(last_messages);
+    ExploreOutcome outcome;
+    outcome.scene = std::filesystem::path(options.scene).filename().string();
+    outcome.clock = options.clock;
+    outcome.hands = hands.wait(status);
+    status.say(textures.take_messages());
+    outcome.textures_compiled = textures.compiled();
+
+    hands.finish(outcome);
+    if (!hands.error().empty()) say_error(hands.error());
+    if (options.json)
+        print_json(to_json(outcome));
+    else
+        fmt::print("{}", to_lines(outcome) + recorded_line(options.recording));
+    const bool faulted = std::any_of(outcome.hands.begin(), outcome.hands.end(), [](const HandOutcome& hand) {
+        return hand.servo.state == runtime::ServoState::faulted;
+    });
+    return faulted || !hands.error().empty() ? ExitCode::findings : ExitCode::fine;
+}
+
+void add_exploring(CLI::App& command, ExploreOptions& options)
+{
+    command.add_option("scene", options.scene, "Scene file (TOML)")->required()->type_name("SCENE.toml");
+    add_seconds(command, options.seconds);
+    command
+        .add_option("--device", options.devices,
+                    fmt::format("Device in place of the scene's; repeat for several: {}",
+                                fmt::join(device::device_names(), ", ")))
+        ->type_name("TEXT")
+        ->allow_extra_args(false);
+    command.add_option("--clock", options.clock, "virtual: as fast as possible, the same forces on every run")
+        ->check(CLI::IsMember({"wall", "virtual"}))
+        ->capture_default_str();
+    command.add_flag("--json", options.json, "Report as JSON on standard output");
+}
+
 Command explore_command(CLI::App& app)
 {
     const auto options = std::make_shared<ExploreOptions>();
     CLI::App* command = app.add_subcommand("explore", "Explore a scene with a device; textures follow their files");
-    command->add_option("scene", options->scene, "Scene file (TOML)")->required()->type_name("SCENE.toml");
-    add_seconds(*command, options->seconds);
-    command
-        ->add_option("--device", options->devices,
-                     fmt::format("Device in place of the scene's; repeat for several: {}",
-                                 fmt::join(device::device_names(), ", ")))
-        ->type_name("TEXT")
-        ->allow_extra_args(false);
-    command->add_option("--clock", options->clock, "virtual: as fast as possible, the same forces on every run")
-        ->check(CLI::IsMember({"wall", "virtual"}))
-        ->capture_default_str();
+    add_exploring(*command, *options);
     command
         ->add_option("--out", options->out,
                      "Folder for trace.csv (trace_2.csv ... of further devices), report.json and pictures")
         ->type_name("DIR");
-    command->add_flag("--json", options->json, "Report as JSON on standard output");
+    command->add_option("--record", options->recording, "Recording for `haptel replay`; see `haptel help record`")
+        ->type_name("FILE.haptrace");
     set_examples(*command, "  haptel explore examples/scenes/rock.toml\n"
                            "  haptel explore scene.toml --seconds 10 --out run --json\n"
-                           "  haptel explore scene.toml --device replay:run/trace.csv --clock virtual");
+                           "  haptel explore scene.toml --device replay:run.haptrace --clock virtual");
     return {command, [options] { return explore(*options); }};
 }
 

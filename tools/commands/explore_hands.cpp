@@ -1,5 +1,7 @@
 #include "tools/commands/explore_hands.h"
 
+#include "tools/arguments/feel_files.h"
+
 #include <algorithm>
 #include <utility>
 
@@ -13,8 +15,8 @@ constexpr double relief_exaggeration = 4;
 } // namespace
 
 ExploreHands::ExploreHands(std::shared_ptr<const runtime::Scene> scene, std::vector<runtime::LoadedHand> hands,
-                           const runtime::ServoOptions& options, const std::string& folder)
-    : scene_(std::move(scene)), folder_(folder), newest_(hands.size())
+                           const runtime::ServoOptions& options, ExploreKept kept)
+    : scene_(std::move(scene)), folder_(kept.folder), newest_(hands.size())
 {
     std::vector<runtime::ServoThread*> servos;
     for (std::size_t i = 0; i < hands.size(); ++i) {
@@ -24,9 +26,14 @@ ExploreHands::ExploreHands(std::shared_ptr<const runtime::Scene> scene, std::vec
         hand.device = hands[i].device->info().name;
         hand.workspace = hands[i].settings.workspace;
         hand.position_resolution_m = hands[i].device->info().position_resolution_m;
+        if (!kept.recording.empty()) {
+            kept.origin.device = hands[i].device->info();
+            kept.origin.hand = static_cast<uint32_t>(i + 1);
+            hand.recording = std::make_unique<runtime::TraceLog>(recording_of_hand(kept.recording, i), kept.origin);
+        }
         hand.servo = std::make_unique<runtime::ServoThread>(scene_, std::move(hands[i].device), own);
         servos.push_back(hand.servo.get());
-        if (!folder.empty()) hand.files.emplace(folder, i);
+        if (!folder_.empty()) hand.files.emplace(folder_, i);
     }
     if (options.clock == runtime::ServoClock::virtual_time) turns_.emplace(std::move(servos));
 }
@@ -59,6 +66,12 @@ void ExploreHands::collect()
     for (Hand& hand : hands_) hand.servo->collect();
 }
 
+bool ExploreHands::is_recording_lost() const
+{
+    return std::any_of(hands_.begin(), hands_.end(),
+                       [](const Hand& hand) { return hand.recording && !hand.recording->error().empty(); });
+}
+
 bool ExploreHands::drain(ExploreStatus& status)
 {
     bool any = false;
@@ -70,7 +83,9 @@ bool ExploreHands::drain(ExploreStatus& status)
             hands_[i].heights.add(newest_[i], hands_[i].workspace.scale);
             hands_[i].unfelt.add(newest_[i], hands_[i].workspace.scale);
             if (hands_[i].files) hands_[i].files->add(newest_[i]);
+            if (hands_[i].recording) hands_[i].recording->add(newest_[i]);
         }
+        if (hands_[i].recording) hands_[i].recording->keep_up();
     }
     if (any) status.show(newest_);
     return any;
@@ -82,6 +97,8 @@ std::vector<HandOutcome> ExploreHands::wait(ExploreStatus& status)
     std::vector<HandOutcome> outcomes;
     for (Hand& hand : hands_) outcomes.push_back({hand.device, hand.servo->wait(), {}, {}, hand.position_resolution_m});
     drain(status);
+    for (Hand& hand : hands_)
+        if (hand.recording) hand.recording->hand_over();
     for (std::size_t i = 0; i < hands_.size(); ++i) {
         outcomes[i].heights = hands_[i].heights;
         outcomes[i].unfelt = hands_[i].unfelt;
@@ -101,7 +118,10 @@ void ExploreHands::finish(const ExploreOutcome& outcome)
 std::string ExploreHands::error() const
 {
     for (const Hand& hand : hands_)
-        if (hand.files && !hand.files->error().empty()) return hand.files->error();
+        if (hand.recording && !hand.recording->error().empty())
+            return hand.recording->error();
+        else if (hand.files && !hand.files->error().empty())
+            return hand.files->error();
     return report_error_;
 }
 

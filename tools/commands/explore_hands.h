@@ -4,6 +4,7 @@
 #include "runtime/files/scene_file.h"
 #include "runtime/servo/servo_thread.h"
 #include "runtime/servo/servo_turns.h"
+#include "runtime/servo/trace_log.h"
 #include "tools/plot/plot_run.h"
 #include "tools/report/explore_files.h"
 #include "tools/report/explore_report.h"
@@ -17,11 +18,17 @@
 
 namespace haptel::tools {
 
+// What is kept of a run. An empty name: nothing there.
+struct ExploreKept {
+    std::string folder;          // for traces, pictures and the report
+    std::string recording;       // of the first hand; those of the others have their number in the name
+    runtime::TraceOrigin origin; // of the recordings; their device and hand are filled in
+};
+
 class ExploreHands {
 public:
-    // An empty folder: nothing is written.
     ExploreHands(std::shared_ptr<const runtime::Scene> scene, std::vector<runtime::LoadedHand> hands,
-                 const runtime::ServoOptions& options, const std::string& folder);
+                 const runtime::ServoOptions& options, ExploreKept kept);
 
     // Wall clock: a thread each. Virtual clock: one thread, a tick each in turn.
     void start();
@@ -31,7 +38,10 @@ public:
     std::string publish(const std::shared_ptr<const runtime::Scene>& scene);
     // Frees the scenes that they have left.
     void collect();
-    // Takes what the servos have told, at most a ring each. False: nothing.
+    // A recording cannot be written any more: the run is worth nothing to whoever wanted it.
+    bool is_recording_lost() const;
+    // Takes what the servos have told, at most a ring each. False: nothing. To be called every few milliseconds: what
+    // is recorded goes to the file from here.
     bool drain(ExploreStatus& status);
     // Waits for the end of all, and takes the rest.
     std::vector<HandOutcome> wait(ExploreStatus& status);
@@ -50,6 +60,7 @@ private:
         UnfeltContact unfelt;
         std::unique_ptr<runtime::ServoThread> servo;
         std::optional<ExploreFiles> files;
+        std::unique_ptr<runtime::TraceLog> recording;
     };
 
     std::shared_ptr<const runtime::Scene> scene_;
