@@ -1,16 +1,19 @@
-// haptel test: is every texture's gradient the gradient of its height, to rounding?
+// haptel test: is every texture's gradient the gradient of its height, to rounding? Does every scene feel as it did?
 #include "jit/check/check_gradient.h"
 #include "lang/parameter_value.h"
+#include "tools/arguments/feel_files.h"
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"
 #include "tools/arguments/texture_files.h"
 #include "tools/commands/command.h"
+#include "tools/commands/feel_test.h"
 #include "tools/output/terminal.h"
 #include "tools/report/suggested_facts.h"
 #include "tools/report/test_report.h"
 
 #include <algorithm>
 #include <chrono>
+#include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <fstream>
@@ -30,6 +33,8 @@ struct TestOptions {
     uint64_t seed = 1;
     bool json = false;
     std::string junit;
+    double feel_tolerance = tools::feel_tolerance;
+    bool update_feel = false;
     bool suggest_facts = false;
     std::pair<double, double> domain = {-8, 8}; // of a function's first argument
 };
@@ -114,10 +119,36 @@ ExitCode suggest(const TestOptions& options, bool has_points)
     return is_any_measured ? ExitCode::fine : ExitCode::findings;
 }
 
+ExitCode update(const FeelTargets& feels)
+{
+    bool all = true;
+    for (const std::string& recording : feels.recordings) {
+        std::string said;
+        const bool done = update_feel(recording, said);
+        all = all && done;
+        if (done)
+            fmt::print("{}\n", said);
+        else
+            say_error(said);
+    }
+    if (feels.recordings.empty())
+        say_error("there is no feel recording, SCENE" + std::string(feel_ending) + ", to update");
+    return all && !feels.recordings.empty() ? ExitCode::fine : ExitCode::findings;
+}
+
 ExitCode run(const TestOptions& options)
 {
+    const FeelTargets feels = feel_targets(options.paths);
+    for (const std::string& scene : feels.without)
+        say_error(fmt::format("{} has no feel recording to be held to; make one: haptel record {} --seconds 1 --clock "
+                              "virtual --out {}",
+                              scene, scene, std::filesystem::path(scene).replace_extension(feel_ending).string()));
+    if (!feels.without.empty()) return ExitCode::findings;
+    if (options.update_feel) return update(feels);
     TestRun tests(options);
-    const std::vector<TextureTarget> targets = texture_targets(options.paths);
+    for (const std::string& recording : feels.recordings)
+        tests.report.feels.push_back(test_feel(recording, options.feel_tolerance));
+    const std::vector<TextureTarget> targets = texture_targets(feels.others);
     for (size_t i = 0; i < targets.size(); ++i) {
         if (stderr_is_terminal()) fmt::print(stderr, "\r\x1b[K[{}/{}] {}", i + 1, targets.size(), targets[i].file);
         tests.test(targets[i]);
@@ -135,8 +166,8 @@ ExitCode run(const TestOptions& options)
             return ExitCode::findings;
         }
     }
-    if (tests.report.textures.empty()) {
-        say_error("there is no texture in " + fmt::format("{}", fmt::join(options.paths, ", ")));
+    if (tests.report.count() == 0) {
+        say_error("there is no texture and no feel recording in " + fmt::format("{}", fmt::join(options.paths, ", ")));
         return ExitCode::findings;
     }
     return tests.report.failed() == 0 ? ExitCode::fine : ExitCode::findings;
@@ -147,9 +178,11 @@ ExitCode run(const TestOptions& options)
 Command test_command(CLI::App& app)
 {
     const auto options = std::make_shared<TestOptions>();
-    CLI::App* command =
-        app.add_subcommand("test", "Compare textures with a 113-bit oracle and with finite differences");
-    command->add_option("paths", options->paths, "Texture files, FILE:NAME, or folders of them")
+    CLI::App* command = app.add_subcommand(
+        "test", "Compare textures with a 113-bit oracle and finite differences, scenes with recorded forces");
+    command
+        ->add_option("paths", options->paths,
+                     "Texture files, FILE:NAME, scenes with a feel recording beside them, or folders of these")
         ->required()
         ->type_name("PATH");
     add_parameters(*command, options->parameters);
@@ -164,6 +197,13 @@ Command test_command(CLI::App& app)
     command->add_option("--seed", options->seed, "Seed of the points")->capture_default_str();
     command->add_flag("--json", options->json, "One JSON object on standard output");
     command->add_option("--junit", options->junit, "Report for continuous integration")->type_name("FILE");
+    command
+        ->add_option("--feel-tolerance", options->feel_tolerance,
+                     "Forces so far from the recorded ones pass, N; torques, N m [1e-9]")
+        ->check(CLI::NonNegativeNumber)
+        ->type_name("N");
+    command->add_flag("--update-feel", options->update_feel,
+                      "Makes the forces of now those that the feel recordings hold; tests nothing");
     auto* suggesting =
         command->add_flag("--suggest-facts", options->suggest_facts,
                           "Measure range, slope, curvature and class of functions and textures, and print "
@@ -174,6 +214,7 @@ Command test_command(CLI::App& app)
         ->type_name("LOW HIGH")
         ->needs(suggesting);
     set_examples(*command, "  haptel test rock.haptel\n"
+                           "  haptel test scene.toml\n"
                            "  haptel test stdlib examples --junit report.xml\n"
                            "  haptel test rock.haptel:rock --points 10000 --box 0.2m --json\n"
                            "  haptel test --suggest-facts grain.haptel:rings --domain -2 2");

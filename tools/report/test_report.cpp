@@ -93,8 +93,9 @@ std::string escaped(const std::string& text)
 
 size_t TestReport::passed() const
 {
-    return static_cast<size_t>(
-        std::count_if(textures.begin(), textures.end(), [](const TestedTexture& texture) { return texture.passed(); }));
+    const auto passes = [](const auto& tested) { return tested.passed(); };
+    return static_cast<size_t>(std::count_if(textures.begin(), textures.end(), passes) +
+                               std::count_if(feels.begin(), feels.end(), passes));
 }
 
 Json TestReport::to_json() const
@@ -126,6 +127,8 @@ Json TestReport::to_json() const
     }
     Json json;
     json["textures"] = std::move(list);
+    json["feels"] = Json::array();
+    for (const TestedFeel& feel : feels) json["feels"].push_back(tools::to_json(feel));
     json["passed"] = passed();
     json["failed"] = failed();
     return json;
@@ -133,6 +136,7 @@ Json TestReport::to_json() const
 
 std::string TestReport::to_table() const
 {
+    if (textures.empty()) return table_of(feels) + fmt::format("{} passed, {} failed\n", passed(), failed());
     size_t width = 7;
     for (const TestedTexture& texture : textures) width = std::max(width, title(texture).size());
     std::string text = fmt::format("{:<{}}  {:>7} {:>8} {:>8} {:>8} {:>8} {:>5}  result\n", "texture", width, "points",
@@ -154,26 +158,29 @@ std::string TestReport::to_table() const
         for (const std::string& line : reasons(texture)) text += "    " + lang::printable(line) + "\n";
         for (const std::string& line : remarks(texture)) text += "    " + lang::printable(line) + "\n";
     }
-    return text + fmt::format("{} passed, {} failed\n{}", passed(), failed(), legend);
+    return text + table_of(feels) + fmt::format("{} passed, {} failed\n{}", passed(), failed(), legend);
 }
 
 std::string TestReport::to_junit() const
 {
     std::string xml = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
                                   "<testsuite name=\"haptel\" tests=\"{}\" failures=\"{}\">\n",
-                                  textures.size(), failed());
-    for (const TestedTexture& texture : textures) {
-        xml += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"",
-                           escaped(lang::printable(texture.file)), escaped(lang::printable(texture.name)),
-                           texture.seconds);
-        if (texture.passed()) {
+                                  count(), failed());
+    const auto add = [&](const std::string& file, const std::string& name, double seconds, bool has_passed,
+                         const std::vector<std::string>& why) {
+        xml += fmt::format("  <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\"", escaped(lang::printable(file)),
+                           escaped(lang::printable(name)), seconds);
+        if (has_passed) {
             xml += "/>\n";
-            continue;
+            return;
         }
-        std::string why;
-        for (const std::string& reason : reasons(texture)) why += lang::printable(reason) + "\n";
-        xml += ">\n    <failure>" + escaped(why) + "</failure>\n  </testcase>\n";
-    }
+        std::string lines;
+        for (const std::string& reason : why) lines += lang::printable(reason) + "\n";
+        xml += ">\n    <failure>" + escaped(lines) + "</failure>\n  </testcase>\n";
+    };
+    for (const TestedTexture& texture : textures)
+        add(texture.file, texture.name, texture.seconds, texture.passed(), reasons(texture));
+    for (const TestedFeel& feel : feels) add(feel.file, "feel", feel.seconds, feel.passed(), feel.reasons());
     return xml + "</testsuite>\n";
 }
 

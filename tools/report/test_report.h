@@ -1,9 +1,10 @@
-// What `haptel test` found out about each texture, as a table, as JSON and as JUnit's XML.
+// What `haptel test` found out about each texture and each feel recording, as a table, as JSON and as JUnit's XML.
 #pragma once
 
 #include "jit/check/check_gradient.h"
 #include "tools/output/json.h"
 #include "tools/report/amplified_place.h"
+#include "tools/report/feel_report.h"
 
 #include <optional>
 #include <string>
@@ -23,9 +24,11 @@ struct TestedTexture {
 
 struct TestReport {
     std::vector<TestedTexture> textures;
+    std::vector<TestedFeel> feels;
 
+    size_t count() const { return textures.size() + feels.size(); }
     size_t passed() const;
-    size_t failed() const { return textures.size() - passed(); }
+    size_t failed() const { return count() - passed(); }
 
     Json to_json() const;
     std::string to_table() const;

@@ -208,6 +208,54 @@ TEST_CASE("recording over what is no recording is refused before anything is fel
     CHECK(run_command("record " + stage.scene).code == 2);
 }
 
+TEST_CASE("a scene is held to the forces beside it, until they are meant to be others")
+{
+    const Stage stage;
+    const std::string feel = stage.out("scene.feel.haptrace"), test = "test --points 10 ";
+    const Ran none = run_command(test + stage.scene);
+    CHECK(none.code == 1);
+    CHECK(contains(none.err, "haptel record " + stage.scene + " --seconds 1 --clock virtual --out " + feel));
+    REQUIRE(run_command("record " + stage.scene + " --seconds 1 --clock virtual --out " + feel).code == 0);
+    const auto before = std::filesystem::file_size(feel);
+    const auto path = read_trace(feel).records;
+    CHECK(run_command(test + stage.scene).code == 0);
+
+    // The columns that tell nothing go, and nothing else.
+    const Ran small = run_command(test + "--update-feel " + stage.scene);
+    CHECK(contains(small.out, "rewritten, 0 of 1000 ticks feel otherwise"));
+    CHECK(std::filesystem::file_size(feel) < before * 4 / 5);
+    CHECK(contains(run_command(test + "--update-feel " + stage.scene).out, "as it was"));
+    const Ran folder = run_command(test + stage.folder.path.string() + " --json");
+    CHECK(folder.code == 0);
+    CHECK(json_of(folder)["feels"][0]["ticks"] == 1000);
+    CHECK(json_of(folder)["textures"].size() == 1);
+    CHECK(json_of(folder)["passed"] == 2);
+
+    put_in_place(stage.folder.file("grooves.haptel"), "60um", "61um");
+    const Ran other = run_command(test + stage.scene + " --junit " + stage.out("r.xml"));
+    CHECK(other.code == 1);
+    CHECK(contains(other.out, "first at tick "));
+    CHECK(contains(other.out, "on `icosphere`: force "));
+    CHECK(contains(other.out, "the texture grooves.haptel has changed since it was recorded"));
+    CHECK(contains(other.out, "haptel test --update-feel " + feel));
+    CHECK(contains(read_file(stage.out("r.xml")), "tests=\"1\" failures=\"1\""));
+    CHECK(run_command(test + stage.scene + " --feel-tolerance 0.1").code == 0);
+
+    const Ran updated = run_command(test + "--update-feel " + stage.folder.path.string());
+    CHECK(updated.code == 0);
+    CHECK(!contains(updated.out, " 0 of 1000 ticks"));
+    CHECK(run_command(test + feel).code == 0);
+    const auto again = read_trace(feel).records; // along the same path
+    REQUIRE(again.size() == path.size());
+    for (std::size_t i = 0; i < path.size(); ++i)
+        if (again[i].tip_m != path[i].tip_m || again[i].tail_m != path[i].tail_m) FAIL("the path is another at " << i);
+
+    std::filesystem::resize_file(feel, 5000);
+    CHECK(contains(run_command(test + feel).out, "cut after 5000 bytes"));
+    CHECK(run_command(test + "--update-feel " + feel).code == 1);
+    CHECK(std::filesystem::file_size(feel) == 5000);
+}
+
 // Both times are of the system's monotonic clock: that of the last tick in the file, and that at which the kill is
 // over, which is later than it was. A busy machine may keep the command from running at all for a while, and then no
 // tick was there to be lost, or nobody to write it down: the test tries again, up to five times, and one of them must
