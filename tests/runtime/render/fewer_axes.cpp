@@ -171,16 +171,16 @@ TEST_CASE("a finger is lifted at a step, beside everything and after an interrup
         if (x > 2e-3) return std::nullopt;
         return SurfaceHit{{x, 0, x > 1e-3 ? 5e-3 : 0}, {0, 0, 1}};
     };
-    double x = 0;
+    double x = 0.95e-3;
     Finger finger(in_plane, [&](int) { return dvec3(x, 0, 0); }, step_at_1mm);
     for (int i = 0; i < laid_down; ++i) finger.read();
-    x = 1.5e-3;
+    x = 1.05e-3;
     CHECK(std::abs(finger.read().tip_m.z - 6e-3) < 1e-12); // a millimetre above the upper level
     for (int i = 0; i < laid_down; ++i) finger.read();
     CHECK(finger.read().tip_m.z == 5e-3 - press_depth_m);
     x = 3e-3;
     for (int i = 0; i < laid_down; ++i) CHECK(std::abs(finger.read().tip_m.z - 6e-3) < 1e-12);
-    x = 1.5e-3;
+    x = 1.05e-3;
     for (int i = 0; i < laid_down; ++i) finger.read();
     CHECK(finger.read().tip_m.z == 5e-3 - press_depth_m);
 
