@@ -103,6 +103,7 @@ runtime::DeviceResult replay_of(std::string name, const std::filesystem::path& t
                          static_cast<runtime::Degradation>(record.degradation)});
     }
     runtime::DeviceInfo info{std::move(name), records.front().device_force_max_n, 0, 0};
+    info.slopes_only = recorded.origin && recorded.origin->device.slopes_only;
     std::string warning = recorded.note;
     if (const std::string missing = missing_ticks(trace, records); !missing.empty())
         warning += (warning.empty() ? "" : "; ") + missing;

@@ -89,17 +89,20 @@ void warn_of_press(const DeviceInfo& info, const Scene& scene, const toml::sourc
 void complete(LoadedHand& hand, const DeviceText& device, const Scene& scene, FileMessages& messages)
 {
     const DeviceInfo& info = hand.device->info();
-    if (info.axes.all()) return;
+    if (info.axes.all()) {
+        hand.settings.slopes_only = info.slopes_only;
+        return;
+    }
     if (device.probe.has_tail())
         messages.error(device.where(DeviceKey::stylus_length),
                        "`" + info.name +
                            "` has too few axes for a stylus or a gripper: write `kind = \"point\"` or "
                            "`\"sphere\"` under [probe]");
-    if (!info.axes.senses.z || !info.axes.pushes.z) hand.settings.force_model = ForceModel::lateral;
     // newtons per metre of the hand's way, as all stiffnesses are
     const double press_depth_m = device.request.press_n / scene.objects.front().material.stiffness_n_per_m;
     hand.device = std::make_unique<FewerAxes>(std::move(hand.device), device.request.surface_below, press_depth_m,
                                               scene.servo.rate_hz);
+    hand.settings.slopes_only = hand.device->info().slopes_only;
 }
 
 } // namespace

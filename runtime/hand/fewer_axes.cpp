@@ -23,11 +23,15 @@ constexpr double slope_max = 4;
 FewerAxes::FewerAxes(std::unique_ptr<HapticDevice> device, SurfaceBelow surface_below, double press_depth_m,
                      double rate_hz)
     : device_(std::move(device))
+    , axes_(device_->info().axes)
+    , info_(device_->info())
     , surface_below_(std::move(surface_below))
     , press_depth_m_(press_depth_m)
     , lowered_per_period_m_(lowering_m_per_s / rate_hz)
     , above_m_(press_depth_m + lifted_m)
 {
+    info_.axes = {};
+    info_.slopes_only = !axes_.senses.z || !axes_.pushes.z;
 }
 
 DeviceStatus FewerAxes::read(DevicePose& pose) noexcept
@@ -38,11 +42,10 @@ DeviceStatus FewerAxes::read(DevicePose& pose) noexcept
         last_.reset();
         return status;
     }
-    const glm::bvec3 senses = device_->info().axes.senses;
     const glm::dvec3 tail_from_tip_m = pose.tail_m - pose.tip_m;
     for (int axis = 0; axis < 3; ++axis)
-        if (!senses[axis]) pose.tip_m[axis] = 0;
-    if (!senses.z) pose.tip_m = laid_on_surface(pose.tip_m, std::max(uint64_t{1}, pose.periods));
+        if (!axes_.senses[axis]) pose.tip_m[axis] = 0;
+    if (!axes_.senses.z) pose.tip_m = laid_on_surface(pose.tip_m, std::max(uint64_t{1}, pose.periods));
     pose.tail_m = pose.tip_m + tail_from_tip_m;
     return status;
 }
@@ -67,7 +70,7 @@ glm::dvec3 FewerAxes::laid_on_surface(const glm::dvec3& hand_m, uint64_t periods
 
 DeviceStatus FewerAxes::write(const glm::dvec3& force_n, const glm::dvec3& torque_n_m) noexcept
 {
-    return device_->write(glm::mix(glm::dvec3(0), force_n, device_->info().axes.pushes), torque_n_m);
+    return device_->write(glm::mix(glm::dvec3(0), force_n, axes_.pushes), torque_n_m);
 }
 
 } // namespace haptel::runtime

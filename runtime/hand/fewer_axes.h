@@ -19,7 +19,8 @@ public:
     // Of the device's space, in which the surface is told. `press_depth_m`: of the finger, below the surface.
     FewerAxes(std::unique_ptr<HapticDevice> device, SurfaceBelow surface_below, double press_depth_m, double rate_hz);
 
-    const DeviceInfo& info() const override { return device_->info(); }
+    // The device's, with all axes.
+    const DeviceInfo& info() const override { return info_; }
     DeviceStatus read(DevicePose& pose) noexcept override;
     DeviceStatus write(const glm::dvec3& force_n, const glm::dvec3& torque_n_m) noexcept override;
     void write_grip(double grip_force_n) noexcept override { device_->write_grip(grip_force_n); }
@@ -29,6 +30,8 @@ private:
     glm::dvec3 laid_on_surface(const glm::dvec3& hand_m, uint64_t periods) noexcept;
 
     std::unique_ptr<HapticDevice> device_;
+    DeviceAxes axes_;
+    DeviceInfo info_;
     SurfaceBelow surface_below_;
     double press_depth_m_;
     double lowered_per_period_m_;

@@ -4,7 +4,6 @@
 #include "runtime/geometry/placement.h"
 #include "runtime/hand/haptic_device.h"
 #include "runtime/hand/probe.h"
-#include "runtime/scene/force_rule.h"
 
 #include <glm/glm.hpp>
 
@@ -34,8 +33,8 @@ struct Workspace {
 struct HandSettings {
     double force_max_n = 0; // what the motors can do; 0: unknown, the scene's limit alone holds
     Workspace workspace = {};
-    std::optional<ProbeSettings> probe = {};    // none: the scene's, whichever is felt
-    std::optional<ForceModel> force_model = {}; // the same
+    std::optional<ProbeSettings> probe = {}; // none: the scene's, whichever is felt
+    bool slopes_only = false;                // DeviceInfo::slopes_only
 };
 
 inline bool Workspace::moves() const

@@ -42,6 +42,7 @@ struct DeviceInfo {
     double press_n = 0;               // with which a simulated hand presses; 0: another hand, not known
     double position_resolution_m = 0; // the step of its position sensors; 0: not known
     DeviceAxes axes = {};
+    bool slopes_only = false; // it feels no heights: the force model is `lateral`, whatever the scene says
 };
 
 enum class DeviceStatus : uint8_t {

@@ -38,7 +38,7 @@ Renderer::Renderer(std::shared_ptr<const Scene> scene, const HandSettings& hand)
     , velocity_(period_s_)
     , tail_velocity_(period_s_)
 {
-    if (hand_.force_model) force_rule_.model = *hand_.force_model;
+    if (hand_.slopes_only) force_rule_.model = ForceModel::lateral;
     for (Body& body : bodies_) {
         body.asleep = scene_->servo.skips.objects;
         turn_max_rad_per_s_ = std::max(turn_max_rad_per_s_, body.turn_rad_per_s);

@@ -84,6 +84,7 @@ std::string to_text(const TraceOrigin& origin)
     say("stiffness_max_n_per_m", shortest_text(origin.device.stiffness_max_n_per_m));
     say("workspace_radius_m", shortest_text(origin.device.workspace_radius_m));
     say("position_resolution_m", shortest_text(origin.device.position_resolution_m));
+    if (origin.device.slopes_only) say("slopes_only", "1");
     say("hand", shortest_text(origin.hand));
     say("rate_hz", shortest_text(origin.rate_hz));
     say("clock", in_one_line(origin.clock));
@@ -103,6 +104,7 @@ void read_line(std::string_view line, TraceOrigin& origin)
     if (word == "stiffness_max_n_per_m") read_number(value, origin.device.stiffness_max_n_per_m);
     if (word == "workspace_radius_m") read_number(value, origin.device.workspace_radius_m);
     if (word == "position_resolution_m") read_number(value, origin.device.position_resolution_m);
+    if (word == "slopes_only") origin.device.slopes_only = value == "1";
     if (word == "hand") read_number(value, origin.hand);
     if (word == "rate_hz") read_number(value, origin.rate_hz);
     if (word == "clock") origin.clock = from_one_line(value);

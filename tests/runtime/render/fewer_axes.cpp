@@ -111,12 +111,10 @@ std::complex<double> fundamental_n(DeviceAxes axes)
     scene.objects[0].material = {stiffness, 0, 0, 0};
     scene.servo.force.lateral_depth_m = 1e-3; // above which, 1.25 mm deep, it does not grow
     HandSettings hand;
-    if (!axes.all())
-        hand.force_model = ForceModel::lateral;
-    else
-        scene.servo.force.model = ForceModel::lateral;
-    Renderer renderer(shared(std::move(scene)), hand);
     Finger finger(axes, along_grating, flat);
+    hand.slopes_only = finger.device.info().slopes_only;
+    if (axes.all()) scene.servo.force.model = ForceModel::lateral;
+    Renderer renderer(shared(std::move(scene)), hand);
     std::complex<double> sum = 0;
     const int first = 400, count = 2000;
     for (int i = 0; i < first + count; ++i) {

@@ -299,3 +299,12 @@ TEST_CASE("a recording that is killed has lost at most the last 50 ms")
     CHECK(least_lost_ms <= 50);
     CHECK(run_command("replay " + file).code == 0);
 }
+
+TEST_CASE("a hand of two axes is replayed as it felt: by slopes alone")
+{
+    const Recorded recorded("name = \"simulated:2diy\"");
+    CHECK(read_trace(recorded.file).origin->device.slopes_only);
+    const Ran ran = run_command("replay " + recorded.file);
+    CHECK(ran.out == "1000 ticks replayed: every force equals the recorded one\n");
+    CHECK(ran.code == 0);
+}
