@@ -22,8 +22,6 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double stiffness_n_per_m = 1000;
-
 // About an axis that is none of the coordinates'.
 glm::dmat3 turned(double angle)
 {
@@ -77,7 +75,7 @@ public:
             y += share * to_y;
             const dvec3 force = tick(x, y, depth_m);
             const double along_n = glm::dot(force, normal_);
-            REQUIRE(std::abs(along_n - stiffness_n_per_m * depth_m) < 1e-7);
+            REQUIRE(std::abs(along_n - spring_n_per_m * depth_m) < 1e-7);
             worst = std::max(worst, glm::length(force - along_n * normal_) / along_n);
         }
         return worst;
@@ -144,7 +142,7 @@ TEST_CASE("anchors row 5: the first contact is below 1.001 mN at 1 um approach, 
                 Scene scene = bare_scene(c.mesh, c.textured ? sine_texture(60e-6, 1e-3) : TextureBinding{});
                 scene.probe = probe.settings;
                 scene.objects[0].material = Material{};
-                scene.objects[0].material.stiffness_n_per_m = stiffness_n_per_m;
+                scene.objects[0].material.stiffness_n_per_m = spring_n_per_m;
                 Renderer renderer(shared(std::move(scene)));
                 double before_n = 0;
                 bool touched = false;

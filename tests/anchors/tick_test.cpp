@@ -24,7 +24,7 @@ namespace {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-constexpr ProbeSettings probes[] = {
+constexpr ProbeSettings every_probe[] = {
     {ProbeKind::point, 0, 0}, {ProbeKind::sphere, 0, 5e-3}, {ProbeKind::stylus, 0.1, 0}};
 
 // A textured plate with friction and damping, a ball beside it, one that moves.
@@ -65,7 +65,7 @@ std::vector<dvec3> forces(const std::shared_ptr<const Scene>& scene, int ticks)
 
 TEST_CASE("anchors row 7: after a pose that is no number the wall is felt on the side where it was")
 {
-    for (const ProbeSettings& probe : probes)
+    for (const ProbeSettings& probe : every_probe)
         for (const double side : {1.0, -1.0}) // the plate is thin: it has two
             for (const int bad : {0, 1, 2}) {
                 CAPTURE(int(probe.kind), side, bad);
@@ -98,7 +98,7 @@ TEST_CASE("anchors row 7: after a pose that is no number the wall is felt on the
 
 TEST_CASE("anchors row 8: a tick allocates nothing, whatever is touched and whatever is published meanwhile")
 {
-    for (const ProbeSettings& probe : probes) {
+    for (const ProbeSettings& probe : every_probe) {
         const auto scene = scene_of_everything(probe);
         Renderer renderer(scene);
         uint64_t allocations = 0, contacts = 0;
@@ -126,9 +126,9 @@ TEST_CASE("anchors row 8: every tick of a servo is in its histogram, and so is e
     options.clock = ServoClock::virtual_time;
     options.seconds = 5;
     options.allocation_count = allocations_of_this_thread;
-    ServoThread servo(scene_of_everything(probes[0]),
+    ServoThread servo(scene_of_everything(every_probe[0]),
                       std::make_unique<ScriptedDevice>([](uint64_t tick, DevicePose& pose) {
-                          pose = stroke(int(tick), probes[0]);
+                          pose = stroke(int(tick), every_probe[0]);
                           return DeviceStatus::ok;
                       }),
                       options);
@@ -145,7 +145,7 @@ TEST_CASE("anchors row 8: a scene is immutable and shared: four threads feel in 
 {
     static_assert(std::is_constructible_v<Renderer, std::shared_ptr<const Scene>>);
     static_assert(std::is_same_v<decltype(SceneObject::surface), std::shared_ptr<const Surface>>);
-    for (const ProbeSettings& probe : probes) {
+    for (const ProbeSettings& probe : every_probe) {
         const auto scene = scene_of_everything(probe);
         const std::vector<dvec3> alone = forces(scene, 20'000);
         std::vector<dvec3> found[4];

@@ -7,6 +7,7 @@
 #include "tests/conformance/folder.h"
 #include "tests/support/catch.h"
 #include "tests/support/interpret.h"
+#include "tests/support/project_path.h"
 
 #include <cstring>
 #include <set>
@@ -137,7 +138,7 @@ TEST_CASE("conformance: every finding that a text can show has a file")
 
 TEST_CASE("conformance: the runner tells what is wrong in each file that must fail")
 {
-    const std::vector<CaseFile> files = case_files(HAPTEL_SOURCE_DIR "/tests/conformance/must_fail");
+    const std::vector<CaseFile> files = case_files(haptel::test::project_path("tests/conformance/must_fail"));
     CHECK(files.size() == 12);
     for (const CaseFile& file : files) {
         // The report that the runner must make stands at the end of the file, behind a line "//--- report".

@@ -1,6 +1,8 @@
 // The files of this folder.
 #pragma once
 
+#include "tests/support/project_path.h"
+
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -15,7 +17,8 @@ struct CaseFile {
     std::string text;
 };
 
-inline std::vector<CaseFile> case_files(const std::string& folder = HAPTEL_SOURCE_DIR "/tests/conformance/cases")
+inline std::vector<CaseFile>
+case_files(const std::string& folder = haptel::test::project_path("tests/conformance/cases"))
 {
     std::vector<CaseFile> files;
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {

@@ -9,8 +9,6 @@ using namespace haptel::device;
 
 namespace {
 
-constexpr double period_s = 1e-3;
-
 void run(Hand& hand, double seconds)
 {
     for (int i = 0; i < std::lround(seconds / period_s); ++i) hand.advance();

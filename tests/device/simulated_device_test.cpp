@@ -13,7 +13,6 @@ using namespace haptel::runtime;
 
 namespace {
 
-constexpr double period_s = 1e-3;
 const glm::dvec3 none(0);
 
 SimulatedDevice make(const DeviceModel& model, const HandImpedance& hand = {}, double press_n = 0, int delay = 0)

@@ -13,8 +13,6 @@ using namespace haptel::runtime;
 
 namespace {
 
-constexpr double period_s = 1e-3;
-
 // A wall below z = 0, felt as a spring.
 glm::dvec3 wall_n(const DevicePose& pose, double stiffness_n_per_m)
 {

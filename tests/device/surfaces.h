@@ -7,6 +7,8 @@
 
 namespace haptel::device {
 
+inline constexpr double period_s = 1e-3; // of a tick
+
 inline SurfaceBelow plane_at(double z_m)
 {
     return [z_m](double x, double y) { return runtime::SurfaceHit{{x, y, z_m}, {0, 0, 1}}; };

@@ -13,6 +13,7 @@
 #include "tests/support/interpret.h"
 #include "tests/support/ir_parse.h"
 #include "tests/support/ir_print.h"
+#include "tests/support/project_path.h"
 
 #include <cmath>
 
@@ -165,8 +166,8 @@ void read_ir(std::string_view bytes)
 std::vector<std::string> haptel_corpus()
 {
     std::vector<std::string> corpus;
-    for (const char* folder : {"/tests/conformance/cases", "/tests/lang/golden", "/examples", "/stdlib/tests"})
-        for (const lang::test::CaseFile& file : lang::test::case_files(HAPTEL_SOURCE_DIR + std::string(folder)))
+    for (const char* folder : {"tests/conformance/cases", "tests/lang/golden", "examples", "stdlib/tests"})
+        for (const lang::test::CaseFile& file : lang::test::case_files(haptel::test::project_path(folder)))
             corpus.push_back(file.text);
     for (const stdlib::LibraryFile& file : stdlib::library())
         if (file.text.size() < 20'000) corpus.emplace_back(file.text);

@@ -4,6 +4,7 @@
 #include "lang/ir/bounds/bounds.h"
 #include "lang/ir/run/interpret.h"
 #include "tests/support/catch.h"
+#include "tests/support/project_path.h"
 
 #include <cmath>
 #include <fstream>
@@ -36,9 +37,9 @@ ir::Continuity class_of(const ir::Module& module, const ir::Texture& texture)
 }
 
 // Of a texture's height along lines: halves each towards where more changes, until two neighbouring numbers are left.
-class JumpSearch {
+class SearchForJumps {
 public:
-    JumpSearch(const ir::Module& module, const ir::Texture& what) : machine(module), texture(what)
+    SearchForJumps(const ir::Module& module, const ir::Texture& what) : machine(module), texture(what)
     {
         for (const ir::Parameter& parameter : texture.parameters) inputs.parameters.push_back({parameter.value});
     }
@@ -145,7 +146,7 @@ private:
 
 TEST_CASE("patterns: told to jump are those that do, but for those that say so")
 {
-    std::ifstream file(HAPTEL_SOURCE_DIR "/tests/lang/patterns.haptel");
+    std::ifstream file(haptel::test::project_path("tests/lang/patterns.haptel"));
     std::stringstream text;
     text << file.rdbuf();
     const auto program = program_of(text.str());
@@ -157,7 +158,7 @@ TEST_CASE("patterns: told to jump are those that do, but for those that say so")
         const bool is_not_seen = texture.doc.starts_with("Continuous, not seen");
         REQUIRE((does_jump || texture.doc.starts_with("Continuous")));
         CHECK((class_of(program->module, texture) <= ir::Continuity::jump) == (does_jump || is_not_seen));
-        const double found = JumpSearch(program->module, texture).greatest_jump(7, 4000);
+        const double found = SearchForJumps(program->module, texture).greatest_jump(7, 4000);
         CHECK((found > 1e-6) == does_jump); // of heights of 20 um and more
         jumps += does_jump;
         not_seen += is_not_seen;
@@ -176,7 +177,7 @@ TEST_CASE("patterns: what is called continuous has no jump, whatever was drawn")
         if (class_of(program->module, texture) <= ir::Continuity::jump) continue;
         ++continuous;
         CAPTURE(seed, text);
-        CHECK(JumpSearch(program->module, texture).greatest_jump(seed, 400) < 1e-8); // of heights of some mm
+        CHECK(SearchForJumps(program->module, texture).greatest_jump(seed, 400) < 1e-8); // of heights of some mm
     }
     CHECK(continuous > 100);
 }

@@ -6,6 +6,7 @@
 #include "stdlib/stdlib.h"
 #include "tests/ports/twin.h"
 #include "tests/support/catch.h"
+#include "tests/support/project_path.h"
 #include "tests/support/tries.h"
 
 #include <filesystem>
@@ -37,7 +38,7 @@ std::vector<Twin> all_twins()
 
 std::string file_of(const Twin& twin)
 {
-    return std::string(HAPTEL_SOURCE_DIR "/tests/ports/patterns/") + twin.pattern + ".haptel";
+    return test::project_path(std::string("tests/ports/patterns/") + twin.pattern + ".haptel");
 }
 
 std::string text_of(const Twin& twin)
@@ -183,7 +184,7 @@ Errors errors_of(const Twin& twin, const Pattern& pattern, int count, uint64_t s
 TEST_CASE("ports: each pattern has its twin")
 {
     std::set<std::string> files, twins;
-    for (const auto& file : std::filesystem::directory_iterator(HAPTEL_SOURCE_DIR "/tests/ports/patterns"))
+    for (const auto& file : std::filesystem::directory_iterator(test::project_path("tests/ports/patterns")))
         files.insert(file.path().stem());
     for (const Twin& twin : all_twins()) twins.insert(twin.pattern);
     CHECK(files == twins);

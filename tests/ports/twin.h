@@ -47,6 +47,12 @@ inline double fraction(double x)
 {
     return x - std::floor(x);
 }
+// The sine hashes are rounded as GLSL's order of operations says, so that only the sine itself may differ: by 2e-16,
+// times a factor of at most 43759.
+inline double sine_hash(double angle, double factor)
+{
+    return fraction(std::sin(angle) * factor);
+}
 inline bool is_odd(double whole_number)
 {
     return std::fmod(whole_number, 2) != 0;

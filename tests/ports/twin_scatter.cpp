@@ -9,19 +9,14 @@
 namespace haptel::ports {
 namespace {
 
-constexpr int window = 2;
+constexpr int around = 2;
 
 template <typename Visit>
 void visit_cells(dvec2 q, Visit visit) // in no order that counts
 {
     const dvec2 low = glm::floor(q);
-    for (int i = window; i >= -window; --i)
-        for (int j = window; j >= -window; --j) visit(low + dvec2(i, j));
-}
-
-double sine_hash(double angle, double factor)
-{
-    return fraction(std::sin(angle) * factor);
+    for (int i = around; i >= -around; --i)
+        for (int j = around; j >= -around; --j) visit(low + dvec2(i, j));
 }
 
 double polka_dots(dvec3 q)

@@ -7,13 +7,6 @@
 namespace haptel::ports {
 namespace {
 
-// The sine hashes are rounded as GLSL's order of operations says, so that only the sine itself may differ: by 2e-16,
-// times a factor of at most 43759.
-double sine_hash(double angle, double factor)
-{
-    return fraction(std::sin(angle) * factor);
-}
-
 double sine_noise(dvec3 q)
 {
     return blend_corners(dvec2(q), [](dvec2 c) { return sine_hash(c.x * 12.9898 + c.y * 78.233, 43758.5453); }, fade3);

@@ -12,14 +12,14 @@ using namespace haptel::test;
 
 namespace {
 
-struct Weight {
+struct Curve {
     double value, first, second;
 };
-Weight cubic(double t)
+Curve cubic_curve(double t)
 {
     return {t * t * (3 - 2 * t), 6 * t * (1 - t), 6 - 12 * t};
 }
-Weight quintic(double t)
+Curve quintic_curve(double t)
 {
     return {t * t * t * (t * (6 * t - 15) + 10), 30 * t * t * (1 - t) * (1 - t), 60 * t * (2 * t - 1) * (t - 1)};
 }
@@ -30,7 +30,7 @@ struct Norms {
 
 // Largest possible at x for unit vectors at the corners: N = sum w (G . d), so N' = sum G . (w e + w' d) and
 // N'' = sum G . (2 w' e + w'' d), derivatives along e.
-Norms largest_at(Weight (*weight)(double), size_t dimensions, const Vec3& x, const Vec3& e)
+Norms largest_at(Curve (*weight)(double), size_t dimensions, const Vec3& x, const Vec3& e)
 {
     Norms sum{};
     for (size_t corner = 0; corner < size_t(1) << dimensions; ++corner) {
@@ -38,7 +38,7 @@ Norms largest_at(Weight (*weight)(double), size_t dimensions, const Vec3& x, con
         Vec3 d{};
         for (size_t a = 0; a < dimensions; ++a) {
             const bool far = corner >> a & 1;
-            const Weight far_weight = weight(x[a]);
+            const Curve far_weight = weight(x[a]);
             const double sign = far ? 1 : -1;
             const double f = far ? far_weight.value : 1 - far_weight.value;
             const double f1 = sign * far_weight.first * e[a], f2 = sign * far_weight.second * e[a] * e[a];
@@ -60,7 +60,7 @@ Norms largest_at(Weight (*weight)(double), size_t dimensions, const Vec3& x, con
     return sum;
 }
 
-void check_facts(const std::string& name, Weight (*weight)(double), size_t dimensions)
+void check_facts(const std::string& name, Curve (*weight)(double), size_t dimensions)
 {
     const std::string type = dimensions == 3 ? "vec3" : "vec2", argument = dimensions == 3 ? "q" : "q.xy";
     const auto largest = [&](double Norms::* which) {
@@ -86,10 +86,10 @@ void check_facts(const std::string& name, Weight (*weight)(double), size_t dimen
 
 TEST_CASE("the facts of the noises are the supremum over all unit tables, rounded up")
 {
-    check_facts("noise", cubic, 3);
-    check_facts("noise", cubic, 2);
-    check_facts("perlin", quintic, 3);
-    check_facts("perlin", quintic, 2);
+    check_facts("noise", cubic_curve, 3);
+    check_facts("noise", cubic_curve, 2);
+    check_facts("perlin", quintic_curve, 3);
+    check_facts("perlin", quintic_curve, 2);
 }
 
 TEST_CASE("the slope facts of fourier are the supremum over phases on their own, rounded up")

@@ -9,12 +9,6 @@ using namespace haptel::test;
 
 namespace {
 
-int shuffled(int i)
-{
-    static const std::vector<double> table = library_table("perlin_m");
-    return static_cast<int>(table[static_cast<size_t>(i & 255)]);
-}
-
 double coordinate(int number, int offset, double spread)
 {
     return 0.5 + spread * (2 * shuffled(number + offset) / 255.0 - 1);

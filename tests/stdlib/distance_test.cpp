@@ -13,8 +13,6 @@ using namespace haptel::test;
 
 namespace {
 
-constexpr double pi = std::numbers::pi;
-
 // The least of a function that falls, then rises.
 double least_of(double from, double to, const std::function<double(double)>& f)
 {
@@ -129,14 +127,14 @@ TEST_CASE("hexagons, polygons and stars: as far as from the nearest edge")
     const auto outline = [](const std::vector<Vec2>& corners) {
         return [=](const Vec3& q) { return polygon_distance({q[0], q[1]}, corners); };
     };
-    const double corner = 0.7 / std::cos(pi / 6);
-    check_distance("sd_hexagon(q.xy, 0.7)", outline(corners_round(6, corner, corner, pi / 6)));
+    const double corner = 0.7 / std::cos(std::numbers::pi / 6);
+    check_distance("sd_hexagon(q.xy, 0.7)", outline(corners_round(6, corner, corner, std::numbers::pi / 6)));
     check_distance("sd_hexagon(q.xy, 0.0)", outline({{0, 0}}));
     check_distance("sd_hexagon(q.xy, -1.0)", outline({{0, 0}}));
     for (const int sides : {3, 4, 5, 6, 11}) {
-        const double radius = 0.7 / std::cos(pi / sides);
+        const double radius = 0.7 / std::cos(std::numbers::pi / sides);
         check_distance("sd_polygon(q.xy, " + std::to_string(sides) + ", 0.7)",
-                       outline(corners_round(sides, radius, radius, pi / sides)));
+                       outline(corners_round(sides, radius, radius, std::numbers::pi / sides)));
     }
     for (const int points : {2, 3, 5, 8})
         for (const double inner : {0.1, 0.4, 0.9, 1.3})

@@ -3,6 +3,8 @@
 #include "stdlib/stdlib.h"
 #include "tests/support/catch.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdlib>
 #include <random>
@@ -60,6 +62,18 @@ std::vector<double> library_table(const std::string& name)
     }
     REQUIRE_FALSE(cells.empty());
     return cells;
+}
+
+int shuffled(int i)
+{
+    static const std::vector<double> table = library_table("perlin_m");
+    return static_cast<int>(table[static_cast<size_t>(i & 255)]);
+}
+
+double octave_left(double detail)
+{
+    const double t = std::clamp((detail - 0.5) / 0.5, 0.0, 1.0);
+    return 1 - t * t * (3 - 2 * t);
 }
 
 std::vector<Vec3> points_within(double size, int count, uint32_t seed)

@@ -32,6 +32,14 @@ private:
 
 // Cells of a constant table of the library, read from its text.
 std::vector<double> library_table(const std::string& name);
+int shuffled(int i); // that cell of its table perlin_m, which repeats
+
+// What is left of an octave with so many footprints per wavelength.
+double octave_left(double detail);
+
+// Functions that are not the library's, to be summed by it.
+inline const std::string own_basis = "float basis(vec3 q) { return sin(q.x) * cos(q.y) + 0.5 * sin(q.z); }\n"
+                                     "float flat_basis(vec2 q) { return sin(q.x) * cos(q.y); }\n";
 
 // `count` points, uniform within -size .. size in each coordinate, the same on every machine.
 std::vector<Vec3> points_within(double size, int count, uint32_t seed = 1);

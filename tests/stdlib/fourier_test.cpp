@@ -4,12 +4,11 @@
 #include "tests/support/catch.h"
 
 #include <cmath>
+#include <numbers>
 
 using namespace haptel::test;
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 struct Series {
     int terms;
@@ -24,10 +23,10 @@ FieldSample closed_form(const Series& series, double x, double y, bool with_cros
     for (int i = 1; i <= series.terms; ++i) {
         double p = series.p, p_y = 0, q = series.q, q_x = 0;
         if (i > 1) { // B.2
-            p = pi / 2 * std::sin(g * y / 2);
-            q = pi / 2 * std::sin(f * x / 2);
-            p_y = with_cross_terms ? pi / 4 * g * std::cos(g * y / 2) : 0;
-            q_x = with_cross_terms ? pi / 4 * f * std::cos(f * x / 2) : 0;
+            p = std::numbers::pi / 2 * std::sin(g * y / 2);
+            q = std::numbers::pi / 2 * std::sin(f * x / 2);
+            p_y = with_cross_terms ? std::numbers::pi / 4 * g * std::cos(g * y / 2) : 0;
+            q_x = with_cross_terms ? std::numbers::pi / 4 * f * std::cos(f * x / 2) : 0;
         }
         const double a = f * x + p, b = g * y + q;
         big_x += c * std::sin(a) + series.offset;
@@ -78,7 +77,8 @@ TEST_CASE("fourier in periods is eq. 7 with B.1, B.2 and T_o = 0.3")
     for (const int terms : {1, 2, 4, 7}) {
         CAPTURE(terms);
         const Field field("fourier(q.xy, " + std::to_string(terms) + ")");
-        const Error error = error_of(field, {terms, 2 * pi, 2 * pi, 0, 0, 1, 0.3, unit_scale(terms)});
+        const Error error =
+            error_of(field, {terms, 2 * std::numbers::pi, 2 * std::numbers::pi, 0, 0, 1, 0.3, unit_scale(terms)});
         CHECK(error.value < 2e-13); // the truth reduces arguments up to 2 pi 3 2^6 by a rounded pi
         CHECK(error.gradient < 2e-13);
     }
@@ -112,8 +112,9 @@ TEST_CASE("in space: both phases lean along z, by half a turn times the sine of 
     for (const Vec3& at : points_within(3, 300)) {
         double x = 0, y = 0, most = 0;
         for (int i = 0; i < 3; ++i) {
-            const double f = 2 * pi * std::pow(2.0, i), c = std::pow(2.0, -i / 2.0), lean = i > 0 ? pi / 2 : 0;
-            const double up = pi * std::sin(f * at[2] / 2);
+            const double f = 2 * std::numbers::pi * std::pow(2.0, i), c = std::pow(2.0, -i / 2.0),
+                         lean = i > 0 ? std::numbers::pi / 2 : 0;
+            const double up = std::numbers::pi * std::sin(f * at[2] / 2);
             x += c * std::sin(f * at[0] + lean * std::sin(f * at[1] / 2) + up) + 0.3;
             y += c * std::sin(f * at[1] + lean * std::sin(f * at[0] / 2) + up) + 0.3;
             most += c + 0.3;

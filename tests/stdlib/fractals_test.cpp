@@ -8,16 +8,6 @@ using namespace haptel::test;
 
 namespace {
 
-const std::string own_basis = "float basis(vec3 q) { return sin(q.x) * cos(q.y) + 0.5 * sin(q.z); }\n"
-                              "float flat_basis(vec2 q) { return sin(q.x) * cos(q.y); }\n";
-
-// What is left of an octave with so many footprints per wavelength.
-double strength(double detail)
-{
-    const double t = std::clamp((detail - 0.5) / 0.5, 0.0, 1.0);
-    return 1 - t * t * (3 - 2 * t);
-}
-
 // The definition, over a basis that is differentiated by hand.
 FieldSample expected_sum(double (*shape)(double), double (*shape_slope)(double), const Vec3& q, int octaves,
                          double lacunarity, double gain, double footprint)
@@ -25,7 +15,7 @@ FieldSample expected_sum(double (*shape)(double), double (*shape_slope)(double),
     FieldSample sum{};
     double frequency = 1;
     for (int i = 0; i < octaves; ++i) {
-        const double amplitude = strength(footprint * std::sqrt(3.0) * frequency) * std::pow(gain, i);
+        const double amplitude = octave_left(footprint * std::sqrt(3.0) * frequency) * std::pow(gain, i);
         const double x = q[0] * frequency + 1.375 * i, y = q[1] * frequency + 0.625 * i,
                      z = q[2] * frequency + 0.1875 * i;
         const double b = std::sin(x) * std::cos(y) + 0.5 * std::sin(z), outer = amplitude * frequency * shape_slope(b);
@@ -99,7 +89,7 @@ TEST_CASE("where coordinates stretch, octaves fade, and the gradient knows")
     for (const Vec3& q : points_within(2, 500)) {
         const double x = q[0], y = q[1], norm = std::sqrt(5 * x * x + y * y), detail = footprint * norm;
         const double b = std::sin(x * x) * std::cos(x * y), t = 2 * detail - 1;
-        const double left = strength(detail), slope = t > 0 && t < 1 ? -2 * 6 * t * (1 - t) * footprint / norm : 0;
+        const double left = octave_left(detail), slope = t > 0 && t < 1 ? -2 * 6 * t * (1 - t) * footprint / norm : 0;
         const double by_first = std::cos(x * x) * std::cos(x * y), by_second = -std::sin(x * x) * std::sin(x * y);
         const FieldSample found = field(q);
         CHECK(std::abs(found.value - left * b) < 1e-14);

@@ -12,14 +12,14 @@ using namespace haptel::test;
 
 namespace {
 
-double expected(size_t which, double i, double j = 0, double k = 0, double l = 0)
+double expected_number(size_t which, double i, double j = 0, double k = 0, double l = 0)
 {
     const auto whole = [](double x) { return static_cast<int32_t>(x); };
     return unit_of(pcg4d(whole(i), whole(j), whole(k), whole(l))[which]);
 }
 
 // Of the cells 0 .. side - 1 along both axes, row after row.
-std::vector<double> numbers(const std::string& expression, int side)
+std::vector<double> hashed(const std::string& expression, int side)
 {
     const Field field(expression);
     std::vector<double> all;
@@ -52,10 +52,10 @@ TEST_CASE("hash, hash2 and hash3 of whole numbers are pcg4d, over all of their r
                          k = count > 2 ? std::trunc(q[2]) : 0,
                          l = count > 3 ? static_cast<int32_t>(i) ^ static_cast<int32_t>(j) : 0;
             const FieldSample found = one(q);
-            CHECK(found.value == expected(0, i, j, k, l));
+            CHECK(found.value == expected_number(0, i, j, k, l));
             CHECK(found.gradient == Vec3{});
-            CHECK(two(q).value == expected(1, i, j, k, l));
-            CHECK(three(q).value == expected(2, i, j, k, l));
+            CHECK(two(q).value == expected_number(1, i, j, k, l));
+            CHECK(three(q).value == expected_number(2, i, j, k, l));
         }
     }
 }
@@ -66,10 +66,10 @@ TEST_CASE("hash of a place is that of its cell and of the seed behind it")
     for (const double size : {3.0, 1e5, 2e9})
         for (const Vec3& q : points_within(size, 100)) {
             const double i = std::floor(q[0]), j = std::floor(q[1]), k = std::floor(q[2]);
-            CHECK(plane(q).value == expected(0, i, j));
-            CHECK(plane_seed(q).value == expected(1, i, j, -5));
-            CHECK(space(q).value == expected(2, i, j, k));
-            CHECK(space_seed(q).value == expected(0, i, j, k, 7));
+            CHECK(plane(q).value == expected_number(0, i, j));
+            CHECK(plane_seed(q).value == expected_number(1, i, j, -5));
+            CHECK(space(q).value == expected_number(2, i, j, k));
+            CHECK(space_seed(q).value == expected_number(0, i, j, k, 7));
         }
 }
 
@@ -81,12 +81,12 @@ TEST_CASE("hash of a cell by its whole numbers is that of the numbers, over all 
         of_two("hash2(" + cell + ", 1).x");
     for (const Vec3& q : points_within(2147483647, 200)) {
         const double i = std::trunc(q[0]), j = std::trunc(q[1]), k = std::trunc(q[2]);
-        CHECK(plane(q).value == expected(0, i, j));
-        CHECK(plane_seed(q).value == expected(1, i, j, -5));
-        CHECK(of_three(q).value == expected(2, i, j, 2));
-        CHECK(space(q).value == expected(2, i, j, k));
-        CHECK(space_seed(q).value == expected(0, i, j, k, 7));
-        CHECK(of_two(q).value == expected(0, i, j, k, 1));
+        CHECK(plane(q).value == expected_number(0, i, j));
+        CHECK(plane_seed(q).value == expected_number(1, i, j, -5));
+        CHECK(of_three(q).value == expected_number(2, i, j, 2));
+        CHECK(space(q).value == expected_number(2, i, j, k));
+        CHECK(space_seed(q).value == expected_number(0, i, j, k, 7));
+        CHECK(of_two(q).value == expected_number(0, i, j, k, 1));
     }
 }
 
@@ -113,7 +113,7 @@ TEST_CASE("hash has the same bits in f32, in mixed precision and in the interpre
                 return static_cast<double>(
                     static_cast<int32_t>(static_cast<uint32_t>(static_cast<int32_t>(x)) * factor));
             };
-            const double truth = expected(0, times(point.p[0], 104729), times(point.p[1], 7919), point.p[2]);
+            const double truth = expected_number(0, times(point.p[0], 104729), times(point.p[1], 7919), point.p[2]);
             CHECK(sample.height_m == truth);
             CHECK(machine.run(compiled.program->source_of(texture).body, {}, &inputs)[0].real == truth);
         }
@@ -125,7 +125,7 @@ TEST_CASE("hash: all of 256 bins equally often, by chi-square")
     for (const std::string expression : {"hash(q.xy)", "hash2(q.xy).y", "hash3(q.xy).z", "hash(q.xy, 1)", "hash(q)",
                                          "hash(q + vec3(0.0, 0.0, -9.0), 3)", "hash(int(q.x) + 256 * int(q.y))",
                                          "fract(256.0 * hash(q.xy))", "hash(q.xy - 128.0)"}) {
-        const std::vector<double> all = numbers(expression, 256);
+        const std::vector<double> all = hashed(expression, 256);
         std::vector<int> bins(256);
         for (const double number : all) ++bins[static_cast<size_t>(256 * number)];
         double square = 0;
@@ -138,24 +138,24 @@ TEST_CASE("hash: all of 256 bins equally often, by chi-square")
 TEST_CASE("hash: neighbours, seeds, components and what is 256 away are unrelated")
 {
     const int side = 200;
-    const std::vector<double> here = numbers("hash(q.xy)", side);
+    const std::vector<double> here = hashed("hash(q.xy)", side);
     for (const std::string other :
          {"hash(q.xy + vec2(1.0, 0.0))", "hash(q.xy + vec2(0.0, 1.0))", "hash(q.xy + vec2(1.0, 1.0))", "hash(q.yx)",
           "hash(q.xy + vec2(256.0, 0.0))", "hash(q.xy + vec2(0.0, 65536.0))", "hash(q.xy, 1)", "hash(q.xy, 2)",
           "hash(q.xy, -1)", "hash(q.xy, 65536)", "hash2(q.xy).y", "hash3(q.xy).z"}) {
         CAPTURE(other);
-        CHECK(std::fabs(correlation(here, numbers(other, side))) < 5.0 / side);
+        CHECK(std::fabs(correlation(here, hashed(other, side))) < 5.0 / side);
     }
-    CHECK(std::fabs(correlation(numbers("hash3(q.xy).y", side), numbers("hash3(q.xy).z", side))) < 5.0 / side);
-    CHECK(correlation(here, numbers("hash3(q.xy, 0).x", side)) > 0.9); // the measure does tell
+    CHECK(std::fabs(correlation(hashed("hash3(q.xy).y", side), hashed("hash3(q.xy).z", side))) < 5.0 / side);
+    CHECK(correlation(here, hashed("hash3(q.xy, 0).x", side)) > 0.9); // the measure does tell
 }
 
 TEST_CASE("hash: each of the bits flips for half of all neighbours")
 {
     const int side = 128;
-    const std::vector<double> here = numbers("hash(q.xy)", side);
+    const std::vector<double> here = hashed("hash(q.xy)", side);
     for (const std::string other : {"hash(q.xy + vec2(1.0, 0.0))", "hash(q.xy + vec2(0.0, 1.0))", "hash(q.xy, 1)"}) {
-        const std::vector<double> there = numbers(other, side);
+        const std::vector<double> there = hashed(other, side);
         for (int bit = 0; bit < 24; ++bit) {
             int flipped = 0;
             for (size_t i = 0; i < here.size(); ++i) {

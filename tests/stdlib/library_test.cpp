@@ -7,6 +7,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/haptel_files.h"
 #include "tests/support/ir_print.h"
+#include "tests/support/project_path.h"
 
 #include <filesystem>
 #include <fstream>
@@ -53,7 +54,7 @@ TEST_CASE("the embedded text is the text of the files")
     CHECK(stdlib::library().size() == test::haptel_files({"stdlib"}).size());
     for (const stdlib::LibraryFile& file : stdlib::library()) {
         CAPTURE(file.name);
-        CHECK(file.text == read(std::string(HAPTEL_SOURCE_DIR) + "/stdlib/" + std::string(file.name)));
+        CHECK(file.text == read(test::project_path("stdlib/" + std::string(file.name))));
     }
 }
 

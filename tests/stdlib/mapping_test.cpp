@@ -3,12 +3,12 @@
 #include "tests/support/catch.h"
 
 #include <cmath>
+#include <numbers>
 
 using namespace haptel::test;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 const std::string box = "vec3(0.1, -0.2, 0.3), vec3(2.0, 3.0, 4.0))"; // centre and extent
 const Vec3 center{0.1, -0.2, 0.3};
 
@@ -22,7 +22,7 @@ void check_near(const FieldSample& found, double value, const Vec3& gradient)
 // Longitude in turns, 0 .. 1, and its gradient (-y, x, 0) / (2 pi rho^2).
 double turns(double x, double y)
 {
-    const double angle = std::atan2(y, x) / (2 * pi);
+    const double angle = std::atan2(y, x) / (2 * std::numbers::pi);
     return angle < 0 ? angle + 1 : angle;
 }
 
@@ -37,7 +37,8 @@ TEST_CASE("plane_map and cylinder_map: places between the sides of the box, and 
         check_near(u(q), x / 2 + 0.5, {0.5, 0, 0});
         check_near(v(q), y / 3 + 0.5, {0, 1.0 / 3, 0});
         check_near(up(q), z / 4 + 0.5, {0, 0, 0.25});
-        check_near(around(q), turns(x, y), {-y / (2 * pi * rho * rho), x / (2 * pi * rho * rho), 0});
+        check_near(around(q), turns(x, y),
+                   {-y / (2 * std::numbers::pi * rho * rho), x / (2 * std::numbers::pi * rho * rho), 0});
     }
     CHECK(Field("plane_map(q, vec3(0.0), vec3(0.0)).x")({1, 2, 3}).value == 0.5);
 }
@@ -48,9 +49,10 @@ TEST_CASE("sphere_map: longitude and polar angle; both gradients at right angles
     for (const Vec3& q : points_within(2, 300)) {
         const double x = q[0] - center[0], y = q[1] - center[1], z = q[2] - center[2];
         const double rho = std::hypot(x, y), r = std::hypot(rho, z);
-        check_near(u(q), turns(x, y), {-y / (2 * pi * rho * rho), x / (2 * pi * rho * rho), 0});
-        const double scale = 1 / (pi * r * r * rho);
-        check_near(v(q), std::acos(z / r) / pi, {x * z * scale, y * z * scale, -rho * rho * scale});
+        check_near(u(q), turns(x, y),
+                   {-y / (2 * std::numbers::pi * rho * rho), x / (2 * std::numbers::pi * rho * rho), 0});
+        const double scale = 1 / (std::numbers::pi * r * r * rho);
+        check_near(v(q), std::acos(z / r) / std::numbers::pi, {x * z * scale, y * z * scale, -rho * rho * scale});
     }
     // poles and centre: nothing turns infinitely fast
     for (const Vec3& q : {center, Vec3{0.1, -0.2, 2}, Vec3{0.1, -0.2, -2}}) {
@@ -76,7 +78,9 @@ TEST_CASE("cube_map: the point seen from the centre on the face in its way, roun
     const Field closed("sinturn(cube_map(q, " + box + ".x)");
     for (const double turn : {0.125, 0.375, 0.625, 0.875}) {
         for (const double e : {1e-7}) {
-            const auto on = [&](double t) { return closed(at(std::cos(2 * pi * t), std::sin(2 * pi * t), 0.3)); };
+            const auto on = [&](double t) {
+                return closed(at(std::cos(2 * std::numbers::pi * t), std::sin(2 * std::numbers::pi * t), 0.3));
+            };
             const FieldSample before = on(turn - e), after = on(turn + e);
             CHECK(std::fabs(before.value - after.value) < 1e-5);
             for (size_t a = 0; a < 3; ++a) CHECK(std::fabs(before.gradient[a] - after.gradient[a]) < 1e-4);
@@ -90,7 +94,7 @@ TEST_CASE("pole_fade tames the turns at the poles")
     const Field alone(fade), mapped(fade + " * sinturn(sphere_map(q, vec3(0.0), vec3(2.0)).x)");
     double steepest = 0;
     for (int i = 1; i < 2000; ++i) {
-        const double angle = i / 2000.0 * pi, sine = std::sin(angle);
+        const double angle = i / 2000.0 * std::numbers::pi, sine = std::sin(angle);
         const Vec3 q{sine * std::cos(1.0), sine * std::sin(1.0), std::cos(angle)};
         const double t = std::clamp(2 * sine / 0.25 - 1, 0.0, 1.0);
         CHECK(std::fabs(alone(q).value - t * t * (3 - 2 * t)) < 1e-13);
@@ -121,7 +125,7 @@ TEST_CASE("center_fade ends flat towards the centre")
 TEST_CASE("triplanar: each axis by the fourth power of the normal")
 {
     const std::string basis = "float basis(vec2 q) { return sinturn(q.x) + q.y * q.y; }\n";
-    const auto b = [](double x, double y) { return std::sin(2 * pi * x) + y * y; };
+    const auto b = [](double x, double y) { return std::sin(2 * std::numbers::pi * x) + y * y; };
     const Field field("triplanar(basis, q, normalize(vec3(1.0, 2.0, -2.0)))", basis);
     for (const Vec3& q : points_within(2, 100)) {
         const double expected = (b(q[1], q[2]) + 16 * b(q[2], q[0]) + 16 * b(q[0], q[1])) / 33;

@@ -7,13 +7,14 @@
 
 #include <cmath>
 #include <complex>
+#include <numbers>
 
 using namespace haptel;
 using namespace haptel::test;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846, windows = 3.1875, half_rms = 1 / 1.4927;
+constexpr double windows = 3.1875, half_rms = 1 / 1.4927;
 
 struct Noise {
     double frequency, angle, spread;
@@ -30,7 +31,7 @@ std::complex<double> waves(const Vec3& q, const Noise& noise)
             const Four bits = pcg4d(i, j, noise.seed, 0);
             const double angle = noise.angle + noise.spread * (2 * unit_of(bits[1]) - 1);
             const double turns = noise.frequency * (x * std::cos(angle) + y * std::sin(angle)) + unit_of(bits[0]);
-            sum += std::polar(window, 2 * pi * turns);
+            sum += std::polar(window, 2 * std::numbers::pi * turns);
         }
     return sum;
 }
@@ -108,8 +109,9 @@ TEST_CASE("the facts of gabor and phasor are made of suprema over all phases, ro
                       phasor = "phasor_pair(q, vec2(1.0, 2.0), 4, 5, 6).y";
     const ir::Facts gabor_facts = facts_of("gabor_sum(vec4,float,float,float,int,int,int)", gabor),
                     phasor_facts = facts_of("phasor_pair(vec3,vec2,int,int,int)", phasor);
-    CHECK(just_above(gabor_facts.slope.value(), std::hypot(w1, 2 * pi)));
-    CHECK(just_above(gabor_facts.curvature.value(), eigenvalue(w2, 2 * pi * w1, 4 * pi * pi)));
+    CHECK(just_above(gabor_facts.slope.value(), std::hypot(w1, 2 * std::numbers::pi)));
+    CHECK(just_above(gabor_facts.curvature.value(),
+                     eigenvalue(w2, 2 * std::numbers::pi * w1, 4 * std::numbers::pi * std::numbers::pi)));
 
     // F(x + i y) by its imaginary part, whose slope and bend are those of the whole turned.
     const auto height = [](double x, double y) {
@@ -118,7 +120,7 @@ TEST_CASE("the facts of gabor and phasor are made of suprema over all phases, ro
     };
     double bend = 0, steep = 0, most = 0;
     for (double r = 0; r < 2; r += 0.002)
-        for (double angle = 0; angle < pi; angle += 0.02) {
+        for (double angle = 0; angle < std::numbers::pi; angle += 0.02) {
             const double x = r * std::cos(angle), y = r * std::sin(angle), h = 1e-4;
             const double xx = height(x + h, y) + height(x - h, y) - 2 * height(x, y),
                          yy = height(x, y + h) + height(x, y - h) - 2 * height(x, y),
@@ -134,9 +136,10 @@ TEST_CASE("the facts of gabor and phasor are made of suprema over all phases, ro
     CHECK(std::fabs(steep - 1.875) < 1e-6);
     CHECK(most <= 1);
     const double c1 = w1 * w0 / half_rms, c2 = w2 * w0 / half_rms;
-    CHECK(just_above(phasor_facts.slope.value(), std::hypot(1.875 * c1, 2 * pi)));
+    CHECK(just_above(phasor_facts.slope.value(), std::hypot(1.875 * c1, 2 * std::numbers::pi)));
     CHECK(just_above(phasor_facts.curvature.value(),
-                     eigenvalue(2.8868 * c1 * c1 + 1.875 * c2, 2 * pi * 1.875 * c1, 4 * pi * pi)));
+                     eigenvalue(2.8868 * c1 * c1 + 1.875 * c2, 2 * std::numbers::pi * 1.875 * c1,
+                                4 * std::numbers::pi * std::numbers::pi)));
     check_never_exceeded(gabor, gabor_facts, 1);
     check_never_exceeded(phasor, phasor_facts, 1);
 
@@ -174,7 +177,7 @@ TEST_CASE(
     double square = 0;
     CHECK(share("gabor(q.xy, 2.0, 0.6, 0.0)", across, square) < -0.9);
     CHECK(share("gabor(q.xy, 2.0, 0.6, 0.0)", along, square) > 0.9);
-    CHECK(std::fabs(std::sqrt(square) - std::sqrt(4 * pi / 7 / 2) / windows) <
+    CHECK(std::fabs(std::sqrt(square) - std::sqrt(4 * std::numbers::pi / 7 / 2) / windows) <
           0.02); // the mean square of one window: 4 pi / 7
     CHECK(share("phasor(q.xy, 2.0, 0.6)", across, square) < -0.8);
     CHECK(share("phasor(q.xy, 2.0, 0.6)", along, square) > 0.8);

@@ -17,7 +17,7 @@ long double unskew(size_t dimensions)
     return (1 - 1 / std::sqrt(static_cast<long double>(dimensions + 1))) / static_cast<long double>(dimensions);
 }
 
-double expected(const Vec3& q, size_t dimensions, int seed)
+double expected_simplex(const Vec3& q, size_t dimensions, int seed)
 {
     static const std::vector<double> directions[] = {library_table("perlin_gx"), library_table("perlin_gy"),
                                                      library_table("perlin_gz"), library_table("perlin_plane_gx"),
@@ -99,10 +99,10 @@ TEST_CASE("simplex is the sum over the corners of its lattice, near and far")
         // of the twin, which takes a place of so many digits apart: long double has 11 bits more than double
         const double rounding = 1e-13 + size * 1e-17;
         for (const Vec3& q : points_within(size, 400)) {
-            CHECK(std::fabs(solid(q).value - expected(q, 3, 0)) < rounding);
-            CHECK(std::fabs(solid_seed(q).value - expected(q, 3, 7)) < rounding);
-            CHECK(std::fabs(plane(q).value - expected(q, 2, 0)) < rounding);
-            CHECK(std::fabs(plane_seed(q).value - expected(q, 2, -7)) < rounding);
+            CHECK(std::fabs(solid(q).value - expected_simplex(q, 3, 0)) < rounding);
+            CHECK(std::fabs(solid_seed(q).value - expected_simplex(q, 3, 7)) < rounding);
+            CHECK(std::fabs(plane(q).value - expected_simplex(q, 2, 0)) < rounding);
+            CHECK(std::fabs(plane_seed(q).value - expected_simplex(q, 2, -7)) < rounding);
         }
     }
 }
@@ -113,8 +113,8 @@ TEST_CASE("simplex where coordinates are equal, along the edges of simplices")
     for (const Vec3& q : points_within(5, 300)) {
         for (const Vec3& equal : {Vec3{q[0], q[0], q[0]}, Vec3{q[0], q[0], q[2]}, Vec3{q[0], q[2], q[2]},
                                   Vec3{q[0], q[2], q[0]}, Vec3{std::round(q[0]), std::round(q[1]), std::round(q[2])}}) {
-            CHECK(std::fabs(solid(equal).value - expected(equal, 3, 0)) < 1e-13);
-            CHECK(std::fabs(plane(equal).value - expected(equal, 2, 0)) < 1e-13);
+            CHECK(std::fabs(solid(equal).value - expected_simplex(equal, 3, 0)) < 1e-13);
+            CHECK(std::fabs(plane(equal).value - expected_simplex(equal, 2, 0)) < 1e-13);
         }
     }
 }

@@ -14,12 +14,6 @@ using namespace haptel::test;
 
 namespace {
 
-int shuffled(int i)
-{
-    static const std::vector<double> table = library_table("perlin_m");
-    return static_cast<int>(table[static_cast<size_t>(i & 255)]);
-}
-
 // What is random about a cell, 0 .. 255/256.
 struct Cell {
     double x, y; // of the mark's middle

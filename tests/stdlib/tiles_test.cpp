@@ -76,12 +76,6 @@ Tiles rows(const Vec2& q, double size, double inset, const std::function<double(
     return tiles;
 }
 
-int shuffled(int i)
-{
-    static const std::vector<double> table = library_table("perlin_m");
-    return static_cast<int>(table[static_cast<size_t>(i & 255)]);
-}
-
 } // namespace
 
 TEST_CASE("square tiles, rows of bricks, rows of boards")

@@ -12,16 +12,16 @@ using namespace haptel::test;
 namespace {
 
 // 6 t^5 - 15 t^4 + 10 t^3 and its first two derivatives; of the corner at 1, and with 1 - t of that at 0.
-struct Weight {
+struct CornerWeight {
     double value, first, second;
 };
-Weight weight(double t)
+CornerWeight weight(double t)
 {
     return {t * t * t * (10 + t * (6 * t - 15)), 30 * t * t * (t - 1) * (t - 1), 60 * t * (1 + t * (2 * t - 3))};
 }
 
 // The sum of the corners' heights times the products of their weights.
-double expected(const Vec3& q, bool in_space, int seed)
+double expected_height(const Vec3& q, bool in_space, int seed)
 {
     double sum = 0;
     for (int corner = 0; corner < (in_space ? 8 : 4); ++corner) {
@@ -47,10 +47,10 @@ TEST_CASE("value_noise is the weighted sum of its corners' heights")
         plane_seed("value_noise(q.xy, -7)");
     for (const double size : {5.0, 5000.0})
         for (const Vec3& q : points_within(size, 500)) {
-            CHECK(std::fabs(solid(q).value - expected(q, true, 0)) < 1e-11);
-            CHECK(std::fabs(solid_seed(q).value - expected(q, true, 7)) < 1e-11);
-            CHECK(std::fabs(plane(q).value - expected(q, false, 0)) < 1e-11);
-            CHECK(std::fabs(plane_seed(q).value - expected(q, false, -7)) < 1e-11);
+            CHECK(std::fabs(solid(q).value - expected_height(q, true, 0)) < 1e-11);
+            CHECK(std::fabs(solid_seed(q).value - expected_height(q, true, 7)) < 1e-11);
+            CHECK(std::fabs(plane(q).value - expected_height(q, false, 0)) < 1e-11);
+            CHECK(std::fabs(plane_seed(q).value - expected_height(q, false, -7)) < 1e-11);
         }
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("the facts of value_noise are the supremum over all corner heights, ro
                     double value = 1, first = 0, second = 0;
                     for (size_t a = 0; a < dimensions; ++a) {
                         const bool far = corner >> a & 1;
-                        const Weight w = weight(far ? x[a] : 1 - x[a]);
+                        const CornerWeight w = weight(far ? x[a] : 1 - x[a]);
                         const double along = far ? e[a] : -e[a];
                         second = second * w.value + 2 * first * w.first * along + value * w.second * along * along;
                         first = first * w.value + value * w.first * along;

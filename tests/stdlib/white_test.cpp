@@ -4,12 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 using namespace haptel::test;
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 double sample(int i, int j, int k)
 {
@@ -25,7 +24,7 @@ double spline(double t)
     return plus(t + 1.5) - 3 * plus(t + 0.5) + 3 * plus(t - 0.5) - plus(t - 1.5);
 }
 
-double expected(const Vec3& q, bool in_space)
+double expected_white(const Vec3& q, bool in_space)
 {
     double sum = 0;
     const int i0 = static_cast<int>(std::floor(q[0])), j0 = static_cast<int>(std::floor(q[1])),
@@ -43,8 +42,8 @@ TEST_CASE("white_spline is white samples convolved with a spline")
 {
     const Field solid("white_spline(q, 0)"), flat("white_spline(q.xy, 0)");
     for (const Vec3& q : points_within(40, 1000)) {
-        CHECK(std::fabs(solid(q).value - expected(q, true)) < 1e-13);
-        CHECK(std::fabs(flat(q).value - expected(q, false)) < 1e-13);
+        CHECK(std::fabs(solid(q).value - expected_white(q, true)) < 1e-13);
+        CHECK(std::fabs(flat(q).value - expected_white(q, false)) < 1e-13);
     }
 }
 
@@ -68,16 +67,18 @@ TEST_CASE("white: flat below the bandwidth but for the spline's own fall, little
             double c = 0, s = 0;
             for (int i = 0; i < 512; ++i) {
                 const double x = i / 16.0, value = field({x, 3.7 * line, 0}).value;
-                const double window = 1 - std::cos(2 * pi * (i + 0.5) / 512);
-                c += window * value * std::cos(2 * pi * frequency * x);
-                s += window * value * std::sin(2 * pi * frequency * x);
+                const double window = 1 - std::cos(2 * std::numbers::pi * (i + 0.5) / 512);
+                c += window * value * std::cos(2 * std::numbers::pi * frequency * x);
+                s += window * value * std::sin(2 * std::numbers::pi * frequency * x);
             }
             sum += c * c + s * s;
         }
         return sum;
     };
     // |sinc(f / 2)|^6: the spline at two samples per unit
-    const auto fall = [](double f) { return std::pow(std::sin(pi * f / 2) / (pi * f / 2), 6); };
+    const auto fall = [](double f) {
+        return std::pow(std::sin(std::numbers::pi * f / 2) / (std::numbers::pi * f / 2), 6);
+    };
     const double reference = power(0.2) / fall(0.2);
     for (const double f : {0.1, 0.4, 0.6, 0.8, 1.0}) {
         CAPTURE(f);

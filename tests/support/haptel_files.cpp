@@ -1,5 +1,6 @@
 #include "tests/support/haptel_files.h"
 
+#include "tests/support/project_path.h"
 #include "tests/support/tries.h"
 
 #include <algorithm>
@@ -11,7 +12,7 @@ std::vector<std::filesystem::path> haptel_files(const std::vector<std::string>& 
 {
     std::vector<std::filesystem::path> files;
     for (const std::string& folder : folders)
-        for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(HAPTEL_SOURCE_DIR) / folder))
+        for (const auto& entry : std::filesystem::directory_iterator(project_path(folder)))
             if (entry.path().extension() == ".haptel") files.push_back(entry.path());
     std::sort(files.begin(), files.end());
     return files;

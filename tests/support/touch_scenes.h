@@ -12,6 +12,8 @@
 
 namespace haptel::tests {
 
+inline constexpr double spring_n_per_m = 1000; // the stiffness of bare_scene
+
 // One object, no friction, no damping, no rise at the start: what is left is the static force.
 inline runtime::Scene bare_scene(const runtime::Mesh& mesh, TextureBinding texture = {})
 {
@@ -19,7 +21,7 @@ inline runtime::Scene bare_scene(const runtime::Mesh& mesh, TextureBinding textu
     runtime::SceneObject object;
     object.name = "test object";
     object.surface = runtime::build_surface(mesh).surface;
-    object.material.stiffness_n_per_m = 1000;
+    object.material.stiffness_n_per_m = spring_n_per_m;
     object.material.damping_n_s_per_m = 0;
     object.material.static_friction = object.material.dynamic_friction = 0;
     object.texture = std::make_shared<runtime::TextureSlot>(std::move(texture));

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 using namespace haptel;
@@ -18,9 +19,7 @@ using tests::at;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
-const char* const source = R"(
+const char* const mapped_source = R"(
 texture printed() { return 40um * sinturn(uv.x) * costurn(uv.y) + 20um * sinturn(2.0 * uv.x + uv.y); }
 float ripples(vec2 q) { return sinturn(4.0 * q.x) * sinturn(3.0 * q.y); }
 texture plane_mapped() { return 50um * ripples(plane_map(p, center, extent)); }
@@ -32,12 +31,13 @@ texture in_three_planes() { return 50um * triplanar(perlin, p / 6mm, n); }
 
 double printed_m(const dvec2& uv)
 {
-    return 40e-6 * std::sin(2 * pi * uv.x) * std::cos(2 * pi * uv.y) + 20e-6 * std::sin(2 * pi * (2 * uv.x + uv.y));
+    return 40e-6 * std::sin(2 * std::numbers::pi * uv.x) * std::cos(2 * std::numbers::pi * uv.y) +
+           20e-6 * std::sin(2 * std::numbers::pi * (2 * uv.x + uv.y));
 }
 
 dvec2 printed_slope_m(const dvec2& uv) // by u and v
 {
-    const double w = 2 * pi, shared_part = 20e-6 * w * std::cos(w * (2 * uv.x + uv.y));
+    const double w = 2 * std::numbers::pi, shared_part = 20e-6 * w * std::cos(w * (2 * uv.x + uv.y));
     return {40e-6 * w * std::cos(w * uv.x) * std::cos(w * uv.y) + 2 * shared_part,
             -40e-6 * w * std::sin(w * uv.x) * std::sin(w * uv.y) + shared_part};
 }
@@ -74,7 +74,7 @@ double slope_of(const TextureBinding& binding, const SurfacePoint& point)
 
 TEST_CASE("anchors row 3: a flat map of 0 to 4 tiles has its exact slope, turned, mirrored, sheared or not")
 {
-    const auto program = compiled(source);
+    const auto program = compiled(mapped_source);
     const double side_m = 0.04, c = std::cos(0.7), s = std::sin(0.7);
     const std::pair<glm::dmat2, dvec2> maps[] = {
         {glm::dmat2(4), dvec2(2)},                       // 0 .. 4
@@ -113,7 +113,7 @@ TEST_CASE("mesh coordinates may part along an edge: each side has its own pictur
                         {0, 0, 0},     {0.02, 0, 0}, {0.02, 0.02, 0}, {0, 0.02, 0}};
     mesh.uv = {{0, 0}, {1, 0}, {1, 1}, {0, 1}, {1, 5}, {0, 5}, {0, 6}, {1, 6}};
     mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {4, 5, 6}, {4, 6, 7}};
-    Renderer renderer(textured_scene(mesh, compiled(source), "printed"));
+    Renderer renderer(textured_scene(mesh, compiled(mapped_source), "printed"));
     renderer.tick(at(-0.01, 0.01, 1e-3));
     for (double x = -0.0195; x < 0.0195; x += 0.37e-3)
         for (double y = 1e-3; y < 0.019; y += 1.1e-3) {
@@ -128,7 +128,7 @@ TEST_CASE("mesh coordinates may part along an edge: each side has its own pictur
 
 TEST_CASE("on every shape each map's gradient is that of its height along the surface")
 {
-    const auto program = compiled(source);
+    const auto program = compiled(mapped_source);
     std::mt19937_64 random(12);
     int number = 0;
     for (const std::string_view shape : shape_names) {
@@ -188,7 +188,7 @@ TEST_CASE("on every shape each map's gradient is that of its height along the su
 
 TEST_CASE("bounds of a texture that reads the normal hold on the mesh that it is bound for")
 {
-    const auto program = compiled(source);
+    const auto program = compiled(mapped_source);
     for (const std::string_view shape : {"icosphere", "torus", "sphere"}) {
         Mesh mesh = *make_shape(shape);
         scale_to_size(mesh, 0.1);
@@ -219,7 +219,7 @@ TEST_CASE("bounds of a texture that reads the normal hold on the mesh that it is
 
 TEST_CASE("bounds of a texture that reads mesh coordinates hold on the mesh that it is bound for, and are near")
 {
-    const auto program = compiled(source);
+    const auto program = compiled(mapped_source);
     for (const std::string_view shape : {"plane", "box", "sphere", "torus", "drawn"}) {
         Mesh mesh = shape == "drawn" ? drawn_plane(0.1, 5, glm::dmat2(4, 1, -3, 2), dvec2(7, 0)) : *make_shape(shape);
         scale_to_size(mesh, 0.1);

@@ -31,7 +31,7 @@ namespace {
 #endif
 static_assert(FLT_EVAL_METHOD == 0);
 
-const char* const source = R"(
+const char* const played_source = R"(
 texture rock() { return 60um * fbm(p / 4mm, 4); }
 texture printed() { return 40um * sinturn(20.0 * uv.x) * costurn(20.0 * uv.y); }
 texture by_normal() { return 50um * triplanar(perlin, p / 6mm, n); }
@@ -60,7 +60,7 @@ SceneObject object_of(const std::shared_ptr<const jit::CompiledProgram>& program
 // objects and regions, rise and wait.
 Scene scene_of_everything()
 {
-    const auto program = compiled(source);
+    const auto program = compiled(played_source);
     Scene scene;
     scene.objects.push_back(object_of(program, make_plane(16), 0.12, "sticky", {0, 0, 0}));
     scene.objects.push_back(object_of(program, make_torus(), 0.04, "printed", {0.03, 0, 0.004}));
@@ -240,7 +240,7 @@ private:
 
 std::string hash_of_forces(const ProbeSettings& probe, double damping_n_s_per_m)
 {
-    const auto program = compiled(source);
+    const auto program = compiled(played_source);
     Scene scene;
     scene.probe = probe;
     scene.objects.push_back(object_of(program, make_plane(16), 0.12, "sticky", {0, 0, 0}));

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int ticks = 12'000;
 
-const char* const source = R"(
+const char* const skipping_source = R"(
 texture solid() { return 60um * fbm(p / 4mm, 4); }
 texture printed() { return 40um * sinturn(20.0 * uv.x) * costurn(20.0 * uv.y); }
 texture by_normal() { return 50um * triplanar(perlin, p / 6mm, n); }
@@ -64,7 +64,7 @@ const Case cases[] = {{"sphere", "solid"},
 // Two rows of the shape, 5 cm each.
 Scene scene_of(const Case& c)
 {
-    static const auto program = compiled(source);
+    static const auto program = compiled(skipping_source);
     Mesh mesh = *make_shape(c.shape);
     scale_to_size(mesh, 0.05);
     Scene scene = tests::bare_scene(mesh);

@@ -3,6 +3,7 @@
 #include "tests/surface/textured.h"
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 using namespace haptel;
@@ -13,9 +14,7 @@ using tests::plane_mesh;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
-const char* const source = R"(
+const char* const strength_source = R"(
 texture ripples() { return 50um * sinturn(p.x / 3mm) * costurn(p.y / 4mm); }
 texture rock() { return 100um * fbm(p / 5mm, 4); }
 texture printed(float tiles = 1 in 0.1 .. 100) { return 50um * sinturn(tiles * uv.x) * costurn(tiles * uv.y); }
@@ -59,7 +58,7 @@ double furthest(const Felt& a, const Felt& b)
 
 TEST_CASE("anchors row 2: texture strength is the same from 2 to 131072 triangles and at every size")
 {
-    const auto program = compiled(source);
+    const auto program = compiled(strength_source);
     for (const char* texture : {"ripples", "rock", "printed"}) {
         CAPTURE(texture);
         // `printed` is drawn on the mesh, 2.5 mm a tile whatever the mesh's size.
@@ -85,7 +84,7 @@ TEST_CASE("the lateral force over the normal one is the slope of the texture")
 {
     const auto program = compiled("texture ripples() { return 50um * sinturn(p.x / 3mm); }");
     const Felt felt = felt_on(textured_scene(plane_mesh(0.1, 64), program, "ripples"));
-    const double wave_per_m = 2 * pi / 3e-3;
+    const double wave_per_m = 2 * std::numbers::pi / 3e-3;
     std::mt19937 random(4);
     std::uniform_real_distribution<double> depth_m(0.3e-3, 0.6e-3);
     for (std::size_t i = 0; i < felt.forces_n.size(); ++i) {

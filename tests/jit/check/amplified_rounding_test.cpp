@@ -17,7 +17,7 @@ struct Checked {
 };
 
 // `spoil` may be null.
-Checked check(const std::string& text, haptel_entry* spoil = nullptr)
+Checked checked_gradient(const std::string& text, haptel_entry* spoil = nullptr)
 {
     const auto program = compiled(text);
     auto bound = jit::make_binding(program, "", test::request_over(0.05), jit::For::figures);
@@ -45,7 +45,7 @@ TEST_CASE("a hash of a sine passes, and is told with its place and size")
     for (const char* hash : {"fract(sin(n) * 43758.5453)", "fract(cos(n) * 43758.5453)", "fract(43758.5453 * sin(n))",
                              "fract(0.5 + sin(n) * 437.585 * 100.0)"}) {
         INFO(hash);
-        const Checked found = check(cells(hash));
+        const Checked found = checked_gradient(cells(hash));
         REQUIRE(found.check.amplified);
         CHECK(found.check.passed());
         CHECK(found.check.amplified->is_hash_of_sine);
@@ -62,16 +62,16 @@ TEST_CASE("a hash of a sine passes, and is told with its place and size")
 
 TEST_CASE("other numbers that lose their digits are told as well, and hash() is none of them")
 {
-    const Checked folded = check(cells("fract(n * 1234567.891)"));
+    const Checked folded = checked_gradient(cells("fract(n * 1234567.891)"));
     REQUIRE(folded.check.amplified);
     CHECK(folded.check.passed());
     CHECK_FALSE(folded.check.amplified->is_hash_of_sine);
     CHECK(folded.place == "fract(n * 1234567.891)");
 
-    const Checked exact = check(cells("hash(int(n))"));
+    const Checked exact = checked_gradient(cells("hash(int(n))"));
     CHECK(exact.check.passed());
     CHECK_FALSE(exact.check.amplified);
-    const Checked smooth = check("texture t() { return 1mm * sinturn(p.x / 1mm); }");
+    const Checked smooth = checked_gradient("texture t() { return 1mm * sinturn(p.x / 1mm); }");
     CHECK(smooth.check.passed());
     CHECK_FALSE(smooth.check.amplified);
 }
@@ -79,7 +79,8 @@ TEST_CASE("other numbers that lose their digits are told as well, and hash() is 
 TEST_CASE("digits that are lost otherwise are a fault as before")
 {
     // 1e6 + x keeps ten digits of x behind the point; nothing is folded.
-    const Checked cancelled = check("texture t() { float x = p.x / 1mm; return 1mm * ((x + 1000000.0) - 1000000.0); }");
+    const Checked cancelled =
+        checked_gradient("texture t() { float x = p.x / 1mm; return 1mm * ((x + 1000000.0) - 1000000.0); }");
     CHECK_FALSE(cancelled.check.amplified);
     CHECK_FALSE(cancelled.check.passed());
 }
@@ -91,19 +92,21 @@ TEST_CASE("a wrong height or gradient fails, however much the texture amplifies"
                              "texture t() { return 1mm * of_cell(floor(p.x / 1mm)) * sinturn(p.y / 5mm); }";
     const auto program = compiled(text);
     original = program->find("")->height_gradient;
-    const Checked right = check(text, original);
+    const Checked right = checked_gradient(text, original);
     CHECK(right.check.passed());
     CHECK(right.check.amplified);
-    const Checked gradient = check(text, [](const haptel_point* point, const void* block, haptel_sample* sample) {
-        original(point, block, sample);
-        sample->gradient[1] *= 1 + 1e-9;
-    });
+    const Checked gradient =
+        checked_gradient(text, [](const haptel_point* point, const void* block, haptel_sample* sample) {
+            original(point, block, sample);
+            sample->gradient[1] *= 1 + 1e-9;
+        });
     CHECK_FALSE(gradient.check.amplified);
     REQUIRE_FALSE(gradient.check.passed());
     CHECK(contains(gradient.check.failures.back(), "worst at --at "));
-    const Checked height = check(text, [](const haptel_point* point, const void* block, haptel_sample* sample) {
-        original(point, block, sample);
-        sample->height_m *= 1 + 1e-9;
-    });
+    const Checked height =
+        checked_gradient(text, [](const haptel_point* point, const void* block, haptel_sample* sample) {
+            original(point, block, sample);
+            sample->height_m *= 1 + 1e-9;
+        });
     CHECK_FALSE(height.check.passed());
 }

@@ -1,9 +1,8 @@
 // Code gives the interpreter's bits: every operation over special values, and whole random programs.
 #include "lang/ir/op_info.h"
-#include "lang/ir/verify.h"
 #include "tests/jit/codegen/engines.h"
+#include "tests/jit/codegen/parsed.h"
 #include "tests/jit/codegen/random_program.h"
-#include "tests/support/ir_parse.h"
 #include "tests/support/ir_print.h"
 
 #include <limits>
@@ -11,6 +10,7 @@
 
 using namespace haptel;
 using test::Engines;
+using test::parsed;
 
 namespace {
 
@@ -42,16 +42,6 @@ std::string operation_text(const ir::OpInfo& op, char any)
 std::string texture_text(const std::string& name)
 {
     return "texture \"" + name + "\" { block 56 reads 1 writes 0 height \"" + name + "\" }\n";
-}
-
-ir::Module parsed(const std::string& text)
-{
-    ir::ParsedModule result = ir::parse(text);
-    INFO(text);
-    INFO(result.error);
-    REQUIRE(result.module);
-    REQUIRE(ir::verify(*result.module).empty());
-    return std::move(*result.module);
 }
 
 const std::vector<double>& special_values()

@@ -3,6 +3,7 @@
 #include "jit/codegen/iteration_lanes.h"
 #include "tests/jit/codegen/samples.h"
 #include "tests/support/haptel_files.h"
+#include "tests/support/project_path.h"
 #include "tests/support/tries.h"
 
 #include <cstring>
@@ -243,7 +244,7 @@ TEST_CASE("iterations in lanes: every texture's height is the same with and with
     std::uniform_real_distribution<double> place(-0.02, 0.02);
     std::vector<std::filesystem::path> files = test::texture_files();
     // Sums octaves, whichever part of the files is tried.
-    files.push_back(HAPTEL_SOURCE_DIR "/examples/textures/rock.haptel");
+    files.push_back(test::project_path("examples/textures/rock.haptel"));
     size_t in_another_order = 0;
     for (const std::filesystem::path& file : files) {
         jit::TextureOptions options;

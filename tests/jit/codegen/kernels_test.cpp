@@ -1,9 +1,9 @@
 // Library functions compiled apart change no bit, and are told apart by all that decides their code.
 #include "jit/codegen/content_hash.h"
+#include "tests/jit/codegen/parsed.h"
 #include "tests/jit/codegen/samples.h"
 #include "tests/support/catch.h"
 #include "tests/support/haptel_files.h"
-#include "tests/support/ir_parse.h"
 #include "tests/support/tries.h"
 
 #include <cstring>
@@ -68,14 +68,6 @@ void check_equal(const haptel_texture& a, const haptel_texture& b, const void* b
         b.height(&point, block, &other);
         REQUIRE(std::memcmp(&one.height_m, &other.height_m, sizeof(double)) == 0);
     }
-}
-
-ir::Module parsed(const std::string& text)
-{
-    ir::ParsedModule result = ir::parse(text);
-    INFO(result.error);
-    REQUIRE(result.module);
-    return std::move(*result.module);
 }
 
 // Of the last function, which calls the others.

@@ -40,6 +40,11 @@ inline haptel_sample sample_at(const TextureBinding& binding, const std::array<d
     return sample;
 }
 
+inline double height_at(const TextureBinding& binding, double u, double v)
+{
+    return sample_at(binding, {u, v, 0}).height_m;
+}
+
 // With patience: what compiles in the background keeps the program at which it is until it is done with it.
 inline bool programs_fall_to(size_t most)
 {

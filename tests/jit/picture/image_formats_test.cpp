@@ -27,7 +27,7 @@ using namespace haptel::test;
 
 namespace {
 
-constexpr int width = 37, height = 21;
+constexpr int columns = 37, rows = 21;
 
 double smooth(int column, int row)
 {
@@ -44,13 +44,13 @@ double furthest_from(const jit::Picture& picture, const Texels& value)
 {
     INFO(picture.error);
     REQUIRE(picture.error.empty());
-    REQUIRE((picture.width == width && picture.height == height));
-    REQUIRE(picture.gray.size() == size_t{width} * height);
+    REQUIRE((picture.width == columns && picture.height == rows));
+    REQUIRE(picture.gray.size() == size_t{columns} * rows);
     double furthest = 0;
-    for (int row = 0; row < height; ++row)
-        for (int column = 0; column < width; ++column)
+    for (int row = 0; row < rows; ++row)
+        for (int column = 0; column < columns; ++column)
             furthest = std::max(
-                furthest, std::fabs(picture.gray[static_cast<size_t>(row * width + column)] - value(column, row)));
+                furthest, std::fabs(picture.gray[static_cast<size_t>(row * columns + column)] - value(column, row)));
     return furthest;
 }
 
@@ -69,11 +69,11 @@ void append(void* to, void* data, int size)
 std::string jpeg(int quality)
 {
     std::vector<uint8_t> texels;
-    for (int row = height - 1; row >= 0; --row)
-        for (int column = 0; column < width; ++column)
+    for (int row = rows - 1; row >= 0; --row)
+        for (int column = 0; column < columns; ++column)
             texels.push_back(static_cast<uint8_t>(std::lround(255 * smooth(column, row))));
     std::string bytes;
-    stbi_write_jpg_to_func(append, &bytes, width, height, 1, texels.data(), quality);
+    stbi_write_jpg_to_func(append, &bytes, columns, rows, 1, texels.data(), quality);
     return bytes;
 }
 
@@ -88,14 +88,14 @@ std::vector<Sample> samples()
     TiffKind tiled{32, Numbers::real}, colour{8, Numbers::unsigned_whole};
     tiled.tile = 16;
     colour.colour = true;
-    return {{"png of 8 bits", png(width, height, 8, smooth)},
-            {"png of 16 bits", png(width, height, 16, smooth)},
+    return {{"png of 8 bits", png(columns, rows, 8, smooth)},
+            {"png of 16 bits", png(columns, rows, 16, smooth)},
             {"jpeg", jpeg(90)},
-            {"tiff of 16 bits", tiff(width, height, {16, Numbers::unsigned_whole}, smooth)},
-            {"tiff, tiled, real", tiff(width, height, tiled, smooth)},
-            {"tiff of colours", tiff(width, height, colour, smooth)},
-            {"exr", exr(width, height, false, {{"Y"}}, smooth)},
-            {"exr of halves", exr(width, height, true, {{"B", 0.25}, {"G", 0.5}, {"R", 1}}, smooth)}};
+            {"tiff of 16 bits", tiff(columns, rows, {16, Numbers::unsigned_whole}, smooth)},
+            {"tiff, tiled, real", tiff(columns, rows, tiled, smooth)},
+            {"tiff of colours", tiff(columns, rows, colour, smooth)},
+            {"exr", exr(columns, rows, false, {{"Y"}}, smooth)},
+            {"exr of halves", exr(columns, rows, true, {{"B", 0.25}, {"G", 0.5}, {"R", 1}}, smooth)}};
 }
 
 } // namespace
@@ -103,7 +103,7 @@ std::vector<Sample> samples()
 TEST_CASE("picture: PNG of 8 and 16 bits and JPEG")
 {
     for (const int bits : {8, 16})
-        CHECK(furthest_from(decoded(png(width, height, bits, smooth)), rounded(bits, smooth)) < 1e-15);
+        CHECK(furthest_from(decoded(png(columns, rows, bits, smooth)), rounded(bits, smooth)) < 1e-15);
     CHECK(furthest_from(decoded(jpeg(100)), smooth) < 0.02);
 }
 
@@ -133,7 +133,7 @@ TEST_CASE("picture: TIFF of 8, 16 and 32 bits, whole and real, in strips and til
                                   : [=](int column,
                                         int row) { return static_cast<double>(static_cast<float>(value(column, row))); }
                             : rounded(bits - is_signed, value);
-                    CHECK(furthest_from(decoded(tiff(width, height, kind, value)), expected) < 1e-15);
+                    CHECK(furthest_from(decoded(tiff(columns, rows, kind, value)), expected) < 1e-15);
                 }
 }
 
@@ -147,30 +147,30 @@ TEST_CASE("picture: colours count by their brightness, white may be zero, planes
             kind.colour = true;
             kind.planes_apart = apart;
             kind.tile = tile;
-            CHECK(furthest_from(decoded(tiff(width, height, kind, smooth)), colour) < 2.0 / 65535);
+            CHECK(furthest_from(decoded(tiff(columns, rows, kind, smooth)), colour) < 2.0 / 65535);
         }
     TiffKind negative{8, Numbers::unsigned_whole};
     negative.white_is_zero = true;
-    CHECK(furthest_from(decoded(tiff(width, height, negative, smooth)), rounded(8, smooth)) < 1e-15);
-    CHECK(furthest_from(decoded(exr(width, height, false, {{"B", 0.25}, {"G", 0.5}, {"R", 1}}, smooth)), colour) <
+    CHECK(furthest_from(decoded(tiff(columns, rows, negative, smooth)), rounded(8, smooth)) < 1e-15);
+    CHECK(furthest_from(decoded(exr(columns, rows, false, {{"B", 0.25}, {"G", 0.5}, {"R", 1}}, smooth)), colour) <
           1e-6);
 }
 
 TEST_CASE("picture: levels are those of the file's numbers, real ones have none, and a JPEG has blocks")
 {
     const auto levels = [](const std::string& bytes) { return decoded(bytes).levels; };
-    CHECK(levels(png(width, height, 8, smooth)) == 255);
-    CHECK(levels(png(width, height, 16, smooth)) == 65535);
+    CHECK(levels(png(columns, rows, 8, smooth)) == 255);
+    CHECK(levels(png(columns, rows, 16, smooth)) == 65535);
     CHECK(levels(jpeg(90)) == 255);
     CHECK(levels("P5\n1 1\n63\n" + std::string(1, '\x07')) == 63);
-    CHECK(levels(tiff(width, height, {8, Numbers::unsigned_whole}, smooth)) == 255);
-    CHECK(levels(tiff(width, height, {8, Numbers::signed_whole}, smooth)) == 127);
-    CHECK(levels(tiff(width, height, {16, Numbers::unsigned_whole}, smooth)) == 65535);
-    CHECK(levels(tiff(width, height, {32, Numbers::real}, smooth)) == 0);
-    CHECK(levels(exr(width, height, true, {{"Y"}}, smooth)) == 0);
+    CHECK(levels(tiff(columns, rows, {8, Numbers::unsigned_whole}, smooth)) == 255);
+    CHECK(levels(tiff(columns, rows, {8, Numbers::signed_whole}, smooth)) == 127);
+    CHECK(levels(tiff(columns, rows, {16, Numbers::unsigned_whole}, smooth)) == 65535);
+    CHECK(levels(tiff(columns, rows, {32, Numbers::real}, smooth)) == 0);
+    CHECK(levels(exr(columns, rows, true, {{"Y"}}, smooth)) == 0);
     CHECK(decoded(jpeg(90)).has_blocks);
-    CHECK(!decoded(png(width, height, 8, smooth)).has_blocks);
-    CHECK(!decoded(tiff(width, height, {8, Numbers::unsigned_whole}, smooth)).has_blocks);
+    CHECK(!decoded(png(columns, rows, 8, smooth)).has_blocks);
+    CHECK(!decoded(tiff(columns, rows, {8, Numbers::unsigned_whole}, smooth)).has_blocks);
     const std::vector<jit::GrainNote> notes = jit::grain_notes(jit::grain_of(decoded(jpeg(90))), "a.jpg", 0);
     REQUIRE(notes.size() == 1); // too shallow for its levels, not for its blocks
     CHECK(notes[0].message.find("'a.jpg' is coded in blocks of 8 x 8 texels") == 0);
@@ -182,10 +182,10 @@ TEST_CASE("picture: EXR of 16 and 32 bits, values as they are")
     const Texels as_float = [&](int column, int row) {
         return static_cast<double>(static_cast<float>(value(column, row)));
     };
-    CHECK(furthest_from(decoded(exr(width, height, false, {{"Y"}}, value)), as_float) == 0);
-    CHECK(furthest_from(decoded(exr(width, height, false, {{"height"}}, value)), as_float) == 0);
-    CHECK(furthest_from(decoded(exr(width, height, true, {{"A"}, {"Y"}}, value)), value) < 20 * 0x1p-10);
-    CHECK(decoded(exr(width, height, false, {{"U"}, {"V"}}, value)).error.find("no channel") != std::string::npos);
+    CHECK(furthest_from(decoded(exr(columns, rows, false, {{"Y"}}, value)), as_float) == 0);
+    CHECK(furthest_from(decoded(exr(columns, rows, false, {{"height"}}, value)), as_float) == 0);
+    CHECK(furthest_from(decoded(exr(columns, rows, true, {{"A"}, {"Y"}}, value)), value) < 20 * 0x1p-10);
+    CHECK(decoded(exr(columns, rows, false, {{"U"}, {"V"}}, value)).error.find("no channel") != std::string::npos);
 }
 
 TEST_CASE("picture: numbers that are none are told, with their place")
@@ -218,7 +218,7 @@ TEST_CASE("picture: a file that is cut off anywhere is an error in words, or wha
 
 TEST_CASE("picture: a PNG that ends in its texels is told in words for people")
 {
-    const std::string whole = png(width, height, 16, smooth);
+    const std::string whole = png(columns, rows, 16, smooth);
     CHECK(decoded(whole.substr(0, whole.size() / 2)).error == "is damaged: Corrupt PNG");
 }
 
@@ -254,16 +254,16 @@ TEST_CASE("picture: a PNM or TGA that ends before its last texel is refused, a w
 TEST_CASE("picture: a BMP that ends before its last texel is refused, a whole one is read")
 {
     for (const int head : {12, 40})
-        for (const int32_t height : {3, -3}) {
-            if (head == 12 && height < 0) continue;
-            CAPTURE(head, height);
+        for (const int32_t rows : {3, -3}) {
+            if (head == 12 && rows < 0) continue;
+            CAPTURE(head, rows);
             FileBytes file;
             for (const char mark : {'B', 'M'}) file.put(static_cast<uint8_t>(mark));
             for (const int number : {0, 0, 14 + head, head}) file.put(static_cast<uint32_t>(number));
             if (head == 12)
                 for (const int number : {5, 3, 1, 24}) file.put(static_cast<uint16_t>(number));
             else {
-                for (const int number : {5, height}) file.put(static_cast<uint32_t>(number));
+                for (const int number : {5, rows}) file.put(static_cast<uint32_t>(number));
                 for (const int number : {1, 24}) file.put(static_cast<uint16_t>(number));
                 for (int i = 0; i < 6; ++i) file.put(uint32_t{0});
             }
@@ -382,13 +382,13 @@ TEST_CASE("picture: red, green, blue and alpha, where the file has them and they
     };
     for (const int channels : {1, 2, 3, 4}) {
         std::vector<uint8_t> texels;
-        for (int row = height - 1; row >= 0; --row)
-            for (int column = 0; column < width; ++column)
+        for (int row = rows - 1; row >= 0; --row)
+            for (int column = 0; column < columns; ++column)
                 for (int i = 0; i < channels; ++i)
                     texels.push_back(static_cast<uint8_t>(std::lround(255 * value(column, row, i))));
         std::string png, tga;
-        stbi_write_png_to_func(append, &png, width, height, channels, texels.data(), width * channels);
-        stbi_write_tga_to_func(append, &tga, width, height, channels, texels.data());
+        stbi_write_png_to_func(append, &png, columns, rows, channels, texels.data(), columns * channels);
+        stbi_write_tga_to_func(append, &tga, columns, rows, channels, texels.data());
         for (const std::string& bytes : {png, tga}) {
             CAPTURE(channels, bytes == png);
             const jit::Picture picture = decoded(bytes, Colours::kept);
@@ -396,9 +396,9 @@ TEST_CASE("picture: red, green, blue and alpha, where the file has them and they
                 const bool is_there = i < 3 ? channels >= 3 : channels % 2 == 0;
                 REQUIRE(picture.colours[i].size() == (is_there ? picture.gray.size() : 0));
                 const int channel = i < 3 ? static_cast<int>(i) : channels - 1;
-                for (int row = 0; is_there && row < height; ++row)
-                    for (int column = 0; column < width; ++column)
-                        REQUIRE(std::fabs(picture.colours[i][static_cast<size_t>(row * width + column)] -
+                for (int row = 0; is_there && row < rows; ++row)
+                    for (int column = 0; column < columns; ++column)
+                        REQUIRE(std::fabs(picture.colours[i][static_cast<size_t>(row * columns + column)] -
                                           value(column, row, channel)) < 1e-15);
             }
             const Texels brightness = [&](int column, int row) {
@@ -416,9 +416,9 @@ TEST_CASE("picture: red, green, blue and alpha, where the file has them and they
         REQUIRE(picture.error.empty());
         for (size_t i = 0; i < 4; ++i) {
             REQUIRE(picture.colours[i].size() == (tint[i] > 0 ? picture.gray.size() : 0));
-            for (int row = 0; tint[i] > 0 && row < height; ++row)
-                for (int column = 0; column < width; ++column)
-                    REQUIRE(std::fabs(picture.colours[i][static_cast<size_t>(row * width + column)] -
+            for (int row = 0; tint[i] > 0 && row < rows; ++row)
+                for (int column = 0; column < columns; ++column)
+                    REQUIRE(std::fabs(picture.colours[i][static_cast<size_t>(row * columns + column)] -
                                       tint[i] * smooth(column, row)) < 1e-4);
         }
     };
@@ -426,11 +426,11 @@ TEST_CASE("picture: red, green, blue and alpha, where the file has them and they
         TiffKind kind{16, Numbers::unsigned_whole};
         kind.colour = true;
         kind.planes_apart = apart;
-        is_tinted(tiff(width, height, kind, smooth), {tiff_tint[0], tiff_tint[1], tiff_tint[2], 0});
+        is_tinted(tiff(columns, rows, kind, smooth), {tiff_tint[0], tiff_tint[1], tiff_tint[2], 0});
     }
-    is_tinted(exr(width, height, false, {{"A", 0.125}, {"B", 0.25}, {"G", 0.5}, {"R", 1}}, smooth),
+    is_tinted(exr(columns, rows, false, {{"A", 0.125}, {"B", 0.25}, {"G", 0.5}, {"R", 1}}, smooth),
               {1, 0.5, 0.25, 0.125});
-    is_tinted(exr(width, height, false, {{"A", 0.125}, {"Y"}}, smooth), {0, 0, 0, 0.125});
+    is_tinted(exr(columns, rows, false, {{"A", 0.125}, {"Y"}}, smooth), {0, 0, 0, 0.125});
     const jit::Picture map = decoded("P6\n2 1\n255\n" + std::string("\x00\x33\xff\xff\x66\x00", 6), Colours::kept);
     CHECK(map.colours[0] == std::vector{0.0, 1.0});
     CHECK(map.colours[1] == std::vector{0.2, 0.4});

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-const char* const source = R"(
+const char* const gradient_source = R"(
 texture bicubic(image picture) { return 1m * sample_tiled(picture, p.xy / 1m); }
 texture pressed(image picture, float depth = 1mm in 0mm .. 10mm) { return depth * sample(picture, p.xy / 1m); }
 texture central(image picture, float epsilon = 0.03 in 0.001 .. 0.4) { return 1m * sample_central(picture, p.xy / 1m, epsilon); }
@@ -34,9 +34,9 @@ double field_by_v(double u, double v)
     return 2 * pi * (0.6 * std::cos(2 * pi * (u + 2 * v)) + 0.2 * std::sin(2 * pi * (3 * u - v)));
 }
 
-struct Pictures {
+struct FieldPictures {
     Folder folder;
-    std::shared_ptr<const jit::CompiledProgram> program = compiled(source);
+    std::shared_ptr<const jit::CompiledProgram> program = compiled(gradient_source);
 
     TextureBinding bound(const char* texture, std::vector<std::pair<std::string, std::string>> values) const
     {
@@ -80,7 +80,7 @@ Error largest_error(const TextureBinding& binding)
 TEST_CASE("image: halving the texels divides the error of the height by 16 and of the gradient by 8")
 {
     // Cubic splines: errors of the fourth and third order (de Boor, A Practical Guide to Splines, 1978).
-    const Pictures pictures;
+    const FieldPictures pictures;
     Error last = largest_error(pictures.bicubic(24));
     for (const int side : {48, 96, 192}) {
         const Error error = largest_error(pictures.bicubic(side));
@@ -94,7 +94,7 @@ TEST_CASE("image: halving the texels divides the error of the height by 16 and o
 
 TEST_CASE("image: the central difference weakens a wave as sin(w e) / (w e)")
 {
-    const Pictures pictures;
+    const FieldPictures pictures;
     constexpr int side = 256, waves = 4;
     pictures.folder.write("wave.tif", tiff(side, 8, {64, Numbers::real}, [](int column, int) {
                               return std::sin(2 * pi * waves * (column + 0.5) / side);
@@ -121,7 +121,7 @@ TEST_CASE("image: the central difference weakens a wave as sin(w e) / (w e)")
 
 TEST_CASE("image: the depth that a scene gives is in metres, whatever the bits of the picture")
 {
-    const Pictures pictures;
+    const FieldPictures pictures;
     const auto place = [](int i) { return (i + 0.5) / 32; };
     const Texels gray = [&](int column, int row) { return 0.5 + field(place(column), place(row)) / 1.2; };
     pictures.folder.write("a8.png", png(32, 32, 8, gray));

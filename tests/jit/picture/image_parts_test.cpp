@@ -11,12 +11,12 @@
 #include <random>
 
 using namespace haptel;
-using test::sample_at;
+using test::height_at;
 
 namespace {
 
 // Of 2^5 x 2^3 texels, so that each texel of a level is the mean of a square of the file's.
-constexpr int width = 32, height = 8, levels = 6;
+constexpr int file_width = 32, file_height = 8, levels = 6;
 
 uint8_t byte(int column, int row, int channel)
 {
@@ -25,7 +25,7 @@ uint8_t byte(int column, int row, int channel)
 
 double mean(int column, int row, int channel, int level)
 {
-    const int across = std::min(1 << level, width), down = std::min(1 << level, height);
+    const int across = std::min(1 << level, file_width), down = std::min(1 << level, file_height);
     double sum = 0;
     for (int y = row * down; y < (row + 1) * down; ++y)
         for (int x = column * across; x < (column + 1) * across; ++x) sum += byte(x, y, channel) / 255.0;
@@ -36,15 +36,15 @@ double mean(int column, int row, int channel, int level)
 std::string tga()
 {
     std::string bytes("\0\0\2\0\0\0\0\0\0\0\0\0", 12);
-    for (int number : {width, height}) bytes += {static_cast<char>(number), '\0'};
+    for (int number : {file_width, file_height}) bytes += {static_cast<char>(number), '\0'};
     bytes += {'\x20', '\x08'};
-    for (int row = 0; row < height; ++row)
-        for (int column = 0; column < width; ++column)
+    for (int row = 0; row < file_height; ++row)
+        for (int column = 0; column < file_width; ++column)
             for (int channel : {2, 1, 0, 3}) bytes += static_cast<char>(byte(column, row, channel));
     return bytes;
 }
 
-const char* const source = R"(
+const char* const parts_source = R"(
 texture part(image picture, int colour = 0 in -5 .. 9, int level = 0 in -5 .. 99)
 {
     return 1m * sample(coarser(channel(picture, colour), level), p.xy / 1m);
@@ -70,17 +70,17 @@ std::shared_ptr<const jit::CompiledProgram> with_batches()
     options.entries = jit::Entries::both_and_batches;
     options.precision = jit::Precision::f64;
     options.iterations_in_lanes = false; // which adds in another order
-    const jit::CompiledTextures result = jit::compile_texture(source, options);
+    const jit::CompiledTextures result = jit::compile_texture(parts_source, options);
     INFO(result.rendered());
     REQUIRE(result.program);
     return result.program;
 }
 
-struct Pictures {
+struct PartsOfPictures {
     test::Folder folder;
     std::shared_ptr<const jit::CompiledProgram> program = with_batches();
 
-    Pictures() { folder.write("a.tga", tga()); }
+    PartsOfPictures() { folder.write("a.tga", tga()); }
 
     TextureBinding bound(const char* texture, std::vector<std::pair<std::string, std::string>> values = {}) const
     {
@@ -95,11 +95,6 @@ struct Pictures {
     }
 };
 
-double at(const TextureBinding& binding, double u, double v)
-{
-    return sample_at(binding, {u, v, 0}).height_m;
-}
-
 std::shared_ptr<const ir::SplineImage> image_of(const std::vector<double>& texels, int64_t columns, int64_t rows)
 {
     std::string error;
@@ -110,20 +105,20 @@ std::shared_ptr<const ir::SplineImage> image_of(const std::vector<double>& texel
 
 TEST_CASE("image parts: each channel at each level is the mean of the file's texels under its own")
 {
-    const Pictures pictures;
+    const PartsOfPictures pictures;
     for (int colour = -1; colour < 6; ++colour)
         for (int level = -1; level < levels + 3; ++level) {
             CAPTURE(colour, level);
             const int channel = std::clamp(colour, 0, 3), coarse = std::clamp(level, 0, levels - 1);
-            const int columns = std::max(width >> coarse, 1), rows = std::max(height >> coarse, 1);
+            const int columns = std::max(file_width >> coarse, 1), rows = std::max(file_height >> coarse, 1);
             const std::vector<std::pair<std::string, std::string>> values = {{"colour", std::to_string(colour)},
                                                                              {"level", std::to_string(level)}};
             const TextureBinding part = pictures.bound("part", values), same = pictures.bound("turned_round", values);
             for (int row = 0; row < rows; ++row)
                 for (int column = 0; column < columns; ++column) {
                     const double u = (column + 0.5) / columns, v = (row + 0.5) / rows;
-                    REQUIRE(std::fabs(at(part, u, v) - mean(column, row, channel, coarse)) < 1e-13);
-                    REQUIRE(at(part, u, v) == at(same, u, v));
+                    REQUIRE(std::fabs(height_at(part, u, v) - mean(column, row, channel, coarse)) < 1e-13);
+                    REQUIRE(height_at(part, u, v) == height_at(same, u, v));
                 }
         }
 }
@@ -163,7 +158,7 @@ TEST_CASE("image parts: the mean stays where sides are odd, and a ramp stays one
 
 TEST_CASE("image parts: code, lanes, interpreter and oracle agree, and bounds hold what is found", "[code]")
 {
-    const Pictures pictures;
+    const PartsOfPictures pictures;
     for (const char* name : {"part", "by_place", "passed", "colours", "filtered"}) {
         CAPTURE(name);
         std::vector<std::pair<std::string, std::string>> values;
@@ -202,7 +197,7 @@ TEST_CASE("image parts: code, lanes, interpreter and oracle agree, and bounds ho
 
 TEST_CASE("image parts: bounds are as near as those of the part that is read")
 {
-    const Pictures pictures;
+    const PartsOfPictures pictures;
     const haptel_facts facts = pictures.bound("part", {{"colour", "1"}, {"level", "9"}}).facts;
     const double all = mean(0, 0, 1, levels - 1);
     CHECK(std::fabs(facts.height_min_m - all) < 1e-9);
@@ -211,19 +206,19 @@ TEST_CASE("image parts: bounds are as near as those of the part that is read")
 
 TEST_CASE("image parts: what is finer than the wavelength is averaged away, and no more than that")
 {
-    const Pictures pictures;
+    const PartsOfPictures pictures;
     const TextureBinding whole = pictures.bound("whole");
     double total = 0;
-    for (int row = 0; row < height; ++row)
-        for (int column = 0; column < width; ++column)
+    for (int row = 0; row < file_height; ++row)
+        for (int column = 0; column < file_width; ++column)
             total += 0.299 * byte(column, row, 0) + 0.587 * byte(column, row, 1) + 0.114 * byte(column, row, 2);
     for (const auto& [wavelength, is_mean] :
          {std::pair{"0", false}, {"-1", false}, {"0.0625", false}, {"1000", true}}) {
         CAPTURE(wavelength);
         const TextureBinding filtered = pictures.bound("filtered", {{"wavelength", wavelength}});
         for (const double u : {0.1, 0.33, 0.77}) {
-            const double expected = is_mean ? total / (255.0 * width * height) : at(whole, u, 0.4);
-            CHECK(std::fabs(at(filtered, u, 0.4) - expected) < 1e-13);
+            const double expected = is_mean ? total / (255.0 * file_width * file_height) : height_at(whole, u, 0.4);
+            CHECK(std::fabs(height_at(filtered, u, 0.4) - expected) < 1e-13);
         }
     }
     // waves of 4 texels are gone and waves of 64 nearly whole where 16 texels are the shortest
@@ -245,7 +240,7 @@ TEST_CASE("image parts: what is finer than the wavelength is averaged away, and 
         REQUIRE(bound.binding);
         double least = 1, most = 0;
         for (int i = 0; i < 1000; ++i) {
-            const double here = at(*bound.binding, 0.3 + 0.4 * i / 1000, 0.5);
+            const double here = height_at(*bound.binding, 0.3 + 0.4 * i / 1000, 0.5);
             least = std::min(least, here), most = std::max(most, here);
         }
         return (most - least) * 65535 / 60000;

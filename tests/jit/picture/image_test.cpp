@@ -11,6 +11,7 @@
 using namespace haptel;
 using test::compiled;
 using test::contains;
+using test::height_at;
 using test::request_over;
 using test::sample_at;
 
@@ -69,11 +70,6 @@ struct Pictures {
     }
 };
 
-double at(const TextureBinding& binding, double u, double v)
-{
-    return sample_at(binding, {u, v, 0}).height_m;
-}
-
 } // namespace
 
 TEST_CASE("image: heights are those of the file at its texels, v upwards, clamped outside or repeated")
@@ -84,15 +80,16 @@ TEST_CASE("image: heights are those of the file at its texels, v upwards, clampe
     for (int row = 0; row < height; ++row)
         for (int column = 0; column < width; ++column) {
             const double u = (column + 0.5) / width, v = (row + 0.5) / height;
-            CHECK(std::fabs(at(pressed, u, v) - 1e-3 * texel(column, row)) < 1e-16);
-            CHECK(std::fabs(at(tiled, u + 3, v - 2) - 1e-3 * texel(column, row)) < 1e-14);
+            CHECK(std::fabs(height_at(pressed, u, v) - 1e-3 * texel(column, row)) < 1e-16);
+            CHECK(std::fabs(height_at(tiled, u + 3, v - 2) - 1e-3 * texel(column, row)) < 1e-14);
         }
-    CHECK(at(pressed, 1e9, 0.5) == at(pressed, 2, 0.5));
-    CHECK(std::fabs(at(pressed, 100, -100) - 1e-3 * texel(width - 1, 0)) < 1e-17);
+    CHECK(height_at(pressed, 1e9, 0.5) == height_at(pressed, 2, 0.5));
+    CHECK(std::fabs(height_at(pressed, 100, -100) - 1e-3 * texel(width - 1, 0)) < 1e-17);
     for (int column : {-7, 0, 5, width + 20})
-        CHECK(std::fabs(at(pictures.bound("single", {{"picture", "a.pgm"}, {"column", std::to_string(column)}}), 0, 0) -
+        CHECK(std::fabs(height_at(pictures.bound("single", {{"picture", "a.pgm"}, {"column", std::to_string(column)}}),
+                                  0, 0) -
                         texel(std::clamp(column, 0, width - 1), 0)) < 1e-13);
-    CHECK(at(pictures.bound("wide", {{"picture", "a.pgm"}}), 0, 0) == 1e-3 * width + 1e-6 * height);
+    CHECK(height_at(pictures.bound("wide", {{"picture", "a.pgm"}}), 0, 0) == 1e-3 * width + 1e-6 * height);
 }
 
 TEST_CASE("image: code, interpreter and oracle agree, and the gradient is that of the height", "[code]")
@@ -150,8 +147,10 @@ TEST_CASE("image: sample_central has the spline's height and the gradient of equ
         const double u = std::fmod(0.618 * i, 1.2) - 0.1, v = std::fmod(0.755 * i, 1.2) - 0.1;
         const haptel_sample found = sample_at(central, {u, v, 0}), exact = sample_at(pressed, {u, v, 0});
         CHECK(std::fabs(found.height_m - 1e3 * exact.height_m) < 1e-13);
-        const double by_u = 1e3 * (at(pressed, u + epsilon, v) - at(pressed, u - epsilon, v)) / (2 * epsilon);
-        const double by_v = 1e3 * (at(pressed, u, v + epsilon) - at(pressed, u, v - epsilon)) / (2 * epsilon);
+        const double by_u =
+            1e3 * (height_at(pressed, u + epsilon, v) - height_at(pressed, u - epsilon, v)) / (2 * epsilon);
+        const double by_v =
+            1e3 * (height_at(pressed, u, v + epsilon) - height_at(pressed, u, v - epsilon)) / (2 * epsilon);
         CHECK(std::fabs(found.gradient[0] - by_u) < 1e-11);
         CHECK(std::fabs(found.gradient[1] - by_v) < 1e-11);
         differs = std::max(differs, std::fabs(found.gradient[0] - 1e3 * exact.gradient[0]));
@@ -178,7 +177,7 @@ TEST_CASE("image: mirrored copies go on where the last one ends, the other way r
         }
         // What is outside counts 2 - sqrt(3) times less with each texel from the edge.
         const double texels = std::min((0.5 - std::fabs(u - 0.5)) * width, (0.5 - std::fabs(v - 0.5)) * height);
-        CHECK(std::fabs(once.height_m - at(pressed, u, v)) < 1e-3 * std::pow(0.27, texels));
+        CHECK(std::fabs(once.height_m - height_at(pressed, u, v)) < 1e-3 * std::pow(0.27, texels));
         for (const double seam : {-1.0, 0.0, 1.0, 2.0})
             CHECK(std::fabs(sample_at(mirrored, {seam, v, 0}).gradient[0]) < 1e-14);
     }
@@ -191,7 +190,7 @@ TEST_CASE("image: without a picture a texture is flat, and that is said")
     const TextureResult result = pictures.bind("pressed", {});
     REQUIRE(result.binding);
     CHECK(contains(result.diagnostics, "warning: parameter 'picture' of texture 'pressed' has no picture and is flat"));
-    CHECK(at(*result.binding, 0.3, 0.4) == 0);
+    CHECK(height_at(*result.binding, 0.3, 0.4) == 0);
     CHECK((result.binding->facts.height_min_m == 0 && result.binding->facts.height_max_m == 0));
     CHECK(pictures.program->find("pressed")->parameters[0].type == HAPTEL_IMAGE);
 }
@@ -257,6 +256,7 @@ TEST_CASE("image: one file is read once, and again when it changes")
     CHECK(jit::read_image("a.pgm", pictures.folder.path.string(), {}).image ==
           jit::read_image(pictures.folder.file("a.pgm"), {}, {}).image);
     pictures.folder.replace("a.pgm", pgm(3, 2, [](int, int) { return 1.0; }));
-    CHECK(std::fabs(at(pictures.bound("pressed", {{"picture", "a.pgm"}}), 0.1, 0.7) - 1e-3) < 1e-15);
-    CHECK(std::fabs(at(first, 0.5 / width, 0.5 / height) - 1e-3 * texel(0, 0)) < 1e-15); // keeps what it was made of
+    CHECK(std::fabs(height_at(pictures.bound("pressed", {{"picture", "a.pgm"}}), 0.1, 0.7) - 1e-3) < 1e-15);
+    CHECK(std::fabs(height_at(first, 0.5 / width, 0.5 / height) - 1e-3 * texel(0, 0)) <
+          1e-15); // keeps what it was made of
 }

@@ -2,6 +2,7 @@
 #include "lang/compile.h"
 #include "tests/conformance/case.h"
 #include "tests/support/catch.h"
+#include "tests/support/project_path.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -14,7 +15,7 @@ using namespace haptel::lang::test;
 TEST_CASE("check: golden files")
 {
     size_t files = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(HAPTEL_SOURCE_DIR "/tests/lang/golden")) {
+    for (const auto& entry : std::filesystem::directory_iterator(haptel::test::project_path("tests/lang/golden"))) {
         std::ifstream file(entry.path(), std::ios::binary);
         std::stringstream text;
         text << file.rdbuf();

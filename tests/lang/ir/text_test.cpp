@@ -12,7 +12,7 @@ using namespace haptel::ir;
 namespace {
 
 // One of everything, as the printer writes it.
-const std::string everything = R"ir(table "G" real [0.5, -0, inf, nan, nan:fff8000000000001]
+const std::string one_of_everything = R"ir(table "G" real [0.5, -0, inf, nan, nan:fff8000000000001]
 table "M" u32 [7, 4294967295]
 table "I" i32 [-3, 2]
 function "noise(vec3)" (%0: real, %1: i32, %2: u32, %3: bool) first 1 library facts minimum -0.5 maximum 0.5 slope 2 curvature 3.25 class C1 proven next next slope 2 class jump {
@@ -58,16 +58,16 @@ texture "brushed \"fine\"" {
 
 TEST_CASE("IR text: printing what was read gives the same text")
 {
-    ParsedModule parsed = parse(everything);
+    ParsedModule parsed = parse(one_of_everything);
     REQUIRE(parsed.error == "");
-    CHECK(print(*parsed.module) == everything);
+    CHECK(print(*parsed.module) == one_of_everything);
     CHECK(verify(*parsed.module) == "");
     CHECK(print(*parsed.module, parsed.module->functions[1]).starts_with("function \"body\" () {"));
 }
 
 TEST_CASE("IR text: what is read is what is computed")
 {
-    ParsedModule parsed = parse(everything);
+    ParsedModule parsed = parse(one_of_everything);
     REQUIRE(parsed.module);
     const Scalar<double> arguments[] = {3.0, 5u, 0u, true};
     // 3 * 3 + (0 + 1 + 2 + 3) = 15; select takes 3 + -0; table cell 1 of I is 2

@@ -6,6 +6,7 @@
 #include "tests/lang/syntax/ebnf.h"
 #include "tests/support/catch.h"
 #include "tests/support/haptel_files.h"
+#include "tests/support/project_path.h"
 
 #include <filesystem>
 #include <fstream>
@@ -25,7 +26,7 @@ std::string read(const std::filesystem::path& path)
 
 Ebnf grammar_of_the_page()
 {
-    const std::string page = read(HAPTEL_SOURCE_DIR "/docs/language.md");
+    const std::string page = read(haptel::test::project_path("docs/language.md"));
     const size_t begin = page.find("```ebnf\n");
     REQUIRE(begin != std::string::npos);
     return Ebnf(page.substr(begin + 8, page.find("```", begin + 8) - begin - 8));

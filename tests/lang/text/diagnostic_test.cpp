@@ -1,17 +1,11 @@
 #include "lang/text/diagnostic.h"
 #include "lang/text/near_name.h"
+#include "tests/lang/text/one_source.h"
 #include "tests/support/catch.h"
 
 using namespace haptel::lang;
 
 namespace {
-
-SourceSet one(std::string text)
-{
-    SourceSet sources;
-    sources.add({"t.haptel", std::move(text)});
-    return sources;
-}
 
 std::string rendered(std::string text, uint32_t begin, uint32_t end)
 {
@@ -19,14 +13,14 @@ std::string rendered(std::string text, uint32_t begin, uint32_t end)
     diagnostic.code = "code";
     diagnostic.span = {0, begin, end};
     diagnostic.message = "message";
-    return render({diagnostic}, one(std::move(text)));
+    return render({diagnostic}, one_source(std::move(text)));
 }
 
 } // namespace
 
 TEST_CASE("a finding shows its line, the whole span underlined, further places and a hint")
 {
-    const SourceSet sources = one("texture t(\n    float a = 1,\n    return depth * sin(p.x);\n");
+    const SourceSet sources = one_source("texture t(\n    float a = 1,\n    return depth * sin(p.x);\n");
     Diagnostics diagnostics;
     Diagnostic& d = diagnostics.warning({0, 47, 55}, "dimension", "sin() expects a plain number, got a length");
     d.hint = "divide by a wavelength";
@@ -137,8 +131,8 @@ TEST_CASE("of a file without text only the place is shown")
     diagnostic.code = "unreadable-file";
     diagnostic.message = "cannot read this file";
     diagnostic.hint = "look";
-    CHECK(render({diagnostic}, one("")) == "t.haptel:1:1: error: cannot read this file [unreadable-file]\n"
-                                           "     = hint: look\n");
+    CHECK(render({diagnostic}, one_source("")) == "t.haptel:1:1: error: cannot read this file [unreadable-file]\n"
+                                                  "     = hint: look\n");
 }
 
 TEST_CASE("colour wraps label and underline and changes no text")
@@ -148,11 +142,11 @@ TEST_CASE("colour wraps label and underline and changes no text")
     diagnostic.code = "code";
     diagnostic.span = {0, 0, 1};
     diagnostic.message = "message";
-    std::string colored = render({diagnostic}, one("a"), true);
+    std::string colored = render({diagnostic}, one_source("a"), true);
     CHECK(colored.find("\033[1;35mwarning: \033[0m") != std::string::npos);
     for (size_t at; (at = colored.find('\033')) != std::string::npos;)
         colored.erase(at, colored.find('m', at) - at + 1);
-    CHECK(colored == render({diagnostic}, one("a"), false));
+    CHECK(colored == render({diagnostic}, one_source("a"), false));
 }
 
 TEST_CASE("a near name stands alone where no other may be meant")

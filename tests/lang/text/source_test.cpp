@@ -1,14 +1,8 @@
 #include "lang/text/source.h"
+#include "tests/lang/text/one_source.h"
 #include "tests/support/catch.h"
 
 using namespace haptel::lang;
-
-static SourceSet one(std::string text)
-{
-    SourceSet sources;
-    sources.add({"t.haptel", std::move(text)});
-    return sources;
-}
 
 static std::pair<uint32_t, uint32_t> place(const SourceSet& sources, uint32_t byte)
 {
@@ -20,7 +14,7 @@ using Place = std::pair<uint32_t, uint32_t>;
 
 TEST_CASE("lines end at LF, CR LF and a lone CR")
 {
-    const SourceSet sources = one("a\nbc\r\nd\re");
+    const SourceSet sources = one_source("a\nbc\r\nd\re");
     CHECK(sources.line(0, 1) == "a");
     CHECK(sources.line(0, 2) == "bc");
     CHECK(sources.line(0, 3) == "d");
@@ -38,7 +32,7 @@ TEST_CASE("lines end at LF, CR LF and a lone CR")
 TEST_CASE("columns count code points, an invalid byte is one")
 {
     const SourceSet sources =
-        one("\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80\xFF\xC3x"); // e-acute, euro, a face, two invalid bytes
+        one_source("\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80\xFF\xC3x"); // e-acute, euro, a face, two invalid bytes
     CHECK(place(sources, 2) == Place{1, 2});
     CHECK(place(sources, 5) == Place{1, 3});
     CHECK(place(sources, 9) == Place{1, 4});
@@ -48,8 +42,8 @@ TEST_CASE("columns count code points, an invalid byte is one")
 
 TEST_CASE("a byte order mark is no part of the first line")
 {
-    const SourceSet sources = one("\xEF\xBB\xBF"
-                                  "ab\n");
+    const SourceSet sources = one_source("\xEF\xBB\xBF"
+                                         "ab\n");
     CHECK(sources.line(0, 1) == "ab");
     CHECK(place(sources, 3) == Place{1, 1});
     CHECK(place(sources, 4) == Place{1, 2});
@@ -84,7 +78,7 @@ TEST_CASE("what is printed is valid UTF-8 and cannot steer the terminal")
 
 TEST_CASE("places outside of any file are harmless")
 {
-    const SourceSet sources = one("ab");
+    const SourceSet sources = one_source("ab");
     CHECK(sources.text({7, 0, 1}).empty());
     CHECK(sources.text({0, 1, 900}) == "b");
     CHECK(sources.text({0, 9, 10}).empty());

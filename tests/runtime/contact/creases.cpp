@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -19,15 +20,13 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 // A closed prism around the z axis of radius and height 1, with `sides` walls.
 Mesh make_prism(uint32_t sides)
 {
     Mesh mesh;
     for (double z : {-0.5, 0.5})
         for (uint32_t i = 0; i < sides; ++i) {
-            const double angle = 2 * pi * i / sides;
+            const double angle = 2 * std::numbers::pi * i / sides;
             mesh.positions_m.emplace_back(std::cos(angle), std::sin(angle), z);
         }
     mesh.positions_m.insert(mesh.positions_m.end(), {{0, 0, -0.5}, {0, 0, 0.5}});
@@ -176,7 +175,8 @@ TEST_CASE("through a valley that is a crease the force turns without a jump")
         return shared(std::move(scene));
     }());
     renderer.tick(at(-0.3, 0.1, 0.5));
-    const dvec3 right = glm::normalize(dvec3(-std::sin(pi / 6), 0, std::cos(pi / 6))), left(-right.x, 0, right.z);
+    const dvec3 right = glm::normalize(dvec3(-std::sin(std::numbers::pi / 6), 0, std::cos(std::numbers::pi / 6))),
+                left(-right.x, 0, right.z);
     constexpr double depth_m = 1e-3, step_m = 1e-6;
     dvec3 last(0);
     double largest_n = 0;
@@ -219,7 +219,7 @@ TEST_CASE("smoothing groups part what the crease angle would round, and never ro
                 // The two walls that meet in the corner's line: round if they are of one group and that is not none.
                 const dvec3 at = prism->vertex_m(face, corner);
                 const auto wall = uint32_t(face / 4),
-                           line = uint32_t(std::lround(std::atan2(at.y, at.x) / (2 * pi / 10) + 10)) % 10,
+                           line = uint32_t(std::lround(std::atan2(at.y, at.x) / (2 * std::numbers::pi / 10) + 10)) % 10,
                            other = line == wall ? (wall + 9) % 10 : (wall + 1) % 10;
                 const bool round = group_of_wall(wall) != 0 && group_of_wall(wall) == group_of_wall(other);
                 CAPTURE(wall, line);

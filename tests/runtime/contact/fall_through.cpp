@@ -18,18 +18,18 @@ using glm::dvec3;
 
 namespace {
 
-struct Verdict {
+struct Fallen {
     int through = 0, judged = 0, cut = 0;
 };
 
-Verdict abuse(const std::shared_ptr<const Surface>& surface, int ticks, uint64_t seed, const Friction& friction,
-              int judge_every)
+Fallen abuse(const std::shared_ptr<const Surface>& surface, int ticks, uint64_t seed, const Friction& friction,
+             int judge_every)
 {
     WildHand hand(*surface, seed);
     const auto point = make_point(surface);
     EndContact& contact = *point;
     contact.update(hand.outside(), friction);
-    Verdict verdict;
+    Fallen verdict;
     bool touched = false;
     for (int i = 0; i < ticks; ++i) {
         const Contact& touch = contact.update(hand.next(), friction);
@@ -93,12 +93,12 @@ std::vector<Mesh> make_self_piercing(uint32_t subdivisions)
 }
 
 // Of every tick the place of the proxy, whether it touches or not.
-Verdict abuse_pierced(const std::shared_ptr<const Surface>& surface, int ticks, uint64_t seed, const Friction& friction)
+Fallen abuse_pierced(const std::shared_ptr<const Surface>& surface, int ticks, uint64_t seed, const Friction& friction)
 {
     WildHand hand(*surface, seed);
     const auto contact = make_point(surface);
     contact->update(hand.outside(), friction);
-    Verdict verdict;
+    Fallen verdict;
     for (int i = 0; i < ticks; ++i) {
         contact->update(hand.next(), friction);
         const Winding around = winding(*surface, surface->lattice.metres(contact->proxy().at));
@@ -124,7 +124,7 @@ TEST_CASE("a wild hand never gets inside of a closed mesh that pierces itself")
         if (surface->is_clean()) continue; // not enough for that
         ++pierced;
         for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}}) {
-            const Verdict verdict = abuse_pierced(surface, tries(1500), 7, friction);
+            const Fallen verdict = abuse_pierced(surface, tries(1500), 7, friction);
             CAPTURE(mesh.triangles.size(), friction.static_coefficient, verdict.cut);
             CHECK(verdict.through == 0);
             CHECK(verdict.judged > tries(1400));
@@ -139,7 +139,7 @@ TEST_CASE("a wild hand never gets inside of a closed mesh that pierces itself: l
     uint64_t ticks = 0, through = 0, cut = 0, judged = 0;
     for (const Mesh& mesh : make_self_piercing(3))
         for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}}) {
-            const Verdict verdict = abuse_pierced(surface_of(mesh), 25000, 3, friction);
+            const Fallen verdict = abuse_pierced(surface_of(mesh), 25000, 3, friction);
             ticks += 25000, through += uint64_t(verdict.through), cut += uint64_t(verdict.cut);
             judged += uint64_t(verdict.judged);
         }
@@ -163,7 +163,7 @@ TEST_CASE("a wild hand never falls through a closed mesh")
                            make_touching_cubes(Touching::corners)};
     for (const Mesh& mesh : meshes)
         for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}}) {
-            const Verdict verdict = abuse(surface_of(mesh), 6000, 31, friction, 16);
+            const Fallen verdict = abuse(surface_of(mesh), 6000, 31, friction, 16);
             CAPTURE(mesh.triangles.size(), friction.static_coefficient);
             CHECK(verdict.through == 0);
             CHECK(verdict.cut == 0);
@@ -192,7 +192,7 @@ TEST_CASE("a wild hand never falls through a closed mesh: long run", "[.long]")
     int ticks = 0, through = 0;
     for (const auto& [name, mesh] : meshes) {
         for (uint64_t seed : {1u, 2u}) {
-            const Verdict verdict = abuse(surface_of(mesh), 500000, seed, {seed == 1 ? 0.0 : 0.3, 0.2}, 64);
+            const Fallen verdict = abuse(surface_of(mesh), 500000, seed, {seed == 1 ? 0.0 : 0.3, 0.2}, 64);
             WARN(name << ", seed " << seed << ": through " << verdict.through << " of 500000 ticks, judged "
                       << verdict.judged << ", cut " << verdict.cut);
             ticks += 500000, through += verdict.through;
@@ -205,7 +205,7 @@ TEST_CASE("a wild hand never falls through a closed mesh: long run", "[.long]")
 TEST_CASE("overlapping boxes without shared edges hold the probe outside")
 {
     const auto surface = surface_of(make_crossing_boxes());
-    const Verdict verdict = abuse(surface, 20000, 8, {}, 16);
+    const Fallen verdict = abuse(surface, 20000, 8, {}, 16);
     CHECK(verdict.through == 0);
 
     // In the crease between two of them the proxy may be on one only, but never inside the other.

@@ -1,6 +1,7 @@
 // Coulomb's law as the hand meets it: through an encoder, at any rate, along planes, balls and grooves, for any probe.
 #include "runtime/contact/probe_contact.h"
 #include "runtime/contact/sphere_contact.h"
+#include "tests/runtime/contact/each_probe.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
 
@@ -17,7 +18,7 @@ using glm::dvec3;
 namespace {
 
 constexpr Friction material{0.5, 0.2};
-constexpr double depth_m = 1e-3, ball_m = 2.5e-3;
+constexpr double depth_m = 1e-3;
 
 // How far the hand's spring is drawn along what it touches and into it.
 struct Held {
@@ -50,17 +51,7 @@ struct Encoder {
     dvec3 operator()(const dvec3& at) const { return count_m > 0 ? glm::round(at / count_m) * count_m : at; }
 };
 
-struct Probe {
-    ProbeSettings settings;
-    dvec3 tail_off_m{0}; // of its tail from its tip
-    double above_m = 0;  // of its tip, where it just touches
-};
-const std::vector<Probe> probes{{{ProbeKind::point}},
-                                {{ProbeKind::sphere, 0, ball_m}, {}, ball_m},
-                                {{ProbeKind::stylus, 0.06}, {0.02, 0.01, 0.0556}},
-                                {{ProbeKind::gripper, 0.03}, {0, 0.03, 0}}};
-
-ProbePose pose(const Probe& probe, const dvec3& tip)
+ProbePose pose(const EachProbe& probe, const dvec3& tip)
 {
     return {tip, tip + probe.tail_off_m};
 }
@@ -84,7 +75,7 @@ TEST_CASE("sliding is not forgotten between two counts of an encoder, at any rat
         scale_to_size(mesh, 0.4);
         return mesh;
     }());
-    for (const Probe& probe : probes)
+    for (const EachProbe& probe : every_probe)
         for (const double rate_hz : {500.0, 1000.0, 4000.0, 10'000.0})
             for (const double count_m : {0.0, 5e-6, 30e-6, 60e-6})
                 for (const double speed_m_per_s : {0.02, 0.1}) {
@@ -115,7 +106,7 @@ TEST_CASE("sliding is not forgotten between two counts of an encoder, at any rat
 TEST_CASE("what slid sticks again where the hand comes back, whether in one step or in many")
 {
     const auto surface = surface_of(make_plane());
-    for (const Probe& probe : probes)
+    for (const EachProbe& probe : every_probe)
         for (const double step_m : {1e-6, 20e-6, 150e-6, 280e-6}) {
             CAPTURE(static_cast<int>(probe.settings.kind), step_m);
             ProbeContact contact(probe.settings, surface);
@@ -143,7 +134,7 @@ TEST_CASE("what slid sticks again where the hand comes back, whether in one step
 TEST_CASE("a hand that is pressed and trembles by the counts of its encoder does not drift for a minute")
 {
     const auto surface = surface_of(make_plane());
-    for (const Probe& probe : probes)
+    for (const EachProbe& probe : every_probe)
         for (const double count_m : {5e-6, 60e-6})
             for (const double slid_m : {0.0, 2e-3}) { // before it rests
                 CAPTURE(static_cast<int>(probe.settings.kind), count_m, slid_m);
@@ -200,7 +191,7 @@ TEST_CASE("round a ball friction has its share of what presses in every tick, wh
 TEST_CASE("in a groove both walls have their friction")
 {
     const auto surface = surface_of(groove());
-    for (const Probe& probe : {probes[0], probes[1]})
+    for (const EachProbe& probe : {every_probe[0], every_probe[1]})
         for (const double rate_hz : {500.0, 10'000.0}) {
             CAPTURE(static_cast<int>(probe.settings.kind), rate_hz);
             ProbeContact contact(probe.settings, surface);

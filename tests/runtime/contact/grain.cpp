@@ -3,12 +3,14 @@
 #include "runtime/contact/probe_contact.h"
 #include "runtime/contact/sphere_contact.h"
 #include "runtime/contact/stylus_friction.h"
+#include "tests/runtime/contact/each_probe.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
 
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -18,8 +20,7 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-constexpr double mu_static = 0.5, mu_dynamic = 0.2, depth_m = 1e-3, ball_m = 2.5e-3;
+constexpr double mu_static = 0.5, mu_dynamic = 0.2, pressed_m = 1e-3;
 const dvec3 up(0, 0, 1);
 
 // Along a direction of the plane z = 0.
@@ -48,16 +49,6 @@ double holds(double grain_angle, double scale, const dvec3& direction)
     const dvec3 e = towards(grain_angle), c(-e.y, e.x, 0);
     return 1 / std::hypot(glm::dot(e, direction) / scale, glm::dot(c, direction));
 }
-
-struct Probe {
-    ProbeSettings settings;
-    dvec3 tail_off_m{0};
-    double above_m = 0; // of its tip, where it just touches
-};
-const std::vector<Probe> probes{{{ProbeKind::point}},
-                                {{ProbeKind::sphere, 0, ball_m}, {}, ball_m},
-                                {{ProbeKind::stylus, 0.06}, {0.02, 0.01, 0.0556}},
-                                {{ProbeKind::gripper, 0.03}, {0, 0.03, 0}}};
 
 std::shared_ptr<const Surface> plane_of(double side_m)
 {
@@ -88,7 +79,7 @@ std::shared_ptr<const Surface> grid_of(double side_m, uint32_t cells, double mov
 }
 
 struct Stroke {
-    Stroke(const Probe& of, std::shared_ptr<const Surface> surface, const Friction& with, double rate_hz = 1000)
+    Stroke(const EachProbe& of, std::shared_ptr<const Surface> surface, const Friction& with, double rate_hz = 1000)
         : probe(of), contact(of.settings, std::move(surface), true, rate_hz), friction(with)
     {
         go({0, 0, 5e-3});
@@ -106,7 +97,7 @@ struct Stroke {
         }
         return lag;
     }
-    const Probe& probe;
+    const EachProbe& probe;
     ProbeContact contact;
     Friction friction;
     bool slides = false;
@@ -139,8 +130,8 @@ TEST_CASE("what friction with a grain holds is the nearest of an ellipse, and no
         REQUIRE(std::abs(size(held) / most - 1) < 1e-9);
         double nearest = HUGE_VAL; // of points of its edge
         for (int i = 0; i < 720; ++i)
-            nearest = std::min(
-                nearest, glm::distance(v, most * (scale * std::cos(i * pi / 360) * e + std::sin(i * pi / 360) * c)));
+            nearest = std::min(nearest, glm::distance(v, most * (scale * std::cos(i * std::numbers::pi / 360) * e +
+                                                                 std::sin(i * std::numbers::pi / 360) * c)));
         REQUIRE(glm::distance(v, held) <= nearest * (1 + 1e-9));
     }
     // The other way round is the same; one means nothing, and crossed grains are none.
@@ -161,42 +152,42 @@ TEST_CASE("what friction with a grain holds is the nearest of an ellipse, and no
 TEST_CASE("a probe that slides over a grain is held by the force of the ellipse that its motion meets most of")
 {
     const std::shared_ptr<const Surface> surfaces[] = {plane_of(0.4), grid_of(0.4, 24, 0), grid_of(0.4, 24, 0.3)};
-    for (const Probe& probe : probes)
+    for (const EachProbe& probe : every_probe)
         for (const auto& surface : surfaces)
             for (const double scale : {0.25, 0.5, 3.0})
                 for (const double grain_angle : {0.0, 0.7})
-                    for (const double off : {0.0, pi / 4, pi / 2, -0.4, 2.5}) {
+                    for (const double off : {0.0, std::numbers::pi / 4, std::numbers::pi / 2, -0.4, 2.5}) {
                         const dvec3 along = towards(grain_angle + off);
                         Stroke stroke(probe, surface, grained(grain_angle, scale));
-                        dvec3 lag = stroke.go({0, 0, -depth_m});
+                        dvec3 lag = stroke.go({0, 0, -pressed_m});
                         // It comes to that force within some times the length by which friction holds.
-                        for (double way = 0; way < 16e-3; way += 20e-6) lag = stroke.go(way * along - depth_m * up);
-                        const dvec3 expected = -mu_dynamic * depth_m * greatest_against(grain_angle, scale, along);
+                        for (double way = 0; way < 16e-3; way += 20e-6) lag = stroke.go(way * along - pressed_m * up);
+                        const dvec3 expected = -mu_dynamic * pressed_m * greatest_against(grain_angle, scale, along);
                         CAPTURE(static_cast<int>(probe.settings.kind), scale, grain_angle, off, lag.x, lag.y, lag.z);
-                        CHECK(glm::distance(lag, expected) < 1e-5 * depth_m);
+                        CHECK(glm::distance(lag, expected) < 1e-5 * pressed_m);
                     }
 }
 
 TEST_CASE("a probe that sticks on a grain sticks up to the edge of the ellipse in the direction that it is pulled")
 {
     const auto surface = plane_of(0.4);
-    for (const Probe& probe : probes)
+    for (const EachProbe& probe : every_probe)
         for (const double scale : {0.25, 3.0})
-            for (const double off : {0.0, pi / 4, pi / 2, -0.4}) {
+            for (const double off : {0.0, std::numbers::pi / 4, std::numbers::pi / 2, -0.4}) {
                 const dvec3 along = towards(off);
                 Stroke stroke(probe, surface, grained(0, scale));
-                const dvec3 at(0.0113, 0.0071, -depth_m);
-                stroke.go(at + 2 * depth_m * up);
+                const dvec3 at(0.0113, 0.0071, -pressed_m);
+                stroke.go(at + 2 * pressed_m * up);
                 stroke.go(at);
                 constexpr double step_m = 1e-6;
                 double most_m = 0;
-                for (double way = 0; way < 4 * mu_static * depth_m && !stroke.slides; way += step_m) {
+                for (double way = 0; way < 4 * mu_static * pressed_m && !stroke.slides; way += step_m) {
                     const double drawn_m = glm::length(stroke.go(at + way * along));
                     if (!stroke.slides) most_m = drawn_m;
                 }
-                const double expected_m = mu_static * depth_m * holds(0, scale, along);
+                const double expected_m = mu_static * pressed_m * holds(0, scale, along);
                 CAPTURE(static_cast<int>(probe.settings.kind), scale, off, most_m, expected_m);
-                CHECK(most_m <= expected_m + 1e-6 * depth_m);
+                CHECK(most_m <= expected_m + 1e-6 * pressed_m);
                 CHECK(most_m > expected_m - 1.01 * step_m);
             }
 }
@@ -206,24 +197,24 @@ TEST_CASE("a probe that sticks on a grain sticks up to the edge of the ellipse i
 TEST_CASE("sliding over a grain is the same at any rate and through an encoder")
 {
     const auto surface = plane_of(0.4);
-    for (const Probe& probe : probes)
+    for (const EachProbe& probe : every_probe)
         for (const double scale : {0.25, 2.0})
-            for (const double off : {0.0, pi / 4, pi / 2})
+            for (const double off : {0.0, std::numbers::pi / 4, std::numbers::pi / 2})
                 for (const double rate_hz : {1000.0, 4000.0})
                     for (const double count_m : {0.0, 30e-6}) {
                         const dvec3 along = towards(off);
                         Stroke stroke(probe, surface, grained(0, scale), rate_hz);
-                        stroke.go({0, 0, -depth_m});
+                        stroke.go({0, 0, -pressed_m});
                         dvec3 drawn(0);
                         int count = 0;
                         for (double way = 0; way < 12e-3; way += 0.05 / rate_hz) {
-                            const dvec3 hand = way * along - depth_m * up;
+                            const dvec3 hand = way * along - pressed_m * up;
                             const dvec3 lag = stroke.go(count_m > 0 ? glm::round(hand / count_m) * count_m : hand);
                             if (way < 6e-3) continue;
                             drawn += lag;
                             ++count;
                         }
-                        const double held_m = count_m > 0 ? std::round(depth_m / count_m) * count_m : depth_m;
+                        const double held_m = count_m > 0 ? std::round(pressed_m / count_m) * count_m : pressed_m;
                         const dvec3 expected = -mu_dynamic * held_m * greatest_against(0, scale, along);
                         CAPTURE(static_cast<int>(probe.settings.kind), scale, off, rate_hz, count_m);
                         CHECK(glm::distance(drawn / static_cast<double>(count), expected) <

@@ -76,7 +76,7 @@ private:
 };
 
 // Aslant to most faces, and far from round.
-const Friction grained{0.3, 0.2, grain_along({1, 2, 3}, 0.1, dvec3(0))};
+const Friction grained_aslant{0.3, 0.2, grain_along({1, 2, 3}, 0.1, dvec3(0))};
 
 struct Verdict {
     uint64_t ticks = 0, touching = 0, steps = 0, impossible = 0, differing = 0, cut = 0, detours = 0, sideless = 0;
@@ -222,7 +222,7 @@ TEST_CASE("every step of the proxy is possible, on any mesh")
     meshes.push_back({"stairs, far away", far_away(make_stairs())});
     meshes.push_back({"cubes sharing corners", make_touching_cubes(Touching::corners)});
     for (const auto& [name, mesh] : meshes)
-        for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}, grained}) {
+        for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}, grained_aslant}) {
             const auto surface = surface_of(mesh);
             const Verdict verdict = judge(surface, tries(1000), 17, friction);
             CAPTURE(name, friction.static_coefficient, friction.grain.is_there, verdict);
@@ -258,7 +258,7 @@ TEST_CASE("every step of the proxy is possible, on any mesh: long run", "[.long]
     Verdict sum;
     for (const auto& [name, mesh] : meshes) {
         const auto surface = surface_of(mesh);
-        for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}, grained}) {
+        for (const Friction& friction : {Friction{}, Friction{0.3, 0.2}, grained_aslant}) {
             const Verdict verdict = judge(surface, ticks, seed, friction);
             std::cerr << name << ": " << verdict << std::endl;
             sum += verdict;

@@ -1,6 +1,7 @@
 // The stylus against closed forms of its geometry.
 #include "runtime/contact/stylus_contact.h"
 
+#include "tests/runtime/contact/ends.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
 
@@ -13,24 +14,20 @@ using glm::dvec3;
 
 namespace {
 
-struct Pose {
-    dvec3 tip{0}, tail{0};
-};
-
-Pose between(const Pose& a, const Pose& b, double share)
+Ends between(const Ends& a, const Ends& b, double share)
 {
     return {a.tip + share * (b.tip - a.tip), a.tail + share * (b.tail - a.tail)};
 }
 
-Pose moved(const Pose& pose, const dvec3& by)
+Ends moved(const Ends& pose, const dvec3& by)
 {
     return {pose.tip + by, pose.tail + by};
 }
 
-void drive(StylusContact& stylus, const Pose& from, const Pose& to, int ticks)
+void drive(StylusContact& stylus, const Ends& from, const Ends& to, int ticks)
 {
     for (int i = 0; i <= ticks; ++i) {
-        const Pose pose = between(from, to, double(i) / ticks);
+        const Ends pose = between(from, to, double(i) / ticks);
         stylus.update(pose.tip, pose.tail);
     }
 }
@@ -40,7 +37,7 @@ struct Wrench {
     dvec3 force{0}, torque{0};
 };
 
-Wrench wrench(const StylusContact& stylus, const Pose& hand)
+Wrench wrench(const StylusContact& stylus, const Ends& hand)
 {
     Wrench sum;
     for (const Contact& contact : stylus.contacts()) {
@@ -51,14 +48,14 @@ Wrench wrench(const StylusContact& stylus, const Pose& hand)
     return sum;
 }
 
-Wrench pulled(const Pose& hand, const Pose& ideal)
+Wrench pulled(const Ends& hand, const Ends& ideal)
 {
     return {ideal.tip - hand.tip + ideal.tail - hand.tail, glm::cross(hand.tip - hand.tail, ideal.tip - hand.tip)};
 }
 
 // Seen along an edge, the shaft is a line that has to pass by a point: of all lines through it the one with the
 // smallest sum of squared distances to the ends, which is along the principal axis of their moments.
-Pose on_edge(const Pose& hand, const dvec3& point, const dvec3& edge)
+Ends on_edge(const Ends& hand, const dvec3& point, const dvec3& edge)
 {
     const dvec3 e = glm::normalize(edge),
                 u = glm::normalize(glm::cross(e, std::fabs(e.x) < 0.9 ? dvec3(1, 0, 0) : dvec3(0, 1, 0))),
@@ -75,7 +72,7 @@ Pose on_edge(const Pose& hand, const dvec3& point, const dvec3& edge)
 }
 
 // A plate that hangs from a line.
-Mesh upright(const Pose& upper_edge, double height = 0.3)
+Mesh upright(const Ends& upper_edge, double height = 0.3)
 {
     Mesh mesh;
     const dvec3 down(0, 0, -height);
@@ -115,7 +112,7 @@ TEST_CASE("a shaft on the edge of a box is a lever: force and torque at every sh
                     const dvec3 along =
                         std::cos(slant) * dvec3(std::cos(slope), 0, -std::sin(slope)) + std::sin(slant) * edge;
                     const dvec3 at = corner - depth * normal;
-                    const Pose hand{at - share * 0.6 * along, at + (1 - share) * 0.6 * along};
+                    const Ends hand{at - share * 0.6 * along, at + (1 - share) * 0.6 * along};
                     StylusContact stylus(surface);
                     drive(stylus, moved(hand, 0.2 * normal), hand, 40);
                     CAPTURE(share, slope, slant, depth);
@@ -137,12 +134,12 @@ TEST_CASE("a shaft across two edges rests on both: it is the line through them")
         surface_of(joined(upright({{-0.1, -0.3, 0}, {-0.1, 0.3, 0}}), upright({{0.1, -0.3, 0.02}, {0.1, 0.3, 0.02}})));
     for (const dvec2 depth : {dvec2(0.01, 0.02), dvec2(0.004, 0.003), dvec2(1e-4, 1e-4)}) {
         const double rise = 0.1; // of the line through both
-        const Pose hand{{-0.3, 0.02, 0.01 - 0.3 * rise - depth.x}, {0.25, -0.04, 0.01 + 0.25 * rise - depth.y}};
+        const Ends hand{{-0.3, 0.02, 0.01 - 0.3 * rise - depth.x}, {0.25, -0.04, 0.01 + 0.25 * rise - depth.y}};
         StylusContact stylus(surface);
         drive(stylus, moved(hand, {0, 0, 0.1}), hand, 50);
         REQUIRE(stylus.contacts().size() == 2);
         const dvec3 normal = glm::normalize(dvec3(-rise, 0, 1));
-        const Pose ideal{hand.tip + depth.x * normal.z * normal, hand.tail + depth.y * normal.z * normal};
+        const Ends ideal{hand.tip + depth.x * normal.z * normal, hand.tail + depth.y * normal.z * normal};
         CHECK(near(wrench(stylus, hand), pulled(hand, ideal), 1e-9));
         CHECK(glm::distance(stylus.contacts()[0].proxy_m, stylus.contacts()[1].proxy_m) > 0.2);
     }
@@ -153,7 +150,7 @@ TEST_CASE("a tip on a plane with its shaft on an edge is held by both: the best 
     const dvec2 edge(0.1, 0.05); // x and z
     const auto surface =
         surface_of(joined(make_plane(4), upright({{edge.x, -0.3, edge.y}, {edge.x, 0.3, edge.y}}, 0.04)));
-    const Pose hand{{-0.1, 0.01, -0.005}, {0.35, 0.02, -0.005 + 0.45 * 0.255}};
+    const Ends hand{{-0.1, 0.01, -0.005}, {0.35, 0.02, -0.005 + 0.45 * 0.255}};
     StylusContact stylus(surface);
     drive(stylus, moved(hand, {0, 0, 0.2}), hand, 100);
     REQUIRE(stylus.contacts().size() == 2);
@@ -166,12 +163,12 @@ TEST_CASE("a tip on a plane with its shaft on an edge is held by both: the best 
             const dvec2 at = edge + glm::dot(dvec2(end.x, end.z) - edge, along) * along;
             return dvec3(at.x, end.y, at.y);
         };
-        Pose held{onto(hand.tip), onto(hand.tail)};
+        Ends held{onto(hand.tip), onto(hand.tail)};
         if (held.tip.z < 0) held.tip = {edge.x - edge.y / std::tan(angle), hand.tip.y, 0};
         return held;
     };
     const auto cost = [&](double angle) {
-        const Pose held = held_at(angle);
+        const Ends held = held_at(angle);
         const dvec3 a = held.tip - hand.tip, b = held.tail - hand.tail;
         return glm::dot(a, a) + glm::dot(b, b);
     };
@@ -189,30 +186,30 @@ TEST_CASE("a shaft slides from edge to edge without a step, and rests in the ver
     Mesh plate = make_plane(16);
     for (dvec3& p : plate.positions_m) p = {0, p.x, p.y - 0.5}; // its upper border is the y axis
     StylusContact straight(surface_of(plate));
-    const Pose pressed{{-0.2, -0.4, -0.01}, {0.3, -0.38, -0.012}};
+    const Ends pressed{{-0.2, -0.4, -0.01}, {0.3, -0.38, -0.012}};
     drive(straight, moved(pressed, {0, 0, 0.1}), pressed, 50);
     const Wrench first = wrench(straight, pressed);
     CHECK(first.force.z > 0.01);
     for (int i = 0; i <= 4000; ++i) {
-        const Pose hand = moved(pressed, {0, 2e-4 * i, 0});
+        const Ends hand = moved(pressed, {0, 2e-4 * i, 0});
         straight.update(hand.tip, hand.tail);
         REQUIRE(near(wrench(straight, hand), first, 1e-9));
     }
     // Down into a valley and out of it: no force changes faster than the hand moves, since what is free is convex.
     StylusContact valley(
         surface_of(joined(upright({{0, -0.3, 0.06}, {0, 0, 0}}), upright({{0, 0, 0}, {0, 0.3, 0.06}}))));
-    const Pose start{{-0.2, -0.2, 0.02}, {0.2, -0.2, 0.02}};
+    const Ends start{{-0.2, -0.2, 0.02}, {0.2, -0.2, 0.02}};
     drive(valley, moved(start, {0, 0, 0.1}), start, 50);
     const double step = 1e-4;
     Wrench last = wrench(valley, start);
     for (int i = 1; i <= 4000; ++i) {
-        const Pose hand = moved(start, {0, step * i, 0});
+        const Ends hand = moved(start, {0, step * i, 0});
         valley.update(hand.tip, hand.tail);
         const Wrench now = wrench(valley, hand);
         REQUIRE(glm::distance(now.force, last.force) <= 2 * step + 1e-9);
         last = now;
     }
-    const Pose over_vertex{{-0.2, 0, -0.01}, {0.2, 0, -0.01}};
+    const Ends over_vertex{{-0.2, 0, -0.01}, {0.2, 0, -0.01}};
     drive(valley, moved(over_vertex, {0, 0, 0.1}), over_vertex, 50);
     drive(valley, over_vertex, moved(over_vertex, {0, 0.001, 0}), 10);
     const dvec3 held = wrench(valley, moved(over_vertex, {0, 0.001, 0})).force;
@@ -225,7 +222,7 @@ TEST_CASE("without friction closed paths of the stylus gain nothing: the work fa
     struct Setting {
         const char* name;
         std::shared_ptr<const Surface> surface;
-        Pose centre;
+        Ends centre;
     };
     const Setting settings[] = {
         {"on an edge", surface_of(make_box()), {{0.35, 0.03, 0.535}, {0.85, 0.1, 0.36}}},
@@ -239,7 +236,7 @@ TEST_CASE("without friction closed paths of the stylus gain nothing: the work fa
         const auto loop = [&](int steps) {
             const auto at = [&](int i) {
                 const double t = 2 * 3.14159265358979323846 * i / steps;
-                Pose pose = setting.centre; // both ends on closed curves of their own, 3 mm wide
+                Ends pose = setting.centre; // both ends on closed curves of their own, 3 mm wide
                 pose.tip += 3e-3 * dvec3(std::sin(t), std::cos(2 * t), std::sin(t + 1));
                 pose.tail += 3e-3 * dvec3(std::cos(t), std::sin(t), std::cos(t - 0.5));
                 return pose;
@@ -248,7 +245,7 @@ TEST_CASE("without friction closed paths of the stylus gain nothing: the work fa
             drive(stylus, moved(at(0), {0, 0, 0.2}), at(0), 100);
             // The force on each end, of which force and torque are the sums.
             const auto ends = [&] {
-                Pose sum;
+                Ends sum;
                 for (const Contact& contact : stylus.contacts()) {
                     const dvec3 force = contact.depth_m * contact.normal + contact.lag_m;
                     sum.tip += (1 - contact.along) * force;
@@ -259,9 +256,9 @@ TEST_CASE("without friction closed paths of the stylus gain nothing: the work fa
             double work = 0;
             int touching = 0;
             for (int i = 0; i < steps; ++i) {
-                const Pose from = at(i), to = at(i + 1), before = ends();
+                const Ends from = at(i), to = at(i + 1), before = ends();
                 stylus.update(to.tip, to.tail);
-                const Pose after = ends();
+                const Ends after = ends();
                 work += 0.5 * glm::dot(before.tip + after.tip, to.tip - from.tip) +
                         0.5 * glm::dot(before.tail + after.tail, to.tail - from.tail);
                 touching += !stylus.contacts().empty();
@@ -280,7 +277,7 @@ TEST_CASE("without friction closed paths of the stylus gain nothing: the work fa
 TEST_CASE("a stylus is held through poses that are no numbers, and far away it is free")
 {
     const auto surface = surface_of(make_box());
-    const Pose hand{{0.35, 0.03, 0.535}, {0.85, 0.1, 0.36}};
+    const Ends hand{{0.35, 0.03, 0.535}, {0.85, 0.1, 0.36}};
     StylusContact stylus(surface), twin(surface);
     drive(stylus, moved(hand, {0, 0, 0.1}), hand, 20);
     const Wrench held = wrench(stylus, hand);
@@ -305,7 +302,7 @@ TEST_CASE("a stylus is held through poses that are no numbers, and far away it i
     scale_to_size(small, 1e-3);
     StylusContact large(surface_of(small));
     const dvec3 normal = glm::normalize(dvec3(1, 0, 1)), along(normal.z, 0, -normal.x), corner(5e-4, 0, 5e-4);
-    const Pose long_hand{corner - 1e-5 * normal - 0.001 * along, corner - 1e-5 * normal + 0.149 * along};
+    const Ends long_hand{corner - 1e-5 * normal - 0.001 * along, corner - 1e-5 * normal + 0.149 * along};
     drive(large, moved(long_hand, 1e-3 * normal), long_hand, 20);
     CHECK(near(wrench(large, long_hand), pulled(long_hand, on_edge(long_hand, corner, {0, 1, 0})), 1e-12));
 }
@@ -313,10 +310,10 @@ TEST_CASE("a stylus is held through poses that are no numbers, and far away it i
 TEST_CASE("a stylus with an end so far out that it has no direction has no shaft, and nothing of it stays")
 {
     const auto surface = surface_of(make_box());
-    const Pose hand{{0.35, 0.03, 0.535}, {0.85, 0.1, 0.36}}, above = moved(hand, {0, 0, 0.1});
+    const Ends hand{{0.35, 0.03, 0.535}, {0.85, 0.1, 0.36}}, above = moved(hand, {0, 0, 0.1});
     for (const double far_m : {1e160, 1e300, 1e308})
-        for (const Pose& far :
-             {Pose{{far_m, -0.88, -0.41}, {-0.34, 0.44, -1.4}}, Pose{{0.5, -0.8, 0}, {far_m, far_m, 1}}}) {
+        for (const Ends& far :
+             {Ends{{far_m, -0.88, -0.41}, {-0.34, 0.44, -1.4}}, Ends{{0.5, -0.8, 0}, {far_m, far_m, 1}}}) {
             StylusContact stylus(surface), clean(surface);
             stylus.update(far.tip, far.tail);
             CHECK(!stylus.ideal());
@@ -336,8 +333,8 @@ TEST_CASE("a shaft that jumps past a thin pole in one tick is caught by it, at a
     for (const double jump_m : {1e-3, 0.02, 0.2})
         for (const double turn : {0.0, 0.4}) {
             StylusContact stylus(surface);
-            const Pose before{{-0.3, -0.5 * jump_m, 0.01}, {0.3, -0.5 * jump_m, 0.02}};
-            const Pose after{{-0.3, 0.5 * jump_m, 0.01}, {0.3, (0.5 + turn) * jump_m, 0.02}};
+            const Ends before{{-0.3, -0.5 * jump_m, 0.01}, {0.3, -0.5 * jump_m, 0.02}};
+            const Ends after{{-0.3, 0.5 * jump_m, 0.01}, {0.3, (0.5 + turn) * jump_m, 0.02}};
             stylus.update(before.tip, before.tail);
             for (int i = 0; i < 10; ++i) {
                 stylus.update(after.tip, after.tail);

@@ -7,6 +7,7 @@
 #include "runtime/surface/build/joined_surfaces.h"
 #include "runtime/surface/shapes.h"
 
+#include "tests/runtime/contact/ends.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
 
@@ -38,10 +39,6 @@ std::shared_ptr<const Surface> ball_and_box()
     REQUIRE(joined.surface);
     return joined.surface;
 }
-
-struct Ends {
-    dvec3 tip{0}, tail{0};
-};
 
 // Of springs of 1 N/m: in metres.
 Ends force_on_ends(const StylusContact& stylus)

@@ -1,6 +1,7 @@
 // A stylus that slides slowly through hollows, over many small facets: it is never caught at a vertex.
 #include "runtime/contact/stylus_contact.h"
 
+#include "tests/runtime/contact/ends.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
 
@@ -14,28 +15,18 @@ using glm::dvec3;
 
 namespace {
 
-struct Pose {
-    dvec3 tip{0}, tail{0};
-
-    double square_to(const Pose& other) const
-    {
-        const dvec3 a = other.tip - tip, b = other.tail - tail;
-        return glm::dot(a, a) + glm::dot(b, b);
-    }
-};
-
 // The stylus that small random steps lead to, of which each comes nearer to the hand and passes through nothing: where
 // the ideal one should be, by no other means than segments against triangles.
-Pose nearest_by_search(const Surface& surface, const Pose& from, const Pose& hand, std::mt19937_64& random)
+Ends nearest_by_search(const Surface& surface, const Ends& from, const Ends& hand, std::mt19937_64& random)
 {
     std::normal_distribution<double> normal;
     std::uniform_real_distribution<double> fineness(-8, -4);
     const auto any = [&](double length) { return length * dvec3(normal(random), normal(random), normal(random)); };
-    Pose at = from;
+    Ends at = from;
     for (int i = 0; i < 1500; ++i) {
         const double length = std::pow(10, fineness(random));
-        const Pose to{at.tip + any(length), at.tail + any(length)};
-        if (to.square_to(hand) >= at.square_to(hand)) continue;
+        const Ends to{at.tip + any(length), at.tail + any(length)};
+        if ((hand - to).square() >= (hand - at).square()) continue;
         bool free = true;
         for (double share = 0.25; free && share <= 1; share += 0.25) {
             const dvec3 tip = at.tip + share * (to.tip - at.tip), tail = at.tail + share * (to.tail - at.tail);
@@ -48,7 +39,7 @@ Pose nearest_by_search(const Surface& surface, const Pose& from, const Pose& han
 
 // Seven centimetres above the middle of a ring of 14 cm, whose hole is 6 cm wide; it leans, goes round and up and down,
 // and its tip is pressed up to 1 mm into the wall of the hole.
-Pose in_the_hole(double time_s, double turn, double lean)
+Ends in_the_hole(double time_s, double turn, double lean)
 {
     const double angle = turn + 0.25 * time_s + 0.4 * std::sin(1.1 * time_s + turn);
     const double radius_m = 0.02 + 0.0105 * std::min(1.0, time_s / 0.3) + 0.0004 * std::sin(3 * time_s);
@@ -70,15 +61,15 @@ TEST_CASE("a shaft that slides round the hole of a ring is caught at none of its
         StylusContact stylus(surface);
         const double turn = 0.52 * stroke, lean = 0.02 + 0.004 * stroke;
         for (int tick = 0; tick < 4000; ++tick) {
-            const Pose hand = in_the_hole(1e-3 * tick, turn, lean);
+            const Ends hand = in_the_hole(1e-3 * tick, turn, lean);
             stylus.update(hand.tip, hand.tail);
             if (stylus.contacts().empty()) continue;
             CAPTURE(stroke, tick);
             REQUIRE(stylus.ideal());
-            const Pose ideal{surface->lattice.metres(stylus.ideal()->tip),
+            const Ends ideal{surface->lattice.metres(stylus.ideal()->tip),
                              surface->lattice.metres(stylus.ideal()->tail)};
             // Contacts do not fight each other: none pushes more than all of them have to.
-            const double square = ideal.square_to(hand), off_m = std::sqrt(square);
+            const double square = (hand - ideal).square(), off_m = std::sqrt(square);
             for (const Contact& contact : stylus.contacts()) {
                 by_shaft += contact.by_shaft;
                 REQUIRE(contact.depth_m <= 3 * off_m + 1e-9);
@@ -87,8 +78,7 @@ TEST_CASE("a shaft that slides round the hole of a ring is caught at none of its
             ++searched;
             // The search knows no radius.
             const double radius_m = Lattice::point_radius * surface->lattice.unit_m;
-            REQUIRE(std::sqrt(nearest_by_search(*surface, ideal, hand, random).square_to(hand)) >=
-                    0.99 * off_m - 2 * radius_m);
+            REQUIRE((hand - nearest_by_search(*surface, ideal, hand, random)).length() >= 0.99 * off_m - 2 * radius_m);
         }
         CHECK(stylus.counters().walks_cut == 0);
     }
@@ -136,17 +126,17 @@ TEST_CASE("a tip that is drawn over the open border of a cap leaves its shaft th
             const double time_s = 1e-3 * tick, down = std::min(1.0, time_s / 0.4);
             const dvec3 tip =
                 (0.03 + 0.006 * time_s) * out + aside * time_s * along + dvec3(0, 0, 0.02 - (0.02 + deep_m) * down);
-            const Pose hand{tip, tip + 0.12 * leans};
+            const Ends hand{tip, tip + 0.12 * leans};
             stylus.update(hand.tip, hand.tail);
             if (stylus.contacts().empty()) continue;
             CAPTURE(stroke, sides, tick);
             REQUIRE(stylus.ideal());
-            const Pose ideal{surface->lattice.metres(stylus.ideal()->tip),
+            const Ends ideal{surface->lattice.metres(stylus.ideal()->tip),
                              surface->lattice.metres(stylus.ideal()->tail)};
             dvec3 sum(0);
             for (const Contact& contact : stylus.contacts()) {
                 sum += contact.depth_m * contact.normal;
-                REQUIRE(contact.depth_m <= 3 * std::sqrt(ideal.square_to(hand)) + 1e-9);
+                REQUIRE(contact.depth_m <= 3 * std::sqrt((hand - ideal).square()) + 1e-9);
                 over += contact.by_shaft;
             }
             // What pushes is what the ideal stylus is off the hand, unless it was stopped on its way.

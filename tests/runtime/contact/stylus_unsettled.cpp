@@ -4,6 +4,7 @@
 // of the hand gains energy.
 #include "runtime/contact/stylus_contact.h"
 
+#include "tests/runtime/contact/ends.h"
 #include "tests/runtime/surface/meshes.h"
 #include "tests/support/catch.h"
 
@@ -83,14 +84,6 @@ std::vector<NamedMesh> hard_meshes()
     for (NamedMesh& hard : meshes) scale_to_size(hard.mesh, size_m);
     return meshes;
 }
-
-// Both ends at once, a place or what pushes them over the stiffness, m.
-struct Ends {
-    dvec3 tip{0}, tail{0};
-
-    Ends operator-(const Ends& other) const { return {tip - other.tip, tail - other.tail}; }
-    double length() const { return std::sqrt(glm::dot(tip, tip) + glm::dot(tail, tail)); }
-};
 
 Ends pushed_by(std::span<const Contact> contacts)
 {

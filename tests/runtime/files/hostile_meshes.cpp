@@ -1,5 +1,6 @@
 // Malformed mesh files, as far as their readers go; tests/runtime/surface/hostile.cpp has malformed meshes themselves.
 #include "runtime/files/mesh_file.h"
+#include "tests/runtime/files/scene_folder.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"
 
@@ -11,13 +12,9 @@
 
 using namespace haptel;
 using namespace haptel::runtime;
+using haptel::tests::contains;
 
 namespace {
-
-bool contains(std::string_view text, std::string_view part)
-{
-    return text.find(part) != text.npos;
-}
 
 const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 

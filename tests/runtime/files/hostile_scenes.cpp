@@ -26,17 +26,12 @@ std::string repeated(std::string_view text, std::size_t times)
     return all;
 }
 
-bool contains(std::string_view text, std::string_view part)
-{
-    return text.find(part) != text.npos;
-}
-
 std::size_t lines_of(std::string_view text)
 {
     return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-const std::string box = "[[object]]\nshape = \"box\"\n";
+const std::string box_object = "[[object]]\nshape = \"box\"\n";
 
 } // namespace
 
@@ -46,7 +41,7 @@ TEST_CASE("keys and brackets that nest without end are refused where they pass t
     const std::string_view ends[] = {" = 1\n", ""};
     for (const std::string_view end : ends) {
         // 64 dots are the limit: the 65th stands in column 2 * 65.
-        const std::string said = diagnostics_of(box + "a" + repeated(".a", 300'000) + std::string(end));
+        const std::string said = diagnostics_of(box_object + "a" + repeated(".a", 300'000) + std::string(end));
         CHECK(said.starts_with("scene.toml:3:130: error: "));
         CHECK(contains(said, deep));
     }
@@ -94,12 +89,12 @@ TEST_CASE("a scene that is no regular file, or larger than any scene, is refused
 
 TEST_CASE("of thousands of mistakes the first ones are told, shortened, and the others counted")
 {
-    std::string toml = box;
+    std::string toml = box_object;
     for (int i = 0; i < 1000; ++i) toml += "key" + std::to_string(i) + " = 1\n";
     const std::string said = diagnostics_of(toml);
     CHECK(lines_of(said) == FileMessages::messages_max + 1);
     CHECK(contains(said, "scene.toml:1:1: note: 800 more errors, warnings and notes are not shown"));
-    const std::string one = diagnostics_of(box + std::string(1'000'000, 'k') + " = 1\n");
+    const std::string one = diagnostics_of(box_object + std::string(1'000'000, 'k') + " = 1\n");
     CHECK(lines_of(one) == 1);
     CHECK(one.size() < FileMessages::message_bytes_max + 100);
 }
@@ -111,16 +106,18 @@ TEST_CASE("more devices, objects or regions than any scene has are refused, the 
         ++opened;
         return open_scripted(request);
     };
-    CHECK(diagnostics_of(box + repeated("[[device]]\nname = \"simulated:premium\"\n", 5000), resolve_flat, count) ==
+    CHECK(diagnostics_of(box_object + repeated("[[device]]\nname = \"simulated:premium\"\n", 5000), resolve_flat,
+                         count) ==
           "scene.toml:131:1: error: a scene may have 64 devices, each with a thread of its own, and this one has 5000: "
           "leave some out\n");
     CHECK(opened == 0);
-    CHECK_FALSE(
-        contains(diagnostics_of(box + repeated("[[device]]\nname = \"simulated:premium\"\n", 64), resolve_flat, count),
-                 "may have"));
+    CHECK_FALSE(contains(
+        diagnostics_of(box_object + repeated("[[device]]\nname = \"simulated:premium\"\n", 64), resolve_flat, count),
+        "may have"));
     CHECK(opened == 64);
-    CHECK(contains(diagnostics_of(repeated(box, 20'001)), "a scene may hold 20000 objects, and this one has 20001"));
-    CHECK(contains(diagnostics_of(box + repeated("[[region]]\nshape = \"space\"\n", 10'001)),
+    CHECK(contains(diagnostics_of(repeated(box_object, 20'001)),
+                   "a scene may hold 20000 objects, and this one has 20001"));
+    CHECK(contains(diagnostics_of(box_object + repeated("[[region]]\nshape = \"space\"\n", 10'001)),
                    "a scene may have 10000 regions"));
 }
 
@@ -129,7 +126,7 @@ TEST_CASE("loading tells what it does and to which mesh, and ends at whatever it
     const Folder folder;
     folder.write("triangle.obj", triangle_obj);
     const std::string file =
-        folder.write("scene.toml", "[[object]]\nmesh = \"triangle.obj\"\ntexture = \"a:b\"\n" + box);
+        folder.write("scene.toml", "[[object]]\nmesh = \"triangle.obj\"\ntexture = \"a:b\"\n" + box_object);
     std::vector<std::string> told;
     // A slow reader is told of now and then.
     const auto is_counted = [](std::string_view doing) { return !doing.ends_with("reading it"); };

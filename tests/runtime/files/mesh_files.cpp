@@ -26,7 +26,7 @@ using namespace haptel::runtime;
 
 namespace {
 
-constexpr MeshReadLimits hasty = {1, 20}, patient = {60, 60};
+constexpr MeshReadLimits hasty = {1, 20}, in_time = {60, 60};
 
 std::size_t open_files()
 {
@@ -58,7 +58,7 @@ std::string gave_up(MeshReader read, const MeshReadLimits& limits = hasty)
     std::abort();
 }
 
-MeshFileResult answer(const std::string& text)
+MeshFileResult complaint(const std::string& text)
 {
     return {{}, text};
 }
@@ -84,7 +84,7 @@ MeshFileResult random_mesh(const std::string& seed)
 TEST_CASE("what is read in a process of its own arrives bit for bit")
 {
     const MeshFileResult sent = random_mesh("1");
-    const MeshReading reading = read_in_own_process(random_mesh, "1", patient);
+    const MeshReading reading = read_in_own_process(random_mesh, "1", in_time);
     CHECK(reading.gave_up.empty());
     CHECK(reading.result.error.empty());
     CHECK(reading.result.warning == "beware");
@@ -97,7 +97,7 @@ TEST_CASE("what is read in a process of its own arrives bit for bit")
     CHECK(same(mesh.triangles, sent.mesh.triangles));
     CHECK(same(mesh.smoothing_groups, sent.mesh.smoothing_groups));
 
-    const MeshReading refused = read_in_own_process(answer, "not a mesh", hasty);
+    const MeshReading refused = read_in_own_process(complaint, "not a mesh", hasty);
     CHECK(refused.result.error == "not a mesh");
     CHECK(refused.gave_up.empty());
 }

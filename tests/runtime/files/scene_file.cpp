@@ -2,6 +2,7 @@
 #include "runtime/files/quantity.h"
 #include "runtime/texture/shading.h"
 #include "tests/runtime/files/scene_folder.h"
+#include "tests/support/project_path.h"
 
 #include <cmath>
 #include <fstream>
@@ -254,7 +255,7 @@ TEST_CASE("the scene of the documentation is one, and has every key")
 {
     const Folder folder;
     folder.write("bunny.obj", triangle_obj);
-    std::ifstream page(HAPTEL_SOURCE_DIR "/docs/scenes.md");
+    std::ifstream page(test::project_path("docs/scenes.md"));
     const std::string text{std::istreambuf_iterator<char>(page), {}};
     const std::size_t begin = text.find("```toml\n") + 8, end = text.find("```", begin);
     REQUIRE(end != std::string::npos);

@@ -29,6 +29,11 @@ inline runtime::DeviceResult open_scripted(const runtime::DeviceRequest&)
             ""};
 }
 
+inline bool contains(std::string_view text, std::string_view part)
+{
+    return text.find(part) != text.npos;
+}
+
 // What is said about a scene, with the folder's name taken out.
 inline std::string diagnostics_of(std::string_view toml, const TextureResolver& textures = resolve_flat,
                                   const runtime::DeviceFactory& devices = open_scripted)

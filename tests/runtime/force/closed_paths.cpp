@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <random>
 #include <string>
 #include <vector>
@@ -22,9 +23,7 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-constexpr double stiffness = 1000; // N/m
-constexpr double size_m = 0.1;
+constexpr double across_m = 0.1;
 
 // Up to 2 `amplitude_m` high, of a wavelength of some 3 mm.
 TextureBinding solid_texture(double amplitude_m)
@@ -47,7 +46,7 @@ struct Path {
 
     dvec3 at(double turns) const
     {
-        const double a = 2 * pi * turns;
+        const double a = 2 * std::numbers::pi * turns;
         return from + width_m * std::cos(a) * along + breadth_m * std::sin(a) * across -
                (depth_m + swing_m * std::sin(swings * a + 1)) * normal;
     }
@@ -66,9 +65,9 @@ Path random_path(const Surface& surface, double edge_m, std::mt19937_64& random)
     path.normal = surface.facet_normal(face);
     path.along = glm::normalize(surface.vertex_m(face, 1) - surface.vertex_m(face, 0));
     path.across = glm::cross(path.normal, path.along);
-    path.width_m = std::min(0.3 * size_m, edge_m * between(0.1, 30));
+    path.width_m = std::min(0.3 * across_m, edge_m * between(0.1, 30));
     path.breadth_m = uniform(0.3, 1) * path.width_m;
-    path.depth_m = between(1e-3, 0.05) * size_m;
+    path.depth_m = between(1e-3, 0.05) * across_m;
     path.swing_m = uniform(0.2, 0.9) * path.depth_m;
     path.swings = 1 + static_cast<int>(uniform(0, 3));
     return path;
@@ -90,7 +89,7 @@ struct Work {
 Work work_once_round(const std::shared_ptr<const Scene>& scene, const Path& path, int steps)
 {
     Renderer renderer(scene);
-    const double above_m = scene->probe.radius_m + 0.05 * size_m;
+    const double above_m = scene->probe.radius_m + 0.05 * across_m;
     const auto pose = [&](const dvec3& p) {
         DevicePose held{p, p};
         if (scene->probe.has_tail()) held.tail_m = p + 0.1 * path.normal;
@@ -103,7 +102,7 @@ Work work_once_round(const std::shared_ptr<const Scene>& scene, const Path& path
         const dvec3 at_m = path.at(static_cast<double>(i) / steps) + scene->probe.radius_m * path.normal;
         const TickResult tick = renderer.tick(pose(at_m));
         if (i > steps) work.given_j += glm::dot(0.5 * (tick.force_n + before_n), at_m - before_m);
-        work.pressed_j = std::max(work.pressed_j, 0.5 * stiffness * tick.depth_m * tick.depth_m);
+        work.pressed_j = std::max(work.pressed_j, 0.5 * spring_n_per_m * tick.depth_m * tick.depth_m);
         before_m = at_m;
         before_n = tick.force_n;
     }
@@ -132,7 +131,7 @@ TEST_CASE("on balls of triangles closed paths give no energy")
             double allowed = 1e-1;
             for (const uint32_t subdivisions : {2u, 3u, 4u, 5u}) {
                 allowed /= 10;
-                Scene scene = bare_scene(ball_mesh(subdivisions, size_m),
+                Scene scene = bare_scene(ball_mesh(subdivisions, across_m),
                                          texture_m > 0 ? solid_texture(texture_m) : TextureBinding());
                 scene.probe = probe;
                 const auto touched = shared(std::move(scene));
@@ -155,7 +154,7 @@ TEST_CASE("in hollow balls of triangles closed paths give no energy")
         double allowed = 1e-2;
         for (const uint32_t subdivisions : {3u, 4u}) {
             allowed /= 10;
-            Scene scene = bare_scene(ball_mesh(subdivisions, size_m), solid_texture(25e-6));
+            Scene scene = bare_scene(ball_mesh(subdivisions, across_m), solid_texture(25e-6));
             scene.probe = probe;
             const auto touched = shared(std::move(scene));
             const Surface& surface = *touched->objects[0].surface;
@@ -242,18 +241,18 @@ TEST_CASE("closed paths give no energy: long run", "[.long]")
     std::vector<NamedMesh> meshes;
     for (const uint32_t subdivisions : {2u, 3u, 4u, 5u})
         meshes.push_back(
-            {"ball of " + std::to_string(20u << 2 * subdivisions) + " triangles", ball_mesh(subdivisions, size_m)});
+            {"ball of " + std::to_string(20u << 2 * subdivisions) + " triangles", ball_mesh(subdivisions, across_m)});
     Mesh ellipsoid = make_icosphere(4);
     for (dvec3& p : ellipsoid.positions_m) p *= dvec3(1, 0.7, 0.5);
     meshes.push_back({"ellipsoid of 5120 triangles", ellipsoid});
-    meshes.push_back({"torus", shape("torus", size_m)});
+    meshes.push_back({"torus", shape("torus", across_m)});
     const std::size_t round = meshes.size();
     for (NamedMesh& mesh : meshes_of_environment())
         if (mesh.name.find("far away") == std::string::npos) meshes.push_back(std::move(mesh));
     const auto paths = static_cast<int>(number_of_environment("HAPTEL_TEST_PATHS", 300));
 
     for (std::size_t m = 0; m < meshes.size(); ++m) {
-        scale_to_size(meshes[m].mesh, size_m);
+        scale_to_size(meshes[m].mesh, across_m);
         for (const ProbeSettings& probe : {ProbeSettings{}, ProbeSettings{ProbeKind::sphere, 0.15, 2.5e-3},
                                            ProbeSettings{ProbeKind::stylus, 0.15, 0}})
             for (const double texture_m : {0.0, 5e-6, 100e-6})

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 using namespace haptel;
@@ -14,7 +15,6 @@ using namespace haptel::tests;
 
 namespace {
 
-constexpr double pi = 3.141592653589793;
 constexpr double period_s = 1e-3;
 
 Scene vibrating(const Mesh& mesh, double force_n, double frequency_hz, double reach_m)
@@ -65,11 +65,11 @@ TEST_CASE("a vibration swings in touch with its amplitude and frequency, comes a
         const double level = touching  ? std::min(1.0, (i - 99) / 20.0)
                              : i < 100 ? 0
                                        : std::max(0.0, 1 - (i - 399) / 20.0);
-        const double wanted_n = level * force_n * std::sin(2 * pi * frequency_hz * i * period_s);
+        const double wanted_n = level * force_n * std::sin(2 * std::numbers::pi * frequency_hz * i * period_s);
         CHECK(std::fabs(force.x - wanted_n) < 1e-9);
         CHECK(std::fabs(force.z - (touching ? 1 : 0)) < 1e-8);
         CHECK(std::fabs(force.x - last_n) <=
-              force_n * (2 * pi * frequency_hz * period_s + period_s / vibration_ramp_s));
+              force_n * (2 * std::numbers::pi * frequency_hz * period_s + period_s / vibration_ramp_s));
         last_n = force.x;
     }
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <random>
 #include <vector>
@@ -22,8 +23,6 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-constexpr double stiffness = 1000; // N/m
 constexpr double size_m = 0.1, ball_m = size_m / 2;
 
 // Held by contact off the facets, and the smooth foot of that; or none.
@@ -169,13 +168,13 @@ TEST_CASE("on a ball of 5 120 triangles the force is that of the ball")
             const dvec3 d(std::cos(a) * std::cos(b), std::cos(a) * std::sin(b), std::sin(a));
             const dvec3 force_n = renderer.tick({radius_m * d, radius_m * d}).force_n;
             most_degrees = std::max(most_degrees, degrees_between(force_n, d));
-            most_off = std::max(most_off, std::fabs(glm::length(force_n) / (stiffness * deep_m) - 1));
+            most_off = std::max(most_off, std::fabs(glm::length(force_n) / (spring_n_per_m * deep_m) - 1));
             if (i > 0) most_change = std::max(most_change, glm::distance(force_n, before_n));
             before_n = force_n;
         }
         CHECK(most_degrees < 0.3);
         CHECK(most_off < 1e-3);
-        CHECK(most_change < 1.2 * stiffness * deep_m * turn);
+        CHECK(most_change < 1.2 * spring_n_per_m * deep_m * turn);
     }
 }
 
@@ -232,17 +231,17 @@ TEST_CASE("a texture on a round surface is where the hand is, at any depth")
         constexpr int ticks = 200'000;
         double before_m = 0, crossed = -1, widest = 0, narrowest = 1e9;
         for (int i = 1; i <= ticks; ++i) {
-            const double a = 2 * pi * i / ticks, height_m = renderer.tick({hand(a), {}}).height_m;
+            const double a = 2 * std::numbers::pi * i / ticks, height_m = renderer.tick({hand(a), {}}).height_m;
             if (before_m < 0 && height_m >= 0) {
-                const double here = a - 2 * pi / ticks * height_m / (height_m - before_m);
+                const double here = a - 2 * std::numbers::pi / ticks * height_m / (height_m - before_m);
                 if (crossed >= 0)
                     widest = std::max(widest, here - crossed), narrowest = std::min(narrowest, here - crossed);
                 crossed = here;
             }
             before_m = height_m;
         }
-        CHECK(widest * waves / (2 * pi) < 1.005);
-        CHECK(narrowest * waves / (2 * pi) > 0.995);
+        CHECK(widest * waves / (2 * std::numbers::pi) < 1.005);
+        CHECK(narrowest * waves / (2 * std::numbers::pi) > 0.995);
     }
 }
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numbers>
 #include <random>
 
 using namespace haptel;
@@ -19,7 +20,6 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
 constexpr double stiffness = 1000; // N/m
 
 // Work that the static force field does on a hand taken once around the rectangle in the xz plane (J).
@@ -40,7 +40,7 @@ double loop_work_j(Renderer& renderer, double x0, double x1, double z_shallow, d
     return work;
 }
 
-constexpr double amplitude_m = 0.1e-3, wavelength_m = 2e-3, wave_per_m = 2 * pi / wavelength_m;
+constexpr double amplitude_m = 0.1e-3, wavelength_m = 2e-3, wave_per_m = 2 * std::numbers::pi / wavelength_m;
 
 // From a valley of a sine on a plane to a crest and back at another depth, refined until it changes by less than
 // 1e-10 J.

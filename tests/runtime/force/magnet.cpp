@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 using namespace haptel;
@@ -19,8 +20,6 @@ using namespace haptel::tests;
 using haptel::test::distance_to;
 
 namespace {
-
-constexpr double pi = 3.141592653589793;
 
 // Energy that held forces give to a hand on its way.
 struct Energy {
@@ -173,7 +172,7 @@ TEST_CASE("a magnet gives no energy on closed paths, not even where two walls ar
         Renderer renderer(shared(magnet_scene(shape("box", 0.1), force_n, reach_m)));
         Energy energy;
         for (int i = 0; i <= 3 * steps; ++i) {
-            const double t = 2 * pi * i / steps;
+            const double t = 2 * std::numbers::pi * i / steps;
             const glm::dvec3 p(0.035 * std::cos(t), 0.03 * std::sin(2 * t), 0.02 * std::sin(3 * t));
             if (i == 0) energy.at_m = p;
             const TickResult result = renderer.tick({p, p});
@@ -190,7 +189,7 @@ TEST_CASE("a magnet gives no energy on closed paths, not even where two walls ar
         Renderer renderer(shared(magnet_scene(shape("icosphere", 0.1), force_n, reach_m)));
         Energy energy;
         for (int i = 0; i <= steps; ++i) {
-            const double t = 2 * pi * i / steps, r = 0.08 + 0.02 * std::sin(3 * t);
+            const double t = 2 * std::numbers::pi * i / steps, r = 0.08 + 0.02 * std::sin(3 * t);
             const glm::dvec3 p(r * std::cos(t), r * std::sin(t), 0.01 * std::sin(t));
             if (i == 0) energy.at_m = p;
             energy.go(p, renderer.tick({p, p}).force_n);

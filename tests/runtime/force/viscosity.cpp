@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numbers>
 
 using namespace haptel;
 using namespace haptel::runtime;
@@ -14,8 +15,7 @@ using namespace haptel::tests;
 
 namespace {
 
-constexpr double pi = 3.141592653589793;
-constexpr double period_s = 1e-3;
+constexpr double tick_s = 1e-3;
 
 Scene viscous(double damping_n_s_per_m)
 {
@@ -32,14 +32,14 @@ TEST_CASE("at a steady speed a viscous medium holds back with damping times spee
 {
     constexpr double damping = 3, speed = 0.05;
     Renderer renderer(shared(viscous(damping)));
-    const double left = damping / (damping + trail_stiffness_n_per_m * period_s);
+    const double left = damping / (damping + trail_stiffness_n_per_m * tick_s);
     for (int i = 0; i < 300; ++i) {
-        const glm::dvec3 force = renderer.tick(at(0, i * speed * period_s, 0.02)).force_n;
+        const glm::dvec3 force = renderer.tick(at(0, i * speed * tick_s, 0.02)).force_n;
         CHECK(std::fabs(force.y + damping * speed * (1 - std::pow(left, i))) < 1e-12);
         CHECK((force.x == 0 && force.z == 0));
     }
     // Missed deadlines: as if the way had been gone evenly.
-    Trail each(period_s, trail_stiffness_n_per_m), late(period_s, trail_stiffness_n_per_m);
+    Trail each(tick_s, trail_stiffness_n_per_m), late(tick_s, trail_stiffness_n_per_m);
     for (int i = 0; i <= 50; ++i) each.update({i * 1e-4, 0, 0}, damping, 1);
     glm::dvec3 force(0);
     for (int i = 0; i <= 50; i += 5) force = late.update({i * 1e-4, 0, 0}, damping, i == 0 ? 1 : 5);
@@ -53,23 +53,23 @@ TEST_CASE("what a viscous medium takes of a hand that goes to and fro is what it
     for (const double damping : {0.1, 1.0, 5.0, 50.0})
         for (const int ticks_per_cycle : {1000, 100, 20, 4}) {
             Renderer renderer(shared(viscous(damping)));
-            const auto x = [&](int i) { return amplitude_m * std::cos(2 * pi * i / ticks_per_cycle); };
+            const auto x = [&](int i) { return amplitude_m * std::cos(2 * std::numbers::pi * i / ticks_per_cycle); };
             double given_j = 0, force_n = 0;
             const int settle = 40 * ticks_per_cycle + 2000;
             for (int i = 0; i <= settle + ticks_per_cycle; ++i) {
                 if (i > settle) given_j += force_n * (x(i) - x(i - 1));
                 force_n = renderer.tick(at(x(i), 0, 0.02)).force_n.x;
             }
-            const Complex z = std::polar(1.0, 2 * pi / ticks_per_cycle);
-            const double left = damping / (damping + k * period_s);
+            const Complex z = std::polar(1.0, 2 * std::numbers::pi / ticks_per_cycle);
+            const double left = damping / (damping + k * tick_s);
             const Complex force = -k * left * (1.0 - 1.0 / z) / (1.0 - left / z) * amplitude_m;
             const double wanted_j = ticks_per_cycle / 2.0 * std::real(force * std::conj((z - 1.0) * amplitude_m));
             CAPTURE(damping, ticks_per_cycle, given_j, wanted_j);
             CHECK(std::fabs(given_j - wanted_j) < 1e-9 * (1 + std::fabs(wanted_j)));
             const double bound_j = k / 2 * ticks_per_cycle * std::norm((z - 1.0) * amplitude_m) / 2;
             CHECK(given_j <= bound_j * (1 + 1e-9));
-            if (ticks_per_cycle == 1000 && damping <= 1) { // slow: damping times speed squared
-                const double speed = amplitude_m * 2 * pi; // largest, in one second
+            if (ticks_per_cycle == 1000 && damping <= 1) {               // slow: damping times speed squared
+                const double speed = amplitude_m * 2 * std::numbers::pi; // largest, in one second
                 CHECK(std::fabs(given_j / (-damping * speed * speed / 2) - 1) < 0.01);
             }
         }
@@ -79,16 +79,16 @@ TEST_CASE("no viscosity shakes a device whose own damping holds its trail; a dam
 {
     constexpr double mass_kg = 0.075;
     const auto speed_after = [&](double viscosity, bool by_trail, double own_damping) {
-        Trail trail(period_s, trail_stiffness_n_per_m);
+        Trail trail(tick_s, trail_stiffness_n_per_m);
         double x = 0, v = 0.3, last_x = 0, largest_j = 0;
-        const double kept = std::exp(-own_damping / mass_kg * period_s);
+        const double kept = std::exp(-own_damping / mass_kg * tick_s);
         for (int i = 0; i < 20000 && std::fabs(v) < 1e6; ++i) {
             const double force =
-                by_trail ? trail.update({x, 0, 0}, viscosity, 1).x : -viscosity * (x - last_x) / period_s;
+                by_trail ? trail.update({x, 0, 0}, viscosity, 1).x : -viscosity * (x - last_x) / tick_s;
             last_x = x;
             // Exact for a force that is held: m dv/dt = force - own_damping v
             const double v_end = force / own_damping;
-            x += v_end * period_s + (v - v_end) * (1 - kept) * mass_kg / own_damping;
+            x += v_end * tick_s + (v - v_end) * (1 - kept) * mass_kg / own_damping;
             v = v_end + (v - v_end) * kept;
             if (i > 19000) largest_j = std::max(largest_j, mass_kg / 2 * v * v);
         }
@@ -129,11 +129,11 @@ TEST_CASE("a region has its medium inside, grown from its border inward")
     Renderer renderer(shared(std::move(scene)));
     constexpr double speed = 0.02;
     glm::dvec3 last(0);
-    for (double x = 0.05; x < 0.15; x += speed * period_s) {
+    for (double x = 0.05; x < 0.15; x += speed * tick_s) {
         const glm::dvec3 force = renderer.tick(at(x, 0, 0.001)).force_n;
         if (std::fabs(x - 0.1) > 0.0205) CHECK(force == glm::dvec3(0));
         if (std::fabs(x - 0.1) < 0.005) CHECK(std::fabs(force.x + 4 * speed) < 1e-9);
-        CHECK(std::fabs(force.x - last.x) < 4 * speed * (speed * period_s / 5e-3) * 1.5);
+        CHECK(std::fabs(force.x - last.x) < 4 * speed * (speed * tick_s / 5e-3) * 1.5);
         last = force;
     }
 }
@@ -147,7 +147,7 @@ TEST_CASE("around an object the medium grows toward its surface, and is full in 
     constexpr double speed = 0.03;
     for (const double z : {0.012, 0.005, 0.002, -0.001}) {
         glm::dvec3 force(0);
-        for (int i = 0; i < 400; ++i) force = renderer.tick(at(-0.01 + i * speed * period_s, 0, z)).force_n;
+        for (int i = 0; i < 400; ++i) force = renderer.tick(at(-0.01 + i * speed * tick_s, 0, z)).force_n;
         const double share = z > 0.01 ? 0 : z > 0 ? 1 - z / 0.01 : 1;
         CAPTURE(z);
         CHECK(std::fabs(force.x + 2 * share * speed) < 1e-9);

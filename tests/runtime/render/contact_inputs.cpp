@@ -17,14 +17,14 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double stiffness = 1000, depth_m = 1e-3;
+constexpr double depth_m = 1e-3;
 constexpr uint32_t reads_contact = HAPTEL_READS_POINT | HAPTEL_READS_VELOCITY | HAPTEL_READS_NORMAL_FORCE |
                                    HAPTEL_READS_TOOL_RADIUS | HAPTEL_READS_TANGENT | HAPTEL_READS_CURVATURE;
 
 Scene plane_with(SampleFunction function, double rate_hz = 1000)
 {
     Scene scene = bare_scene(plane_mesh(), sample_lambda(std::move(function), 0, 0, reads_contact));
-    scene.objects[0].material = {stiffness, 0, 0, 0};
+    scene.objects[0].material = {spring_n_per_m, 0, 0, 0};
     scene.servo.rate_hz = rate_hz;
     return scene;
 }
@@ -44,7 +44,7 @@ TEST_CASE("a texture is told how fast the hand slides, how hard it presses and w
     CHECK(std::abs(last.velocity[0] - 0.05) < 1e-6); // 50 um in each millisecond
     CHECK(std::abs(last.velocity[1] + 0.10) < 1e-6);
     CHECK(last.velocity[2] == 0); // along the surface, although the hand sinks
-    CHECK(std::abs(last.normal_force_n - stiffness * (depth_m + 199e-7)) < 1e-9);
+    CHECK(std::abs(last.normal_force_n - spring_n_per_m * (depth_m + 199e-7)) < 1e-9);
     CHECK(last.tool_radius_m == 0);
     CHECK(last.curvature_per_m == 0);
 
@@ -68,7 +68,7 @@ TEST_CASE("a vibration swings at its frequency and amplitude, and its phase has 
         double x = 0; // on the move, so that the texture is asked again
         for (int i = 0; i < 3 * rate_hz; ++i) {
             if (i == rate_hz) hz = 97.5;
-            swing_n.push_back(renderer.tick(at(x += 1e-9, 0, -depth_m)).unlimited_force_n.z - stiffness * depth_m);
+            swing_n.push_back(renderer.tick(at(x += 1e-9, 0, -depth_m)).unlimited_force_n.z - spring_n_per_m * depth_m);
         }
         // The amplitude at each frequency, by the definition of Fourier's sum over one second.
         const auto amplitude = [&](double frequency, int from) {
@@ -106,13 +106,13 @@ TEST_CASE("a vibration begins at nothing, never pulls, and is left out where the
         const double z = -1e-6 * i;
         const double force_n = renderer.tick(at(1e-7 * i, 0, z)).unlimited_force_n.z;
         least_n = std::min(least_n, force_n);
-        CHECK(force_n <= 2 * stiffness * -z + 1e-9);
+        CHECK(force_n <= 2 * spring_n_per_m * -z + 1e-9);
     }
     CHECK(least_n == 0);
     hz = 500.5;
     const TickResult fast = renderer.tick(at(1e-3, 0, -depth_m));
     CHECK((fast.faults & fault_vibration_too_fast) != 0);
-    CHECK(std::abs(fast.unlimited_force_n.z - stiffness * depth_m) < 1e-9);
+    CHECK(std::abs(fast.unlimited_force_n.z - spring_n_per_m * depth_m) < 1e-9);
 }
 
 TEST_CASE("a vibration gives a hand no more than its amplitude times the way that the hand goes")
@@ -127,7 +127,7 @@ TEST_CASE("a vibration gives a hand no more than its amplitude times the way tha
         const double z = -depth_m + 2e-4 * std::sin(2 * std::numbers::pi * 40e-3 * i);
         const double force_n = renderer.tick(at(1e-5 * std::sin(i / 50.0), 0, z)).unlimited_force_n.z;
         if (i > 0) {
-            given_j += (force_n + stiffness * z) * (z - before_z); // beside the spring
+            given_j += (force_n + spring_n_per_m * z) * (z - before_z); // beside the spring
             way_m += std::abs(z - before_z);
         }
         before_z = z;

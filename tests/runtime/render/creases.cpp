@@ -14,7 +14,7 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double radius_m = 0.02, height_m = 0.04, stiffness = 1000;
+constexpr double radius_m = 0.02, height_m = 0.04;
 
 // A closed tube that stands on z = 0, its walls smooth.
 Mesh tube(uint32_t sides)
@@ -57,7 +57,7 @@ double steepest(Renderer& renderer, const auto& place, int ticks)
     for (int i = 1; i <= ticks; ++i) {
         const dvec3 next_m = place(i), next_n = renderer.tick({next_m, next_m}).force_n;
         REQUIRE(glm::length(next_n) > 0);
-        most = std::max(most, glm::distance(next_n, force_n) / (stiffness * glm::distance(next_m, at_m)));
+        most = std::max(most, glm::distance(next_n, force_n) / (spring_n_per_m * glm::distance(next_m, at_m)));
         at_m = next_m, force_n = next_n;
     }
     return most;

@@ -17,7 +17,7 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double size_m = 0.1, stiffness_n_per_m = 1000, depth_m = 2e-3;
+constexpr double size_m = 0.1, press_m = 2e-3;
 
 Scene flat_facets(Mesh mesh, const ProbeSettings& probe = {})
 {
@@ -32,7 +32,7 @@ struct Loop {
     double work_j = 0, largest_n = 0;
     int touching = 0;
 
-    double largest_j() const { return 0.5 * largest_n * largest_n / stiffness_n_per_m; }
+    double largest_j() const { return 0.5 * largest_n * largest_n / spring_n_per_m; }
 };
 
 // Twice around a closed curve that crosses facets, edges and corners, `out_m` from the middle on average and now and
@@ -47,7 +47,7 @@ Loop around(const Scene& scene, const dvec3& start, double out_m, int steps)
         const double angle = 2 * std::numbers::pi * i / steps;
         const dvec3 direction = glm::normalize(
             dvec3(std::cos(angle), std::sin(angle) + 0.2 * std::sin(3 * angle), 0.7 * std::sin(2 * angle + 0.4)));
-        const dvec3 hand_m = direction * (out_m + 1.5 * depth_m * std::sin(5 * angle));
+        const dvec3 hand_m = direction * (out_m + 1.5 * press_m * std::sin(5 * angle));
         const TickResult felt = renderer.tick({hand_m, hand_m});
         if (i > steps) {
             loop.work_j += 0.5 * glm::dot(felt.force_n + before_n, hand_m - before_m);
@@ -72,7 +72,7 @@ TEST_CASE("without friction a closed path inside a hollow body gives and takes n
             CAPTURE(int(probe.kind), is_box, coarse.work_j, fine.work_j);
             CHECK(fine.touching > 8000);
             CHECK(fine.touching < 32000);
-            CHECK(fine.largest_n > stiffness_n_per_m * depth_m);
+            CHECK(fine.largest_n > spring_n_per_m * press_m);
             CHECK(std::abs(coarse.work_j) < 1e-2 * coarse.largest_j());
             CHECK(std::abs(fine.work_j) < 1e-5 * fine.largest_j());
         }
@@ -107,7 +107,7 @@ TEST_CASE("where sheets of one mesh pierce each other each pushes by its own dep
                 const double angle = 2 * std::numbers::pi * i / 20000;
                 const dvec3 hand = -2e-4 * dvec3(1) + 2e-3 * (std::cos(angle) * one + std::sin(angle) * other);
                 const TickResult felt = renderer.tick({hand, hand + tail});
-                const dvec3 expected = stiffness_n_per_m * glm::max(dvec3(0), -hand);
+                const dvec3 expected = spring_n_per_m * glm::max(dvec3(0), -hand);
                 worst_n = std::max(worst_n, glm::length(felt.force_n - expected));
                 if (i > 20000) work_j += 0.5 * glm::dot(felt.force_n + before_n, hand - before_m);
                 ++touching[(hand.x < 0) + (hand.y < 0) + (hand.z < 0)];

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <vector>
 
@@ -15,14 +16,12 @@ using namespace haptel::tests;
 
 namespace {
 
-constexpr double pi = 3.14159265358979323846;
-
 } // namespace
 
 TEST_CASE("displaced is minus the gradient of its potential")
 {
     constexpr double amplitude_m = 80e-6, wavelength_m = 1.5e-3, stiffness = 1000;
-    const double w = 2 * pi / wavelength_m;
+    const double w = 2 * std::numbers::pi / wavelength_m;
     Renderer renderer(shared(bare_scene(plane_mesh(), sine_texture(amplitude_m, wavelength_m))));
     renderer.tick(at(0, 0.001, 1e-3));
     std::mt19937 random(3);
@@ -177,7 +176,7 @@ TEST_CASE("damping takes energy, begins without a step, and never pulls")
     double energy_j = 0, last_z = 0;
     TickResult last;
     for (int i = 0; i < 400; ++i) {
-        const double z = 1e-3 * std::cos(2 * pi * i / 100.0);
+        const double z = 1e-3 * std::cos(2 * std::numbers::pi * i / 100.0);
         if (i > 0) energy_j += last.force_n.z * (z - last_z);
         last = renderer.tick(at(0, 0, z));
         last_z = z;
@@ -261,7 +260,7 @@ TEST_CASE("the speed of the hand passes a low-pass of 100 Hz, at every rate and 
             HandVelocity late(1 / rate_hz);
             late.update(glm::dvec3(0), 1);
             late.update({period, -2 * period, 0}, uint64_t(period));
-            const double share = -std::expm1(-2 * pi * 100 * period / rate_hz);
+            const double share = -std::expm1(-2 * std::numbers::pi * 100 * period / rate_hz);
             for (const HandVelocity* hand : {&timely, &late}) {
                 CAPTURE(rate_hz, period, hand == &late);
                 CHECK(std::abs(hand->m_per_s().x / rate_hz - share) < 1e-13 * share);
@@ -324,7 +323,7 @@ TEST_CASE("a hand that rests feels one texture turn into the other, height and g
         double envelope_m() const { return amplitude_m * (std::sin(wave_per_m * x_m) - 1); }
         double slope() const { return amplitude_m * wave_per_m * std::cos(wave_per_m * x_m); }
     };
-    const Sine a{50e-6, 2 * pi / 2e-3}, b{200e-6, 2 * pi / 3e-3};
+    const Sine a{50e-6, 2 * std::numbers::pi / 2e-3}, b{200e-6, 2 * std::numbers::pi / 3e-3};
     const auto scene = shared(bare_scene(plane_mesh(), sine_texture(50e-6, 2e-3)));
     Renderer renderer(scene);
     renderer.tick(at(x_m, 0.002, 1e-3));
@@ -360,7 +359,8 @@ TEST_CASE("during a fade the force changes no faster than the textures and the f
     };
     const auto hand = [](int tick) {
         const double t = tick * period_s;
-        return at(0.02 * std::sin(2 * pi * t), 0.01 * std::cos(pi * t), -0.6e-3 + 0.3e-3 * std::sin(3 * pi * t));
+        return at(0.02 * std::sin(2 * std::numbers::pi * t), 0.01 * std::cos(std::numbers::pi * t),
+                  -0.6e-3 + 0.3e-3 * std::sin(3 * std::numbers::pi * t));
     };
     const auto largest_change = [&](Renderer& renderer, int ticks, const auto& allowed) {
         glm::dvec3 last(0);

@@ -9,7 +9,7 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double stiffness = 1000, mu = 0.3, depth_m = 1e-3;
+constexpr double mu = 0.3, below_m = 1e-3;
 
 // A flat texture with that grain.
 TextureBinding grained(const dvec3& direction, double along)
@@ -37,7 +37,7 @@ TEST_CASE("a texture's grain is of its object's space, and of what of it lies in
                     // The second lies beside the first, turned by a right angle in the same plane.
                     const auto one = [&](const dvec3& at, const dvec3& x) {
                         const glm::dmat3 rotation(x, glm::cross(normal, x), normal);
-                        return behind(at, normal, x, stiffness, mu,
+                        return behind(at, normal, x, spring_n_per_m, mu,
                                       grained((7.0 * grain + 2.0 * normal) * rotation, along));
                     };
                     Scene scene;
@@ -54,16 +54,16 @@ TEST_CASE("a texture's grain is of its object's space, and of what of it lies in
                     const double va = glm::dot(v, grain), vc = glm::dot(v, across);
                     const dvec3 held = (along * along * va * grain + vc * across) / std::hypot(along * va, vc);
                     const int ends = kind == ProbeKind::gripper ? 2 : 1;
-                    const dvec3 expected_n = ends * stiffness * depth_m * (normal - mu * held);
+                    const dvec3 expected_n = ends * spring_n_per_m * below_m * (normal - mu * held);
                     const auto on_way = [&](double gone_m) {
-                        return place + (radius_m - depth_m) * normal - 0.02 * a - 0.01 * b + gone_m * v;
+                        return place + (radius_m - below_m) * normal - 0.02 * a - 0.01 * b + gone_m * v;
                     };
                     stroke.to(on_way(0) + 3e-3 * normal);
                     stroke.to(on_way(0));
                     CAPTURE(static_cast<int>(kind), meets, along, way_angle);
                     for (const double gone_m : {15e-3, 20e-3, meets && way_angle < 0.5 ? 85e-3 : 25e-3}) {
                         stroke.to(on_way(gone_m));
-                        CHECK(glm::distance(stroke.force_n(), expected_n) < 2e-5 * stiffness * depth_m);
+                        CHECK(glm::distance(stroke.force_n(), expected_n) < 2e-5 * spring_n_per_m * below_m);
                     }
                 }
 }
@@ -72,7 +72,7 @@ TEST_CASE("without a direction along the surface, or with the same friction alon
 {
     const auto forces = [](const TextureBinding& texture, ProbeKind kind) {
         Scene scene = with_probe(bare_scene(ball_mesh(3, 0.1), texture), kind);
-        scene.objects[0].material = {stiffness, 1, mu, 0.2};
+        scene.objects[0].material = {spring_n_per_m, 1, mu, 0.2};
         Renderer renderer(shared(std::move(scene)));
         std::mt19937 random(4);
         std::normal_distribution<double> any;
@@ -136,7 +136,7 @@ TEST_CASE("on closed paths friction with a grain takes energy from the hand, tex
     for (const bool ball : {false, true})
         for (int loop = 0; loop < 12; ++loop) {
             Scene scene = bare_scene(ball ? ball_mesh(4, 0.1) : plane_mesh(), sample_lambda(waves, -20e-6, 20e-6));
-            scene.objects[0].material = {stiffness, 0, mu, 0.2};
+            scene.objects[0].material = {spring_n_per_m, 0, mu, 0.2};
             Stroke stroke(std::move(scene), dvec3(0), 5e-6);
             const double first = phase(random), second = phase(random);
             const auto place = [&](double t) {

@@ -17,8 +17,6 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double stiffness_n_per_m = 1000; // of bare_scene
-
 Scene box_for_fingers(double friction = 0)
 {
     Mesh box = make_box();
@@ -44,7 +42,7 @@ TEST_CASE("a gripper that holds a box feels it between its fingers, and nothing 
     TickResult felt;
     for (int i = 0; i < 3; ++i) felt = renderer.tick(fingers(0.0085, 0.002, -0.003)); // each 1.5 mm deep
     CHECK(felt.contacts == 1);                                                        // object
-    CHECK(std::abs(felt.grip_force_n - 1.5e-3 * stiffness_n_per_m) < 1e-9);
+    CHECK(std::abs(felt.grip_force_n - 1.5e-3 * spring_n_per_m) < 1e-9);
     CHECK(glm::length(felt.force_n) < 1e-9);
     CHECK(glm::length(felt.torque_n_m) < 1e-11);
     CHECK(glm::length(felt.grip_m - dvec3(0, -0.003, 0.002)) < 1e-15);
@@ -58,8 +56,8 @@ TEST_CASE("what a gripper has between its fingers is carried by friction: twice 
     for (int i = 0; i < 3; ++i) renderer.tick(fingers(0.009));
     TickResult felt;
     for (int i = 1; i <= 20; ++i) felt = renderer.tick(fingers(0.009, 1e-5 * i)); // up to 0.2 mm, below 0.5 times 1 mm
-    CHECK(glm::length(felt.force_n - dvec3(0, 0, -2 * 0.2e-3 * stiffness_n_per_m)) < 1e-9);
-    CHECK(std::abs(felt.grip_force_n - 1e-3 * stiffness_n_per_m) < 1e-9);
+    CHECK(glm::length(felt.force_n - dvec3(0, 0, -2 * 0.2e-3 * spring_n_per_m)) < 1e-9);
+    CHECK(std::abs(felt.grip_force_n - 1e-3 * spring_n_per_m) < 1e-9);
     CHECK(glm::length(felt.torque_n_m) < 1e-11);
 }
 
@@ -72,7 +70,7 @@ TEST_CASE("one finger alone turns the gripper about its middle")
     renderer.tick(pose(1e-3));
     TickResult felt;
     for (int i = 0; i < 3; ++i) felt = renderer.tick(pose(-1e-3));
-    const dvec3 force_n(0, 0, 1e-3 * stiffness_n_per_m);
+    const dvec3 force_n(0, 0, 1e-3 * spring_n_per_m);
     CHECK(glm::length(felt.force_n - force_n) < 1e-9);
     CHECK(glm::length(felt.torque_n_m - glm::cross(dvec3(0, -0.015, -0.02), force_n)) < 1e-11);
     CHECK(std::abs(felt.grip_force_n - -0.5 * 0.8 * force_n.z) < 1e-9); // along (0, 0.6, 0.8), toward the other
@@ -178,7 +176,7 @@ TEST_CASE("what a gripper's springs take while it closes they give back while it
     };
     const double taken_j = -energy_j(close, 1e-3 * (steps + 1));
     // One finger is 3 mm deep, the other 1 mm: each stores half of K d^2.
-    const double stored_j = 0.5 * stiffness_n_per_m * (3e-3 * 3e-3 + 1e-3 * 1e-3);
+    const double stored_j = 0.5 * spring_n_per_m * (3e-3 * 3e-3 + 1e-3 * 1e-3);
     CHECK(std::abs(taken_j / stored_j - 1) < 1e-3);
     const auto there_and_back = [&](uint64_t tick, DevicePose& pose) {
         return close(tick <= steps ? tick : 2 * steps - std::min(tick, uint64_t(2 * steps)), pose);

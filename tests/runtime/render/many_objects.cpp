@@ -24,7 +24,7 @@ using glm::dvec3;
 namespace {
 
 constexpr int side = 100; // objects in a row, and rows
-constexpr double apart_m = 0.005;
+constexpr double spacing_m = 0.005;
 
 Scene field_of_boxes(double size_m = 0.004)
 {
@@ -33,7 +33,7 @@ Scene field_of_boxes(double size_m = 0.004)
     scene.objects.clear();
     for (int i = 0; i < side * side; ++i) {
         SceneObject& object = scene.objects.emplace_back(first);
-        object.placement.position_m = {apart_m * (i % side), apart_m * (i / side), 0};
+        object.placement.position_m = {spacing_m * (i % side), spacing_m * (i / side), 0};
         object.texture = std::make_shared<TextureSlot>();
     }
     return scene;
@@ -95,7 +95,7 @@ TEST_CASE("groups are compared with the hand before those in them, whether it be
 {
     std::vector<BoundingSphere> balls;
     for (int i = 0; i < side * side; ++i)
-        balls.push_back({{apart_m * (i % side), apart_m * (i / side), 0}, 0.002, i % 3 == 0});
+        balls.push_back({{spacing_m * (i % side), spacing_m * (i / side), 0}, 0.002, i % 3 == 0});
     for (const double z : {0.01, 10.0}) {
         SleepQueue queue(balls);
         queue.go(0, {0.25, 0.25, z}, {0.25, 0.25, z + 0.1}, 1e-3);

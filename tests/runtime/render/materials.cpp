@@ -17,7 +17,7 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double stiffness = 1000, mu_static = 0.4, mu_dynamic = 0.25; // N/m, no unit
+constexpr double mu_static = 0.4, mu_dynamic = 0.25;
 
 // A flat plane whose material scales depend on x.
 template <class Scale>
@@ -29,7 +29,7 @@ Scene scaled_scene(Scale&& friction_scale, Scale&& stiffness_scale)
                                                    sample.stiffness_scale = stiffness_scale(at.p[0]);
                                                },
                                                0, 0, HAPTEL_READS_POINT));
-    scene.objects[0].material = {stiffness, 0, mu_static, mu_dynamic};
+    scene.objects[0].material = {spring_n_per_m, 0, mu_static, mu_dynamic};
     return scene;
 }
 
@@ -53,9 +53,9 @@ TEST_CASE("sliding friction follows the texture's friction scale from point to p
     for (int i = 0; i < 15000; ++i) {
         const double x = -0.02 + i * step_m;
         const dvec3 force = renderer.tick(at(x, 0, -depth_m)).force_n;
-        CHECK(std::abs(force.z - stiffness * depth_m) < 1e-8);
+        CHECK(std::abs(force.z - spring_n_per_m * depth_m) < 1e-8);
         if (i > 1000) { // it slides; the proxy lags by what friction holds, and its scale is that of the tick before
-            const double proxy_before = x - step_m + before / stiffness;
+            const double proxy_before = x - step_m + before / spring_n_per_m;
             CHECK(std::abs(force.x + mu_dynamic * rubber(proxy_before) * force.z) < 1e-8);
         }
         before = force.x;
@@ -76,8 +76,8 @@ TEST_CASE("sticking friction holds up to the texture's share of the static coeff
         for (int i = 0; i < 3000; ++i)
             largest_n = std::max(largest_n, -renderer.tick(at(i * step_m, 0, -depth_m)).force_n.x);
         CAPTURE(value, largest_n);
-        CHECK(largest_n <= mu_static * value * stiffness * depth_m + 1e-8);
-        CHECK(largest_n >= mu_static * value * stiffness * depth_m - stiffness * step_m - 1e-8);
+        CHECK(largest_n <= mu_static * value * spring_n_per_m * depth_m + 1e-8);
+        CHECK(largest_n >= mu_static * value * spring_n_per_m * depth_m - spring_n_per_m * step_m - 1e-8);
     }
 }
 
@@ -92,7 +92,7 @@ TEST_CASE("static and dynamic friction have scales of their own, and dynamic fri
                                                        sample.dynamic_friction_scale = slide;
                                                    },
                                                    0, 0, HAPTEL_READS_POINT));
-        scene.objects[0].material = {stiffness, 0, mu_static, mu_dynamic};
+        scene.objects[0].material = {spring_n_per_m, 0, mu_static, mu_dynamic};
         Renderer renderer(shared(std::move(scene)));
         press(renderer, 0, depth_m);
         double largest_n = 0;
@@ -101,11 +101,11 @@ TEST_CASE("static and dynamic friction have scales of their own, and dynamic fri
             force = renderer.tick(at(i * step_m, 0, -depth_m)).force_n;
             largest_n = std::max(largest_n, -force.x);
         }
-        const double sticks_n = mu_static * of_both * rest * stiffness * depth_m,
-                     slides_n = std::min(mu_dynamic * of_both * slide * stiffness * depth_m, sticks_n);
+        const double sticks_n = mu_static * of_both * rest * spring_n_per_m * depth_m,
+                     slides_n = std::min(mu_dynamic * of_both * slide * spring_n_per_m * depth_m, sticks_n);
         CAPTURE(rest, slide, largest_n);
         CHECK(largest_n <= sticks_n + 1e-8);
-        CHECK(largest_n >= sticks_n - stiffness * step_m - 1e-8);
+        CHECK(largest_n >= sticks_n - spring_n_per_m * step_m - 1e-8);
         CHECK(std::abs(force.x + slides_n) < 1e-8);
     }
 }
@@ -121,7 +121,7 @@ TEST_CASE("damping is the object's times the texture's, and takes energy on clos
             plane_mesh(),
             sample_lambda([=](const haptel_point& at, haptel_sample& sample) { sample.damping_scale = scale(at.p[0]); },
                           0, 0, HAPTEL_READS_POINT));
-        scene.objects[0].material = {stiffness, b, 0, 0};
+        scene.objects[0].material = {spring_n_per_m, b, 0, 0};
         return scene;
     };
     for (const double x : {-0.011, 0.0, 0.0047, 0.0013}) {
@@ -130,8 +130,8 @@ TEST_CASE("damping is the object's times the texture's, and takes energy on clos
             const double z = 5e-3 - i * 1e-3 * speed_m_per_s;
             const dvec3 force = renderer.tick(at(x, 0, z)).force_n;
             if (z < -1e-6 && i > 110) // its speed is known
-                CHECK(std::abs(force.z - stiffness * -z - b * scale(x) * speed_m_per_s * std::min(1.0, -z / 1e-3)) <
-                      1e-8);
+                CHECK(std::abs(force.z - spring_n_per_m * -z -
+                               b * scale(x) * speed_m_per_s * std::min(1.0, -z / 1e-3)) < 1e-8);
         }
     }
     Renderer renderer(shared(damped_scene()));
@@ -170,7 +170,7 @@ TEST_CASE(
                                                                if (spoilt) sample.*scale = value;
                                                            },
                                                            0, 0, HAPTEL_READS_POINT));
-                scene.objects[0].material = {stiffness, 3, mu_static, mu_dynamic};
+                scene.objects[0].material = {spring_n_per_m, 3, mu_static, mu_dynamic};
                 Renderer renderer(shared(std::move(scene)));
                 std::vector<TickResult> results;
                 for (int i = 0; i < 300; ++i)
@@ -196,7 +196,7 @@ TEST_CASE("stiffness is the object's times the texture's, for normal and sideway
     constexpr double depth_m = 0.5e-3;
     for (const double x : {-0.02, 0.0, 0.015}) {
         press(renderer, x, depth_m);
-        const double k = stiffness * soft(x);
+        const double k = spring_n_per_m * soft(x);
         const dvec3 straight = renderer.tick(at(x, 0, -depth_m)).force_n;
         CHECK(std::abs(straight.z - k * depth_m) < 1e-8);
         const double aside_m = 0.5 * mu_static * depth_m; // it sticks
@@ -217,7 +217,7 @@ TEST_CASE("stiffness is the object's times the texture's, for normal and sideway
 TEST_CASE("a probe that sticks does not creep, whatever trembles below the limit")
 {
     Scene scene = bare_scene(plane_mesh(), sine_texture(40e-6, 2e-3));
-    scene.objects[0].material = {stiffness, 0, mu_static, mu_dynamic};
+    scene.objects[0].material = {spring_n_per_m, 0, mu_static, mu_dynamic};
     Renderer renderer(shared(std::move(scene)));
     constexpr double x = 0.3e-3, depth_m = 1e-3;
     press(renderer, x, depth_m);
@@ -233,10 +233,10 @@ TEST_CASE("a probe that sticks does not creep, whatever trembles below the limit
 TEST_CASE("the end of a stylus has its friction while the shaft rests on an edge")
 {
     // It lies on a plate, with its tip beyond the border, and is drawn along that: the border has no friction.
-    constexpr double stiffness = 1000, mu = 0.3, depth_m = 1e-3;
+    constexpr double spring_n_per_m = 1000, mu = 0.3, depth_m = 1e-3;
     Scene scene = bare_scene(plane_mesh());
     scene.probe = {ProbeKind::stylus, 0.06};
-    scene.objects[0].material = {stiffness, 0, mu, mu};
+    scene.objects[0].material = {spring_n_per_m, 0, mu, mu};
     Renderer renderer(shared(std::move(scene)));
     const auto hand = [](double y, double z) { return DevicePose{{0.07, y, z}, {0.01, y, z}}; };
     renderer.tick(hand(0, 1e-3));
@@ -244,16 +244,16 @@ TEST_CASE("the end of a stylus has its friction while the shaft rests on an edge
     for (int i = 0; i < 100; ++i) result = renderer.tick(hand(i * 1e-4, -depth_m));
     // Two unknown pushes raise both ends by the depth: at the tail all that the border, 2/3 along, does not raise.
     const double border = depth_m / (2.0 / 3), tail = depth_m - border / 3;
-    CHECK(std::abs(result.force_n.z - stiffness * (border + tail)) < 1e-4);
-    CHECK(std::abs(result.force_n.y + mu * stiffness * tail) < 2e-4); // its radius is a micrometre
+    CHECK(std::abs(result.force_n.z - spring_n_per_m * (border + tail)) < 1e-4);
+    CHECK(std::abs(result.force_n.y + mu * spring_n_per_m * tail) < 2e-4); // its radius is a micrometre
 }
 
 TEST_CASE("what has slid sticks again once the hand has come back, not when it rests, and then needs the static force")
 {
     Scene scene = bare_scene(plane_mesh());
-    scene.objects[0].material = {stiffness, 0, mu_static, mu_dynamic};
+    scene.objects[0].material = {spring_n_per_m, 0, mu_static, mu_dynamic};
     Renderer renderer(shared(std::move(scene)));
-    constexpr double depth_m = 1e-3, normal_n = stiffness * depth_m, step_m = 1e-6;
+    constexpr double depth_m = 1e-3, normal_n = spring_n_per_m * depth_m, step_m = 1e-6;
     press(renderer, 0, depth_m);
     double x = 0;
     for (int turn = 0; turn < 3; ++turn) {
@@ -263,7 +263,7 @@ TEST_CASE("what has slid sticks again once the hand has come back, not when it r
             largest_n = std::max(largest_n, last_n);
         }
         CHECK(largest_n <= mu_static * normal_n + 1e-8);
-        CHECK(largest_n > mu_static * normal_n - 2 * stiffness * step_m);
+        CHECK(largest_n > mu_static * normal_n - 2 * spring_n_per_m * step_m);
         CHECK(std::abs(last_n - mu_dynamic * normal_n) < 1e-8);
         for (int i = 0; i < 3; ++i) last_n = -renderer.tick(at(x, 0, -depth_m)).force_n.x; // rest
         CHECK(std::abs(last_n - mu_dynamic * normal_n) < 1e-8);
@@ -277,14 +277,14 @@ TEST_CASE("what has slid sticks again once the hand has come back, not when it r
 TEST_CASE("friction grows with the force that presses")
 {
     Scene scene = bare_scene(plane_mesh());
-    scene.objects[0].material = {stiffness, 0, mu_static, mu_dynamic};
+    scene.objects[0].material = {spring_n_per_m, 0, mu_static, mu_dynamic};
     Renderer renderer(shared(std::move(scene)));
     press(renderer, 0, 0.2e-3);
     double x = 0;
     for (const double depth_m : {0.2e-3, 0.5e-3, 1e-3, 2e-3, 0.3e-3}) {
         dvec3 force(0);
         for (int i = 0; i < 2000; ++i) force = renderer.tick(at(x += 5e-6, 0, -depth_m)).force_n;
-        CHECK(std::abs(force.z - stiffness * depth_m) < 1e-8);
+        CHECK(std::abs(force.z - spring_n_per_m * depth_m) < 1e-8);
         CHECK(std::abs(force.x + mu_dynamic * force.z) < 1e-8);
     }
 }
@@ -301,7 +301,7 @@ TEST_CASE("a texture is not evaluated again where nothing has changed that it re
             -20e-6, 20e-6, HAPTEL_READS_POINT | reads);
     };
     Scene scene = bare_scene(plane_mesh(), texture(0));
-    scene.objects[0].material = {stiffness, 0, mu_static, mu_dynamic};
+    scene.objects[0].material = {spring_n_per_m, 0, mu_static, mu_dynamic};
     const std::shared_ptr<TextureSlot> slot = scene.objects[0].texture;
     Renderer renderer(shared(std::move(scene)));
     constexpr double depth_m = 1e-3;

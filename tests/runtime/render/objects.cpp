@@ -9,6 +9,7 @@
 
 #include <atomic>
 #include <cmath>
+#include <numbers>
 #include <random>
 #include <thread>
 #include <vector>
@@ -18,8 +19,6 @@ using namespace haptel::runtime;
 using namespace haptel::tests;
 
 namespace {
-
-constexpr double pi = 3.14159265358979323846;
 
 // Any function of time.
 class ScriptedMotion final : public Motion {
@@ -121,7 +120,7 @@ TEST_CASE("a plate that turns under a resting hand drags it with sliding frictio
 TEST_CASE("a swinging object is where its figures say, at any time, and comes back")
 {
     const Placement start{glm::dmat3(1), {1, 2, 3}};
-    const SteadyMotion motion(start, {{1, 0, 0}, pi / 2, {0.1, 0, 0}, 0.5});
+    const SteadyMotion motion(start, {{1, 0, 0}, std::numbers::pi / 2, {0.1, 0, 0}, 0.5});
     const Placement later = *motion.at(0.5); // a quarter period of the swing, an eighth of a turn
     CHECK(glm::length(later.position_m - glm::dvec3(1.1, 2, 3)) < 1e-15);
     CHECK(glm::length(later.rotation * glm::dvec3(0, 1, 0) - glm::dvec3(0, std::sqrt(0.5), std::sqrt(0.5))) < 1e-15);

@@ -16,7 +16,7 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double step_m = 5e-5, depth_m = 0.5e-3; // 0.05 m/s at 1 kHz
+constexpr double way_m = 5e-5, pressed_m = 0.5e-3; // 0.05 m/s at 1 kHz
 
 struct Probe {
     const char* name;
@@ -55,14 +55,14 @@ std::vector<double> strokes(const Mesh& mesh, const Probe& probe, double frictio
             return force;
         };
         tick();
-        for (double height = 1e-3; height > -depth_m; height -= step_m, hand -= step_m * out) tick();
+        for (double height = 1e-3; height > -pressed_m; height -= way_m, hand -= way_m * out) tick();
         dvec3 force = tick(), hand_before = hand;
         for (int i = 0; i < 400 && std::ssize(changes) < ticks; ++i) {
             const double depth = glm::length(force) / stiffness;
-            if (depth == 0 || depth > 4 * depth_m) break; // it has left, or the gripper has taken hold
+            if (depth == 0 || depth > 4 * pressed_m) break; // it has left, or the gripper has taken hold
             smooth = glm::normalize(0.95 * smooth + 0.05 * force / (stiffness * depth));
             along = glm::normalize(along - glm::dot(along, smooth) * smooth);
-            hand += step_m * along + 0.05 * (depth - depth_m) * smooth;
+            hand += way_m * along + 0.05 * (depth - pressed_m) * smooth;
             const dvec3 now = tick();
             const double way = (probe.settings.has_tail() ? std::sqrt(2.0) : 1) * glm::distance(hand, hand_before);
             if (i > 2) changes.push_back(glm::distance(now, force) / (stiffness * way));

@@ -12,8 +12,6 @@ using glm::dvec3;
 
 namespace {
 
-constexpr double stiffness_n_per_m = 1000;
-
 // A box of 10 cm, its upper right edge along y at (0.05, y, 0.05).
 Scene box_scene(double grip_m = 0.15)
 {
@@ -58,7 +56,7 @@ TEST_CASE("a stylus on an edge is felt with the stiffness over (1-s)^2 + s^2, an
             const DevicePose pose = across(share, depth_m);
             const TickResult result = felt(renderer, pose);
             CAPTURE(share, grip_m);
-            const double push_n = stiffness_n_per_m * depth_m / ((1 - share) * (1 - share) + share * share);
+            const double push_n = spring_n_per_m * depth_m / ((1 - share) * (1 - share) + share * share);
             CHECK(glm::length(result.force_n - push_n * normal) < 1e-4 * push_n);
             // The edge is (share * 0.15 - grip) further along the stylus than the hand: force times lever, about -y.
             const dvec3 torque = glm::cross((share * 0.15 - grip_m) * glm::normalize(dvec3(1, 0, -1)), push_n * normal);

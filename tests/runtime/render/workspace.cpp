@@ -6,6 +6,7 @@
 #include "tests/support/touch_scenes.h"
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 using namespace haptel;
@@ -13,8 +14,6 @@ using namespace haptel::runtime;
 using namespace haptel::tests;
 
 namespace {
-
-constexpr double pi = 3.141592653589793;
 
 Workspace turned(double scale)
 {
@@ -38,7 +37,7 @@ Scene world(double scale, const Placement& placement, ProbeKind probe)
 {
     Mesh mesh = make_torus(0.4, 48, 24);
     scale_to_size(mesh, 0.1 * scale);
-    const double wave = 2 * pi / (3e-3 * scale), amplitude_m = 40e-6 * scale;
+    const double wave = 2 * std::numbers::pi / (3e-3 * scale), amplitude_m = 40e-6 * scale;
     Scene scene = bare_scene(mesh, lambda_texture(
                                        [=](const haptel_point& point, glm::dvec3& gradient) {
                                            gradient = {amplitude_m * wave * std::cos(wave * point.p[0]), 0, 0};
@@ -169,7 +168,7 @@ TEST_CASE("a closed path through a scaled scene gives the hand no energy")
         double given_j = 0, held_j = 0;
         glm::dvec3 last_m(0), force_n(0);
         for (int i = 0; i <= steps; ++i) { // 5 mm out of the ball of 50 mm and 2 mm into it, three times
-            const double t = 2 * pi * i / steps, r = 0.0515 + 0.0035 * std::sin(3 * t);
+            const double t = 2 * std::numbers::pi * i / steps, r = 0.0515 + 0.0035 * std::sin(3 * t);
             const glm::dvec3 p(r * std::cos(0.3 * std::sin(t)), r * std::sin(0.3 * std::sin(t)), 0.003 * std::sin(t));
             if (i == 0) renderer.tick({glm::dvec3(0.08, 0, 0), glm::dvec3(0.08, 0, 0)});
             if (i > 0) {

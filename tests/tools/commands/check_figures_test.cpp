@@ -1,5 +1,6 @@
 // haptel check: what it finds out about a texture. Costs, bounds, slopes, and where it is not smooth.
 #include "tests/support/catch.h"
+#include "tests/support/project_path.h"
 #include "tests/support/tries.h"
 #include "tests/tools/commands/near.h"
 #include "tests/tools/commands/run_command.h"
@@ -195,7 +196,7 @@ TEST_CASE("check: material outputs are bounded like the height, and those that c
 
 TEST_CASE("check: patterns that jump are told so with height and place, the others have a note at most")
 {
-    const std::string file = std::string(HAPTEL_SOURCE_DIR) + "/tests/lang/patterns.haptel"; // docs say which jump
+    const std::string file = project_path("tests/lang/patterns.haptel"); // docs say which jump
     const Json report = Json::parse(run_command("check '" + file + "' --json").out);
     int jumps = 0, seams = 0;
     for (const Json& texture : report["textures"]) {

@@ -1,15 +1,15 @@
 // haptel eval: values at points, by three engines.
 #include "tests/support/catch.h"
 #include "tests/tools/commands/run_command.h"
+#include "tools/output/json.h"
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <sstream>
 #include <sys/stat.h>
 
 using namespace haptel::test;
-using Json = nlohmann::json;
+using haptel::tools::Json;
 
 namespace {
 

@@ -1,6 +1,7 @@
 // Examples show what their first lines say.
 #include "runtime/servo/recording.h"
 #include "tests/support/catch.h"
+#include "tests/support/project_path.h"
 #include "tests/tools/commands/run_command.h"
 #include "tools/output/json.h"
 
@@ -19,7 +20,7 @@ using haptel::tools::Json;
 
 namespace {
 
-const std::string explore = "explore " HAPTEL_SOURCE_DIR "/examples/scenes/";
+const std::string explore = "explore " + project_path("examples/scenes/");
 
 // What a hand feels in so many seconds of a scene of which nothing is to be said.
 std::vector<TickRecord> felt_in(const std::string& scene, int seconds)

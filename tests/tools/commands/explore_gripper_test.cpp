@@ -1,6 +1,7 @@
 // A gripper in the simulated hand, through the command: what pushes its fingers apart, in report, trace and replay.
 #include "runtime/servo/recording.h"
 #include "tests/support/catch.h"
+#include "tests/support/project_path.h"
 #include "tests/tools/commands/run_command.h"
 #include "tools/output/json.h"
 
@@ -29,7 +30,7 @@ TEST_CASE("explore pinches with a gripper, says how hard, and feels the same whe
 {
     const Folder folder;
     const std::string explore =
-        "explore " HAPTEL_SOURCE_DIR "/examples/scenes/pinch.toml --clock virtual --json --out ";
+        "explore " + project_path("examples/scenes/pinch.toml") + " --clock virtual --json --out ";
     const Ran ran = run_command(explore + folder.file("run") + " --seconds 2.2");
     INFO(ran.err);
     REQUIRE(ran.code == 0);
@@ -49,7 +50,7 @@ TEST_CASE("explore pinches with a gripper, says how hard, and feels the same whe
     CHECK(std::abs(felt[1500].grip_force_n - 1.2) < 0.05); // press_n, but for the device's dry friction of 0.04 N
     CHECK(felt[2150].grip_force_n == 0);                   // open again
     CHECK(contains(
-        run_command("explore " HAPTEL_SOURCE_DIR "/examples/scenes/pinch.toml --clock virtual --seconds 1.5").out,
+        run_command("explore " + project_path("examples/scenes/pinch.toml") + " --clock virtual --seconds 1.5").out,
         "\n  grip         rms "));
 
     // Replayed, and from a trace that has no column for it, as older ones.

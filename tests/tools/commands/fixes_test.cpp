@@ -1,5 +1,6 @@
 // --fix: which fixes are taken, that nothing gets worse, and how the file is replaced.
 #include "tests/support/catch.h"
+#include "tests/support/project_path.h"
 #include "tests/tools/commands/run_command.h"
 #include "tools/commands/fixes.h"
 #include "tools/output/replace_file.h"
@@ -107,7 +108,7 @@ TEST_CASE("fixes: of every example and golden file, none makes it worse, and a s
 {
     std::vector<std::string> texts;
     for (const lang::DiagnosticInfo& info : lang::all_diagnostics) texts.emplace_back(info.wrong);
-    for (const auto& entry : std::filesystem::directory_iterator(HAPTEL_SOURCE_DIR "/tests/lang/golden"))
+    for (const auto& entry : std::filesystem::directory_iterator(project_path("tests/lang/golden")))
         texts.push_back(read_file(entry.path()));
     size_t fixed = 0;
     for (const std::string& text : texts) {

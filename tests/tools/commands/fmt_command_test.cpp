@@ -6,6 +6,7 @@
 #include "tests/support/catch.h"
 #include "tests/support/haptel_files.h"
 #include "tests/support/ir_print.h"
+#include "tests/support/project_path.h"
 #include "tests/support/tries.h"
 #include "tests/tools/commands/run_command.h"
 
@@ -59,7 +60,7 @@ TEST_CASE("fmt: what a file means is what its formatted text means, and formatti
 TEST_CASE("fmt: the library and the examples are in its style")
 {
     for (const char* folder : {"stdlib", "stdlib/tests", "examples/textures"}) {
-        const Ran ran = run_command("fmt --check " + std::string(HAPTEL_SOURCE_DIR) + "/" + folder + "/*.haptel");
+        const Ran ran = run_command("fmt --check " + project_path(folder) + "/*.haptel");
         CAPTURE(folder, ran.out, ran.err);
         CHECK(ran.code == 0);
     }

@@ -2,6 +2,7 @@
 #include "lang/compile.h"
 #include "stdlib/stdlib.h"
 #include "tests/support/catch.h"
+#include "tests/support/project_path.h"
 #include "tests/tools/commands/run_command.h"
 #include "tools/output/json.h"
 
@@ -182,7 +183,7 @@ TEST_CASE("info: choices and vectors, as written and by components")
 
 TEST_CASE("info: docs/stdlib.md is what --markdown prints (./dev docs makes it anew), and its pictures are there")
 {
-    const std::filesystem::path docs = std::filesystem::path(HAPTEL_SOURCE_DIR) / "docs";
+    const std::filesystem::path docs = project_path("docs");
     const std::string page = run_command("info --markdown").out;
     CHECK(page == read_file(docs / "stdlib.md"));
     size_t pictures = 0;

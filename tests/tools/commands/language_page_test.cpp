@@ -2,6 +2,7 @@
 // and gives the values that stand in it.
 #include "tests/conformance/case.h"
 #include "tests/support/catch.h"
+#include "tests/support/project_path.h"
 #include "tests/support/tries.h"
 #include "tests/tools/commands/run_command.h"
 #include "tools/output/json.h"
@@ -24,7 +25,7 @@ struct Fence {
 
 std::vector<Fence> fences(const std::string& name)
 {
-    std::istringstream page(read_file(HAPTEL_SOURCE_DIR "/docs/" + name));
+    std::istringstream page(read_file(project_path("docs/" + name)));
     std::vector<Fence> all;
     bool inside = false;
     size_t number = 0;

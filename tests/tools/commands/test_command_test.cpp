@@ -1,15 +1,15 @@
 // haptel test: files and folders of textures, the table, JSON, JUnit, exit codes.
 #include "tests/support/catch.h"
 #include "tests/tools/commands/run_command.h"
+#include "tools/output/json.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 using namespace haptel::test;
-using Json = nlohmann::json;
+using haptel::tools::Json;
 
 TEST_CASE("test finds the textures of folders, and passes what is right")
 {

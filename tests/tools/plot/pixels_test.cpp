@@ -13,8 +13,6 @@ using namespace haptel::tools::plot;
 
 namespace {
 
-constexpr double two_pi = 2 * std::numbers::pi;
-
 // height_m sin(2 pi x / length) upon 1 mm, over 20 mm; x is turned by 37 degrees so that both axes see it.
 TextureView waves(double length_m, double height_m)
 {
@@ -26,7 +24,7 @@ TextureView waves(double length_m, double height_m)
     };
     view.samples = [=](std::span<const haptel_point> points, std::span<haptel_sample> samples) {
         for (size_t i = 0; i < points.size(); ++i) {
-            const double k = two_pi / length_m, phase = k * (0.8 * points[i].p[0] + 0.6 * points[i].p[1]);
+            const double k = 2 * std::numbers::pi / length_m, phase = k * (0.8 * points[i].p[0] + 0.6 * points[i].p[1]);
             const double slope = height_m * k * std::cos(phase);
             samples[i] = blank_sample;
             samples[i].height_m = 1e-3 + height_m * std::sin(phase);

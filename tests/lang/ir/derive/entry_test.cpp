@@ -10,7 +10,7 @@ using namespace ir_test;
 
 namespace {
 
-Module with_entries(const std::string& body)
+Module texture_of(const std::string& body)
 {
     Module module = parsed("function \"body\" () {\n" + body + R"(
         }
@@ -50,7 +50,7 @@ double& at(EntryInputs<double>& inputs, Input input)
 
 TEST_CASE("entries: the gradient follows p, and n and uv by their Jacobians on the facet")
 {
-    Module module = with_entries(R"(
+    Module module = texture_of(R"(
           %x = input p_x
           %n = input n_y
           %v = input uv_y
@@ -80,7 +80,7 @@ TEST_CASE("entries: the gradient follows p, and n and uv by their Jacobians on t
 
 TEST_CASE("entries: what is not finite becomes zero and a fault bit")
 {
-    Module root = with_entries("%x = input p_x\n %h = log %x\n return %h");
+    Module root = texture_of("%x = input p_x\n %h = log %x\n return %h");
     EntryInputs<double> inputs;
     inputs.parameters = {{2.0}};
     for (double x : {-1.0, 0.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
@@ -95,7 +95,7 @@ TEST_CASE("entries: what is not finite becomes zero and a fault bit")
     CHECK(sample(root, inputs).faults == 0);
 
     // a height of 1e300 at most, whose slope of 1e600 is no number
-    Module steep = with_entries(R"(
+    Module steep = texture_of(R"(
           %x = input p_x
           %big = real 1e300
           %y = mul %x, %big
@@ -110,7 +110,7 @@ TEST_CASE("entries: what is not finite becomes zero and a fault bit")
 
 TEST_CASE("entries: a texture that reads nothing is flat")
 {
-    Module module = with_entries("%h = real 0.001\n return %h");
+    Module module = texture_of("%h = real 0.001\n return %h");
     CHECK(module.textures[0].reads == 0);
     EntryInputs<double> inputs;
     inputs.parameters = {{2.0}};

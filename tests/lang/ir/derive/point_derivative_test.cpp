@@ -26,11 +26,11 @@ Module with_entries(const std::string& functions)
     return module;
 }
 
-struct Sample {
+struct PointSample {
     double height, gradient[3];
 };
 
-Sample sample(const Module& module, const EntryInputs<double>& inputs)
+PointSample point_sample(const Module& module, const EntryInputs<double>& inputs)
 {
     Interpreter<double> machine(module);
     const double alone = machine.run(module.textures[0].height, {}, &inputs)[0].real;
@@ -72,7 +72,7 @@ TEST_CASE("point derivatives: a callee is told how its argument moves, and the g
     })");
     // h = y cos x * y sin x
     const double x = 0.7, y = 1.3, c = std::cos(x), s = std::sin(x);
-    const Sample made = sample(module, at(x, y, 5));
+    const PointSample made = point_sample(module, at(x, y, 5));
     CHECK(made.height == (c * y) * (s * y));
     CHECK(std::fabs(made.gradient[0] - y * y * (c * c - s * s)) < 1e-15);
     CHECK(std::fabs(made.gradient[1] - 2 * y * s * c) < 1e-15);
@@ -108,7 +108,7 @@ TEST_CASE("point derivatives: through functions that do not ask, ifs and loops")
       return %h
     })");
     // x > 0: r = 8 x^3, h = 24 x^2 8 x^3 = 192 x^5; else r = -8 x, h = 64 x
-    const Sample right = sample(module, at(0.5, 0, 0)), left = sample(module, at(-0.5, 0, 0));
+    const PointSample right = point_sample(module, at(0.5, 0, 0)), left = point_sample(module, at(-0.5, 0, 0));
     CHECK(right.height == 6.0);
     CHECK(right.gradient[0] == 60.0);
     CHECK(left.height == -32.0);
@@ -130,7 +130,7 @@ TEST_CASE("point derivatives: n and uv move by their Jacobians on the facet")
     EntryInputs<double> inputs;
     inputs.input[static_cast<size_t>(Input::n_dp_12)] = 0.5;
     inputs.input[static_cast<size_t>(Input::uv_dp_01)] = 3;
-    CHECK(sample(module, inputs).height == 3.5);
+    CHECK(point_sample(module, inputs).height == 3.5);
 }
 
 TEST_CASE("point derivatives: the derivative of a function that asks has both derivatives, in either order")
@@ -159,7 +159,7 @@ TEST_CASE("point derivatives: the derivative of a function that asks has both de
     // inner(q) = (2 q q') q^2 = 2 q^3 q' with q' = dq/dx given: its derivative by q, at q = sin x, is
     // 6 q^2 q' + 2 q^3 dq'/dq, where q' itself is held: 6 sin^2 cos
     const double x = 0.4, s = std::sin(x), c = std::cos(x);
-    const Sample made = sample(module, at(x, 0, 0));
+    const PointSample made = point_sample(module, at(x, 0, 0));
     CHECK(std::fabs(made.height - 6 * s * s * c) < 1e-15);
     CHECK(std::fabs(made.gradient[0] - (12 * s * c * c - 6 * s * s * s)) < 4e-15);
 }
@@ -196,7 +196,7 @@ TEST_CASE("point derivatives: inside of what is measured, other measurements cou
         slope = next_slope;
         bend = next_bend;
     }
-    const Sample made = sample(module, at(x, 0, 0));
+    const PointSample made = point_sample(module, at(x, 0, 0));
     CHECK(std::fabs(made.height - (q + last)) < 1e-15);
     CHECK(std::fabs(made.gradient[0] - (slope + last_slope)) < 4e-14);
 }
@@ -223,7 +223,7 @@ TEST_CASE("point derivatives: what was measured has no tangent that a loop would
     for (const Instruction& made : module.functions[module.textures[0].body].body.instructions)
         if (std::holds_alternative<For>(made.kind)) CHECK(made.results.size() == 3); // q, its tangent, the sum
     // x^16 + 2 + 2 x + 4 x^3 + 8 x^7, whose last three terms were measured
-    CHECK(sample(module, at(0.5, 0, 0)).height == 0x1p-16 + 2 + 1 + 0.5 + 0.0625);
+    CHECK(point_sample(module, at(0.5, 0, 0)).height == 0x1p-16 + 2 + 1 + 0.5 + 0.0625);
 }
 
 TEST_CASE("point derivatives: only tangents that are asked for are made")
