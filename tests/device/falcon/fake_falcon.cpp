@@ -112,6 +112,7 @@ FakeFalcon::Answer FakeFalcon::in(std::span<uint8_t> bytes, std::size_t& size)
         bytes[size++] = to_host_.front().first;
         to_host_.pop_front();
     }
+    if (!homed_ && size > 2 && to_host_.empty()) host_knows_ = true;
     return Answer::fine;
 }
 
@@ -179,9 +180,10 @@ void FakeFalcon::obey(const std::string& packet)
     ++packets_;
     const bool force = motors_ != Motors{};
     packets_with_force_ += force;
-    // A host may not know yet what the last reply tells it.
-    packets_unhomed_ = homed_ ? 0 : packets_unhomed_ + 1;
-    violations_ += force && packets_unhomed_ > 2;
+    // A host cannot know before it has read a reply that says so, and one packet may be on its way by then.
+    if (homed_) host_knows_ = false, packets_since_it_knows_ = 0;
+    if (host_knows_) ++packets_since_it_knows_;
+    violations_ += force && packets_since_it_knows_ > 2;
     for (const int motor : motors_) violations_ += motor > 4095 || motor < -4095;
     if ((flags_ & 1) && ++homing_packets_ >= packets_to_home_) homed_ = true;
 
@@ -210,6 +212,7 @@ void FakeFalcon::plug_in()
     state_ = State::waiting;
     homed_ = false;
     homing_packets_ = 0;
+    host_knows_ = true;
     divisor_ = 0;
     modem_ = 0;
     motors_ = {};
