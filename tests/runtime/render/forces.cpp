@@ -120,7 +120,7 @@ TEST_CASE("the normal that a tick tells is that of the round thing for which fac
         const TickResult result = renderer.tick({tip, tip});
         if (i > 0) furthest = std::max(furthest, glm::length(result.normal - glm::normalize(out)));
     }
-    CHECK(furthest < 0.3 * pi / 180);
+    CHECK(furthest < 0.3 * std::numbers::pi / 180);
 }
 
 TEST_CASE("friction sticks up to the static coefficient and slides with the dynamic one")
