@@ -1,5 +1,6 @@
 #include "device/device_factory.h"
 
+#include "device/evdev/open_evdev.h"
 #include "device/falcon/open_falcon.h"
 #include "device/replay_device.h"
 #include "device/simulated_device.h"
@@ -141,16 +142,24 @@ void list_connected_falcons(ConnectedDevices& found)
                                  fmt::format("USB bus {} device {}", one.bus, one.address), one.error});
 }
 
+void list_connected_inputs(ConnectedDevices& found)
+{
+    for (const ListedInput& one : list_input_ports())
+        found.devices.push_back({"evdev:" + one.path, one.name, one.path, one.error});
+}
+
 // One entry per driver.
 struct Driver {
     std::string_view name, syntax, what;
     DeviceResult (*open)(std::string_view variant, const DeviceRequest& request);
     void (*list)(ConnectedDevices& found); // null: nothing is connected
 };
-constexpr std::array<Driver, 3> drivers = {
+constexpr std::array<Driver, 4> drivers = {
     {{"simulated", "simulated[:PRESET[:HAND]]", "a hand and a device in the computer", open_simulated, nullptr},
      {"replay", "replay:FILE", "the hand of an earlier run", open_recording, nullptr},
-     {"falcon", "falcon[:SERIAL]", "Novint Falcon, three axes, USB", open_connected_falcon, list_connected_falcons}}};
+     {"falcon", "falcon[:SERIAL]", "Novint Falcon, three axes, USB", open_connected_falcon, list_connected_falcons},
+     {"evdev", "evdev:FILE", "wheel or stick with force feedback, one axis or two, by its file in /dev/input",
+      open_evdev, list_connected_inputs}}};
 
 } // namespace
 

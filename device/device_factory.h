@@ -3,6 +3,7 @@
 //   simulated[:PRESET[:HAND]]   simulated:premium:firm is the default
 //   replay:FILE                 a recording of `haptel record`, or a trace.csv
 //   falcon[:SERIAL]             a Novint Falcon on the USB
+//   evdev:FILE                  a wheel or a stick with force feedback, through the kernel
 #pragma once
 
 #include "runtime/hand/haptic_device.h"

@@ -29,8 +29,9 @@ public:
     runtime::DeviceStatus write(const glm::dvec3& force_n, const glm::dvec3& torque_n_m) noexcept override;
     void stop() noexcept override; // for good
 
+    std::string state() const override { return driver_.state(); } // connected, or why not
+
     // Any thread but the servo's.
-    std::string state() const { return driver_.state(); } // in words: connected, or why not
     FalconCounters counters() const { return driver_.link().counters(); }
     uint64_t late() const { return late_.load(std::memory_order_relaxed); } // reads that found no reply since the last
     uint8_t buttons() const { return buttons_.load(std::memory_order_relaxed); }

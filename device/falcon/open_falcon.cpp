@@ -1,6 +1,7 @@
 #include "device/falcon/open_falcon.h"
 
 #include "device/falcon/falcon_firmware.h"
+#include "device/servo_silence.h"
 #include "device/usb/usb_transport.h"
 
 #include <memory>
@@ -26,6 +27,7 @@ runtime::DeviceResult falcon_through(const runtime::DeviceRequest& request, Open
 
     FalconOptions options;
     options.firmware = std::move(file.image);
+    options.times.watchdog_ms = servo_silence_ms(request.rate_hz);
     return {std::make_unique<FalconDevice>(request.name, std::move(open), std::move(options)),
             {},
             {},

@@ -24,6 +24,7 @@ public:
     DeviceStatus read(DevicePose& pose) noexcept override;
     DeviceStatus write(const glm::dvec3& force_n, const glm::dvec3& torque_n_m) noexcept override;
     void write_grip(double grip_force_n) noexcept override { device_->write_grip(grip_force_n); }
+    std::string state() const override { return device_->state(); }
     void stop() noexcept override { device_->stop(); }
 
 private:

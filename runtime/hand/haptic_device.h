@@ -64,6 +64,8 @@ public:
     virtual DeviceStatus write(const glm::dvec3& force_n, const glm::dvec3& torque_n_m) noexcept = 0;
     // Before write, of a gripper alone: how hard its fingers are to be pushed apart, N. For devices with such a motor.
     virtual void write_grip(double /*grip_force_n*/) noexcept {}
+    // In words, what it does or why it has no pose; empty: nothing to tell. Any thread but the servo's.
+    virtual std::string state() const { return {}; }
     // Zero force, motors off. Safe to call at any time, from the destructor too.
     virtual void stop() noexcept = 0;
 };

@@ -98,6 +98,8 @@ void ServoThread::begin()
 
 void ServoThread::finish()
 {
+    if (report_.state == ServoState::faulted)
+        if (const std::string state = device_->state(); !state.empty()) report_.stop_reason += ": " + state;
     device_->stop();
     report_.seconds = static_cast<double>(periods_) / rate_hz_;
     const auto rms = [&](double squared_sum) {

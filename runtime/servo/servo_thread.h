@@ -59,6 +59,9 @@ public:
     // Frees the scenes that were replaced; publish does so too.
     void collect() { scenes_.collect(); }
 
+    // HapticDevice::state of its device. Any thread but the servo's.
+    std::string device_state() const { return device_->state(); }
+
     // For one reader.
     Telemetry& telemetry() noexcept { return telemetry_; }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <string>
 #include <utility>
 
 namespace haptel::tests {
@@ -86,6 +87,7 @@ public:
         uint64_t writes = 0;
         bool stopped = false;
         glm::dvec3 last_force_n{0};
+        std::string state; // what the device says of itself
     };
 
     explicit ScriptedDevice(Read read, std::shared_ptr<Seen> seen = std::make_shared<Seen>())
@@ -102,6 +104,7 @@ public:
         seen_->last_force_n = force_n;
         return runtime::DeviceStatus::ok;
     }
+    std::string state() const override { return seen_->state; }
     void stop() noexcept override { seen_->stopped = true; }
 
 private:

@@ -115,12 +115,13 @@ ExitCode open_and_look(const DevicesOptions& options)
                        1e3 * range_m.z);
     }
     if (seen.moved()) return ExitCode::fine;
-    say_error(
-        seen.poses == 0
-            ? fmt::format("'{}' gave no pose within {:g} s: is it homed, and switched on?", info.name, options.seconds)
-            : fmt::format("'{}' never said another place than its first: move it while this looks. If it was "
-                          "moved, it speaks another protocol, or another program holds it",
-                          info.name));
+    const std::string state = opened.device->state();
+    say_error(seen.poses == 0
+                  ? fmt::format("'{}' gave no pose within {:g} s: {}", info.name, options.seconds,
+                                state.empty() ? "is it homed, and switched on?" : lang::printable(state))
+                  : fmt::format("'{}' never said another place than its first: move it while this looks. If it was "
+                                "moved, it speaks another protocol, or another program holds it",
+                                info.name));
     return ExitCode::findings;
 }
 

@@ -124,7 +124,8 @@ ExitCode explore(const ExploreOptions& options)
     hands.start();
     while (hands.running()) {
         if (interrupted() || hands.is_recording_lost()) hands.request_stop();
-        if (const std::string messages = scene->take_messages() + textures.take_messages(); !messages.empty())
+        if (const std::string messages = scene->take_messages() + textures.take_messages() + hands.take_messages();
+            !messages.empty())
             status.say(messages);
         if (!hands.drain(status)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }

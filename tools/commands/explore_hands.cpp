@@ -1,8 +1,10 @@
 #include "tools/commands/explore_hands.h"
 
+#include "lang/text/diagnostic.h"
 #include "tools/arguments/feel_files.h"
 
 #include <algorithm>
+#include <fmt/format.h>
 #include <utility>
 
 namespace haptel::tools {
@@ -64,6 +66,21 @@ std::string ExploreHands::publish(const std::shared_ptr<const runtime::Scene>& s
 void ExploreHands::collect()
 {
     for (Hand& hand : hands_) hand.servo->collect();
+}
+
+std::string ExploreHands::take_messages()
+{
+    std::string messages;
+    const auto now = std::chrono::steady_clock::now();
+    if (now - looked_ < std::chrono::milliseconds(100)) return messages;
+    looked_ = now;
+    for (Hand& hand : hands_)
+        if (std::string state = hand.servo->device_state(); state != hand.device_state) {
+            hand.device_state = std::move(state);
+            if (!hand.device_state.empty())
+                messages += fmt::format("{}: {}\n", hand.device, lang::printable(hand.device_state));
+        }
+    return messages;
 }
 
 bool ExploreHands::is_recording_lost() const

@@ -10,6 +10,7 @@
 #include "tools/report/explore_report.h"
 #include "tools/report/explore_status.h"
 
+#include <chrono>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -43,6 +44,8 @@ public:
     // Takes what the servos have told, at most a ring each. False: nothing. To be called every few milliseconds: what
     // is recorded goes to the file from here.
     bool drain(ExploreStatus& status);
+    // What devices say of themselves that they did not say before, a line each; looks ten times a second.
+    std::string take_messages();
     // Waits for the end of all, and takes the rest.
     std::vector<HandOutcome> wait(ExploreStatus& status);
     // Writes what is left to write of the files.
@@ -53,7 +56,7 @@ public:
 
 private:
     struct Hand {
-        std::string device;
+        std::string device, device_state;
         runtime::Workspace workspace;
         double position_resolution_m = 0; // of its device; 0: not known
         HeightRange heights;              // that it felt
@@ -69,6 +72,7 @@ private:
     std::vector<runtime::TickRecord> newest_;  // of each hand
     std::optional<runtime::ServoTurns> turns_; // of all servos; virtual clock only
     std::string report_error_;
+    std::chrono::steady_clock::time_point looked_{}; // at what devices say
 };
 
 } // namespace haptel::tools

@@ -147,12 +147,16 @@ TEST_CASE("whatever ends a device ends the run with zero force and the reason")
         DeviceStatus status;
         ServoState state;
         const char* reason;
+        const char* device_state = "";
     };
     for (const Case& expected :
          {Case{DeviceStatus::finished, ServoState::finished, "the device's stroke or recording is over"},
           Case{DeviceStatus::disconnected, ServoState::faulted, "the device was disconnected"},
-          Case{DeviceStatus::fault, ServoState::faulted, "the device reported a fault"}}) {
+          Case{DeviceStatus::fault, ServoState::faulted, "the device reported a fault"},
+          Case{DeviceStatus::fault, ServoState::faulted, "the device reported a fault: it has no program",
+               "it has no program"}}) {
         auto seen = std::make_shared<ScriptedDevice::Seen>();
+        seen->state = expected.device_state;
         const ServoReport report = run(std::make_unique<ScriptedDevice>(
                                            [&](uint64_t tick, DevicePose& pose) {
                                                stroke(tick, pose);

@@ -22,14 +22,14 @@ TEST_CASE("devices: lists what is supported, by the names that open it")
 
 TEST_CASE("devices: one that moves is opened; its axes, its range and its readings are told")
 {
-    const Ran ran = run_command("devices --open simulated:wheel --seconds 0.5 --json");
+    const Ran ran = run_command("devices --open simulated:wheel --seconds 2 --json");
     REQUIRE(ran.code == 0);
     const Json said = Json::parse(ran.out);
     CHECK(said["opened"] == true);
     CHECK(said["senses"] == "x");
     CHECK(said["pushes"] == "x");
-    CHECK(said["reads"] == 500); // half a second at 1 kHz
-    CHECK(said["poses"] == 500);
+    CHECK(said["reads"] == 2000); // two seconds at 1 kHz
+    CHECK(said["poses"] == 2000);
     CHECK(said["range_m"][0] > 1e-4);
     CHECK(said["range_m"][1] == 0);
 }
