@@ -93,11 +93,11 @@ void complete(LoadedHand& hand, const DeviceText& device, const Scene& scene, Fi
         hand.settings.slopes_only = info.slopes_only;
         return;
     }
-    if (device.probe.has_tail())
+    if (device.probe.kind == ProbeKind::gripper)
         messages.error(device.where(DeviceKey::stylus_length),
                        "`" + info.name +
-                           "` has too few axes for a stylus or a gripper: write `kind = \"point\"` or "
-                           "`\"sphere\"` under [probe]");
+                           "` has too few axes for a gripper: write `kind = \"point\"`, `\"sphere\"` or "
+                           "`\"stylus\"` under [probe]");
     // newtons per metre of the hand's way, as all stiffnesses are
     const double press_depth_m = device.request.press_n / scene.objects.front().material.stiffness_n_per_m;
     hand.device = std::make_unique<FewerAxes>(std::move(hand.device), device.request.surface_below, press_depth_m,

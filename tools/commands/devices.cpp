@@ -144,11 +144,11 @@ ExitCode run(const DevicesOptions& options)
     fmt::print("connected\n");
     if (connected.devices.empty()) fmt::print("  nothing that haptel knows\n");
     for (const device::ConnectedDevice& one : connected.devices)
-        fmt::print("  {:<22} {}, {}{}\n", lang::printable(one.name), lang::printable(one.what), lang::printable(one.at),
-                   one.refused.empty() ? "" : "\n" + std::string(25, ' ') + lang::printable(one.refused));
+        fmt::print("  {:<26} {}, {}{}\n", lang::printable(one.name), lang::printable(one.what), lang::printable(one.at),
+                   one.refused.empty() ? "" : "\n" + std::string(29, ' ') + lang::printable(one.refused));
     for (const std::string& error : connected.errors) fmt::print("  not looked for: {}\n", lang::printable(error));
     fmt::print("supported, by the name for --device and [device]\n");
-    for (const device::SupportedDevice& one : supported) fmt::print("  {:<22} {}\n", one.name, one.what);
+    for (const device::SupportedDevice& one : supported) fmt::print("  {:<26} {}\n", one.name, one.what);
     return ExitCode::fine;
 }
 

@@ -1,6 +1,8 @@
 // Devices of scenes, what they are told of their objects, and scenes that are loaded again.
 #include "tests/runtime/files/scene_folder.h"
 
+#include <cmath>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -147,9 +149,10 @@ namespace {
 
 class Rated final : public ScriptedDevice {
 public:
-    explicit Rated(double press_n)
+    explicit Rated(double press_n, const DeviceAxes& axes = {})
         : ScriptedDevice([](uint64_t, DevicePose&) { return DeviceStatus::ok; }), rated_{"rated", 8, 800, 0, press_n}
     {
+        rated_.axes = axes;
     }
     const DeviceInfo& info() const override { return rated_; }
 
@@ -218,4 +221,26 @@ TEST_CASE("a stiffness of more than twice what a device is made for at that rate
         said("[servo]\nrate_hz = 400\n" + soft).starts_with("scene.toml:3:1: warning: `plane` has a stiffness of 800"));
     // A workspace changes nothing: stiffness is the hand's.
     CHECK(said("[workspace]\nscale = 0.1\n" + soft + hard + "1600\n").empty());
+}
+
+TEST_CASE(
+    "a device without the axis z feels slopes alone, pressed in by press_n over the stiffness; a gripper needs it")
+{
+    const auto two_axes = [](const DeviceRequest& request) {
+        const DeviceAxes axes{{true, true, false}, {true, true, false}};
+        return DeviceResult{std::make_unique<Rated>(request.press_n, axes), ""};
+    };
+    const std::string object = "[[object]]\nshape = \"plane\"\nstiffness_n_per_m = 500\n";
+    const Folder folder;
+    const LoadedScene loaded = load(folder, "[device]\npress_n = 2\n" + object, resolve_flat, two_axes);
+    REQUIRE(loaded.hands.size() == 1);
+    CHECK(loaded.hands[0].settings.slopes_only);
+    CHECK(loaded.hands[0].device->info().axes.all());
+    DevicePose pose;
+    for (int i = 0; i < 500; ++i) REQUIRE(loaded.hands[0].device->read(pose) == DeviceStatus::ok);
+    CHECK(std::abs(pose.tip_m.z + 2.0 / 500) < 1e-12);
+
+    const std::string gripper = "[probe]\nkind = \"gripper\"\n" + object;
+    CHECK(diagnostics_of(gripper, resolve_flat, two_axes)
+              .starts_with("scene.toml:2:8: error: `rated` has too few axes for a gripper"));
 }

@@ -302,7 +302,7 @@ TEST_CASE("a recording that is killed has lost at most the last 50 ms")
 
 TEST_CASE("a hand of two axes is replayed as it felt: by slopes alone")
 {
-    const Recorded recorded("name = \"simulated:2diy\"\nprobe = { kind = \"point\" }");
+    const Recorded recorded("name = \"simulated:2diy\"");
     CHECK(read_trace(recorded.file).origin->device.slopes_only);
     const Ran ran = run_command("replay " + recorded.file);
     CHECK(ran.out == "1000 ticks replayed: every force equals the recorded one\n");
