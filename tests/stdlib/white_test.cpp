@@ -12,8 +12,6 @@ namespace {
 
 double sample(int i, int j, int k)
 {
-    static const std::vector<double> table = library_table("perlin_m");
-    const auto shuffled = [](int n) { return static_cast<int>(table[static_cast<size_t>(n & 255)]); };
     return 2 * shuffled(shuffled(shuffled(i) + j) + k) / 255.0 - 1;
 }
 

@@ -12,6 +12,7 @@
 
 using namespace haptel;
 using test::compiled;
+using test::parsed;
 using test::request_over;
 
 namespace {

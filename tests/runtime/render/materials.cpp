@@ -233,7 +233,7 @@ TEST_CASE("a probe that sticks does not creep, whatever trembles below the limit
 TEST_CASE("the end of a stylus has its friction while the shaft rests on an edge")
 {
     // It lies on a plate, with its tip beyond the border, and is drawn along that: the border has no friction.
-    constexpr double spring_n_per_m = 1000, mu = 0.3, depth_m = 1e-3;
+    constexpr double mu = 0.3, depth_m = 1e-3;
     Scene scene = bare_scene(plane_mesh());
     scene.probe = {ProbeKind::stylus, 0.06};
     scene.objects[0].material = {spring_n_per_m, 0, mu, mu};
