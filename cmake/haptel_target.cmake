@@ -27,6 +27,11 @@ if(HAPTEL_SANITIZE)
         # g++ sees ghosts of these in code that it has instrumented.
         $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized;-Wno-conversion>)
     target_link_options(haptel_flags INTERFACE -fsanitize=${HAPTEL_SANITIZE})
+    # Each place that is checked has pointers to what is told of it: over a million for the loader to move at each start
+    # of the command, which its tests start hundreds of times.
+    if(HAPTEL_SANITIZE MATCHES "address")
+        target_link_options(haptel_flags INTERFACE $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:-no-pie>)
+    endif()
 endif()
 
 # What most files include, read once for each target: it is half of a file's time in the compiler. Each file still

@@ -7,7 +7,7 @@ namespace haptel::runtime {
 
 namespace {
 
-constexpr int steps_max = 24;
+constexpr int newton_steps_max = 24;
 constexpr double edge_slack = 1e-12; // of the disc's radius
 
 // Of a direction's length: what of it lies in the plane, and is no more than rounding makes of one along the normal.
@@ -91,7 +91,7 @@ double least_in_disc(const double (&gives)[2], const double (&ways)[2], double m
     double multiplier =
         std::max(0.0, std::sqrt(ways[0] * ways[0] + ways[1] * ways[1]) / most - std::max(gives[0], gives[1]));
     for (int i = 0; i < 2; ++i) multiplier = std::max(multiplier, std::fabs(ways[i]) / most - gives[i]);
-    for (int step = 0; step < steps_max; ++step) {
+    for (int step = 0; step < newton_steps_max; ++step) {
         double square = 0, slope = 0;
         for (int i = 0; i < 2; ++i) {
             m[i] = 0;

@@ -34,10 +34,10 @@ Mesh placed_together(std::span<const PlacedSurface> surfaces, std::span<const ui
     return mesh;
 }
 
-struct Box {
+struct PlacedBox {
     glm::dvec3 minimum{std::numeric_limits<double>::infinity()}, maximum{-std::numeric_limits<double>::infinity()};
 
-    explicit Box(const PlacedSurface& placed)
+    explicit PlacedBox(const PlacedSurface& placed)
     {
         const Surface& surface = *placed.surface;
         for (const glm::dvec3& vertex : surface.vertices) {
@@ -49,7 +49,7 @@ struct Box {
         minimum -= more;
         maximum += more;
     }
-    bool meets(const Box& other) const
+    bool meets(const PlacedBox& other) const
     {
         return glm::all(glm::lessThanEqual(minimum, other.maximum)) &&
                glm::all(glm::lessThanEqual(other.minimum, maximum));
@@ -88,7 +88,7 @@ private:
 
 // Calls visit(one, other) for each two whose boxes meet, and ends where it returns false.
 template <class Visit>
-void for_each_overlap(std::span<const Box> boxes, Visit&& visit)
+void for_each_overlap(std::span<const PlacedBox> boxes, Visit&& visit)
 {
     std::vector<uint32_t> order(boxes.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -102,7 +102,7 @@ void for_each_overlap(std::span<const Box> boxes, Visit&& visit)
 }
 
 // As wide as the ball that a point is on a surface of the two.
-double slit_m(const Box& one, const Box& other)
+double slit_m(const PlacedBox& one, const PlacedBox& other)
 {
     const Lattice lattice = Lattice::around(glm::min(one.minimum, other.minimum), glm::max(one.maximum, other.maximum));
     return 2 * Lattice::point_radius * lattice.unit_m;
@@ -119,7 +119,7 @@ bool is_same(const PlacedSurface& one, const PlacedSurface& other)
 
 std::vector<MeetingSurfaces> find_meeting(std::span<const PlacedSurface> surfaces, const Loading* loading)
 {
-    const std::vector<Box> boxes(surfaces.begin(), surfaces.end());
+    const std::vector<PlacedBox> boxes(surfaces.begin(), surfaces.end());
     Groups near(surfaces.size()), meeting(surfaces.size());
     for_each_overlap(boxes, [&](uint32_t one, uint32_t other) {
         near.unite(one, other);

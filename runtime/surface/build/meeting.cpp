@@ -97,12 +97,12 @@ private:
     double radius_;
 };
 
-struct Box {
+struct FaceBox {
     glm::dvec3 minimum, maximum;
 };
 
 // What of an edge is within the box. False: nothing.
-bool clip(Segment& edge, const Box& box)
+bool clip(Segment& edge, const FaceBox& box)
 {
     double begin = 0, end = 1;
     const glm::dvec3 along = edge.to - edge.from;
@@ -124,7 +124,7 @@ bool edges_meet_faces(const Surface& edges, const Placement& of_edges, const Sur
     // A long edge is looked at piece by piece, as only little of a fine surface comes near to each.
     constexpr double pieces_most = 64;
     const double gap = gap_m / faces.lattice.unit_m;
-    const Box box{faces.box_minimum - gap, faces.box_maximum + gap};
+    const FaceBox box{faces.box_minimum - gap, faces.box_maximum + gap};
     const double diagonal = glm::distance(box.minimum, box.maximum);
     const glm::dvec3 middle = edges.lattice.units(
         of_edges.to_object(of_faces.to_world(faces.lattice.metres(0.5 * (box.minimum + box.maximum)))));
