@@ -129,7 +129,8 @@ TEST_CASE("cache: processes that begin at once share a folder")
     const Folder folder;
     const std::string ask = "eval '" + folder.write("t.haptel", texture) + ":t' --at 1mm,2mm,3mm";
     const std::string expected = run_command(ask, "HAPTEL_CACHE=off").out;
-    for (int round = 0; round < 3; ++round) {
+    const int rounds = is_sanitized ? 1 : 3; // four of what takes long to compile then
+    for (int round = 0; round < rounds; ++round) {
         const std::string use = "HAPTEL_CACHE='" + folder.file("cache" + std::to_string(round)) + "'";
         std::vector<Ran> ran(4);
         std::vector<std::thread> threads;

@@ -3,6 +3,7 @@
 #include "stdlib/stdlib.h"
 #include "tests/support/catch.h"
 #include "tests/support/project_path.h"
+#include "tests/support/tries.h"
 #include "tests/tools/commands/run_command.h"
 #include "tools/output/json.h"
 
@@ -87,6 +88,7 @@ TEST_CASE("info: a function with its overloads, doc, facts and an example that c
         ++examples;
         CAPTURE(entry["name"]);
         CHECK(contains(entry["example"], entry["name"]));
+        if (is_sanitized && examples % 4 != 0) continue; // each is compiled with all of the library
         CHECK(findings_of(entry["example"]) == 0);
     }
     CHECK(examples > 15);
