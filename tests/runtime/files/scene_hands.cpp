@@ -242,5 +242,5 @@ TEST_CASE(
 
     const std::string gripper = "[probe]\nkind = \"gripper\"\n" + object;
     CHECK(diagnostics_of(gripper, resolve_flat, two_axes)
-              .starts_with("scene.toml:2:8: error: `rated` has too few axes for a gripper"));
+              .starts_with("scene.toml:1:1: error: `rated` has too few axes for a gripper"));
 }
