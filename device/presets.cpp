@@ -4,8 +4,8 @@ namespace haptel::device {
 
 namespace {
 
-const runtime::DeviceAxes plane{{true, true, false}, {true, true, false}};
-const runtime::DeviceAxes line{{true, false, false}, {true, false, false}};
+const runtime::DeviceAxes two_axes{{true, true, false}, {true, true, false}};
+const runtime::DeviceAxes one_axis{{true, false, false}, {true, false, false}};
 
 const DevicePreset devices[] = {
     // mass kg, damping N s/m, Coulomb N, encoder m, force N, stiffness N/m; updates Hz, delay s, axes
@@ -19,11 +19,11 @@ const DevicePreset devices[] = {
     // WoodenHaptics, USB HID: a report of 1 ms each way.
     {"wooden", {0.25, 0.5, 0.2, 20e-6, 5, 1000, 1000, 2e-3}},
     // Two axes: a pantograph on a table (Haply 2DIY).
-    {"2diy", {0.1, 0.3, 0.1, 35e-6, 2, 500, 0, 1e-3, plane}},
+    {"2diy", {0.1, 0.3, 0.1, 35e-6, 2, 500, 0, 1e-3, two_axes}},
     // One axis: the rim of a wheel of 0.14 m, 2 N m with gears through the kernel (an effect every 2 ms), and 8 N m
     // without, at the 1 kHz of OpenFFBoard.
-    {"wheel", {1.5, 3, 2, 25e-6, 15, 500, 500, 4e-3, line}},
-    {"openffboard", {1.0, 1, 0.5, 14e-6, 50, 1000, 1000, 2e-3, line}},
+    {"wheel", {1.5, 3, 2, 25e-6, 15, 500, 500, 4e-3, one_axis}},
+    {"openffboard", {1.0, 1, 0.5, 14e-6, 50, 1000, 1000, 2e-3, one_axis}},
 };
 
 constexpr HandPreset hands[] = {

@@ -1,7 +1,8 @@
 // Devices and hands that the simulation knows by name.
 //
 // Masses, frictions, encoders and force limits as published or as used by CHAI3D; damping coefficients of devices and
-// all constants of hands are engineering values, good to a factor of two.
+// all constants of hands are engineering values, good to a factor of two. Of `inverse3` and what follows it only
+// forces, stiffnesses, rates and delays are others' figures.
 #pragma once
 
 #include "device/hand.h"

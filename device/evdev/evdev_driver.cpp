@@ -118,14 +118,30 @@ int EvdevDriver::serve(InputPort& port)
     return error;
 }
 
+// A hand that goes on moving it keeps it waiting, and without a force.
+int EvdevDriver::come_to_rest(InputPort& port, const Axis& axis)
+{
+    const double threshold = moved_share / 4 * (axis.range.maximum - axis.range.minimum);
+    double stands_at = axis.value;
+    int64_t since_ns = runtime::monotonic_ns();
+    while (!quitting() && runtime::monotonic_ns() - since_ns < ns_per_ms * times_.nudge_ms) {
+        if (const int error = listen(port, times_.update_ms)) return error;
+        if (std::fabs(axis.value - stands_at) <= threshold) continue;
+        stands_at = axis.value;
+        since_ns = runtime::monotonic_ns();
+    }
+    return 0;
+}
+
 int EvdevDriver::nudge(InputPort& port, Axis& axis, int number)
 {
     const double threshold = moved_share * (axis.range.maximum - axis.range.minimum);
     for (const double share : nudges)
         // to and fro, so that one at its end moves as well
         for (const double sign : {1.0, -1.0}) {
+            int error = come_to_rest(port, axis);
             const double start = axis.value;
-            int error = send(port, number, sign * share);
+            if (error == 0) error = send(port, number, sign * share);
             const int64_t until_ns = runtime::monotonic_ns() + ns_per_ms * times_.nudge_ms;
             while (error == 0 && !quitting() && runtime::monotonic_ns() < until_ns &&
                    std::fabs(axis.value - start) <= threshold)

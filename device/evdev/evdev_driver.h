@@ -2,8 +2,9 @@
 // the newest force, and opens it anew when it was unplugged.
 //
 // Which way a positive level pushes differs between makes, and a wrong sign throws the wheel away from the hand. So
-// each axis is nudged before the first force: with more and more of its force, for a moment, until it moves. One that
-// does not move is held fast or has no motor; it has no force until it does.
+// each axis is nudged before the first force: with more and more of its force, for a moment, until it moves. Each nudge
+// begins from rest, for what coasts tells nothing of its motor. One that does not move is held fast or has no motor; it
+// has no force until it does.
 #pragma once
 
 #include "device/evdev/input_port.h"
@@ -66,8 +67,9 @@ private:
     };
 
     void run();
-    bool connect(int64_t& absent_since_ns); // false: there is no use in going on
-    int serve(InputPort& port);             // until it fails or the driver ends: errno
+    bool connect(int64_t& absent_since_ns);              // false: there is no use in going on
+    int serve(InputPort& port);                          // until it fails or the driver ends: errno
+    int come_to_rest(InputPort& port, const Axis& axis); // for as long as a nudge lasts
     int nudge(InputPort& port, Axis& axis, int number);
     int send(InputPort& port, int number, double level);
     int listen(InputPort& port, int timeout_ms);

@@ -96,6 +96,17 @@ TEST_CASE("a stick has two axes, of which y grows away from the user")
     }));
 }
 
+TEST_CASE("a wheel that coasts while it is opened is not taken for one that is pushed")
+{
+    for (const double speed : {-6.0, 6.0}) { // a third of its way, against the first nudge or the second
+        FakeWheel wheel(1);
+        wheel.axes[0].speed = speed;
+        Opened opened(wheel);
+        REQUIRE(opened.becomes(DeviceStatus::ok));
+        CHECK(opened.pushes_until({5, 0, 0}, [&] { return wheel.level(0) == 0.25; }));
+    }
+}
+
 TEST_CASE("a wheel that is held fast has no force until it was felt to move")
 {
     FakeWheel wheel(1);
