@@ -22,7 +22,6 @@ namespace haptel::device {
 
 namespace {
 
-constexpr int axes_max = 2;
 constexpr double level_max = 0x7fff;
 // Of an effect: pushes along x, and along y. Which way is found by trying (evdev_driver.h).
 constexpr std::array<uint16_t, axes_max> directions = {0x4000, 0x0000};
@@ -68,8 +67,9 @@ public:
     {
         Bits<ABS_MAX> axes;
         input_absinfo range = {};
-        if (axis >= axes_max || !axes.read(file_, EV_ABS) || !axes.has(static_cast<std::size_t>(ABS_X + axis)) ||
-            ioctl(file_, EVIOCGABS(ABS_X + axis), &range) < 0 || range.maximum <= range.minimum)
+        if (axis >= static_cast<int>(axes_max) || !axes.read(file_, EV_ABS) ||
+            !axes.has(static_cast<std::size_t>(ABS_X + axis)) || ioctl(file_, EVIOCGABS(ABS_X + axis), &range) < 0 ||
+            range.maximum <= range.minimum)
             return std::nullopt;
         return AxisRange{range.minimum, range.maximum, range.value};
     }
@@ -108,7 +108,7 @@ public:
         if (bytes < 0) return errno == EAGAIN || errno == EINTR ? 0 : errno;
         if (bytes == 0) return ENODEV;
         for (std::size_t i = 0; i < static_cast<std::size_t>(bytes) / sizeof(input_event); ++i)
-            if (heard[i].type == EV_ABS && heard[i].code < ABS_X + axes_max)
+            if (heard[i].type == EV_ABS && heard[i].code < ABS_X + static_cast<int>(axes_max))
                 events.push_back({heard[i].code - ABS_X, heard[i].value});
         return 0;
     }

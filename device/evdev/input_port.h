@@ -2,6 +2,8 @@
 // stands behind it, or a wheel in memory in tests.
 #pragma once
 
+#include "device/axes/axis_port.h"
+
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,10 +11,6 @@
 #include <vector>
 
 namespace haptel::device {
-
-struct AxisRange {
-    int minimum = 0, maximum = 0, value = 0;
-};
 
 struct AxisEvent {
     int axis = 0; // 0: x, 1: y

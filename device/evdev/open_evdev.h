@@ -3,7 +3,7 @@
 //   evdev:/dev/input/by-id/usb-...-event-joystick,travel_m=0.4,force_max_n=15
 #pragma once
 
-#include "device/evdev/evdev_device.h"
+#include "device/axes/axis_settings.h"
 #include "runtime/hand/haptic_device.h"
 
 #include <string_view>
@@ -13,12 +13,7 @@ namespace haptel::device {
 // Does not wait: the device is not ready until it was nudged.
 runtime::DeviceResult open_evdev(std::string_view variant, const runtime::DeviceRequest& request);
 
-// Without a file: the text is taken apart and nothing is opened.
-struct EvdevText {
-    std::string path;
-    EvdevSettings settings;
-    std::string error;
-};
-EvdevText read_evdev_text(std::string_view variant);
+// The text is taken apart and nothing is opened.
+AxisText read_evdev_text(std::string_view variant);
 
 } // namespace haptel::device

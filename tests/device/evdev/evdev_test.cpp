@@ -1,4 +1,6 @@
 // Wheels and sticks through the kernel's force feedback, against a model of one that may be wired either way round.
+#include "device/axes/axis_device.h"
+#include "device/evdev/evdev_axes.h"
 #include "device/evdev/open_evdev.h"
 #include "runtime/servo/allocation_count.h"
 #include "tests/device/evdev/fake_wheel.h"
@@ -15,7 +17,7 @@ using namespace haptel::runtime;
 
 namespace {
 
-constexpr EvdevTimes quick{.nudge_ms = 60, .again_ms = 20, .patience_s = 0.3};
+constexpr AxisTimes quick{.nudge_ms = 60, .still_ms = 10, .again_ms = 20, .patience_s = 0.3};
 const glm::dvec3 no_torque(0);
 
 // Long enough for any machine; what is waited for comes within moments.
@@ -30,10 +32,11 @@ bool comes(const std::function<bool()>& happens)
 
 struct Opened {
     FakeWheel& wheel;
-    EvdevDevice device;
+    AxisDevice device;
 
-    explicit Opened(FakeWheel& of, const EvdevTimes& times = quick)
-        : wheel(of), device("evdev:fake", [&of] { return of.open(); }, {0.4, 20, of.count}, times)
+    explicit Opened(FakeWheel& of, const EvdevTimes& times = {})
+        : wheel(of)
+        , device("evdev:fake", [&of, times] { return evdev_axes(of.open(), times); }, {0.4, 20, of.count}, quick)
     {
     }
     DeviceStatus read(DevicePose& pose) { return device.read(pose); }
@@ -142,7 +145,7 @@ TEST_CASE("the force of a servo that is silent is taken away, and the hand is to
 TEST_CASE("an effect is played again before anybody ends it")
 {
     FakeWheel wheel(1);
-    EvdevTimes times = quick;
+    EvdevTimes times;
     times.replay_ms = 20;
     Opened opened(wheel, times);
     REQUIRE(opened.becomes(DeviceStatus::ok));
@@ -198,9 +201,9 @@ TEST_CASE("a wheel is read and written without an allocation")
 
 TEST_CASE("what is written behind evdev: is read, or told with what it should be")
 {
-    const EvdevText read = read_evdev_text("/dev/input/event3,travel_m=0.5,force_max_n=12");
+    const AxisText read = read_evdev_text("/dev/input/event3,travel_m=0.5,force_max_n=12");
     CHECK(read.error.empty());
-    CHECK(read.path == "/dev/input/event3");
+    CHECK(read.what == "/dev/input/event3");
     CHECK(read.settings.travel_m == 0.5);
     CHECK(read.settings.force_max_n == 12);
     CHECK(read_evdev_text("").error.find("evdev needs a file") == 0);

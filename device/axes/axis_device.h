@@ -2,22 +2,17 @@
 // user), the origin in the middle of its travel. FewerAxes imagines the rest.
 #pragma once
 
-#include "device/evdev/evdev_driver.h"
+#include "device/axes/axis_driver.h"
+#include "device/axes/axis_settings.h"
 #include "runtime/hand/haptic_device.h"
 
 #include <string>
 
 namespace haptel::device {
 
-struct EvdevSettings {
-    double travel_m = 0.2;   // of the hand, from end to end of each axis
-    double force_max_n = 10; // on the hand, at full level
-    int axes = 1;
-};
-
-class EvdevDevice final : public runtime::HapticDevice {
+class AxisDevice final : public runtime::HapticDevice {
 public:
-    EvdevDevice(std::string name, OpenInput open, const EvdevSettings& settings, const EvdevTimes& times);
+    AxisDevice(std::string name, OpenAxes open, const AxisSettings& settings, const AxisTimes& times);
 
     const runtime::DeviceInfo& info() const override { return info_; }
     runtime::DeviceStatus read(runtime::DevicePose& pose) noexcept override;
@@ -31,10 +26,14 @@ private:
 
     runtime::DeviceInfo info_;
     double travel_m_;
-    EvdevReading reading_;
+    AxisReading reading_;
     uint32_t session_ = 0;
     bool has_pose_ = false, interrupted_ = true;
-    EvdevDriver driver_; // last: its thread ends first
+    AxisDriver driver_; // last: its thread ends first
 };
+
+// Tries to open it here, so that what is wrong is told of at once; the driver opens it anew. The device is not ready
+// until it was nudged.
+runtime::DeviceResult open_axes(const runtime::DeviceRequest& request, OpenAxes open, AxisSettings settings);
 
 } // namespace haptel::device

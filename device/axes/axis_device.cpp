@@ -1,5 +1,6 @@
-#include "device/evdev/evdev_device.h"
+#include "device/axes/axis_device.h"
 
+#include "device/servo_silence.h"
 #include "runtime/geometry/finite.h"
 
 #include <utility>
@@ -8,7 +9,7 @@ namespace haptel::device {
 
 namespace {
 
-runtime::DeviceInfo info_of(std::string name, const EvdevSettings& settings)
+runtime::DeviceInfo info_of(std::string name, const AxisSettings& settings)
 {
     const bool two = settings.axes > 1;
     runtime::DeviceInfo info;
@@ -21,29 +22,30 @@ runtime::DeviceInfo info_of(std::string name, const EvdevSettings& settings)
 
 } // namespace
 
-EvdevDevice::EvdevDevice(std::string name, OpenInput open, const EvdevSettings& settings, const EvdevTimes& times)
+AxisDevice::AxisDevice(std::string name, OpenAxes open, const AxisSettings& settings, const AxisTimes& times)
     : info_(info_of(std::move(name), settings)), travel_m_(settings.travel_m), driver_(std::move(open), times)
 {
 }
 
-runtime::DeviceStatus EvdevDevice::status_without_pose() noexcept
+runtime::DeviceStatus AxisDevice::status_without_pose() noexcept
 {
     has_pose_ = false;
     interrupted_ = true;
     switch (driver_.phase()) {
-    case EvdevPhase::disconnected: return runtime::DeviceStatus::disconnected;
-    case EvdevPhase::failed: return runtime::DeviceStatus::fault;
-    case EvdevPhase::connecting:
-    case EvdevPhase::nudging:
-    case EvdevPhase::running: return runtime::DeviceStatus::not_ready;
+    case AxisPhase::disconnected: return runtime::DeviceStatus::disconnected;
+    case AxisPhase::failed: return runtime::DeviceStatus::fault;
+    case AxisPhase::connecting:
+    case AxisPhase::nudging:
+    case AxisPhase::held:
+    case AxisPhase::running: return runtime::DeviceStatus::not_ready;
     }
     return runtime::DeviceStatus::fault;
 }
 
-runtime::DeviceStatus EvdevDevice::read(runtime::DevicePose& pose) noexcept
+runtime::DeviceStatus AxisDevice::read(runtime::DevicePose& pose) noexcept
 {
     driver_.newest(reading_);
-    if (driver_.phase() != EvdevPhase::running || reading_.session == 0) return status_without_pose();
+    if (driver_.phase() != AxisPhase::running || reading_.session == 0) return status_without_pose();
     interrupted_ = interrupted_ || std::exchange(session_, reading_.session) != reading_.session;
     has_pose_ = true;
     // A stick's y grows towards the user.
@@ -55,7 +57,7 @@ runtime::DeviceStatus EvdevDevice::read(runtime::DevicePose& pose) noexcept
     return runtime::DeviceStatus::ok;
 }
 
-runtime::DeviceStatus EvdevDevice::write(const glm::dvec3& force_n, const glm::dvec3&) noexcept
+runtime::DeviceStatus AxisDevice::write(const glm::dvec3& force_n, const glm::dvec3&) noexcept
 {
     glm::dvec3 share(0);
     if (has_pose_ && runtime::finite(force_n)) {
@@ -64,6 +66,17 @@ runtime::DeviceStatus EvdevDevice::write(const glm::dvec3& force_n, const glm::d
     }
     driver_.command({share.x, -share.y});
     return has_pose_ ? runtime::DeviceStatus::ok : status_without_pose();
+}
+
+runtime::DeviceResult open_axes(const runtime::DeviceRequest& request, OpenAxes open, AxisSettings settings)
+{
+    OpenedAxes tried = open();
+    if (!tried.port) return {nullptr, std::move(tried.error)};
+    settings.axes = axis_count(*tried.port);
+    tried.port.reset();
+    AxisTimes times;
+    times.watchdog_ms = servo_silence_ms(request.rate_hz);
+    return {std::make_unique<AxisDevice>(request.name, std::move(open), settings, times), {}};
 }
 
 } // namespace haptel::device
