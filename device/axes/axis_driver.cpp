@@ -97,7 +97,7 @@ bool AxisDriver::connect()
     const bool there = opened.port != nullptr;
     if (there) {
         begin(*opened.port);
-        opened.error = "the device was lost: " + opened.port->serve(wake_, *this);
+        opened.error = opened.port->serve(wake_, *this);
         opened.port.reset();
     }
     const int64_t now_ns = runtime::monotonic_ns();

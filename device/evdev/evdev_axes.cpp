@@ -29,7 +29,7 @@ public:
         }
         if (error == 0) error = keep_levels(wake, client, count);
         for (int i = 0; i < count; ++i) port_->set_level(i, 0); // the motors hold what they heard last
-        return error == 0 ? "" : std::strerror(error);
+        return error == 0 ? "" : std::string("the device was lost: ") + std::strerror(error);
     }
 
 private:
