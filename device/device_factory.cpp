@@ -2,6 +2,7 @@
 
 #include "device/evdev/open_evdev.h"
 #include "device/falcon/open_falcon.h"
+#include "device/hid/open_hid.h"
 #include "device/replay_device.h"
 #include "device/simulated_device.h"
 #include "lang/text/near_name.h"
@@ -133,13 +134,23 @@ DeviceResult open_connected_falcon(std::string_view serial, const DeviceRequest&
     return open_falcon(request, serial);
 }
 
+void list_usb(ConnectedDevices& found, const UsbList& list, std::string_view name, std::string_view what)
+{
+    if (!list.error.empty()) found.errors.push_back(fmt::format("{}: {}", what, list.error));
+    for (const UsbListed& one : list.devices)
+        found.devices.push_back({one.serial.empty() ? std::string(name) : fmt::format("{}:{}", name, one.serial),
+                                 std::string(what), fmt::format("USB bus {} device {}", one.bus, one.address),
+                                 one.error});
+}
+
 void list_connected_falcons(ConnectedDevices& found)
 {
-    const UsbList list = list_falcons();
-    if (!list.error.empty()) found.errors.push_back("Novint Falcon: " + list.error);
-    for (const UsbListed& one : list.devices)
-        found.devices.push_back({one.serial.empty() ? "falcon" : "falcon:" + one.serial, "Novint Falcon",
-                                 fmt::format("USB bus {} device {}", one.bus, one.address), one.error});
+    list_usb(found, list_falcons(), "falcon", "Novint Falcon");
+}
+
+void list_connected_openffboards(ConnectedDevices& found)
+{
+    list_usb(found, list_openffboards(), "openffboard", "OpenFFBoard");
 }
 
 void list_connected_inputs(ConnectedDevices& found)
@@ -154,10 +165,14 @@ struct Driver {
     DeviceResult (*open)(std::string_view variant, const DeviceRequest& request);
     void (*list)(ConnectedDevices& found); // null: nothing is connected
 };
-constexpr std::array<Driver, 4> drivers = {
+constexpr std::array<Driver, 6> drivers = {
     {{"simulated", "simulated[:PRESET[:HAND]]", "a hand and a device in the computer", open_simulated, nullptr},
      {"replay", "replay:FILE", "the hand of an earlier run", open_recording, nullptr},
      {"falcon", "falcon[:SERIAL]", "Novint Falcon, three axes, USB", open_connected_falcon, list_connected_falcons},
+     {"openffboard", "openffboard[:SERIAL]", "OpenFFBoard, one axis or two, USB", open_openffboard,
+      list_connected_openffboards},
+     {"hid", "hid:VID:PID[:SERIAL]", "other wheel or stick of the USB's Physical Interface class, one axis or two",
+      open_hid, nullptr},
      {"evdev", "evdev:FILE", "wheel or stick with force feedback, one axis or two, by its file in /dev/input",
       open_evdev, list_connected_inputs}}};
 

@@ -3,6 +3,8 @@
 //   simulated[:PRESET[:HAND]]   simulated:premium:firm is the default
 //   replay:FILE                 a recording of `haptel record`, or a trace.csv
 //   falcon[:SERIAL]             a Novint Falcon on the USB
+//   openffboard[:SERIAL]        an OpenFFBoard on the USB
+//   hid:VID:PID[:SERIAL]        another wheel or stick on the USB that keeps to the class PID
 //   evdev:FILE                  a wheel or a stick with force feedback, through the kernel
 #pragma once
 

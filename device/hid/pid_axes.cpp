@@ -41,6 +41,7 @@ public:
         if (!why.empty()) return "the device cannot be used: " + why;
         Stream stream(*this, client);
         const UsbError error = client.wants_more() ? transport_->stream(settings(), wake, stream) : UsbError::cancelled;
+        if (stream.is_deaf()) return "the device was lost: it takes no forces any longer";
         return error == UsbError::cancelled ? "" : fmt::format("the device was lost: {}", words_of(error));
     }
 
@@ -69,6 +70,7 @@ private:
 
         std::size_t next_out(std::span<uint8_t> room) noexcept override
         {
+            if (std::exchange(in_flight_, false)) failures_ = 0;
             const AxisLevels wanted = client_.levels();
             const auto count = static_cast<std::size_t>(axes_.reports_.axes());
             for (std::size_t i = 0; i < count; ++i) { // in turns
@@ -86,14 +88,24 @@ private:
             return put(axes_.reports_.start(axes_.blocks_[axis]), room);
         }
 
-        void out_failed() noexcept override { sent_[last_].reset(); }
-        bool wants_more() noexcept override { return client_.wants_more(); }
+        void out_failed() noexcept override
+        {
+            sent_[last_].reset();
+            in_flight_ = false;
+            ++failures_;
+        }
+        // One that takes nothing may go on telling its place, under the force that it heard last.
+        bool is_deaf() const noexcept { return failures_ >= failures_max; }
+        bool wants_more() noexcept override { return client_.wants_more() && !is_deaf(); }
 
     private:
-        static std::size_t put(const PidReport& report, std::span<uint8_t> room) noexcept
+        static constexpr int failures_max = 4; // reports in a row, of at most a tenth of a second each
+
+        std::size_t put(const PidReport& report, std::span<uint8_t> room) noexcept
         {
             if (report.size > room.size()) return 0;
             std::ranges::copy(report.span(), room.begin());
+            in_flight_ = true;
             return report.size;
         }
 
@@ -101,6 +113,8 @@ private:
         AxisClient& client_;
         std::array<std::optional<int64_t>, axes_max> sent_; // nothing: not known what it has heard
         std::size_t last_ = 0, replays_ = 0;
+        bool in_flight_ = false; // or has arrived, if nothing was said since
+        int failures_ = 0;       // of reports, in a row
         int64_t replay_ns_;
     };
 

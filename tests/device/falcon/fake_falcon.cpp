@@ -71,9 +71,21 @@ FakeFalcon::Answer FakeFalcon::begin_operation()
     return gone_ ? Answer::gone : faulty(FakeFault::stall) ? Answer::stall : Answer::fine;
 }
 
-FakeFalcon::Answer FakeFalcon::control(uint8_t type, uint8_t request, uint16_t value)
+// One vendor's interface, bulk IN 0x81 and bulk OUT 0x02 of 64 bytes.
+std::vector<uint8_t> FakeFalcon::descriptors() const
+{
+    return {18, 1, 0x00, 0x02, 0,  0,    0,    8,    0x03, 0x04, 0x48, 0xcb, 0x00, 0x04, 0, 0, 0, 1, //
+            9,  2, 32,   0,    1,  1,    0,    0x80, 50,                                             //
+            9,  4, 0,    0,    2,  0xff, 0xff, 0xff, 0,                                              //
+            7,  5, 0x81, 2,    64, 0,    0,                                                          //
+            7,  5, 0x02, 2,    64, 0,    0};
+}
+
+FakeFalcon::Answer FakeFalcon::control(const UsbSetup& setup, std::span<uint8_t>, std::size_t& size)
 {
     const std::lock_guard lock(mutex_);
+    const auto& [type, request, value, index] = setup;
+    size = 0;
     if (const Answer answer = begin_operation(); answer != Answer::fine) return answer;
     if (type != 0x40) return Answer::stall;
     requests_.push_back(in_words("%d %04x", request, value));

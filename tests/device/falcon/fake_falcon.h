@@ -2,6 +2,8 @@
 // with faults to order. It shares no code with the driver. Any thread.
 #pragma once
 
+#include "tests/device/usb/fake_usb_device.h"
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -31,17 +33,17 @@ inline constexpr std::array<FakeFault, 9> all_fake_faults = {
     FakeFault::late,    FakeFault::stall,       FakeFault::unplug,  FakeFault::lost_homing};
 const char* name_of(FakeFault fault);
 
-class FakeFalcon {
+class FakeFalcon final : public FakeUsbDevice {
 public:
-    enum class Answer { fine, stall, gone };
     using Motors = std::array<int, 3>;
 
     explicit FakeFalcon(bool runs_program, int packets_to_home = 5);
 
     // What the host does. `in` gives at most 64 bytes, the first two about the converter.
-    Answer control(uint8_t type, uint8_t request, uint16_t value);
-    Answer out(std::span<const uint8_t> bytes);
-    Answer in(std::span<uint8_t> bytes, std::size_t& size);
+    Answer control(const UsbSetup& setup, std::span<uint8_t> data, std::size_t& size) override;
+    Answer out(std::span<const uint8_t> bytes) override;
+    Answer in(std::span<uint8_t> bytes, std::size_t& size) override;
+    std::vector<uint8_t> descriptors() const override;
 
     // What the world does. A fault begins after so many operations of the host and lasts for so many.
     void inject(FakeFault fault, uint64_t after, uint64_t for_operations);

@@ -2,6 +2,7 @@
 #include "device/falcon/open_falcon.h"
 #include "device/usb/usb_devices.h"
 #include "device/usb/usb_transport.h"
+#include "tests/device/falcon/fake_falcon.h"
 #include "tests/device/falcon/falcon_truth.h"
 #include "tests/device/falcon/quick_falcon.h"
 #include "tests/device/usb/usbfs_shim.h"

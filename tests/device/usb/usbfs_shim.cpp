@@ -1,7 +1,6 @@
 #include "tests/device/usb/usbfs_shim.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -22,14 +21,6 @@ namespace {
 // The one device of the process, while it exists.
 std::atomic<UsbfsShim*> the_shim{nullptr};
 
-// Device, configuration, one vendor interface, bulk IN 0x81 and bulk OUT 0x02 of 64 bytes.
-constexpr std::array<uint8_t, 50> descriptors = {18,   1,    0x00, 0x02, 0,    0,    0,    8,    0x03,
-                                                 0x04, 0x48, 0xcb, 0x00, 0x04, 0,    0,    0,    1,  //
-                                                 9,    2,    32,   0,    1,    1,    0,    0x80, 50, //
-                                                 9,    4,    0,    0,    2,    0xff, 0xff, 0xff, 0,  //
-                                                 7,    5,    0x81, 2,    64,   0,    0,              //
-                                                 7,    5,    0x02, 2,    64,   0,    0};
-
 // An eventfd at its limit cannot be written: it is not ready for POLLOUT. Emptied, it is.
 constexpr uint64_t not_writable = 0xfffffffffffffffe;
 
@@ -39,14 +30,14 @@ int fail(int error)
     return -1;
 }
 
-int status_of(FakeFalcon::Answer answer)
+int status_of(FakeUsbDevice::Answer answer)
 {
-    return answer == FakeFalcon::Answer::gone ? -ENODEV : answer == FakeFalcon::Answer::stall ? -EPIPE : 0;
+    return answer == FakeUsbDevice::Answer::gone ? -ENODEV : answer == FakeUsbDevice::Answer::stall ? -EPIPE : 0;
 }
 
 } // namespace
 
-UsbfsShim::UsbfsShim(FakeFalcon& falcon) : falcon_(falcon), file_descriptor_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC))
+UsbfsShim::UsbfsShim(FakeUsbDevice& device) : device_(device), file_descriptor_(eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC))
 {
     signalled_ = true;
     signal();
@@ -98,19 +89,39 @@ void UsbfsShim::run_bus()
         clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &next, nullptr);
         const std::lock_guard lock(mutex_);
         if (ending_) return;
-        if (waiting_in_.empty()) continue;
-        usbdevfs_urb& urb = *waiting_in_.front();
-        std::size_t size = 0;
-        const FakeFalcon::Answer answer =
-            falcon_.in({static_cast<uint8_t*>(urb.buffer), static_cast<std::size_t>(urb.buffer_length)}, size);
-        urb.actual_length = static_cast<int>(size);
-        gone_ = answer == FakeFalcon::Answer::gone;
-        do { // a device that is gone gives all transfers back
-            usbdevfs_urb& each = *waiting_in_.front();
-            waiting_in_.pop_front();
-            finish(each, status_of(answer));
-        } while (gone_ && !waiting_in_.empty());
+        if (!waiting_out_.empty()) {
+            usbdevfs_urb& urb = *waiting_out_.front();
+            waiting_out_.pop_front();
+            take_out(urb, device_.out(
+                              {static_cast<const uint8_t*>(urb.buffer), static_cast<std::size_t>(urb.buffer_length)}));
+        }
+        if (!waiting_in_.empty()) {
+            usbdevfs_urb& urb = *waiting_in_.front();
+            std::size_t size = 0;
+            const FakeUsbDevice::Answer answer =
+                device_.in({static_cast<uint8_t*>(urb.buffer), static_cast<std::size_t>(urb.buffer_length)}, size);
+            gone_ = answer == FakeUsbDevice::Answer::gone;
+            if (!gone_ && answer != FakeUsbDevice::Answer::nothing) {
+                waiting_in_.pop_front();
+                urb.actual_length = static_cast<int>(size);
+                finish(urb, status_of(answer));
+            }
+        }
+        if (gone_) give_all_back();
     }
+}
+
+void UsbfsShim::give_all_back()
+{
+    for (auto* queue : {&waiting_in_, &waiting_out_})
+        for (; !queue->empty(); queue->pop_front()) finish(*queue->front(), -ENODEV);
+}
+
+void UsbfsShim::take_out(usbdevfs_urb& urb, FakeUsbDevice::Answer answer)
+{
+    gone_ = answer == FakeUsbDevice::Answer::gone;
+    if (answer == FakeUsbDevice::Answer::fine) urb.actual_length = urb.buffer_length;
+    finish(urb, status_of(answer));
 }
 
 int UsbfsShim::submit(usbdevfs_urb& urb)
@@ -118,9 +129,12 @@ int UsbfsShim::submit(usbdevfs_urb& urb)
     urb.actual_length = 0;
     urb.status = 0;
     if (urb.type == USBDEVFS_URB_TYPE_CONTROL) {
-        const auto* setup = static_cast<const uint8_t*>(urb.buffer);
-        const auto answer = falcon_.control(setup[0], setup[1], static_cast<uint16_t>(setup[2] | setup[3] << 8));
-        if (answer == FakeFalcon::Answer::gone) return fail(ENODEV);
+        auto* bytes = static_cast<uint8_t*>(urb.buffer);
+        const auto word = [&](int at) { return static_cast<uint16_t>(bytes[at] | bytes[at + 1] << 8); };
+        std::size_t size = word(6);
+        const auto answer = device_.control({bytes[0], bytes[1], word(2), word(4)}, {bytes + 8, size}, size);
+        if (answer == FakeUsbDevice::Answer::gone) return fail(ENODEV);
+        if (answer == FakeUsbDevice::Answer::fine) urb.actual_length = static_cast<int>(size);
         finish(urb, status_of(answer));
         return 0;
     }
@@ -132,17 +146,20 @@ int UsbfsShim::submit(usbdevfs_urb& urb)
         held_out_.push_back(&urb);
         return 0;
     }
+    if (urb.type == USBDEVFS_URB_TYPE_INTERRUPT) {
+        waiting_out_.push_back(&urb);
+        return 0;
+    }
     const auto answer =
-        falcon_.out({static_cast<const uint8_t*>(urb.buffer), static_cast<std::size_t>(urb.buffer_length)});
-    if (answer == FakeFalcon::Answer::gone) return fail(ENODEV);
-    if (answer == FakeFalcon::Answer::fine) urb.actual_length = urb.buffer_length;
-    finish(urb, status_of(answer));
+        device_.out({static_cast<const uint8_t*>(urb.buffer), static_cast<std::size_t>(urb.buffer_length)});
+    if (answer == FakeUsbDevice::Answer::gone) return fail(ENODEV);
+    take_out(urb, answer);
     return 0;
 }
 
 int UsbfsShim::discard(usbdevfs_urb& urb)
 {
-    for (auto* queue : {&waiting_in_, &held_out_}) {
+    for (auto* queue : {&waiting_in_, &waiting_out_, &held_out_}) {
         const auto found = std::find(queue->begin(), queue->end(), &urb);
         if (found == queue->end()) continue;
         queue->erase(found);
@@ -190,6 +207,7 @@ int UsbfsShim::serve(unsigned long request, void* argument)
 
 long UsbfsShim::read_descriptors(void* into, std::size_t size) const
 {
+    const std::vector<uint8_t> descriptors = device_.descriptors();
     const std::size_t given = std::min(size, descriptors.size());
     std::memcpy(into, descriptors.data(), given);
     return static_cast<long>(given);

@@ -1,9 +1,9 @@
 // A USB device that exists in this process only, under the real libusb: the calls that libusb makes to the kernel about
-// one file descriptor are answered here by a FakeFalcon. For test programs whose executable holds ioctl() and read() of
-// usbfs_shim.cpp, which the dynamic linker then binds libusb's calls to.
+// one file descriptor are answered here by a FakeUsbDevice. For test programs whose executable holds ioctl() and read()
+// of usbfs_shim.cpp, which the dynamic linker then binds libusb's calls to.
 #pragma once
 
-#include "tests/device/falcon/fake_falcon.h"
+#include "tests/device/usb/fake_usb_device.h"
 
 #include <condition_variable>
 #include <deque>
@@ -14,10 +14,11 @@ struct usbdevfs_urb;
 
 namespace haptel::device {
 
-// An IN transfer completes when the bus has a frame for it, each millisecond, with the bytes that are there by then.
+// An IN transfer completes when the bus has a frame for it, each millisecond, with the bytes that are there by then. So
+// does an OUT transfer of an interrupt endpoint; others are done at once.
 class UsbfsShim {
 public:
-    explicit UsbfsShim(FakeFalcon& falcon);
+    explicit UsbfsShim(FakeUsbDevice& device);
     ~UsbfsShim();
     UsbfsShim(const UsbfsShim&) = delete;
     UsbfsShim& operator=(const UsbfsShim&) = delete;
@@ -34,13 +35,15 @@ private:
     int discard(usbdevfs_urb& urb);
     int reap(usbdevfs_urb*& urb);
     void finish(usbdevfs_urb& urb, int status);
-    void signal(); // libusb polls the descriptor for POLLOUT: something is finished
+    void take_out(usbdevfs_urb& urb, FakeUsbDevice::Answer answer);
+    void give_all_back(); // of a device that is gone
+    void signal();        // libusb polls the descriptor for POLLOUT: something is finished
     void run_bus();
 
-    FakeFalcon& falcon_;
+    FakeUsbDevice& device_;
     int file_descriptor_;
     std::mutex mutex_;
-    std::deque<usbdevfs_urb*> waiting_in_, held_out_, finished_;
+    std::deque<usbdevfs_urb*> waiting_in_, waiting_out_, held_out_, finished_;
     bool hold_out_ = false, signalled_ = false, ending_ = false, gone_ = false;
     std::thread bus_;
 };
