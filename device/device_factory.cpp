@@ -1,5 +1,6 @@
 #include "device/device_factory.h"
 
+#include "device/evdev/input_port.h"
 #include "device/evdev/open_evdev.h"
 #include "device/falcon/open_falcon.h"
 #include "device/hid/open_hid.h"

@@ -115,7 +115,7 @@ void AxisDriver::begin(const AxisPort& port)
 {
     count_ = static_cast<std::size_t>(axis_count(port));
     for (std::size_t i = 0; i < count_; ++i) axes_[i] = {*port.axis(static_cast<int>(i)), 0};
-    nudge_ = {};
+    nudge_ = {.since_ns = runtime::monotonic_ns()};
     command_ = {};
     ++session_;
     enter(AxisPhase::nudging, "");
@@ -144,7 +144,7 @@ double AxisDriver::nudge(Axis& axis, int64_t now_ns) noexcept
         nudge_.start = value;
     } else if (std::fabs(moved) > moved_share) {
         axis.sign = moved * nudges[nudge_.number] > 0 ? 1 : -1;
-        nudge_ = {};
+        nudge_ = {.since_ns = now_ns};
         return 0;
     } else if (waited_ns > ns_per_ms * times_.nudge_ms) {
         nudge_.pushing = false;
@@ -179,7 +179,7 @@ AxisLevels AxisDriver::levels() noexcept
         command_.shares = {};
         dropped_.store(true, std::memory_order_release);
     }
-    if (silent || halted_.load(std::memory_order_acquire)) return wanted;
+    if (halted_.load(std::memory_order_acquire)) return wanted;
     for (std::size_t i = 0; i < count_; ++i) wanted[i] = axes_[i].sign * command_.shares[i];
     return wanted;
 }

@@ -66,8 +66,8 @@ private:
     struct Nudge {
         std::size_t number = 0; // of nudges so far
         bool pushing = false;
-        std::optional<int64_t> start; // value that it has moved from
-        int64_t since_ns = 0;         // when the push began, or when it was last seen to move
+        std::optional<int64_t> start = {}; // value that it has moved from
+        int64_t since_ns = 0;              // when the push began, or when it was last seen to move
         int64_t not_before_ns = 0;
     };
 

@@ -18,7 +18,7 @@ public:
     explicit CoastingPort(std::atomic<double>& level) : level_(level) {}
     std::optional<AxisRange> axis(int number) const override
     {
-        return number == 0 ? std::optional(AxisRange{-10'000, 10'000, 0}) : std::nullopt;
+        return number == 0 ? std::optional(AxisRange{-10'000, 10'000, -5000}) : std::nullopt;
     }
     std::string serve(WakeEvent&, AxisClient& client) override
     {
