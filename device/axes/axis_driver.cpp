@@ -18,7 +18,8 @@ constexpr int64_t ns_per_ms = 1'000'000;
 constexpr std::array<double, 6> nudges = {0.05, -0.05, 0.1, -0.1, 0.2, -0.2};
 // Of the way from end to end: above the noise of a potentiometer's 8 bits.
 constexpr double moved_share = 0.01;
-constexpr double still_share = 0.005;
+// What an axis at rest moves at most in the time that a nudge takes: half of what would count.
+constexpr double still_share = moved_share / 2;
 
 double way(const AxisRange& range)
 {
@@ -138,7 +139,7 @@ double AxisDriver::nudge(Axis& axis, int64_t now_ns) noexcept
     if (!nudge_.pushing) {
         // What coasts from the nudge before, or is in a hand's motion, says nothing of this one.
         if (std::fabs(moved) > still_share) nudge_.start = value, nudge_.since_ns = now_ns;
-        if (now_ns < nudge_.not_before_ns || now_ns - nudge_.since_ns < ns_per_ms * times_.still_ms) return 0;
+        if (now_ns < nudge_.not_before_ns || now_ns - nudge_.since_ns < ns_per_ms * times_.nudge_ms) return 0;
         nudge_.pushing = true;
         nudge_.since_ns = now_ns;
         nudge_.start = value;

@@ -23,8 +23,7 @@ using OpenAxes = std::function<OpenedAxes()>;
 
 struct AxisTimes {
     int watchdog_ms = 5; // without a command for so long, the force is taken away
-    int nudge_ms = 120;  // each
-    int still_ms = 40;   // an axis has not moved for so long before it is nudged
+    int nudge_ms = 120;  // each, and the rest before it
     int again_ms = 500;  // between two tries to open or to nudge
     double patience_s = 60;
 };

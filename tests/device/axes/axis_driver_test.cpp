@@ -43,7 +43,7 @@ TEST_CASE("an axis that coasts is not taken for one that was pushed")
 {
     std::atomic<double> level{0};
     AxisDriver driver([&] { return OpenedAxes{std::make_unique<CoastingPort>(level), "", false}; },
-                      {.watchdog_ms = 1000, .nudge_ms = 60, .still_ms = 20, .again_ms = 20});
+                      {.watchdog_ms = 1000, .nudge_ms = 60, .again_ms = 20});
     AxisReading reading;
     for (int i = 0; i < 5000 && !(driver.newest(reading) && driver.phase() == AxisPhase::running); ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(1));

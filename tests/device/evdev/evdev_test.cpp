@@ -17,7 +17,7 @@ using namespace haptel::runtime;
 
 namespace {
 
-constexpr AxisTimes quick{.nudge_ms = 60, .still_ms = 10, .again_ms = 20, .patience_s = 0.3};
+constexpr AxisTimes quick{.nudge_ms = 60, .again_ms = 20, .patience_s = 0.3};
 const glm::dvec3 no_torque(0);
 
 // Long enough for any machine; what is waited for comes within moments.

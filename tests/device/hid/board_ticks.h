@@ -33,8 +33,7 @@ inline bool becomes(AxisDevice& device, runtime::DeviceStatus status)
     return ticks_until(device, no_force, [status](runtime::DeviceStatus now, auto&) { return now == status; });
 }
 
-inline constexpr AxisTimes quick_axes{
-    .watchdog_ms = 200, .nudge_ms = 60, .still_ms = 10, .again_ms = 5, .patience_s = 1};
+inline constexpr AxisTimes quick_axes{.watchdog_ms = 200, .nudge_ms = 60, .again_ms = 5, .patience_s = 1};
 inline constexpr PidTimes quick_pid{.transfer_ms = 20, .load_ms = 50, .poll_ms = 1};
 inline constexpr AxisSettings board_settings{.travel_m = 0.4, .force_max_n = 20, .axes = 2};
 

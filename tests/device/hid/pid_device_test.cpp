@@ -169,6 +169,18 @@ TEST_CASE("whichever transfer to a board is refused, it is ready in the end and 
     }
 }
 
+TEST_CASE("a force that a board refused is sent again")
+{
+    Board board;
+    board.start();
+    REQUIRE(becomes(*board.device, DeviceStatus::ok));
+    for (int round = 1; round <= 20; ++round) {
+        const double force_n = 20.0 * round / 32767 * 100;
+        board.fake.inject(BoardFault::stall, 0, 3);
+        CHECK(board.pushes_until({force_n, 0, 0}, [&] { return std::abs(board.fake.magnitude(0)) == 100 * round; }));
+    }
+}
+
 TEST_CASE("a board that answers wrongly for a while is ready afterwards; one that does for good is told of in words")
 {
     for (const auto& [fault, why] : std::initializer_list<std::pair<BoardFault, const char*>>{
