@@ -4,6 +4,7 @@
 #include "device/evdev/open_evdev.h"
 #include "device/falcon/open_falcon.h"
 #include "device/hid/open_hid.h"
+#include "device/inverse3/open_inverse3.h"
 #include "device/replay_device.h"
 #include "device/simulated_device.h"
 #include "lang/text/near_name.h"
@@ -160,16 +161,26 @@ void list_connected_inputs(ConnectedDevices& found)
         found.devices.push_back({"evdev:" + one.path, one.name, one.path, one.error});
 }
 
+void list_served_inverse3s(ConnectedDevices& found)
+{
+    const Inverse3List list = list_inverse3s();
+    if (!list.error.empty()) found.errors.push_back("Haply Inverse3: " + list.error);
+    for (const std::string& id : list.ids)
+        found.devices.push_back({"inverse3:" + id, "Haply Inverse3", "service at " + list.at, ""});
+}
+
 // One entry per driver.
 struct Driver {
     std::string_view name, syntax, what;
     DeviceResult (*open)(std::string_view variant, const DeviceRequest& request);
     void (*list)(ConnectedDevices& found); // null: nothing is connected
 };
-constexpr std::array<Driver, 6> drivers = {
+constexpr std::array<Driver, 7> drivers = {
     {{"simulated", "simulated[:PRESET[:HAND]]", "a hand and a device in the computer", open_simulated, nullptr},
      {"replay", "replay:FILE", "the hand of an earlier run", open_recording, nullptr},
      {"falcon", "falcon[:SERIAL]", "Novint Falcon, three axes, USB", open_connected_falcon, list_connected_falcons},
+     {"inverse3", "inverse3[:DEVICE_ID]", "Haply Inverse3, three axes, through Haply's Inverse service", open_inverse3,
+      list_served_inverse3s},
      {"openffboard", "openffboard[:SERIAL]", "OpenFFBoard, one axis or two, USB", open_openffboard,
       list_connected_openffboards},
      {"hid", "hid:VID:PID[:SERIAL]", "other wheel or stick of the USB's Physical Interface class, one axis or two",

@@ -3,6 +3,7 @@
 //   simulated[:PRESET[:HAND]]   simulated:premium:firm is the default
 //   replay:FILE                 a recording of `haptel record`, or a trace.csv
 //   falcon[:SERIAL]             a Novint Falcon on the USB
+//   inverse3[:DEVICE_ID]        a Haply Inverse3, through the service of its maker
 //   openffboard[:SERIAL]        an OpenFFBoard on the USB
 //   hid:VID:PID[:SERIAL]        another wheel or stick on the USB that keeps to the class PID
 //   evdev:FILE                  a wheel or a stick with force feedback, through the kernel

@@ -27,10 +27,10 @@ ServiceAddressText read_service_address(std::string_view text)
 {
     ServiceAddressText read;
     std::string_view host = text, port;
-    if (text.starts_with('[')) {
-        const auto end = std::min(text.find(']'), text.size());
-        host = text.substr(1, end - 1);
-        port = text.substr(std::min(end + 1, text.size()));
+    const auto bracket = text.find(']');
+    if (text.starts_with('[') && bracket != text.npos) {
+        host = text.substr(1, bracket - 1);
+        port = text.substr(bracket + 1);
     } else if (std::count(text.begin(), text.end(), ':') == 1) { // more of them: an IPv6 address alone
         host = text.substr(0, text.find(':'));
         port = text.substr(text.find(':'));

@@ -97,7 +97,7 @@ struct ServiceSocket::Link {
     }
 
     asio::io_context io{1};
-    websocket::stream<tcp::socket> stream{io};
+    websocket::stream<tcp::socket, false> stream{io}; // nothing is compressed
     asio::posix::stream_descriptor wake_descriptor{io};
     WakeEvent& wake;
     std::vector<char> received = std::vector<char>(message_bytes_max);

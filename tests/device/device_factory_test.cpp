@@ -53,10 +53,10 @@ TEST_CASE("unknown names are answered with what was meant, or with what there is
     CHECK(contains(error_of(request_on_plane("simulated:premium", "circle")), "did you mean 'circles'?"));
     CHECK(open_device(request_on_plane("simulated:premium", "circle")).about == DeviceKey::stroke);
     CHECK(open_device(request_on_plane("simulated:premum")).about == DeviceKey::name);
-    CHECK(contains(
-        error_of(request_on_plane("teapot")),
-        "there are simulated, replay, falcon, openffboard, hid, evdev; `haptel devices` lists what is connected"));
-    CHECK(contains(error_of(request_on_plane("")), "there are simulated, replay, falcon, openffboard, hid, evdev"));
+    CHECK(contains(error_of(request_on_plane("teapot")), "there are simulated, replay, falcon, inverse3, openffboard, "
+                                                         "hid, evdev; `haptel devices` lists what is connected"));
+    CHECK(contains(error_of(request_on_plane("")),
+                   "there are simulated, replay, falcon, inverse3, openffboard, hid, evdev"));
     CHECK(contains(error_of(request_on_plane("replay:")), "replay:trace.csv"));
     CHECK(error_of(request_on_plane(std::string(1'000'000, 'x'))).size() < 300);
 }

@@ -22,9 +22,9 @@ houses=(
 # Which folders alone may include a library.
 declare -A home=(
     [llvm/]='jit tests/jit' [llvm-c/]='jit' [libusb]='device' [toml++/]='runtime/files'
-    [assimp/]='runtime/files' [boost/]='lang/math tests' [stb/]='jit/picture tests' [tiff]='jit/picture tests'
+    [assimp/]='runtime/files' [boost/]='lang/math device/inverse3 tests' [stb/]='jit/picture tests' [tiff]='jit/picture tests'
     [OpenEXR/]='jit/picture' [Imath/]='jit/picture' [CLI/]='tools' [cairo]='tools/plot'
-    [nlohmann/]='tools tests bench' [sndfile]='device tests' [alsa/]='device'
+    [nlohmann/]='tools device/inverse3 tests bench' [sndfile]='device tests' [alsa/]='device'
 )
 
 declare -A floor outside # by room: its place in its house; by house: what else it may use

@@ -93,7 +93,7 @@ struct FakeService::Service::Session : std::enable_shared_from_this<Session> {
     Session(Service& service, tcp::socket socket) : of(service), stream(std::move(socket)), later(of.io) {}
 
     Service& of;
-    websocket::stream<tcp::socket> stream;
+    websocket::stream<tcp::socket, false> stream;
     asio::steady_timer later;
     beast::flat_buffer buffer;
     std::vector<std::string> queue; // of what is to be written; the first is being written
