@@ -88,12 +88,23 @@ struct ServiceSocket::Link {
             io.poll();
     }
 
-    // Until it is done, the time is over or somebody quits: true if it is done.
-    bool run_until(const bool& done, int64_t until_ns, const std::atomic<bool>* quit = nullptr)
+    // For what is begun once: connecting, shaking hands, closing. It refers to nothing but this, so that one that never
+    // ends may be left behind.
+    auto when_done()
     {
-        while (!done && runtime::monotonic_ns() < until_ns && !(quit && quit->load(std::memory_order_acquire)))
+        is_done = false;
+        return [this](const error_code& failed) {
+            is_done = true;
+            outcome = failed;
+        };
+    }
+
+    // Until it is done, the time is over or somebody quits: true if it is done.
+    bool run_until_done(int64_t until_ns, const std::atomic<bool>* quit = nullptr)
+    {
+        while (!is_done && runtime::monotonic_ns() < until_ns && !(quit && quit->load(std::memory_order_acquire)))
             run_some(std::min(until_ns, runtime::monotonic_ns() + 20'000'000));
-        return done;
+        return is_done;
     }
 
     asio::io_context io{1};
@@ -105,7 +116,8 @@ struct ServiceSocket::Link {
     std::size_t size = 0; // of what is received of a message
     bool is_connected = false, is_writing = false, is_reading = false, is_woken = false;
     bool has_message = false, is_told = false; // the message was handed out
-    bool is_closing = false;
+    bool is_closing = false, is_done = false;
+    error_code outcome; // of what is done
 };
 
 ServiceSocket::ServiceSocket(WakeEvent& wake) : link_(std::make_unique<Link>(wake)) {}
@@ -116,42 +128,28 @@ std::string ServiceSocket::connect(const ServiceAddress& address, int limit_ms, 
     Link& link = *link_;
     const int64_t until_ns = runtime::monotonic_ns() + int64_t{1'000'000} * limit_ms;
     tcp::socket& socket = link.stream.next_layer();
-    bool done = false;
-    error_code failed = asio::error::host_not_found, ignored;
-    const auto finish = [&](const error_code& error) {
-        failed = error;
-        done = true;
-    };
-    // Handlers refer to what stands here: none is left behind.
-    const auto give_up = [&] {
-        socket.close(ignored);
-        while (!done) link.run_some(runtime::monotonic_ns() + 1'000'000);
-    };
+    error_code ignored;
+    link.outcome = asio::error::host_not_found;
     for (const asio::ip::address& one : addresses_of(address.host)) {
-        done = false;
         socket.close(ignored);
-        socket.async_connect({one, address.port}, finish);
-        if (!link.run_until(done, until_ns, &quit)) {
-            give_up();
+        socket.async_connect({one, address.port}, link.when_done());
+        if (!link.run_until_done(until_ns, &quit))
             return fmt::format("no service answers at {} within {} ms", address.text(), limit_ms);
-        }
-        if (!failed) break;
+        if (!link.outcome) break;
     }
-    if (failed)
+    if (link.outcome)
         return fmt::format("no service answers at {} ({}): start Haply's Inverse service, or name another place by "
                            "HAPTEL_INVERSE3_SERVICE=HOST:PORT",
-                           address.text(), failed.message());
+                           address.text(), link.outcome.message());
     socket.set_option(tcp::no_delay(true), ignored);
     link.stream.read_message_max(0); // arm_read() sees to it
     link.stream.auto_fragment(false);
     link.stream.text(true);
-    done = false;
-    link.stream.async_handshake(address.text(), "/", finish);
-    if (!link.run_until(done, until_ns, &quit)) {
-        give_up();
+    link.stream.async_handshake(address.text(), "/", link.when_done());
+    if (!link.run_until_done(until_ns, &quit))
         return fmt::format("what listens at {} does not answer within {} ms", address.text(), limit_ms);
-    }
-    if (failed) return fmt::format("what listens at {} is no WebSocket service: {}", address.text(), words_of(failed));
+    if (link.outcome)
+        return fmt::format("what listens at {} is no WebSocket service: {}", address.text(), words_of(link.outcome));
     link.is_connected = true;
     return "";
 }
@@ -229,15 +227,11 @@ bool ServiceSocket::close(int limit_ms)
     Link& link = *link_;
     if (!link.is_connected || link.is_closing || !link.error.empty()) return false;
     link.is_closing = true;
-    bool done = false, is_answered = false;
-    link.stream.async_close(websocket::close_code::normal, [&](const error_code& failed) {
-        done = true;
-        is_answered = !failed;
-    });
-    link.run_until(done, runtime::monotonic_ns() + int64_t{1'000'000} * limit_ms);
+    link.stream.async_close(websocket::close_code::normal, link.when_done());
+    const bool is_answered =
+        link.run_until_done(runtime::monotonic_ns() + int64_t{1'000'000} * limit_ms) && !link.outcome;
     error_code ignored;
     link.stream.next_layer().close(ignored);
-    while (!done) link.run_some(runtime::monotonic_ns() + 1'000'000); // its handler refers to what stands here
     return is_answered;
 }
 

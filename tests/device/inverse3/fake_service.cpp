@@ -90,11 +90,10 @@ struct FakeService::Service {
 
 // One connection.
 struct FakeService::Service::Session : std::enable_shared_from_this<Session> {
-    Session(Service& service, tcp::socket socket) : of(service), stream(std::move(socket)), later(of.io) {}
+    Session(Service& service, tcp::socket socket) : of(service), stream(std::move(socket)) {}
 
     Service& of;
     websocket::stream<tcp::socket, false> stream;
-    asio::steady_timer later;
     beast::flat_buffer buffer;
     std::vector<std::string> queue; // of what is to be written; the first is being written
     bool is_first = true;
@@ -104,7 +103,6 @@ struct FakeService::Service::Session : std::enable_shared_from_this<Session> {
     {
         error_code ignored;
         stream.next_layer().close(ignored);
-        later.cancel();
         of.sessions.erase(this->shared_from_this());
     }
 
@@ -133,7 +131,10 @@ struct FakeService::Service::Session : std::enable_shared_from_this<Session> {
         stream.async_read(buffer, [this, self = this->shared_from_this()](const error_code& failed, std::size_t) {
             if (failed) {
                 const std::lock_guard lock(of.mutex);
-                of.violations += failed == websocket::error::closed && last_n != glm::dvec3(0);
+                // Not where a library says it of itself, of a frame that is none.
+                const bool is_goodbye =
+                    failed == websocket::error::closed && stream.reason().code == websocket::close_code::normal;
+                of.violations += is_goodbye && last_n != glm::dvec3(0);
             }
             if (failed) return drop();
             const std::string text = beast::buffers_to_string(buffer.data());
@@ -172,10 +173,8 @@ struct FakeService::Service::Session : std::enable_shared_from_this<Session> {
         case ServiceFault::silent: return;
         case ServiceFault::slow: {
             const std::lock_guard lock(of.mutex);
-            later.expires_after(std::chrono::milliseconds(of.slow_ms));
-            later.async_wait([this, self](const error_code& cancelled) {
-                if (!cancelled) write(of.state(ServiceFault::none));
-            });
+            const auto later = std::make_shared<asio::steady_timer>(of.io, std::chrono::milliseconds(of.slow_ms));
+            later->async_wait([this, self, later](const error_code&) { write(of.state(ServiceFault::none)); });
             return;
         }
         case ServiceFault::binary: stream.text(false); break;
