@@ -61,7 +61,7 @@ runtime::DeviceStatus Inverse3Device::write(const glm::dvec3& force_n, const glm
         const double size_n = glm::length(force_n);
         limited_n = size_n > info_.force_max_n ? force_n * (info_.force_max_n / size_n) : force_n;
     }
-    driver_.command(limited_n);
+    driver_.command(limited_n, session_);
     return has_pose_ ? runtime::DeviceStatus::ok : status_without_pose();
 }
 

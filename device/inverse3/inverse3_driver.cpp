@@ -29,9 +29,9 @@ Inverse3Driver::~Inverse3Driver()
     thread_.join();
 }
 
-void Inverse3Driver::command(const glm::dvec3& force_n) noexcept
+void Inverse3Driver::command(const glm::dvec3& force_n, uint32_t session) noexcept
 {
-    commands_.put({force_n, runtime::monotonic_ns(), session()});
+    commands_.put({force_n, runtime::monotonic_ns(), session});
     wake_.wake();
 }
 

@@ -54,7 +54,8 @@ public:
 
     // The servo's thread: nothing of this allocates, locks or waits.
     bool newest(Inverse3Reading& reading) noexcept { return readings_.take(reading); }
-    void command(const glm::dvec3& force_n) noexcept; // from what was read of the present session
+    // Of a place of that session; where it is over, so is the force.
+    void command(const glm::dvec3& force_n, uint32_t session) noexcept;
     uint32_t session() const noexcept { return session_.load(std::memory_order_acquire); } // 0: none
     Inverse3Phase phase() const noexcept { return phase_.load(std::memory_order_acquire); }
     bool force_was_dropped() noexcept { return dropped_.exchange(false, std::memory_order_acq_rel); }

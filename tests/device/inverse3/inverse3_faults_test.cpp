@@ -100,20 +100,53 @@ TEST_CASE("an Inverse3 whose service says what is no state has no force, and com
     }
 }
 
-TEST_CASE("an Inverse3 whose service is late has no force until it is not")
+TEST_CASE("the force is taken from an Inverse3 before its late service has answered")
 {
     FakeService service;
     Inverse3Times times = quick_times();
     times.pose_age_max_ms = 30;
+    times.silence_ms = 10'000;
     Inverse3Device device("inverse3", address_of(service), "", times);
     REQUIRE(tick_until(device, push_n, [&](auto, auto&) { return service.force_n() == push_n; }));
-    service.answer_after_ms(300);
-    service.inject(ServiceFault::slow, 0, 3);
-    CHECK(tick_until(device, push_n, [&](auto status, auto&) {
-        return status == DeviceStatus::not_ready && service.force_n() == dvec3(0); // before it has answered
-    }));
+    service.answer_after_ms(1500);
+    service.inject(ServiceFault::slow, 0, 2);
+    REQUIRE(tick_until(device, push_n, [&](auto, auto&) { return service.has_met_fault(); }));
+    const uint64_t states = service.states();
+    CHECK(tick_until(device, push_n, [&](auto, auto&) { return service.force_n() == dvec3(0); }));
+    CHECK(service.states() == states);
     CHECK(tick_until(device, push_n, [&](auto, auto&) { return service.force_n() == push_n; }));
     CHECK(service.connections() == 1);
+}
+
+TEST_CASE("a force that a lost connection leaves on an Inverse3 is taken away at once")
+{
+    FakeService service;
+    Inverse3Times times = quick_times();
+    times.again_ms = 60'000;
+    Inverse3Device device("inverse3", address_of(service), "", times);
+    REQUIRE(tick_until(device, push_n, [&](auto, auto&) { return service.force_n() == push_n; }));
+    service.inject(ServiceFault::reset, 0, 1);
+    REQUIRE(tick_until(device, push_n, [&](auto, auto&) { return service.has_met_fault(); }));
+    CHECK(tick_until(device, dvec3(0), [&](auto, auto&) { return service.force_n() == dvec3(0); }));
+}
+
+TEST_CASE("a servo that did not look while its Inverse3 came back has no force, and is told when it does")
+{
+    FakeService service;
+    Inverse3Device device("inverse3", address_of(service), "", quick_times());
+    REQUIRE(tick_until(device, push_n, [&](auto, auto&) { return service.force_n() == push_n; }));
+    service.stop();
+    service.start();
+    const uint64_t forces = service.messages_with_force(), states = service.states();
+    for (int i = 0; i < 5000 && service.states() < states + 20; ++i) {
+        device.write(push_n, dvec3(0));
+        std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    CHECK(service.states() >= states + 20);
+    CHECK(service.messages_with_force() == forces);
+    DevicePose pose;
+    CHECK(device.read(pose) == DeviceStatus::ok);
+    CHECK(pose.interrupted);
 }
 
 TEST_CASE("a restarted service finds its Inverse3 without a force, and the hand is told")
