@@ -67,6 +67,7 @@ void FalconDevice::take_newest() noexcept
     if (believed == Believed::no) return;
     interrupted_ = interrupted_ || believed == Believed::after_a_jump;
     angles_rad_ = angles_rad;
+    link_ns_ = reading.link_ns;
 }
 
 runtime::DeviceStatus FalconDevice::read(runtime::DevicePose& pose) noexcept
@@ -81,6 +82,7 @@ runtime::DeviceStatus FalconDevice::read(runtime::DevicePose& pose) noexcept
     has_pose_ = true;
     pose.tip_m = pose.tail_m = falcon_world_m(filter_.place_m());
     pose.periods = 0;
+    pose.link_ns = std::exchange(link_ns_, 0);
     pose.interrupted = driver_.link().force_was_dropped() || interrupted_;
     interrupted_ = false;
     return runtime::DeviceStatus::ok;

@@ -44,6 +44,7 @@ private:
     // The servo's thread alone.
     FalconPlaceFilter filter_;
     glm::dvec3 angles_rad_{0}; // at the place that was believed last
+    int64_t link_ns_ = 0;      // of the same, until it was told
     uint32_t session_ = 0;
     bool has_pose_ = false;   // the last read gave one
     bool interrupted_ = true; // told of with the next pose

@@ -48,7 +48,8 @@ void FalconLink::begin_session() noexcept
     sent_motors_ = {};
     sent_ns_ = 0;
     heard_ns_ = runtime::monotonic_ns();
-    session_replies_ = 0;
+    session_packets_ = session_replies_ = 0;
+    malformed_before_ = reader_.malformed();
     homed_ = false;
     session_.store(++sessions_, std::memory_order_release);
 }
@@ -65,11 +66,19 @@ void FalconLink::received(std::span<const uint8_t> bytes) noexcept
         if (!reply) return;
         heard_ns_ = runtime::monotonic_ns();
         homed_ = reply->all_homed();
-        ++session_replies_;
         replies_count_.fetch_add(1, relaxed);
-        replies_.put({*reply, heard_ns_, sessions_});
+        replies_.put({*reply, heard_ns_, sessions_, link_ns()});
+        ++session_replies_;
     });
     malformed_.store(reader_.malformed(), relaxed);
+}
+
+// Of the reply that came now: each packet is answered by one, in their order.
+int64_t FalconLink::link_ns() const noexcept
+{
+    const uint64_t answered = session_replies_ + reader_.malformed() - malformed_before_;
+    const bool known = answered < session_packets_ && session_packets_ - answered <= packet_ns_.size();
+    return known ? heard_ns_ - packet_ns_[answered % packet_ns_.size()] : 0;
 }
 
 // What the device should do now.
@@ -99,6 +108,7 @@ std::size_t FalconLink::next_out(std::span<uint8_t> room) noexcept
     std::copy(bytes.begin(), bytes.end(), room.begin());
     sent_motors_ = command.motors;
     sent_ns_ = now_ns;
+    packet_ns_[session_packets_++ % packet_ns_.size()] = now_ns;
     sent_.fetch_add(1, relaxed);
     return bytes.size();
 }

@@ -9,6 +9,7 @@
 #include "device/usb/newest.h"
 #include "device/usb/transport.h"
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 
@@ -36,6 +37,7 @@ public:
         FalconReply reply;
         int64_t time_ns = 0;  // of its arrival, CLOCK_MONOTONIC
         uint32_t session = 0; // of the stream that it came by
+        int64_t link_ns = 0;  // since the packet that it answers was sent; 0: not known
     };
 
     explicit FalconLink(const FalconTimes& times);
@@ -72,6 +74,7 @@ private:
     };
 
     FalconCommand wanted(int64_t now_ns) noexcept;
+    int64_t link_ns() const noexcept;
 
     FalconTimes times_;
     Newest<Command> commands_;
@@ -86,7 +89,8 @@ private:
     Command command_;
     FalconCounts sent_motors_{};
     int64_t sent_ns_ = 0, heard_ns_ = 0;
-    uint64_t session_replies_ = 0;
+    uint64_t session_packets_ = 0, session_replies_ = 0, malformed_before_ = 0; // of this session, and before it
+    std::array<int64_t, 16> packet_ns_{}; // when the last of them were sent: 16 ms of them, or replies are lost
     uint32_t sessions_ = 0;
     bool homed_ = false;
 };

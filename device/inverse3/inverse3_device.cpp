@@ -39,7 +39,7 @@ runtime::DeviceStatus Inverse3Device::status_without_pose() noexcept
 runtime::DeviceStatus Inverse3Device::read(runtime::DevicePose& pose) noexcept
 {
     const uint32_t session = driver_.session();
-    driver_.newest(reading_);
+    const bool is_new = driver_.newest(reading_);
     const int64_t age_max_ns = int64_t{1'000'000} * driver_.times().pose_age_max_ms;
     const bool is_fresh = runtime::monotonic_ns() - reading_.time_ns <= age_max_ns;
     if (session == 0 || reading_.session != session || !is_fresh) return status_without_pose();
@@ -49,6 +49,7 @@ runtime::DeviceStatus Inverse3Device::read(runtime::DevicePose& pose) noexcept
     pose.tip_m = reading_.state.position_m - (reading_.is_centred ? glm::dvec3(0) : inverse3_centre_m);
     pose.tail_m = pose.tip_m;
     pose.periods = 0;
+    pose.link_ns = is_new ? reading_.link_ns : 0;
     pose.interrupted = driver_.force_was_dropped() || interrupted_;
     interrupted_ = false;
     return runtime::DeviceStatus::ok;

@@ -187,7 +187,8 @@ Inverse3Driver::Ending Inverse3Driver::hear(const ServiceSocket& socket, const I
     owed_ = std::max(0, owed_ - 1);
     if (owed_ == 0 && said_n_ == no_force_n) held_by_.clear();
     owed_since_ns_ = now_ns;
-    readings_.put({reply.state, device.is_centred, now_ns, sessions_});
+    const int64_t asked_ns = std::exchange(asked_ns_, 0);
+    readings_.put({reply.state, device.is_centred, now_ns, sessions_, asked_ns > 0 ? now_ns - asked_ns : 0});
     states_count_.fetch_add(1, std::memory_order_relaxed);
     if (++session_states_ == 1) enter(Inverse3Phase::streaming, "connected");
     return {};
@@ -232,6 +233,7 @@ void Inverse3Driver::said(bool was_sent, const std::string& id, const glm::dvec3
     if (force_n != no_force_n) held_by_ = id;
     said_n_ = force_n;
     said_ns_ = runtime::monotonic_ns();
+    asked_ns_ = owed_ == 0 ? said_ns_ : 0;
     if (owed_++ == 0) owed_since_ns_ = said_ns_;
     is_fresh_ = false;
     sent_count_.fetch_add(1, std::memory_order_relaxed);

@@ -38,6 +38,7 @@ struct Inverse3Reading {
     bool is_centred = false;
     int64_t time_ns = 0;
     uint32_t session = 0; // counts from 1 on: another one after each connection
+    int64_t link_ns = 0;  // since the message that it answers was sent; 0: not known
 };
 
 struct Inverse3Counters {
@@ -112,6 +113,7 @@ private:
     glm::dvec3 said_n_{0};  // by the newest message
     int64_t said_ns_ = 0;
     int64_t owed_since_ns_ = 0; // since when a state is awaited
+    int64_t asked_ns_ = 0;      // when the one message was sent that a state is owed for; 0: none, or several
     int owed_ = 0;              // states
     std::string held_by_;       // the device that may still hold a force of ours; empty: none does
     uint32_t sessions_ = 0;

@@ -25,6 +25,8 @@ struct DevicePose {
     bool interrupted = false;
     // What is left out of this tick, at least. A recorded hand says what was then; the servo adds what it leaves out.
     Degradation degradation = Degradation::none;
+    // From the sending of a force to the arrival of this pose, which answers it. 0: not known, or told before.
+    int64_t link_ns = 0;
 };
 
 // Along x, y and z of the device's frame. What a device does not sense or push is left to FewerAxes.

@@ -38,6 +38,7 @@ struct ServoReport {
     uint64_t waiting_ticks = 0;                        // without a force because the one computed was not small yet
     Histogram tick_ns;                                 // pose in hand to force computed
     Histogram wake_late_ns;                            // after the deadline; empty on the virtual clock
+    Histogram link_ns;                                 // from a force to the pose that answers it, where a device does
     double force_rms_n = 0, force_max_n = 0;           // as sent, over all ticks
     double grip_force_rms_n = 0, grip_force_max_n = 0; // the same of what pushes a gripper's fingers apart
     double energy_j = 0;         // that the forces gave to the hand; negative where they took more than they gave

@@ -179,6 +179,7 @@ bool ServoThread::tick()
         end(read == DeviceStatus::finished ? ServoState::finished : ServoState::faulted, reason_of(read));
         return false;
     }
+    if (pose.link_ns > 0) report_.link_ns.add(static_cast<uint64_t>(pose.link_ns));
     if (pose.periods == 0) pose.periods = periods_since_pose_;
     pose.interrupted = pose.interrupted || interrupted_;
     pose.degradation = std::max(pose.degradation, overload_.step());

@@ -108,6 +108,9 @@ void add(Json& json, const HandOutcome& hand)
     json["wake_late_us"]["median"] = percentile(servo.wake_late_ns, 0.5, 1e3);
     json["wake_late_us"]["p99"] = percentile(servo.wake_late_ns, 0.99, 1e3);
     json["wake_late_us"]["max"] = maximum(servo.wake_late_ns, 1e3);
+    json["link_us"]["median"] = percentile(servo.link_ns, 0.5, 1e3);
+    json["link_us"]["p99"] = percentile(servo.link_ns, 0.99, 1e3);
+    json["link_us"]["max"] = maximum(servo.link_ns, 1e3);
     json["force_n"]["rms"] = finite_or_null(servo.force_rms_n);
     json["force_n"]["max"] = finite_or_null(servo.force_max_n);
     json["grip_force_n"]["rms"] = finite_or_null(servo.grip_force_rms_n);
@@ -158,6 +161,7 @@ std::string lines_of(const HandOutcome& hand, const ExploreOutcome& outcome)
          fmt::format("{:.3g} J {} the hand", std::abs(servo.energy_j), servo.energy_j < 0 ? "taken from" : "given to"));
     line("tick", percentiles_text(servo.tick_ns));
     if (servo.wake_late_ns.count() > 0) line("woke late", percentiles_text(servo.wake_late_ns));
+    if (servo.link_ns.count() > 0) line("link", percentiles_text(servo.link_ns));
     line("textures", fmt::format("{} compiled, {} reloads", outcome.textures_compiled, servo.reloads));
     if (servo.scenes_swapped > 0) line("scenes", fmt::format("{} took the place of the first", servo.scenes_swapped));
     const runtime::SkippedStages& skipped = servo.skipped;

@@ -65,6 +65,46 @@ TEST_CASE("a command is sent once, the newest of several, and again when nothing
     CHECK(link.counters().sent == 2);
 }
 
+TEST_CASE("a reply tells how long ago the packet that it answers was sent")
+{
+    FalconLink link(unhurried);
+    link.begin_session();
+    const auto send = [&] {
+        link.command(some_force);
+        CHECK(!said(link).empty());
+    };
+    const auto link_ms = [&] {
+        FalconLink::Reading reading;
+        REQUIRE(link.newest(reading));
+        return 1e-6 * static_cast<double>(reading.link_ns);
+    };
+    send();
+    pause_ms(30);
+    send();
+    pause_ms(30);
+    hear(link, true); // the first of two
+    const double first_ms = link_ms();
+    hear(link, true);
+    const double second_ms = link_ms();
+    CHECK(first_ms >= 60);
+    CHECK(second_ms >= 30);
+    CHECK(first_ms - second_ms >= 29);
+    hear(link, true); // answers nothing
+    CHECK(link_ms() == 0);
+
+    link.begin_session();
+    send();
+    const std::string broken = "1`<AAAA<";
+    link.received({reinterpret_cast<const uint8_t*>(broken.data()), broken.size()}); // the answer to the first
+    pause_ms(30);
+    send();
+    hear(link, true);
+    CHECK(link_ms() < 30);
+    for (int i = 0; i < 40; ++i) send(); // more than a device would leave unanswered
+    hear(link, true);
+    CHECK(link_ms() == 0);
+}
+
 TEST_CASE("a force is taken away when its servo is silent, and that is told once")
 {
     FalconLink link({.keep_alive_ms = 60'000, .watchdog_ms = 200, .silence_ms = 60'000});

@@ -52,6 +52,23 @@ TEST_CASE("an Inverse3 holds the force that it is told, and tells where it is")
     CHECK(service.violations() == 0);
 }
 
+TEST_CASE("how long an Inverse3 takes to answer is told, once for each state")
+{
+    FakeService service;
+    Inverse3Device device("inverse3", address_of(service), "", quick_times());
+    service.answer_after_ms(5);
+    service.inject(ServiceFault::slow);
+    uint64_t told = 0;
+    int64_t shortest_ns = std::numeric_limits<int64_t>::max();
+    CHECK(tick_until(device, {0, 0, 1}, [&](DeviceStatus status, const DevicePose& pose) {
+        if (status != DeviceStatus::ok || pose.link_ns == 0) return false;
+        shortest_ns = std::min(shortest_ns, pose.link_ns);
+        return ++told == 10;
+    }));
+    CHECK(shortest_ns >= 5'000'000);
+    CHECK(told <= service.states());
+}
+
 TEST_CASE("an Inverse3 whose service has its origin in the middle is taken as it is")
 {
     FakeService service;

@@ -29,11 +29,14 @@ TEST_CASE("the report holds every promised field, null where nothing was measure
 
     servo.allocations_in_tick = 3;
     servo.skipped = {4, 6, 5, 3, 2};
+    CHECK(json["link_us"]["median"].is_null());
     for (uint64_t ns = 1; ns <= 1000; ++ns) servo.wake_late_ns.add(ns * 1000);
+    servo.link_ns.add(2'000'000);
     json = to_json(outcome);
     CHECK(json["allocations_in_tick"] == 3);
     CHECK(json["skipped"] == Json{{"free_space", 4}, {"objects", 6}, {"texture", 5}, {"octaves", 3}, {"mapping", 2}});
     CHECK(json["wake_late_us"]["max"] == 1000);
+    CHECK(json["link_us"]["max"] == 2000);
     const double median_us = json["wake_late_us"]["median"];
     CHECK((median_us > 480 && median_us < 520)); // buckets of 3 %
     CHECK(!to_lines(outcome).empty());
