@@ -34,18 +34,33 @@ void touch_stack()
     for (std::size_t i = 0; i < sizeof(stack); i += 1024) stack[i] = std::byte{0};
 }
 
+int64_t read_ns(clockid_t clock) noexcept
+{
+    timespec now = {};
+    clock_gettime(clock, &now);
+    return int64_t{now.tv_sec} * ns_per_s + now.tv_nsec;
+}
+
 } // namespace
 
 int64_t monotonic_ns() noexcept
 {
-    timespec now = {};
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    return int64_t{now.tv_sec} * ns_per_s + now.tv_nsec;
+    return read_ns(CLOCK_MONOTONIC);
+}
+
+int64_t processor_ns() noexcept
+{
+    return read_ns(CLOCK_THREAD_CPUTIME_ID);
 }
 
 void set_exact_floating_point() noexcept
 {
     std::fesetenv(FE_DFL_ENV);
+}
+
+void use_exact_timers() noexcept
+{
+    prctl(PR_SET_TIMERSLACK, 1UL);
 }
 
 RealTime ask_for_real_time()
@@ -57,12 +72,22 @@ RealTime ask_for_real_time()
     sched_param priority = {};
     priority.sched_priority = fifo_priority;
     if (pthread_setschedparam(pthread_self(), SCHED_FIFO, &priority) != 0) {
-        prctl(PR_SET_TIMERSLACK, 1UL);
+        use_exact_timers();
         result.note += result.note.empty() ? "" : "; ";
         result.note += "real-time scheduling was refused (raise `ulimit -r` or run with CAP_SYS_NICE)";
     }
     result.granted = result.note.empty();
     return result;
+}
+
+std::string bind_to_core(unsigned core)
+{
+    cpu_set_t set;
+    CPU_ZERO(&set);
+    if (core < CPU_SETSIZE) CPU_SET(core, &set); // else it is empty, and refused
+    if (pthread_setaffinity_np(pthread_self(), sizeof(set), &set) == 0) return {};
+    return "the servo was not bound to processor " + std::to_string(core) +
+           ": there is none of that number, or this process may not use it (see `taskset -p $$`)";
 }
 
 int64_t wait_until(int64_t deadline_ns, int64_t spin_ns) noexcept

@@ -27,7 +27,8 @@ struct ServoReport {
     ServoState state = ServoState::ready;
     std::string stop_reason;    // in words
     bool real_time = false;     // SCHED_FIFO and locked memory were granted
-    std::string real_time_note; // why not, or nothing
+    std::string real_time_note; // why not, or nothing; the same of a processor that it was to stay on
+    double processor_share = 0; // of one processor, of the time that the run took; 0 on the virtual clock
 
     double seconds = 0; // periods that went by, missed ones included, times the period
     double rate_hz = 0;

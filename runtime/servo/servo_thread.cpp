@@ -86,11 +86,15 @@ void ServoThread::run()
 void ServoThread::begin()
 {
     set_exact_floating_point();
+    use_exact_timers();
     if (options_.clock == ServoClock::wall && options_.ask_for_real_time) {
         RealTime real_time = ask_for_real_time();
         report_.real_time = real_time.granted;
         report_.real_time_note = std::move(real_time.note);
     }
+    if (options_.clock == ServoClock::wall && options_.core)
+        if (const std::string why = bind_to_core(*options_.core); !why.empty())
+            report_.real_time_note += (report_.real_time_note.empty() ? "" : "; ") + why;
     report_.state = ServoState::running;
     if (options_.allocation_count) report_.allocations_in_tick = 0;
     if (!renderer_->refused().empty()) end(ServoState::faulted, "the scene is refused:\n" + renderer_->refused());
@@ -142,14 +146,15 @@ void ServoThread::keep_deadlines()
 {
     const auto period_ns = std::max(int64_t{1}, static_cast<int64_t>(std::llround(1e9 / rate_hz_)));
     const int64_t spin_ns = report_.real_time ? std::min(int64_t{200'000}, period_ns / 5) : 0;
-    int64_t deadline_ns = monotonic_ns() + period_ns;
+    const int64_t start_ns = monotonic_ns(), processor_start_ns = processor_ns();
+    int64_t deadline_ns = start_ns + period_ns;
     while (!over()) {
         const int64_t now_ns = wait_until(deadline_ns, spin_ns);
         woken_ns_ = static_cast<uint64_t>(now_ns);
         wake_late_ns_ = static_cast<uint64_t>(now_ns - deadline_ns);
         report_.wake_late_ns.add(wake_late_ns_);
         ++periods_since_pose_;
-        if (!tick()) return;
+        if (!tick()) break;
         ++periods_;
         deadline_ns += period_ns;
         const int64_t late_ns = monotonic_ns() - deadline_ns;
@@ -160,6 +165,8 @@ void ServoThread::keep_deadlines()
         periods_since_pose_ += static_cast<uint64_t>(missed);
         deadline_ns += missed * period_ns;
     }
+    const int64_t took_ns = std::max(int64_t{1}, monotonic_ns() - start_ns);
+    report_.processor_share = static_cast<double>(processor_ns() - processor_start_ns) / static_cast<double>(took_ns);
 }
 
 bool ServoThread::tick()

@@ -9,6 +9,7 @@
 #include "tools/report/bench_compile.h"
 #include "tools/report/bench_math.h"
 #include "tools/report/bench_scale.h"
+#include "tools/report/bench_servo.h"
 #include "tools/report/bench_skip.h"
 #include "tools/report/bench_tick.h"
 #include "tools/report/bench_verdict.h"
@@ -145,6 +146,18 @@ Figures skip_figures(const BenchOptions& options)
     return figures;
 }
 
+Figures servo_figures(const BenchOptions& options)
+{
+    Progress progress;
+    const std::vector<bench::ServoRow> rows =
+        bench::bench_servo(options.quick, [&](double share) { progress.show(share); });
+    Figures figures;
+    for (const bench::ServoRow& row : rows) figures.rows.push_back(to_json(row));
+    figures.table = to_table(rows);
+    figures.csv = to_csv(rows);
+    return figures;
+}
+
 Figures scale_figures(const BenchOptions& options)
 {
     Progress progress;
@@ -215,6 +228,7 @@ ExitCode run(const BenchOptions& given)
                             : options.what == "tick"  ? tick_figures(options)
                             : options.what == "skip"  ? skip_figures(options)
                             : options.what == "scale" ? scale_figures(options)
+                            : options.what == "servo" ? servo_figures(options)
                                                       : accuracy_figures(options, name + ", commit " + machine.commit);
     if (!figures.error.empty()) {
         say_error(figures.error);
@@ -242,15 +256,16 @@ ExitCode run(const BenchOptions& given)
 Command bench_command(CLI::App& app)
 {
     const auto options = std::make_shared<BenchOptions>();
-    CLI::App* command = app.add_subcommand(
-        "bench", "Measure compile times, accuracy, batches, math, servo ticks, how they scale and what they skip");
+    CLI::App* command = app.add_subcommand("bench", "Measure compile times, accuracy, batches, math, the tick of the "
+                                                    "servo, its scale, its skip and servo deadlines");
     command
         ->add_option(
             "what", options->what,
             "compile: from text to code; accuracy: error of the gradient against time, ours and plain C++; "
             "batch: many points of every texture; math: elementary functions; tick: of the servo, by probe, mesh "
-            "and number of objects; scale: how that grows, and what a surface costs; skip: what a tick leaves out")
-        ->check(CLI::IsMember({"compile", "accuracy", "batch", "math", "tick", "scale", "skip"}))
+            "and number of objects; scale: how that grows, and what a surface costs; skip: what a tick leaves out; "
+            "servo: how late it wakes, at 250 Hz to 10 kHz, ordinary and real-time, alone and beside others")
+        ->check(CLI::IsMember({"compile", "accuracy", "batch", "math", "tick", "scale", "skip", "servo"}))
         ->capture_default_str();
     options->of_batch = {
         command
@@ -279,6 +294,7 @@ Command bench_command(CLI::App& app)
                            "  haptel bench tick --quick\n"
                            "  haptel bench scale --out figures\n"
                            "  haptel bench skip --quick --json\n"
+                           "  haptel bench servo\n"
                            "  haptel bench compile --quick --json --out figures");
     return {command, [options] { return run(*options); }};
 }

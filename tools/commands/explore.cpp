@@ -63,6 +63,7 @@ runtime::ServoOptions servo_options(const ExploreOptions& options)
     const bool wall = options.clock == "wall";
     servo.clock = wall ? runtime::ServoClock::wall : runtime::ServoClock::virtual_time;
     servo.seconds = options.seconds;
+    servo.core = options.core;
     servo.wait_for_reader = !wall;
     servo.allocation_count = runtime::allocations_of_this_thread;
     return servo;
@@ -164,6 +165,9 @@ void add_exploring(CLI::App& command, ExploreOptions& options)
     command.add_option("--clock", options.clock, "virtual: as fast as possible, the same forces on every run")
         ->check(CLI::IsMember({"wall", "virtual"}))
         ->capture_default_str();
+    command.add_option("--core", options.core, "Processor for the servo alone to stay on, from 0")
+        ->type_name("N")
+        ->check(CLI::NonNegativeNumber);
     command.add_flag("--json", options.json, "Report as JSON on standard output");
 }
 

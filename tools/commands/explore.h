@@ -4,6 +4,7 @@
 #include "tools/commands/command.h"
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@ struct ExploreOptions {
     std::string recording;            // file; empty: none
     std::vector<std::string> devices; // in place of the scene's, from the first on
     std::string clock = "wall";
+    std::optional<unsigned> core; // that the servo stays on
     double seconds = std::numeric_limits<double>::infinity();
     bool json = false;
 };

@@ -133,6 +133,7 @@ void add(Json& json, const HandOutcome& hand)
     json["state"] = name_of(servo.state);
     json["stop_reason"] = servo.stop_reason;
     json["real_time"] = servo.real_time;
+    json["processor_share"] = servo.processor_share;
     json["records_dropped"] = servo.records_dropped;
 }
 
@@ -161,6 +162,7 @@ std::string lines_of(const HandOutcome& hand, const ExploreOutcome& outcome)
          fmt::format("{:.3g} J {} the hand", std::abs(servo.energy_j), servo.energy_j < 0 ? "taken from" : "given to"));
     line("tick", percentiles_text(servo.tick_ns));
     if (servo.wake_late_ns.count() > 0) line("woke late", percentiles_text(servo.wake_late_ns));
+    if (servo.processor_share > 0) line("processor", fmt::format("{:.3g} % of one", 100 * servo.processor_share));
     if (servo.link_ns.count() > 0) line("link", percentiles_text(servo.link_ns));
     line("textures", fmt::format("{} compiled, {} reloads", outcome.textures_compiled, servo.reloads));
     if (servo.scenes_swapped > 0) line("scenes", fmt::format("{} took the place of the first", servo.scenes_swapped));
