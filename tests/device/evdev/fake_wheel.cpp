@@ -81,7 +81,7 @@ int FakeWheel::call()
 {
     const auto number = static_cast<int64_t>(calls_++);
     if (!is_plugged) return ENODEV;
-    return number == fails_at ? EIO : 0;
+    return fails_at >= 0 && number >= fails_at && number - fails_at < fails_for ? EIO : 0;
 }
 
 void FakeWheel::advance(double seconds)

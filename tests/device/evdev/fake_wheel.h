@@ -38,6 +38,7 @@ public:
     std::array<Axis, 2> axes;
     std::atomic<bool> is_plugged{true};
     std::atomic<int64_t> fails_at{-1}; // the call of this number, with EIO
+    std::atomic<int64_t> fails_for{1}; // and those after it, so many in all
     std::atomic<int> ports{0};         // open ones
     static constexpr int value_max = 32767;
 

@@ -2,8 +2,10 @@
 #pragma once
 
 #include "device/axes/axis_device.h"
+#include "device/hid/open_hid.h"
 #include "device/hid/pid_axes.h"
 #include "tests/device/hid/fake_board.h"
+#include "tests/device/usb/fake_transport.h"
 
 #include <chrono>
 #include <functional>
@@ -35,6 +37,18 @@ inline bool becomes(AxisDevice& device, runtime::DeviceStatus status)
 
 inline constexpr AxisTimes quick_axes{.watchdog_ms = 200, .nudge_ms = 60, .again_ms = 5, .patience_s = 1};
 inline constexpr PidTimes quick_pid{.transfer_ms = 20, .load_ms = 50, .poll_ms = 1};
+inline OpenAxes open_board(FakeBoard& board)
+{
+    const OpenInterface open = [&board](int) -> OpenedTransport {
+        std::size_t size = 0;
+        std::array<uint8_t, 64> bytes{};
+        if (board.in(bytes, size) == FakeUsbDevice::Answer::gone)
+            return {nullptr, UsbError::not_found, "it is not there"};
+        return {std::make_unique<FakeTransport>(board, 1), UsbError::none, {}};
+    };
+    return [open] { return open_pid_axes(open, openffboard_interface, quick_pid); };
+}
+
 inline constexpr AxisSettings board_settings{.travel_m = 0.4, .force_max_n = 20, .axes = 2};
 
 } // namespace haptel::device

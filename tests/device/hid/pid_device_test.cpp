@@ -2,7 +2,6 @@
 #include "device/hid/open_hid.h"
 #include "runtime/servo/allocation_count.h"
 #include "tests/device/hid/board_ticks.h"
-#include "tests/device/usb/fake_transport.h"
 #include "tests/support/catch.h"
 
 #include <cmath>
@@ -13,18 +12,6 @@ using namespace haptel::device;
 using namespace haptel::runtime;
 
 namespace {
-
-OpenAxes open_board(FakeBoard& board)
-{
-    const OpenInterface open = [&board](int) -> OpenedTransport {
-        std::size_t size = 0;
-        std::array<uint8_t, 64> bytes{};
-        if (board.in(bytes, size) == FakeUsbDevice::Answer::gone)
-            return {nullptr, UsbError::not_found, "it is not there"};
-        return {std::make_unique<FakeTransport>(board, 1), UsbError::none, {}};
-    };
-    return [open] { return open_pid_axes(open, openffboard_interface, quick_pid); };
-}
 
 struct Board {
     FakeBoard fake;

@@ -186,10 +186,12 @@ TEST_CASE("an Inverse3 that is let go while its connection is lost has its force
     }
 }
 
-TEST_CASE("faults of an Inverse3 service at random moments: never a force without a pose, and a pose again afterwards")
+namespace {
+
+void run_with_service_faults(uint32_t runs)
 {
     double longest_s = 0;
-    for (uint32_t seed = 1; seed <= 200; ++seed) {
+    for (uint32_t seed = 1; seed <= runs; ++seed) {
         std::mt19937 random(seed);
         const auto fault = static_cast<ServiceFault>(random() % service_faults);
         INFO("seed " << seed << ": " << name_of(fault));
@@ -229,6 +231,18 @@ TEST_CASE("faults of an Inverse3 service at random moments: never a force withou
         CHECK(service.violations() == 0);
         longest_s = std::max(longest_s, seconds_since(start));
     }
-    WARN("200 runs, the longest " << longest_s << " s");
+    WARN(runs << " runs, the longest " << longest_s << " s");
     CHECK(longest_s < 20);
+}
+
+} // namespace
+
+TEST_CASE("faults of an Inverse3 service at random moments: never a force without a pose, and a pose again afterwards")
+{
+    run_with_service_faults(200);
+}
+
+TEST_CASE("faults of an Inverse3 service at random moments, two thousand times", "[.long]")
+{
+    run_with_service_faults(2000);
 }
