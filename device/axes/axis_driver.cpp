@@ -176,13 +176,16 @@ AxisLevels AxisDriver::levels() noexcept
     }
     commands_.take(command_);
     const bool silent = now_ns - command_.time_ns > ns_per_ms * times_.watchdog_ms;
-    if (silent && command_.shares != AxisLevels{}) {
-        command_.shares = {};
-        dropped_.store(true, std::memory_order_release);
-    }
+    if (silent && command_.shares != AxisLevels{}) force_was_taken();
     if (halted_.load(std::memory_order_acquire)) return wanted;
     for (std::size_t i = 0; i < count_; ++i) wanted[i] = axes_[i].sign * command_.shares[i];
     return wanted;
+}
+
+void AxisDriver::force_was_taken() noexcept
+{
+    command_.shares = {};
+    dropped_.store(true, std::memory_order_release);
 }
 
 void AxisDriver::publish() noexcept

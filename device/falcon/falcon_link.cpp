@@ -113,6 +113,22 @@ std::size_t FalconLink::next_out(std::span<uint8_t> room) noexcept
     return bytes.size();
 }
 
+std::size_t FalconLink::last_word(std::span<uint8_t> room) noexcept
+{
+    const FalconPacketBytes bytes = encode({{}, falcon_green});
+    if (room.size() < bytes.size()) return 0;
+    std::copy(bytes.begin(), bytes.end(), room.begin());
+    return bytes.size();
+}
+
+void FalconLink::force_was_taken() noexcept
+{
+    command_ = {}; // of no session
+    sent_motors_ = {};
+    dropped_.fetch_add(1, relaxed);
+    force_dropped_.store(true, std::memory_order_release);
+}
+
 void FalconLink::out_failed() noexcept
 {
     out_failed_.fetch_add(1, relaxed);

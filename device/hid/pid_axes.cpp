@@ -98,6 +98,25 @@ private:
         bool is_deaf() const noexcept { return failures_ >= failures_max; }
         bool wants_more() noexcept override { return client_.wants_more() && !is_deaf(); }
 
+        std::size_t last_word(std::span<uint8_t> room) noexcept override
+        {
+            const PidReport report = axes_.reports_.control(PidControl::stop_all);
+            if (report.kind != HidKind::output || report.size > room.size()) return 0;
+            std::ranges::copy(report.span(), room.begin());
+            return report.size;
+        }
+        bool holds_force() const noexcept override
+        {
+            return std::ranges::any_of(sent_, [](const auto& counts) { return counts.value_or(0) != 0; });
+        }
+        void force_was_taken() noexcept override
+        {
+            client_.force_was_taken();
+            sent_ = {};
+            replays_ = 0;
+            replay_ns_ = 0; // the effects were stopped
+        }
+
     private:
         static constexpr int failures_max = 4; // reports in a row, of at most a tenth of a second each
 

@@ -1,5 +1,6 @@
 #include "device/inverse3/inverse3_driver.h"
 
+#include "device/guard/force_guard.h"
 #include "runtime/servo/real_time.h"
 
 #include <algorithm>
@@ -150,7 +151,10 @@ Inverse3Driver::Ending Inverse3Driver::converse(ServiceSocket& socket, const Inv
 
 Inverse3Driver::Ending Inverse3Driver::exchange(ServiceSocket& socket, const Inverse3Listed& device)
 {
+    const std::string word = ServiceSocket::frame_of(inverse3_force(device.id, no_force_n).view());
+    ForceGuard guard(socket.file_descriptor(), 0, {reinterpret_cast<const uint8_t*>(word.data()), word.size()});
     while (!quitting()) {
+        if (guard.hear(said_n_ != no_force_n)) force_was_taken();
         is_fresh_ = commands_.take(command_) || is_fresh_;
         const int64_t now_ns = runtime::monotonic_ns();
         const glm::dvec3 force_n = wanted_n(now_ns);
@@ -208,6 +212,20 @@ void Inverse3Driver::note_what_is_dropped(const glm::dvec3& force_n) noexcept
     if (force_n != no_force_n || said_n_ == no_force_n || command_.force_n == no_force_n ||
         halted_.load(std::memory_order_acquire))
         return;
+    count_dropped();
+}
+
+// This process stood still, and its guard has spoken. The service answers that, too.
+void Inverse3Driver::force_was_taken() noexcept
+{
+    command_ = {}; // of no session
+    said_n_ = no_force_n;
+    if (owed_++ == 0) owed_since_ns_ = runtime::monotonic_ns();
+    count_dropped();
+}
+
+void Inverse3Driver::count_dropped() noexcept
+{
     dropped_count_.fetch_add(1, std::memory_order_relaxed);
     dropped_.store(true, std::memory_order_release);
 }
@@ -223,7 +241,9 @@ int64_t Inverse3Driver::next_deadline_ns() const noexcept
 {
     const int64_t next_ns =
         owed_ > 0 ? owed_since_ns_ + ns_per_ms * times_.silence_ms : said_ns_ + ns_per_ms * times_.keep_alive_ms;
-    return said_n_ == no_force_n ? next_ns : std::min(next_ns, command_.time_ns + ns_per_ms * times_.watchdog_ms);
+    if (said_n_ == no_force_n) return next_ns;
+    const int64_t heard_by_guard_ns = runtime::monotonic_ns() + ns_per_ms * guard_silence_ms / 4;
+    return std::min({next_ns, command_.time_ns + ns_per_ms * times_.watchdog_ms, heard_by_guard_ns});
 }
 
 // Where it was not sent the connection is lost, and the wait that follows says why.

@@ -167,6 +167,27 @@ bool ServiceSocket::send(std::string_view text)
     return true;
 }
 
+// RFC 6455, 5.2: the last frame of a text, and a mask of zeros.
+std::string ServiceSocket::frame_of(std::string_view text)
+{
+    constexpr char last_text = '\x81', masked = '\x80', two_bytes_of_size = 126;
+    std::string frame{last_text};
+    if (text.size() < 126) {
+        frame += static_cast<char>(masked | static_cast<char>(text.size()));
+    } else {
+        frame += static_cast<char>(masked | two_bytes_of_size);
+        frame += static_cast<char>(text.size() >> 8);
+        frame += static_cast<char>(text.size() & 0xff);
+    }
+    frame.append(4, '\0');
+    return frame.append(text);
+}
+
+int ServiceSocket::file_descriptor() const
+{
+    return link_->stream.next_layer().native_handle();
+}
+
 bool ServiceSocket::is_writing() const
 {
     return link_->is_writing;

@@ -48,6 +48,9 @@ public:
     // yet or the connection is lost.
     bool send(std::string_view text);
     bool is_writing() const;
+    // For who sends in our place: a text of at most 65 535 bytes as it goes over the wire, and where.
+    static std::string frame_of(std::string_view text);
+    int file_descriptor() const;
     SocketEvent wait(int64_t until_ns);
     // Until all is written. False: it is not, by then.
     bool flush(int64_t until_ns);

@@ -1,7 +1,12 @@
 #include "device/usb/usb_handle.h"
 
 #include <array>
+#include <cerrno>
+#include <cstdint>
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <libusb.h>
+#include <unistd.h>
 
 namespace haptel::device {
 
@@ -30,6 +35,29 @@ UsbIds usb_ids(libusb_device* device) noexcept
     libusb_device_descriptor descriptor{};
     if (libusb_get_device_descriptor(device, &descriptor) != LIBUSB_SUCCESS) return {};
     return {descriptor.idVendor, descriptor.idProduct};
+}
+
+UsbFile::~UsbFile()
+{
+    if (ours_) close(file_descriptor_);
+}
+
+UsbFile open_usb_file(int bus, int address, int& code)
+{
+    const int file_descriptor = open(fmt::format("/dev/bus/usb/{:03}/{:03}", bus, address).c_str(), O_RDWR | O_CLOEXEC);
+    code = file_descriptor >= 0                 ? LIBUSB_SUCCESS
+           : errno == EACCES || errno == EPERM  ? LIBUSB_ERROR_ACCESS
+           : errno == ENOENT || errno == ENODEV ? LIBUSB_ERROR_NO_DEVICE
+           : errno == ENOMEM                    ? LIBUSB_ERROR_NO_MEM
+                                                : LIBUSB_ERROR_IO;
+    return {file_descriptor, file_descriptor >= 0};
+}
+
+UsbHandle open_usb_handle(libusb_context* context, const UsbFile& file, int& code)
+{
+    libusb_device_handle* handle = nullptr;
+    code = libusb_wrap_sys_device(context, static_cast<intptr_t>(file.file_descriptor()), &handle);
+    return UsbHandle(code == LIBUSB_SUCCESS ? handle : nullptr);
 }
 
 UsbHandle open_usb_handle(libusb_device* device, int& code)

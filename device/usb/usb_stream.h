@@ -2,6 +2,7 @@
 // serves them.
 #pragma once
 
+#include "device/guard/force_guard.h"
 #include "device/usb/transport.h"
 
 #include <memory>
@@ -23,7 +24,7 @@ public:
 
     // Until the client wants no more or the device fails; once. All transfers have come back then, or, if the system
     // keeps them for longer than a quarter of a second, are left to it.
-    UsbError run(WakeEvent& wake);
+    UsbError run(WakeEvent& wake, ForceGuard& guard);
 
 private:
     struct Slot; // one transfer and its bytes

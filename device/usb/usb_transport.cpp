@@ -1,13 +1,16 @@
 #include "device/usb/usb_transport.h"
 
+#include "device/guard/force_guard.h"
 #include "device/usb/usb_context.h"
 #include "device/usb/usb_handle.h"
 #include "device/usb/usb_stream.h"
 
 #include <algorithm>
+#include <array>
 #include <fmt/format.h>
 #include <libusb.h>
 #include <limits>
+#include <memory>
 #include <utility>
 
 namespace haptel::device {
@@ -21,8 +24,8 @@ OpenedTransport not_opened(UsbError code, std::string why)
 
 class UsbTransport final : public Transport {
 public:
-    UsbTransport(UsbContext context, UsbHandle handle, const UsbInterface& interface)
-        : context_(std::move(context)), handle_(std::move(handle)), interface_(interface)
+    UsbTransport(UsbContext context, UsbFile file, UsbHandle handle, const UsbInterface& interface)
+        : context_(std::move(context)), file_(std::move(file)), handle_(std::move(handle)), interface_(interface)
     {
     }
     ~UsbTransport() override { libusb_release_interface(handle_.get(), interface_.number); }
@@ -49,8 +52,11 @@ public:
 
     UsbError stream(const StreamSettings& settings, WakeEvent& wake, StreamClient& client) override
     {
+        std::array<uint8_t, 64> word{};
+        const std::size_t size = std::min(client.last_word(word), word.size());
+        ForceGuard guard(file_.file_descriptor(), settings.out_endpoint, {word.data(), size});
         UsbStream running(context_.get(), handle_.get(), interface_.kind == EndpointKind::interrupt, settings, client);
-        return running.run(wake);
+        return running.run(wake, guard);
     }
 
 private:
@@ -68,6 +74,7 @@ private:
     }
 
     UsbContext context_;
+    UsbFile file_;
     UsbHandle handle_;
     UsbInterface interface_;
 };
@@ -83,20 +90,22 @@ std::string claim(libusb_device_handle* handle, const UsbInterface& interface, U
     return usb_open_failure(code, usb_ids(device), libusb_get_bus_number(device), libusb_get_device_address(device));
 }
 
-// Null if `device` is another one or cannot be had: `refused` says why.
-UsbHandle open_and_claim(libusb_device* device, std::string_view serial, const UsbInterface& interface,
-                         OpenedTransport& refused)
+// Without a transport if `device` is another one or cannot be had; then `refused` says why.
+std::unique_ptr<Transport> open_and_claim(libusb_device* device, std::string_view serial, const UsbInterface& interface,
+                                          UsbContext& context, OpenedTransport& refused)
 {
     int code = LIBUSB_SUCCESS;
-    UsbHandle handle = open_usb_handle(device, code);
+    const int bus = libusb_get_bus_number(device), address = libusb_get_device_address(device);
+    UsbFile file = open_usb_file(bus, address, code);
+    UsbHandle handle = code == LIBUSB_SUCCESS ? open_usb_handle(context.get(), file, code) : UsbHandle();
     if (!handle) {
-        refused = not_opened(usb_error(code), usb_open_failure(code, usb_ids(device), libusb_get_bus_number(device),
-                                                               libusb_get_device_address(device)));
+        refused = not_opened(usb_error(code), usb_open_failure(code, usb_ids(device), bus, address));
         return {};
     }
     if (!serial.empty() && usb_serial(handle.get()) != serial) return {};
     refused.error = claim(handle.get(), interface, refused.code);
-    return refused.error.empty() ? std::move(handle) : UsbHandle();
+    if (!refused.error.empty()) return {};
+    return std::make_unique<UsbTransport>(std::move(context), std::move(file), std::move(handle), interface);
 }
 
 } // namespace
@@ -112,10 +121,8 @@ OpenedTransport open_usb(const UsbIds& ids, std::string_view serial, const UsbIn
     const auto devices = usb_devices(context.get());
     for (const UsbDevicePtr& device : devices) {
         if (usb_ids(device.get()) != ids) continue;
-        UsbHandle handle = open_and_claim(device.get(), serial, interface, refused);
-        if (handle)
-            return {
-                std::make_unique<UsbTransport>(std::move(context), std::move(handle), interface), UsbError::none, {}};
+        if (auto transport = open_and_claim(device.get(), serial, interface, context, refused))
+            return {std::move(transport), UsbError::none, {}};
     }
     return refused;
 }
@@ -125,16 +132,18 @@ OpenedTransport open_usb(int file_descriptor, const UsbInterface& interface)
     std::string error;
     UsbContext context = make_usb_context(UsbDiscovery::off, error);
     if (!context) return not_opened(UsbError::failed, std::move(error));
-    libusb_device_handle* handle = nullptr;
-    const int code = libusb_wrap_sys_device(context.get(), static_cast<intptr_t>(file_descriptor), &handle);
+    UsbFile file(file_descriptor, false);
+    int code = LIBUSB_SUCCESS;
+    UsbHandle handle = open_usb_handle(context.get(), file, code);
     if (code != LIBUSB_SUCCESS)
         return not_opened(usb_error(code), fmt::format("file descriptor {} is no USB device that can be used ({})",
                                                        file_descriptor, libusb_error_name(code)));
-    UsbHandle owned(handle);
     UsbError refused = UsbError::none;
-    std::string why = claim(handle, interface, refused);
+    std::string why = claim(handle.get(), interface, refused);
     if (!why.empty()) return not_opened(refused, std::move(why));
-    return {std::make_unique<UsbTransport>(std::move(context), std::move(owned), interface), UsbError::none, {}};
+    return {std::make_unique<UsbTransport>(std::move(context), std::move(file), std::move(handle), interface),
+            UsbError::none,
+            {}};
 }
 
 } // namespace haptel::device

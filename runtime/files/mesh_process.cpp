@@ -1,7 +1,7 @@
 #include "runtime/files/mesh_process.h"
 
 #include "input/regular_file.h"
-#include "runtime/files/fork_server.h"
+#include "runtime/process/fork_server.h"
 
 #include <algorithm>
 #include <cmath>

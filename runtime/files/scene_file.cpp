@@ -3,7 +3,7 @@
 #include "input/regular_file.h"
 #include "runtime/files/device_reader.h"
 #include "runtime/files/effects_reader.h"
-#include "runtime/files/fork_server.h"
+#include "runtime/process/fork_server.h"
 #include "runtime/files/joining.h"
 #include "runtime/files/mesh_surface.h"
 #include "runtime/files/motion_reader.h"

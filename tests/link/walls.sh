@@ -12,7 +12,7 @@ houses=(
     'lang: abi text math ir ir/run ir/derive ir/bounds syntax format program lower check check/dimension . |'
     'stdlib: . |'
     'jit: codegen engine picture texture live check | input lang stdlib'
-    'runtime: geometry hand surface surface/build contact texture scene force files render servo | input lang/abi lang/text/near_name.h'
+    'runtime: process geometry hand surface surface/build contact texture scene force files render servo | input lang/abi lang/text/near_name.h'
     'device: . | !runtime/files runtime lang/abi lang/text/near_name.h'
     'tools: output arguments plot sound report commands . | input lang stdlib jit runtime device bench'
     'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h runtime/servo/allocation_count.h lang stdlib'

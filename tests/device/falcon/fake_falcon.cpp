@@ -96,7 +96,8 @@ FakeFalcon::Answer FakeFalcon::control(const UsbSetup& setup, std::span<uint8_t>
     if (value & 0x0100) modem_ = (modem_ & ~1) | (value & 1);
     if (value & 0x0200) modem_ = (modem_ & ~2) | (value & 2);
     const bool data_terminal_rises = !(before & 1) && (modem_ & 1), falls = (before & 1) && !(modem_ & 1);
-    if (data_terminal_rises && !(modem_ & 2)) state_ = State::waiting, homed_ = false, heard_.clear(); // a reset
+    if (data_terminal_rises && !(modem_ & 2))
+        state_ = State::waiting, homed_ = told_homed_ = false, heard_.clear(); // a reset
     if (falls && state_ == State::called) state_ = State::bit_rate;
     return Answer::fine;
 }
@@ -124,7 +125,10 @@ FakeFalcon::Answer FakeFalcon::in(std::span<uint8_t> bytes, std::size_t& size)
         bytes[size++] = to_host_.front().first;
         to_host_.pop_front();
     }
-    if (!homed_ && size > 2 && to_host_.empty()) host_knows_ = true;
+    if (size > 2 && to_host_.empty()) {
+        host_knows_ = !told_homed_;
+        if (told_homed_) packets_since_it_knows_ = 0;
+    }
     return Answer::fine;
 }
 
@@ -199,12 +203,14 @@ void FakeFalcon::obey(const std::string& packet)
     for (const int motor : motors_) violations_ += motor > 4095 || motor < -4095;
     if ((flags_ & 1) && ++homing_packets_ >= packets_to_home_) homed_ = true;
 
+    told_homed_ = homed_;
+
     std::string reply = "<";
     for (const int encoder : encoders_) {
         int rest = encoder < 0 ? encoder + 65536 : encoder;
         for (int digit = 0; digit < 4; ++digit, rest /= 16) reply += static_cast<char>('A' + rest % 16);
     }
-    reply += static_cast<char>('A' + buttons_ + (homed_ ? 0x70 : 0x10));
+    reply += static_cast<char>('A' + buttons_ + (told_homed_ ? 0x70 : 0x10));
     answer(reply + "A>");
 }
 
@@ -222,7 +228,7 @@ void FakeFalcon::plug_in()
     gone_ = false;
     fault_ = FakeFault::none;
     state_ = State::waiting;
-    homed_ = false;
+    homed_ = told_homed_ = false;
     homing_packets_ = 0;
     host_knows_ = true;
     divisor_ = 0;

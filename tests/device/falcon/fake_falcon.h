@@ -75,6 +75,7 @@ private:
     mutable std::mutex mutex_;
     enum class State { waiting, called, bit_rate, loading, running } state_;
     int packets_to_home_, homing_packets_ = 0, packets_since_it_knows_ = 0;
+    bool told_homed_ = false;                               // by the last reply
     bool homed_ = false, gone_ = false, host_knows_ = true; // that the arms are not homed
     uint16_t divisor_ = 0;
     int modem_ = 0;

@@ -6,8 +6,11 @@
 #include "tests/support/catch.h"
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <limits>
+#include <sys/wait.h>
+#include <unistd.h>
 
 using namespace haptel::device;
 using namespace haptel::runtime;
@@ -181,6 +184,30 @@ TEST_CASE("an Inverse3 answers 1000 times a second")
     WARN("answered: " << 100 * best << " % of " << ticks << " ticks at 1 kHz, of which at least " << 100 * least_late
                       << " % were late by themselves");
     CHECK((best >= 0.99 || least_late > 0.002)); // a machine that is too busy to tick proves nothing
+    CHECK(service.violations() == 0);
+}
+
+TEST_CASE("the force of a program that is stopped or killed is taken from an Inverse3")
+{
+    FakeService service;
+    for (const int signal : {SIGSTOP, SIGKILL}) {
+        const pid_t program = fork();
+        if (program == 0) {
+            Inverse3Device device("inverse3", address_of(service), "", quick_times());
+            tick_until(device, {0, 0, 5}, [](auto, auto&) { return false; });
+            _exit(0);
+        }
+        const auto within_seconds = [&](const dvec3& force_n) {
+            for (int i = 0; i < 20'000 && !holds(service, force_n); ++i)
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            return holds(service, force_n);
+        };
+        CHECK(within_seconds({0, 0, 5}));
+        kill(program, signal);
+        CHECK(within_seconds(dvec3(0)));
+        kill(program, SIGKILL);
+        CHECK(waitpid(program, nullptr, 0) == program);
+    }
     CHECK(service.violations() == 0);
 }
 

@@ -1,5 +1,5 @@
 // Mesh files as they should not be: cut off, damaged, and what reads them crashing or never ending.
-#include "runtime/files/fork_server.h"
+#include "runtime/process/fork_server.h"
 #include "runtime/files/mesh_process.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"

@@ -44,6 +44,14 @@ private:
     int answer_ = -1, ending_ = -1;
 };
 
+// What a companion does: it has its end of two connected sockets (SOCK_SEQPACKET), by which it learns of the program's
+// end, and what else a process that is forked here has.
+using CompanionMain = void (*)(int program);
+
+// A process that nobody ends: it outlives the program for as long as it needs to. Returns the program's end of the
+// sockets, or -1 and why. To close it is to the companion the end of the program.
+int start_companion(CompanionMain main, std::string& error);
+
 // All of it, or false.
 bool send_bytes(int pipe, const void* bytes, std::size_t size);
 bool receive_bytes(int pipe, void* bytes, std::size_t size);

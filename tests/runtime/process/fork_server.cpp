@@ -1,5 +1,5 @@
 // Meshes are read in processes that this one does not fork: what the servo feels of that, and what is left behind.
-#include "runtime/files/fork_server.h"
+#include "runtime/process/fork_server.h"
 #include "runtime/files/mesh_process.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"

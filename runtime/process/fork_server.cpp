@@ -1,4 +1,4 @@
-#include "runtime/files/fork_server.h"
+#include "runtime/process/fork_server.h"
 
 #include <array>
 #include <cerrno>
@@ -24,8 +24,13 @@ constexpr std::size_t request_bytes_max = 8192;
 // What comes with a request, in this order.
 enum { answer_end, ending_end, end_count };
 
+struct Mains { // one of them
+    ForkedMain forked = nullptr;
+    CompanionMain companion = nullptr;
+};
+
 struct Request {
-    ForkedMain main = nullptr;
+    Mains main;
     std::string text;
     std::array<int, end_count> ends{-1, -1};
 };
@@ -40,7 +45,7 @@ struct Message {
     alignas(cmsghdr) std::array<char, CMSG_SPACE(sizeof(int) * end_count)> control{};
     msghdr header{};
 
-    Message(void* main, void* text, std::size_t size) : parts{{{main, sizeof(ForkedMain)}, {text, size}}}
+    Message(Mains* main, void* text, std::size_t size) : parts{{{main, sizeof *main}, {text, size}}}
     {
         header.msg_iov = parts.data();
         header.msg_iovlen = parts.size();
@@ -100,6 +105,13 @@ int strip(int kept)
     return first;
 }
 
+[[noreturn]] void accompany(const Request& request)
+{
+    close(request.ends[1]);
+    request.main.companion(request.ends[0]);
+    _exit(EXIT_SUCCESS);
+}
+
 // Forks the process, and waits for its end or for that of who asked, which is its end, too.
 [[noreturn]] void supervise(const Request& request)
 {
@@ -109,7 +121,7 @@ int strip(int kept)
     if (process == 0) {
         close(ending_pipe);
         prctl(PR_SET_PDEATHSIG, SIGKILL);
-        request.main(request.text, answer);
+        request.main.forked(request.text, answer);
         _exit(EXIT_FAILURE);
     }
     Ending ending{0, process < 0 ? errno : 0};
@@ -132,12 +144,12 @@ int strip(int kept)
     socket = strip(socket);
     std::signal(SIGCHLD, SIG_IGN); // supervisors leave nothing behind
     while (const std::optional<Request> request = receive_request(socket)) {
-        const pid_t supervisor = fork();
-        if (supervisor == 0) {
+        const pid_t forked = fork();
+        if (forked == 0) {
             close(socket);
-            supervise(*request);
+            request->main.companion ? accompany(*request) : supervise(*request);
         }
-        if (supervisor < 0) {
+        if (forked < 0 && request->main.forked) {
             const Ending ending{0, errno};
             send_bytes(request->ends[ending_end], &ending, sizeof ending);
         }
@@ -262,6 +274,20 @@ try {
 } catch (...) {
 }
 
+int start_companion(CompanionMain main, std::string& error)
+{
+    int ends[2];
+    if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) {
+        error = std::string("no socket could be opened: ") + std::strerror(errno);
+        return -1;
+    }
+    const bool sent = server().send({{nullptr, main}, "", {ends[1], ends[1]}}, error);
+    close(ends[1]);
+    if (sent) return ends[0];
+    close(ends[0]);
+    return -1;
+}
+
 ForkedProcess::ForkedProcess(ForkedMain main, const std::string& request)
 {
     if (request.size() > request_bytes_max) {
@@ -279,7 +305,7 @@ ForkedProcess::ForkedProcess(ForkedMain main, const std::string& request)
         error_ = std::string("no pipe could be opened: ") + std::strerror(errno);
     } else {
         ending_ = ending[0];
-        server().send({main, request, {answer[1], ending[1]}}, error_);
+        server().send({{main, nullptr}, request, {answer[1], ending[1]}}, error_);
         close(ending[1]);
     }
     close(answer[1]);

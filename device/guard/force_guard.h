@@ -1,0 +1,38 @@
+// A process beside this one that takes the force away from a device where this one no longer can: it was killed, it
+// crashed, it called exit(), or a signal or a debugger has stopped it. Motors hold the last command for as long as they
+// hear no other.
+//
+// It is given the device's file descriptor and the bytes that end the force (the last word). While a force stands it
+// must hear from the stream's thread; after guard_silence_ms it says the word, and at the end of this process, at once.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace haptel::device {
+
+// Twice what a servo may be silent for (servo_silence.h): the stream's thread takes the force away before.
+inline constexpr int guard_silence_ms = 10;
+
+class ForceGuard {
+public:
+    // The bytes go to this OUT endpoint of a node of /dev/bus/usb; endpoint 0: they are written, to a socket. Nothing
+    // is guarded without them or with more than last_word_bytes_max, nor where no process can be had.
+    static constexpr std::size_t last_word_bytes_max = 512;
+    ForceGuard(int file_descriptor, uint8_t endpoint, std::span<const uint8_t> last_word) noexcept;
+    ~ForceGuard(); // the word is not said: who ends in order takes the force away itself
+    ForceGuard(const ForceGuard&) = delete;
+    ForceGuard& operator=(const ForceGuard&) = delete;
+
+    // The stream's thread, every few milliseconds; waits for nothing. True: the force that stood was taken away since,
+    // for the call came too late.
+    bool hear(bool force_stands) noexcept;
+
+private:
+    int guard_ = -1; // the other end of it; -1: none
+    bool stands_ = false;
+    int64_t told_ns_ = 0;
+};
+
+} // namespace haptel::device

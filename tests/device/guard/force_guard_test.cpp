@@ -1,0 +1,145 @@
+// The last word to a device, here the other end of a socket: who says it, when, and when not.
+#include "device/guard/force_guard.h"
+#include "tests/support/catch.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <poll.h>
+#include <string>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+using namespace haptel::device;
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct GuardedDevice {
+    std::array<int, 2> ends{-1, -1}; // ours, the device's
+
+    GuardedDevice() { REQUIRE(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) == 0); }
+    ~GuardedDevice()
+    {
+        for (const int end : ends) close(end);
+    }
+    GuardedDevice(const GuardedDevice&) = delete;
+    GuardedDevice& operator=(const GuardedDevice&) = delete;
+
+    // What it hears within so many milliseconds.
+    std::string hears(int within_ms) const
+    {
+        std::array<char, 64> bytes{};
+        pollfd heard{ends[1], POLLIN, 0};
+        if (poll(&heard, 1, within_ms) <= 0) return "";
+        const ssize_t size = read(ends[1], bytes.data(), bytes.size());
+        return {bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))};
+    }
+    ForceGuard guard() const
+    {
+        static constexpr std::string_view word = "no force";
+        return {ends[0], 0, std::span(reinterpret_cast<const uint8_t*>(word.data()), word.size())};
+    }
+};
+
+constexpr int patience_ms = 20'000, moment_ms = 300;
+
+void pause_for(int ms)
+{
+    std::this_thread::sleep_for(std::chrono::milliseconds(ms));
+}
+
+// Of a program of its own, under a force for some milliseconds before its end.
+template <typename End>
+pid_t program_that_ends(const GuardedDevice& device, End end)
+{
+    const pid_t program = fork();
+    if (program != 0) return program;
+    const rlimit no_core{0, 0};
+    setrlimit(RLIMIT_CORE, &no_core);
+    for (const int number : {SIGABRT, SIGSEGV}) std::signal(number, SIG_DFL);
+    ForceGuard guard = device.guard();
+    for (int i = 0; i < 5; ++i) {
+        guard.hear(true);
+        pause_for(2);
+    }
+    end();
+    _exit(0);
+}
+
+} // namespace
+
+TEST_CASE("a guard takes the force away from a thread that is silent, and that is told once")
+{
+    const GuardedDevice device;
+    ForceGuard guard = device.guard();
+    std::vector<double> took_ms;
+    for (int i = 0; i < 21; ++i) {
+        guard.hear(true);
+        const auto start = Clock::now();
+        CHECK(device.hears(patience_ms) == "no force");
+        took_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
+        CHECK(guard.hear(true));
+    }
+    std::sort(took_ms.begin(), took_ms.end());
+    CHECK(took_ms.front() > guard_silence_ms - 1);
+    WARN("the word came after " << took_ms[took_ms.size() / 2] << " ms in the median, the longest " << took_ms.back());
+    guard.hear(false);
+    CHECK(!guard.hear(true));
+}
+
+TEST_CASE("a guard is silent where there is no force, while it hears of one, and after an end in order")
+{
+    const GuardedDevice device;
+    {
+        ForceGuard guard = device.guard();
+        guard.hear(true);
+        guard.hear(false);
+        CHECK(device.hears(moment_ms) == "");
+        CHECK(!guard.hear(false));
+    }
+    CHECK(device.hears(moment_ms) == "");
+    {
+        ForceGuard guard = device.guard();
+        guard.hear(true);
+    }
+    CHECK(device.hears(moment_ms) == "");
+    const std::vector<uint8_t> long_word(ForceGuard::last_word_bytes_max + 1);
+    ForceGuard nothing(device.ends[0], 0, {});
+    nothing.hear(true);
+    ForceGuard too_long(device.ends[0], 0, long_word);
+    too_long.hear(true);
+    CHECK(device.hears(moment_ms) == "");
+}
+
+TEST_CASE("however a program ends that holds a force, or is stopped, its device hears the last word")
+{
+    const GuardedDevice device;
+    const auto null_pointer = [] {
+        volatile int* volatile nowhere = nullptr;
+        *nowhere = 1;
+    };
+    const auto word_of = [&](auto end) {
+        const pid_t program = program_that_ends(device, end);
+        const std::string word = device.hears(patience_ms);
+        CHECK(waitpid(program, nullptr, 0) == program);
+        return word;
+    };
+    CHECK(word_of([] { raise(SIGKILL); }) == "no force");
+    CHECK(word_of([] { std::abort(); }) == "no force");
+    CHECK(word_of(null_pointer) == "no force");
+    CHECK(word_of([] {}) == "no force"); // exit() without an end in order
+
+    const pid_t stopped = program_that_ends(device, [] { raise(SIGSTOP); });
+    CHECK(device.hears(patience_ms) == "no force");
+    kill(stopped, SIGCONT);
+    CHECK(device.hears(patience_ms) == "no force"); // it ends by _exit()
+    CHECK(waitpid(stopped, nullptr, 0) == stopped);
+}
