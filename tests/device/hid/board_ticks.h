@@ -16,7 +16,7 @@ namespace haptel::device {
 inline const glm::dvec3 no_force(0), no_torque(0);
 
 // Long enough for any machine; what is waited for comes within moments.
-inline bool ticks_until(AxisDevice& device, const glm::dvec3& force_n,
+inline bool ticks_until(runtime::HapticDevice& device, const glm::dvec3& force_n,
                         const std::function<bool(runtime::DeviceStatus, const runtime::DevicePose&)>& happens)
 {
     const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(15);
@@ -30,7 +30,7 @@ inline bool ticks_until(AxisDevice& device, const glm::dvec3& force_n,
     return false;
 }
 
-inline bool becomes(AxisDevice& device, runtime::DeviceStatus status)
+inline bool becomes(runtime::HapticDevice& device, runtime::DeviceStatus status)
 {
     return ticks_until(device, no_force, [status](runtime::DeviceStatus now, auto&) { return now == status; });
 }

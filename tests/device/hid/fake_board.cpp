@@ -164,6 +164,8 @@ FakeBoard::Answer FakeBoard::control(const UsbSetup& setup, std::span<uint8_t> d
         const std::array<uint8_t, 5> answer = {0x12, static_cast<uint8_t>(block), static_cast<uint8_t>(status), 9, 0};
         return give(answer);
     }
+    if (setup.type == 0xa1 && setup.request == 1 && setup.value == 0x0313 && setup.index == 2)
+        return give(std::array<uint8_t, 5>{0x13, block_count, 0, block_count, 3});
     mistake("an unknown request");
     return Answer::stall;
 }
@@ -179,7 +181,7 @@ FakeBoard::Answer FakeBoard::out(std::span<const uint8_t> bytes)
 
 void FakeBoard::obey(std::span<const uint8_t> report)
 {
-    constexpr std::array<std::size_t, 14> sizes = {0, 22, 0, 0, 0, 4, 0, 0, 0, 0, 4, 0, 2, 2};
+    constexpr std::array<std::size_t, 14> sizes = {0, 22, 14, 0, 0, 4, 0, 0, 0, 0, 4, 2, 2, 2};
     if (report.empty() || report[0] >= sizes.size() || sizes[report[0]] != report.size())
         return mistake("a report of another length");
     if (report[0] == 12) {
@@ -212,6 +214,8 @@ void FakeBoard::obey(std::span<const uint8_t> report)
     } else if (report[0] == 10) {
         if (!effect.set && report[2] == 1) mistake("an effect is started that was not set");
         effect.runs = report[2] == 1;
+    } else if (report[0] == 11) {
+        effect = {};
     }
 }
 

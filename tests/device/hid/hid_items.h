@@ -112,7 +112,9 @@ inline std::vector<uint8_t> openffboard_descriptor()
     d.page(0x0f).begin(0x89).report(18).usages({0x22}).logical(1, 40).size(8, 1).feature(hid_data);
     d.begin(0x8b).usages({0x8c, 0x8d, 0x8e}).logical(1, 3).size(8, 1).feature(hid_array).end();
     d.usages({0xac}).logical(0, 0xffff).size(16, 1).feature(hid_array).end();
-    d.begin(0x7f).report(19).usages({0x80}).size(16, 1).feature(hid_data).end();
+    d.begin(0x7f).report(19).usages({0x80}).size(16, 1).feature(hid_data); // the pool of effects
+    d.usages({0x83}).logical(0, 255).size(8, 1).feature(hid_data);
+    d.usages({0xa9, 0xaa}).logical(0, 1).size(1, 2).feature(hid_data).size(1, 6).feature(hid_padding).end();
     return d.end().bytes;
 }
 

@@ -1,12 +1,11 @@
 // An OpenFFBoard made of bytes over the real libusb. The kernel's part is played by usbfs_shim.cpp.
 #include "device/hid/open_hid.h"
 #include "device/usb/usb_transport.h"
+#include "tests/device/hid/board_exchange.h"
 #include "tests/device/hid/board_ticks.h"
 #include "tests/device/usb/usbfs_shim.h"
 #include "tests/support/catch.h"
 
-#include <algorithm>
-#include <cmath>
 #include <optional>
 #include <random>
 
@@ -47,51 +46,17 @@ struct BoardOnBus {
     }
 };
 
-// Each magnitude that the board heard must be one that was written, to a count, in their order.
-int worst_off(const std::vector<int>& heard, std::size_t from, const std::vector<double>& written)
-{
-    double worst = 0;
-    std::size_t at = 0;
-    for (std::size_t i = from; i < heard.size(); ++i) {
-        double nearest = 1e9;
-        for (std::size_t j = at; j < written.size() && nearest > 1; ++j) {
-            const double off = std::fabs(std::fabs(written[j]) - std::abs(heard[i]));
-            if (off < nearest) nearest = off, at = j;
-        }
-        worst = std::max(worst, heard[i] == 0 ? 0 : nearest);
-    }
-    return static_cast<int>(std::ceil(worst));
-}
-
 void exchange_with_board(double seconds)
 {
     const auto start = BusClock::now();
     BoardOnBus board;
     REQUIRE(becomes(*board.device, DeviceStatus::ok));
     const double ready_s = passed_s(start);
-    board.fake.hold(0, true);
-    const uint64_t forces_before = board.fake.forces();
-    const std::size_t heard_before = board.fake.heard(0).size();
-    std::vector<double> written;
-    uint64_t poses = 0, ticks = 0;
-    const auto begun = BusClock::now();
-    for (auto next = begun; passed_s(begun) < seconds; ++ticks) {
-        next = std::max(next + std::chrono::milliseconds(1), BusClock::now() - std::chrono::milliseconds(1));
-        std::this_thread::sleep_until(next);
-        DevicePose pose;
-        poses += board.device->read(pose) == DeviceStatus::ok;
-        const double share = std::sin(0.01 * static_cast<double>(ticks));
-        written.push_back(32767 * share);
-        board.device->write({20 * share, 0, 0}, no_torque);
-    }
-    const double took_s = passed_s(begun);
-    const auto forces = static_cast<double>(board.fake.forces() - forces_before);
-    const int off = worst_off(board.fake.heard(0), heard_before, written);
-    WARN("ready after " << ready_s << " s; " << ticks << " ticks in " << took_s << " s, poses " << poses << ", forces "
-                        << forces / took_s << " a second, off by at most " << off << " counts");
-    CHECK(off <= 1);
-    CHECK(poses == ticks);
-    CHECK(forces > 20); // a busy machine lets the newest command replace most
+    const BoardExchange done = exchange(*board.device, board.fake, board_settings.force_max_n, seconds);
+    WARN("ready after " << ready_s << " s; " << in_words(done));
+    CHECK(done.worst_counts <= 1);
+    CHECK(done.poses == done.ticks);
+    CHECK(done.forces > 20 * done.seconds); // a busy machine lets the newest command replace most
     CHECK(board.fake.mistakes() == std::vector<std::string>{});
     board.device.reset();
     CHECK(board.fake.magnitude(0) == 0);
