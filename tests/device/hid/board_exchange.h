@@ -33,12 +33,13 @@ inline int worst_off(const std::vector<int>& heard, std::size_t from, const std:
     double worst = 0;
     std::size_t at = 0;
     for (std::size_t i = from; i < heard.size(); ++i) {
+        if (heard[i] == 0) continue; // the servo was silent
         double nearest = 1e9;
         for (std::size_t j = at; j < written.size() && nearest > 1; ++j) {
             const double off = std::fabs(std::fabs(written[j]) - std::abs(heard[i]));
             if (off < nearest) nearest = off, at = j;
         }
-        worst = std::max(worst, heard[i] == 0 ? 0 : nearest);
+        worst = std::max(worst, nearest);
     }
     return static_cast<int>(std::ceil(worst));
 }

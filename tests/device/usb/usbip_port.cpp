@@ -18,7 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using BusTime = std::chrono::steady_clock;
 
-const fs::path controller = "/sys/devices/platform/vhci_hcd.0";
+constexpr const char* attach_file = "/sys/devices/platform/vhci_hcd.0/attach";
+constexpr const char* status_file = "/sys/devices/platform/vhci_hcd.0/status";
 constexpr int full_speed = 2; // enum usb_device_speed
 
 // Where the numbers of a header are.
@@ -57,7 +58,7 @@ std::string first_word(const fs::path& file)
 // Lines of "hs PORT STATE ...", where state 4 is a port that nothing is plugged into.
 std::string free_port()
 {
-    std::ifstream lines(controller / "status");
+    std::ifstream lines(status_file);
     std::string hub, port, state, rest;
     while (lines >> hub >> port >> state && std::getline(lines, rest))
         if (hub == "hs" && state == "004") return port;
@@ -87,10 +88,10 @@ uint32_t status_of(FakeUsbDevice::Answer answer)
 
 std::string UsbipPort::missing()
 {
-    const fs::path file = controller / "attach";
-    if (access(file.c_str(), W_OK) == 0) return {};
-    return "expected " + file.string() + ", which root may write; found: " + std::strerror(errno) +
-           ". Run `modprobe vhci-hcd` and this as root, or boot a kernel that has it: ./dev test --vm";
+    if (access(attach_file, W_OK) == 0) return {};
+    const std::string found = std::strerror(errno);
+    return std::string("expected a file that root may write, ") + attach_file + ", found: " + found +
+           ". Run `modprobe vhci-hcd` and this as root, or in a machine that has it: ./dev test --vm";
 }
 
 uint32_t UsbipPort::Header::number(std::size_t at) const
@@ -128,7 +129,7 @@ void UsbipPort::plug_in()
     socket_ = ends[0];
     thread_ = std::thread([this] { run(); });
     const std::string port = free_port();
-    std::ofstream file(controller / "attach");
+    std::ofstream file(attach_file);
     file << port << ' ' << ends[1] << ' ' << 1 + std::stoi(port) << ' ' << full_speed << std::flush;
     close(ends[1]); // the kernel has its own
     if (!file) throw std::runtime_error("vhci_hcd does not take the device on port " + port);
@@ -238,7 +239,8 @@ bool UsbipPort::send(const Header& header, std::span<const uint8_t> data)
 
 bool UsbipPort::receive(std::span<uint8_t> bytes)
 {
-    return recv(socket_, bytes.data(), bytes.size(), MSG_WAITALL) == static_cast<ssize_t>(bytes.size());
+    return bytes.empty() || // what would wait for the next header
+           recv(socket_, bytes.data(), bytes.size(), MSG_WAITALL) == static_cast<ssize_t>(bytes.size());
 }
 
 // Standard requests (USB 2.0, section 9.4) are answered here, as what makes up a device's controller does. The address

@@ -76,7 +76,7 @@ void UinputWheel::run()
             const std::lock_guard lock(mutex_);
             if (event.code == FF_GAIN)
                 gain_ = event.value;
-            else
+            else if (event.code < FF_GAIN) // FF_AUTOCENTER comes though this wheel has none
                 plays_.push_back({event.code, event.value});
         }
         int place = 0;

@@ -27,7 +27,11 @@ public:
             .write(reinterpret_cast<const char*>(image.data()), static_cast<std::streamsize>(image.size()));
         setenv("HAPTEL_FALCON_FIRMWARE", path_.c_str(), 1);
     }
-    ~FirmwareFileOfUser() { std::filesystem::remove(path_); }
+    ~FirmwareFileOfUser()
+    {
+        unsetenv("HAPTEL_FALCON_FIRMWARE");
+        std::filesystem::remove(path_);
+    }
     FirmwareFileOfUser(const FirmwareFileOfUser&) = delete;
     FirmwareFileOfUser& operator=(const FirmwareFileOfUser&) = delete;
 
@@ -102,7 +106,8 @@ TEST_CASE("a Falcon on the kernel's USB is loaded, homed and exchanges packets a
     CHECK(fake.image() == firmware.image);
     const Exchange done = exchange(opened.falcon, fake, exchange_seconds());
     WARN("Falcon: ready after " << ready_s << " s; " << in_words(done));
-    CHECK(done.replies >= 0.99 * done.ticks);
+    CHECK(done.replies >= 0.99 * done.sent);
+    CHECK(done.sent > 0.3 * done.ticks); // a busy machine lets the newest command replace some
     CHECK(done.worst_counts <= 1);
     CHECK(done.malformed == 0);
     CHECK(fake.violations() == 0);
@@ -149,5 +154,9 @@ TEST_CASE("a user who may not open a Falcon is told of the udev rule")
     CAPTURE(said);
     CHECK(said.find("0403:cb48") != std::string::npos);
     CHECK(said.find("60-haptel.rules") != std::string::npos);
-    CHECK(as_nobody([] { return list_falcons().devices.at(0).error; }).find("60-haptel.rules") != std::string::npos);
+    const std::string listed = as_nobody([] {
+        const UsbList list = list_falcons();
+        return list.devices.empty() ? "not listed: " + list.error : list.devices[0].error;
+    });
+    CHECK(listed == said.substr(std::string("falcon: ").size()));
 }
