@@ -121,6 +121,12 @@ UsbipPort::~UsbipPort()
     unplug();
 }
 
+std::string UsbipPort::kernel_driver(int interface) const
+{
+    std::error_code none;
+    return fs::read_symlink(in_sysfs_.string() + ":1." + std::to_string(interface) + "/driver", none).filename();
+}
+
 void UsbipPort::plug_in()
 {
     std::array<int, 2> ends{};

@@ -27,6 +27,7 @@ public:
     UsbipPort& operator=(const UsbipPort&) = delete;
 
     const std::filesystem::path& in_sysfs() const { return in_sysfs_; } // /sys/bus/usb/devices/3-1
+    std::string kernel_driver(int interface) const;                     // "usbhid"; empty: none has the interface
 
 private:
     struct Header { // 48 bytes: numbers with the highest byte first, and a control request

@@ -2,8 +2,8 @@
 # run_in_vm.sh PROGRAM FOLDER [ARG...]: boots Debian's kernel in an emulated machine that holds little but PROGRAM, runs
 # it there as root with its ARGs, and ends as it ended. FOLDER keeps the kernel for the next time.
 #
-# HAPTEL_VM_SECONDS (60) is how long each exchange with a device goes on. Ends with 77, and why, where the machine or the
-# kernel cannot be had. The emulator is slow, but it needs no rights: /dev/kvm is not used.
+# HAPTEL_VM_SECONDS (60) is how long each exchange with a device goes on. Ends with 77, and why, where the machine or
+# the kernel cannot be had. The emulator is slow, but it needs no rights: /dev/kvm is not used.
 set -euo pipefail
 
 program=$1 folder=$2
@@ -13,7 +13,7 @@ modules=(usb-common usbcore usbip-core vhci-hcd hid usbhid hid-generic evdev uin
 
 skip() { printf 'run_in_vm.sh: skipped. %s\n' "$*" >&2; exit 77; }
 
-[[ $(uname -m) == x86_64 ]] || skip "The emulated machine is an x86_64; expected one to build the program, found $(uname -m)"
+[[ $(uname -m) == x86_64 ]] || skip "The emulated machine is an x86_64, and this one a $(uname -m)"
 for tool in qemu-system-x86_64:qemu-system-x86 busybox:busybox-static cpio:cpio; do
     command -v "${tool%:*}" >/dev/null || skip "There is no ${tool%:*}: apt-get install ${tool#*:}"
 done
@@ -21,8 +21,9 @@ done
 # The one that the package linux-image-amd64 depends on, unpacked as far as it is needed.
 get_kernel() {
     local package
-    package=$(apt-cache depends linux-image-amd64 2>/dev/null | sed -nE 's/^ *Depends: (linux-image-[0-9].*)/\1/p' | head -n 1)
-    [[ -n $package ]] || skip "Expected Debian's package linux-image-amd64, and apt knows none: apt-get update, on Debian"
+    package=$(apt-cache depends linux-image-amd64 2>/dev/null |
+        sed -nE 's/^ *Depends: (linux-image-[0-9].*)/\1/p' | head -n 1)
+    [[ -n $package ]] || skip "Expected Debian, whose package linux-image-amd64 apt knows; found none: apt-get update"
     rm -rf "$folder/part"
     mkdir -p "$folder/part"
     (cd "$folder/part" && apt-get download "$package") || skip "$package cannot be downloaded"
@@ -73,7 +74,8 @@ chmod +x "$inside/init"
 # exchanges, and a machine that is slow or busy.
 timeout $((5 * ${seconds%.*} + 300)) qemu-system-x86_64 -accel tcg -machine q35 -cpu max -smp 1 -m 512 -display none \
     -nodefaults -serial stdio -no-reboot -kernel "$image" -initrd "$folder/inside.gz" \
-    -append 'console=ttyS0 loglevel=1 panic=-1 mitigations=off' </dev/null | sed -u 's,\x1b\[[0-9;]*m,,g; s,\r,,g' | tee "$folder/log" || true
+    -append 'console=ttyS0 loglevel=1 panic=-1 mitigations=off' </dev/null |
+    sed -u 's,\x1b\[[0-9;]*m,,g; s,\r,,g' | tee "$folder/log" || true
 ended=$(sed -nE 's/^the program ended with ([0-9]+)$/\1/p' "$folder/log")
 [[ -n $ended ]] || { echo "run_in_vm.sh: the machine stopped before the program ended: see above" >&2; exit 1; }
 exit "$ended"

@@ -3,10 +3,12 @@
 #include "tests/device/hid/board_exchange.h"
 #include "tests/device/hid/board_ticks.h"
 #include "tests/device/usb/usbip_port.h"
+#include "tests/device/vm/comes.h"
 #include "tests/device/vm/open_by_name.h"
 #include "tests/support/catch.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <optional>
 
@@ -20,21 +22,6 @@ namespace fs = std::filesystem;
 constexpr double strongest_n = 20;
 const std::string settings = ",travel_m=0.4,force_max_n=20";
 
-bool comes(const std::function<bool()>& happens)
-{
-    const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(15);
-    while (!happens() && std::chrono::steady_clock::now() < deadline)
-        std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return happens();
-}
-
-// The kernel's driver of the interface that is HID.
-std::string driver_of(const UsbipPort& port)
-{
-    std::error_code none;
-    return fs::read_symlink(fs::path(port.in_sysfs().string() + ":1.2") / "driver", none).filename();
-}
-
 // "/dev/input/event3"; empty: the kernel has made none.
 std::string input_file(const UsbipPort& port)
 {
@@ -46,26 +33,35 @@ std::string input_file(const UsbipPort& port)
     return {};
 }
 
+// Away from the user is towards smaller values of a stick's y.
+bool pushes_away(HapticDevice& device, const FakeBoard& board)
+{
+    return ticks_until(device, {0, strongest_n / 4, 0},
+                       [&](auto, auto&) { return std::fabs(board.force(1) + 0.25) < 1e-4 && board.force(0) == 0; });
+}
+
 } // namespace
 
 TEST_CASE("an OpenFFBoard is taken from the kernel's driver, pushed with the forces as commanded, and given back")
 {
     FakeBoard board;
     UsbipPort port(board, "F7");
-    REQUIRE(comes([&] { return driver_of(port) == "usbhid" && !input_file(port).empty(); }));
+    REQUIRE(comes([&] { return port.kernel_driver(2) == "usbhid" && !input_file(port).empty(); }));
     const auto listed = connected_devices().devices;
     CHECK(std::ranges::count(listed, "openffboard:F7", &ConnectedDevice::name) == 1);
     std::unique_ptr<HapticDevice> device = open_by_name("openffboard:F7" + settings);
     REQUIRE(becomes(*device, DeviceStatus::ok));
-    CHECK(driver_of(port) == "usbfs");
+    CHECK(port.kernel_driver(2) == "usbfs");
     const BoardExchange done = exchange(*device, board, strongest_n, exchange_seconds());
     WARN("OpenFFBoard: " << in_words(done));
     CHECK(done.worst_counts <= 1);
     CHECK(done.forces > 0.3 * done.ticks); // two effects take turns, and a busy machine lets the newest replace some
+    CHECK(pushes_away(*device, board));
     device.reset();
     CHECK(board.magnitude(0) == 0);
     CHECK(board.force(0) == 0);
-    CHECK(comes([&] { return driver_of(port) == "usbhid"; }));
+    CHECK(board.force(1) == 0);
+    CHECK(comes([&] { return port.kernel_driver(2) == "usbhid"; }));
     CHECK(board.mistakes() == std::vector<std::string>{});
 }
 
@@ -103,7 +99,8 @@ TEST_CASE("the kernel's driver of the class PID and ours for wheels agree on the
     WARN("OpenFFBoard by hid-pidff: " << in_words(done));
     CHECK(done.worst_counts <= 1);
     CHECK(done.forces > 20 * done.seconds);
+    CHECK(pushes_away(*device, board));
     device.reset();
-    CHECK(comes([&] { return board.force(0) == 0; }));
+    CHECK(comes([&] { return board.force(0) == 0 && board.force(1) == 0; }));
     CHECK(board.mistakes() == std::vector<std::string>{});
 }

@@ -3,6 +3,7 @@
 #include "device/evdev/input_port.h"
 #include "tests/device/hid/board_ticks.h"
 #include "tests/device/vm/as_nobody.h"
+#include "tests/device/vm/comes.h"
 #include "tests/device/vm/open_by_name.h"
 #include "tests/device/vm/uinput_wheel.h"
 #include "tests/support/catch.h"
@@ -17,13 +18,6 @@ using namespace haptel::runtime;
 namespace {
 
 using Plays = std::vector<UinputWheel::Play>;
-
-// Events are taken by the wheel's own thread.
-bool sees(const std::function<bool()>& happens)
-{
-    for (int i = 0; i < 2000 && !happens(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return happens();
-}
 
 } // namespace
 
@@ -43,13 +37,13 @@ TEST_CASE("a file of the kernel's is read for its axis and told its forces, and 
 
     wheel.turn_to(-77);
     std::vector<AxisEvent> events;
-    CHECK(sees([&] { return port.read(events, 0) != 0 || !events.empty(); }));
+    CHECK(comes([&] { return port.read(events, 0) != 0 || !events.empty(); }));
     REQUIRE(events.size() == 1);
     CHECK(events[0].axis == 0);
     CHECK(events[0].value == -77);
 
     CHECK(port.prepare() == 0);
-    CHECK(sees([&] { return wheel.gain() == 0xffff; }));
+    CHECK(comes([&] { return wheel.gain() == 0xffff; }));
     CHECK(port.set_level(0, 0.5) == 0);
     REQUIRE(wheel.uploads().size() == 1);
     const UinputWheel::Upload made = wheel.uploads()[0];
@@ -59,7 +53,7 @@ TEST_CASE("a file of the kernel's is read for its axis and told its forces, and 
     CHECK((made.length_ms == 0 || made.length_ms == 0xffff));
     CHECK(wheel.plays().empty());
     CHECK(port.play(0) == 0);
-    CHECK(sees([&] { return wheel.plays() == Plays{{made.id, 1}}; }));
+    CHECK(comes([&] { return wheel.plays() == Plays{{made.id, 1}}; }));
     CHECK(port.set_level(0, -1) == 0);
     REQUIRE(wheel.uploads().size() == 2);
     CHECK(wheel.uploads()[1].id == made.id);
@@ -67,7 +61,7 @@ TEST_CASE("a file of the kernel's is read for its axis and told its forces, and 
     CHECK(wheel.erased().empty());
 
     opened.port.reset();
-    CHECK(sees([&] { return wheel.erased() == std::vector<int>{made.id}; }));
+    CHECK(comes([&] { return wheel.erased() == std::vector<int>{made.id}; }));
     CHECK(wheel.plays().back() == UinputWheel::Play{made.id, 0});
 }
 
@@ -89,7 +83,7 @@ TEST_CASE("a wheel of the kernel's is listed, nudged, pushed the right way round
                       [](auto, const DevicePose& pose) { return std::abs(pose.tip_m.x - 0.1) < 1e-3; }));
     wheel.reset();
     CHECK(becomes(*device, DeviceStatus::not_ready));
-    CHECK(sees([&] { return device->state().find("is not there") != std::string::npos; }));
+    CHECK(comes([&] { return device->state().find("is not there") != std::string::npos; }));
 }
 
 TEST_CASE("a user who may not open a wheel is told of the group")
