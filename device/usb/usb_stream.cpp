@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <libusb.h>
 #include <poll.h>
+#include <thread>
 
 namespace haptel::device {
 
@@ -16,6 +17,7 @@ constexpr int wait_ms = 2;                                  // the client is ask
 constexpr unsigned out_timeout_ms = 100;                    // a device that takes nothing for so long has failed
 constexpr int failures_max = 16;                            // in a row, before the stream ends
 constexpr auto ending_max = std::chrono::milliseconds(250); // to get cancelled transfers back
+constexpr auto ending_step = std::chrono::milliseconds(1);
 
 UsbError error_of_transfer(libusb_transfer_status status) noexcept
 {
@@ -39,6 +41,13 @@ std::vector<pollfd> polled(libusb_context* context, const WakeEvent& wake)
     for (auto each = theirs; each && *each; ++each) all.push_back({(*each)->fd, (*each)->events, 0});
     libusb_free_pollfds(theirs);
     return all;
+}
+
+// Linux says so some time before it gives back what is in flight, and before libusb takes notice. Until then a poll
+// does not wait, and a thread of real-time priority that goes on polling keeps the kernel from it.
+bool tells_of_unplugging(const std::vector<pollfd>& fds)
+{
+    return std::ranges::any_of(fds, [](const pollfd& each) { return (each.revents & (POLLHUP | POLLERR)) != 0; });
 }
 
 } // namespace
@@ -115,6 +124,7 @@ UsbError UsbStream::run(WakeEvent& wake, ForceGuard& guard)
         timeval at_once{0, 0};
         const int code = libusb_handle_events_timeout_completed(context_, &at_once, nullptr);
         if (code != LIBUSB_SUCCESS && code != LIBUSB_ERROR_INTERRUPTED) failed(usb_error(code));
+        if (tells_of_unplugging(fds)) failed(UsbError::gone);
     }
     cancel_all();
     return ended_ == UsbError::none ? UsbError::cancelled : ended_;
@@ -183,8 +193,9 @@ void UsbStream::cancel_all() noexcept
     if (out_->in_flight) libusb_cancel_transfer(out_->transfer);
     const auto deadline = std::chrono::steady_clock::now() + ending_max;
     while (any_in_flight() && std::chrono::steady_clock::now() < deadline) {
-        timeval soon{0, 10'000};
-        libusb_handle_events_timeout_completed(context_, &soon, nullptr);
+        timeval at_once{0, 0};
+        libusb_handle_events_timeout_completed(context_, &at_once, nullptr);
+        if (any_in_flight()) std::this_thread::sleep_for(ending_step); // the kernel's turn
     }
 }
 
