@@ -12,6 +12,7 @@
 #include <sched.h>
 #include <string>
 #include <sys/ioctl.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
@@ -100,6 +101,7 @@ void say(Told word, int device) noexcept
 
 void guard(int program)
 {
+    prctl(PR_SET_NAME, "haptel-guard");
     const sched_param first{sched_get_priority_min(SCHED_FIFO)}; // before all that is ordinary, where that is allowed
     if (sched_setscheduler(0, SCHED_FIFO, &first) != 0) runtime::use_exact_timers();
     Told word;
@@ -119,7 +121,7 @@ void guard(int program)
         stands = told.said == Said::force_stands;
     }
     if (device >= 0) say(word, device);
-}
+} // and lets go of the device
 
 } // namespace
 

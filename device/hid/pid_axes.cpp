@@ -70,7 +70,12 @@ private:
 
         std::size_t next_out(std::span<uint8_t> room) noexcept override
         {
-            if (std::exchange(in_flight_, false)) failures_ = 0;
+            if (std::exchange(in_flight_, false)) {
+                failures_ = 0;
+                disabled_ = disabled_ && !enabling_;
+            }
+            enabling_ = disabled_;
+            if (disabled_) return put(axes_.reports_.control(PidControl::enable_actuators), room);
             const AxisLevels wanted = client_.levels();
             const auto count = static_cast<std::size_t>(axes_.reports_.axes());
             for (std::size_t i = 0; i < count; ++i) { // in turns
@@ -114,7 +119,8 @@ private:
             client_.force_was_taken();
             sent_ = {};
             replays_ = 0;
-            replay_ns_ = 0; // the effects were stopped
+            replay_ns_ = 0;
+            disabled_ = true; // to some devices to stop all effects is to disable the motors
         }
 
     private:
@@ -132,6 +138,7 @@ private:
         AxisClient& client_;
         std::array<std::optional<int64_t>, axes_max> sent_; // nothing: not known what it has heard
         std::size_t last_ = 0, replays_ = 0;
+        bool disabled_ = false, enabling_ = false;
         bool in_flight_ = false; // or has arrived, if nothing was said since
         int failures_ = 0;       // of reports, in a row
         int64_t replay_ns_;

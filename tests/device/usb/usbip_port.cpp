@@ -253,7 +253,8 @@ bool UsbipPort::receive(std::span<uint8_t> bytes)
 // is the hub's affair.
 UsbipPort::Answer UsbipPort::control(const Header& asked, std::span<uint8_t> data, std::size_t& size)
 {
-    constexpr uint8_t get_status = 0, clear_feature = 1, get_descriptor = 6, set_configuration = 9, set_interface = 11;
+    constexpr uint8_t get_status = 0, clear_feature = 1, get_descriptor = 6, get_configuration = 8,
+                      set_configuration = 9, set_interface = 11;
     constexpr uint8_t set_idle = 10; // of HID: to say nothing while nothing changes
     const uint8_t* setup = asked.bytes.data() + setup_byte;
     const auto word = [&](int at) { return static_cast<uint16_t>(setup[at] | setup[at + 1] << 8); };
@@ -268,6 +269,7 @@ UsbipPort::Answer UsbipPort::control(const Header& asked, std::span<uint8_t> dat
         return Answer::fine;
     if (type == 0x21 && request == set_idle) return Answer::fine;
     if (type == 0x80 && request == get_descriptor) return give(descriptor(setup[3], setup[2]));
+    if (type == 0x80 && request == get_configuration) return give({1});
     if (standard && !to_device && request == get_status) return give({0, 0});
     return device_.control({type, request, word(2), word(4)}, data, size);
 }

@@ -1,4 +1,5 @@
-// What the kernel does for a device when the process that pushes it is killed, and what the next process finds.
+// What becomes of the force when the process that pushes a device is killed or stopped, by the kernel's hand and by that
+// of the guard, and what the next process finds.
 #include "tests/device/falcon/fake_falcon.h"
 #include "tests/device/hid/board_ticks.h"
 #include "tests/device/usb/usbip_port.h"
@@ -38,6 +39,8 @@ public:
     PushingProcess& operator=(const PushingProcess&) = delete;
 
     pid_t id() const { return id_; }
+    void stand_still() const { kill(id_, SIGSTOP); }
+    void go_on() const { kill(id_, SIGCONT); }
     void end()
     {
         if (id_ <= 0) return;
@@ -72,7 +75,7 @@ TEST_CASE("the kernel takes the force from a wheel whose process is killed")
     CHECK(wheel.plays().back().value == 0);
 }
 
-TEST_CASE("an OpenFFBoard whose process was killed has its force until the next process opens it")
+TEST_CASE("an OpenFFBoard whose process is stopped or killed has no force, and the next process opens it")
 {
     FakeBoard board;
     UsbipPort port(board, "F7");
@@ -82,8 +85,12 @@ TEST_CASE("an OpenFFBoard whose process was killed has its force until the next 
     CAPTURE(refused);
     CHECK(refused.find("in use by") != std::string::npos);
     CHECK(refused.find("(process " + std::to_string(process.id()) + ")") != std::string::npos);
+    process.stand_still();
+    CHECK(comes([&] { return board.force(0) == 0; }));
+    process.go_on();
+    REQUIRE(comes([&] { return board.force(0) != 0; }));
     process.end();
-    CHECK(board.force(0) != 0);
+    CHECK(comes([&] { return board.force(0) == 0; }));
     CHECK(port.kernel_driver(2) == ""); // nobody gave it back
     std::unique_ptr<HapticDevice> device = open_by_name("openffboard:F7");
     board.turn_to(0, 0);
@@ -94,16 +101,21 @@ TEST_CASE("an OpenFFBoard whose process was killed has its force until the next 
     CHECK(board.mistakes() == std::vector<std::string>{});
 }
 
-TEST_CASE("a Falcon whose process was killed runs its program still, and needs no file of it")
+TEST_CASE("a Falcon whose process is stopped or killed has no force, and runs its program still")
 {
     FakeFalcon falcon(true);
     UsbipPort port(falcon, "A42");
     PushingProcess process("falcon:A42");
-    REQUIRE(comes([&] { return falcon.packets_with_force() > 0; }));
+    const auto pushes = [&] { return falcon.motors() != FakeFalcon::Motors{}; };
+    REQUIRE(comes(pushes));
+    process.stand_still();
+    CHECK(comes([&] { return !pushes(); }));
+    process.go_on();
+    REQUIRE(comes(pushes));
     process.end();
+    CHECK(comes([&] { return !pushes(); }));
     const std::unique_ptr<HapticDevice> device = open_by_name("falcon:A42");
     CHECK(becomes(*device, DeviceStatus::ok));
-    CHECK(comes([&] { return falcon.motors() == FakeFalcon::Motors{}; }));
     CHECK(falcon.image().empty());
     CHECK(falcon.violations() == 0);
 }
