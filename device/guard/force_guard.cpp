@@ -23,6 +23,7 @@ namespace haptel::device {
 namespace {
 
 constexpr int64_t ns_per_ms = 1'000'000;
+constexpr int64_t told_again_ns = ns_per_ms * guard_silence_ms / 4;
 constexpr unsigned word_timeout_ms = 100;
 
 enum class Said : uint8_t { word, force_stands, no_force, done };
@@ -101,7 +102,7 @@ void say(Told word, int device) noexcept
 
 void guard(int program)
 {
-    prctl(PR_SET_NAME, "haptel-guard");
+    prctl(PR_SET_NAME, guard_process_name);
     const sched_param first{sched_get_priority_min(SCHED_FIFO)}; // before all that is ordinary, where that is allowed
     if (sched_setscheduler(0, SCHED_FIFO, &first) != 0) runtime::use_exact_timers();
     Told word;
@@ -150,7 +151,7 @@ bool ForceGuard::hear(bool force_stands) noexcept
     const int64_t now_ns = runtime::monotonic_ns();
     const int64_t silent_ns = now_ns - told_ns_;
     const bool stood = std::exchange(stands_, force_stands);
-    if (stood == force_stands && (!force_stands || silent_ns < ns_per_ms)) return false;
+    if (stood == force_stands && (!force_stands || silent_ns < told_again_ns)) return false;
     tell(guard_, force_stands ? Said::force_stands : Said::no_force);
     told_ns_ = now_ns;
     return stood && silent_ns >= ns_per_ms * guard_silence_ms;

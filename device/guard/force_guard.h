@@ -15,6 +15,9 @@ namespace haptel::device {
 // Twice what a servo may be silent for (servo_silence.h): the stream's thread takes the force away before.
 inline constexpr int guard_silence_ms = 10;
 
+// As the system lists it.
+inline constexpr const char* guard_process_name = "haptel-guard";
+
 class ForceGuard {
 public:
     // The bytes go to this OUT endpoint of a node of /dev/bus/usb; endpoint 0: they are written, to a socket. Nothing

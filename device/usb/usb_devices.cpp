@@ -1,5 +1,6 @@
 #include "device/usb/usb_devices.h"
 
+#include "device/guard/force_guard.h"
 #include "device/usb/usb_context.h"
 #include "device/usb/usb_handle.h"
 
@@ -77,6 +78,7 @@ std::string usb_device_users(int bus, int address)
             if (fs::read_symlink(open->path(), unreadable) != node) continue;
             std::string name;
             std::getline(std::ifstream(process->path() / "comm"), name);
+            if (name == guard_process_name) break; // of somebody who is listed, or of this program
             users += fmt::format("{}{} (process {})", users.empty() ? "" : ", ", name, id);
             break;
         }
