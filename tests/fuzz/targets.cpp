@@ -18,6 +18,7 @@ constexpr Target all[] = {
     {"mesh", "readers of meshes on bytes, and the surface that is made of them", false, mesh_corpus, read_mesh},
     {"falcon", "what a Falcon sends, and its program's file", false, falcon_corpus, hear_falcon},
     {"hid", "what a HID device says of its reports", false, hid_corpus, read_hid},
+    {"inverse3", "what the service of the Inverse3 says", false, inverse3_corpus, hear_inverse3},
     {"recording", "readers of recorded runs on bytes, and what they read written again", false, recording_corpus,
      read_recording},
     {"programs", "random programs: interpreter, 113-bit oracle and machine code", true, nullptr, run_program},
