@@ -5,7 +5,6 @@
 #include "device/usb/usb_transport.h"
 
 #include <memory>
-#include <span>
 #include <string>
 #include <utility>
 
@@ -51,7 +50,7 @@ runtime::DeviceResult open_falcon(const runtime::DeviceRequest& request, int fil
 
 UsbList list_falcons()
 {
-    return list_usb_devices(std::span(&falcon_ids, 1));
+    return list_usb_devices(falcon_ids, falcon_interface.number);
 }
 
 } // namespace haptel::device

@@ -5,7 +5,6 @@
 
 #include <charconv>
 #include <optional>
-#include <span>
 #include <system_error>
 #include <utility>
 
@@ -75,7 +74,7 @@ runtime::DeviceResult open_hid(const runtime::DeviceRequest& request, int file_d
 
 UsbList list_openffboards()
 {
-    return list_usb_devices(std::span(&openffboard_ids, 1));
+    return list_usb_devices(openffboard_ids, openffboard_interface);
 }
 
 } // namespace haptel::device

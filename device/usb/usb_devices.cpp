@@ -14,33 +14,38 @@ namespace haptel::device {
 
 namespace {
 
-UsbListed listed(libusb_device* device, const UsbIds& ids)
+// To hold an interface, for the kernel, is to have a driver that is none of its own.
+bool is_held_by_program(libusb_device_handle* handle, int interface)
+{
+    const int code = libusb_claim_interface(handle, interface);
+    if (code == LIBUSB_SUCCESS) libusb_release_interface(handle, interface);
+    return code == LIBUSB_ERROR_BUSY && libusb_kernel_driver_active(handle, interface) == 0;
+}
+
+UsbListed listed(libusb_device* device, const UsbIds& ids, int interface)
 {
     UsbListed entry;
-    entry.ids = ids;
     entry.bus = libusb_get_bus_number(device);
     entry.address = libusb_get_device_address(device);
     int code = LIBUSB_SUCCESS;
     const UsbHandle handle = open_usb_handle(device, code);
-    if (handle)
+    if (handle) {
         entry.serial = usb_serial(handle.get());
-    else
-        entry.error = usb_open_failure(code, ids, entry.bus, entry.address);
+        if (is_held_by_program(handle.get(), interface)) code = LIBUSB_ERROR_BUSY;
+    }
+    if (code != LIBUSB_SUCCESS) entry.error = usb_open_failure(code, ids, entry.bus, entry.address);
     return entry;
 }
 
 } // namespace
 
-UsbList list_usb_devices(std::span<const UsbIds> kinds)
+UsbList list_usb_devices(const UsbIds& ids, int interface)
 {
     UsbList list;
     const UsbContext context = make_usb_context(UsbDiscovery::on, list.error);
     if (!context) return list;
-    for (const UsbDevicePtr& device : usb_devices(context.get())) {
-        const UsbIds ids = usb_ids(device.get());
-        for (const UsbIds& kind : kinds)
-            if (ids == kind) list.devices.push_back(listed(device.get(), ids));
-    }
+    for (const UsbDevicePtr& device : usb_devices(context.get()))
+        if (usb_ids(device.get()) == ids) list.devices.push_back(listed(device.get(), ids, interface));
     return list;
 }
 

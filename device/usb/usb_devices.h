@@ -1,8 +1,7 @@
-// Which USB devices of some kinds are connected, and whether they can be opened.
+// Which USB devices of a kind are connected, and whether they can be opened.
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,7 +16,6 @@ struct UsbIds {
 };
 
 struct UsbListed {
-    UsbIds ids;
     std::string serial; // empty: it has none, or cannot be opened
     int bus = 0, address = 0;
     std::string error; // why it cannot be opened, in words; empty if it can
@@ -28,7 +26,8 @@ struct UsbList {
     std::string error; // the list itself could not be made
 };
 
-UsbList list_usb_devices(std::span<const UsbIds> kinds);
+// `interface`: of each, that a driver would claim. A driver of the kernel keeps it: one can be taken off it.
+UsbList list_usb_devices(const UsbIds& ids, int interface);
 
 // What to tell the user when opening or claiming fails with this libusb_error.
 std::string usb_open_failure(int libusb_code, UsbIds ids, int bus, int address);
