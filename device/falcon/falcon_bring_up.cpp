@@ -42,7 +42,11 @@ public:
         set_running_mode();
         if (answers()) return {BringUpEnd::ready, {}, {}, false};
         if (serial_.good() && image_.empty() && !over())
-            return {BringUpEnd::no_program, {}, "it runs no program, and no firmware file was given", false};
+            return {BringUpEnd::no_program,
+                    {},
+                    "it runs no program, and there is no firmware to load: put Novint's nvent_firmware.bin at "
+                    "~/.config/haptel/falcon_firmware.bin, or name it in HAPTEL_FALCON_FIRMWARE",
+                    false};
         if (!call_loader()) return failure("its boot loader does not answer");
         if (!set_bit_rate()) return failure("its boot loader does not take the bit rate");
         if (!send_image()) return failure("its boot loader received another program than it was sent");

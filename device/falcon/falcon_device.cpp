@@ -56,6 +56,7 @@ void FalconDevice::take_newest() noexcept
     }
     if (reading.session != session_) return; // of a stream that is over
     buttons_.store(reading.reply.buttons, std::memory_order_relaxed);
+    is_homed_.store(reading.reply.all_homed(), std::memory_order_relaxed);
     if (!reading.reply.all_homed()) {
         filter_.forget();
         return;
@@ -99,6 +100,13 @@ runtime::DeviceStatus FalconDevice::write(const glm::dvec3& force_n, const glm::
     }
     driver_.link().command(motors);
     return has_pose_ ? runtime::DeviceStatus::ok : status_without_pose();
+}
+
+std::string FalconDevice::state() const
+{
+    if (driver_.phase() != FalconPhase::streaming || is_homed_.load(std::memory_order_relaxed)) return driver_.state();
+    return "connected, but its arms do not know where they are: while its light is red, pull the grip out as far as it "
+           "goes and push it in once";
 }
 
 void FalconDevice::stop() noexcept

@@ -29,7 +29,7 @@ public:
     runtime::DeviceStatus write(const glm::dvec3& force_n, const glm::dvec3& torque_n_m) noexcept override;
     void stop() noexcept override; // for good
 
-    std::string state() const override { return driver_.state(); } // connected, or why not
+    std::string state() const override; // connected, or why not
 
     // Any thread but the servo's.
     FalconCounters counters() const { return driver_.link().counters(); }
@@ -50,7 +50,8 @@ private:
     bool interrupted_ = true; // told of with the next pose
     std::atomic<uint64_t> late_{0};
     std::atomic<uint8_t> buttons_{0};
-    FalconDriver driver_; // last: its thread ends first
+    std::atomic<bool> is_homed_{true}; // as far as it is known
+    FalconDriver driver_;              // last: its thread ends first
 };
 
 } // namespace haptel::device

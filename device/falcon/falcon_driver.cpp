@@ -82,6 +82,7 @@ bool FalconDriver::connect_and_stream(int& failures)
     }
     absent_since_ns_ = 0;
     const bool hopeless = result.end == BringUpEnd::no_program || ++failures >= options_.tries;
+    if (result.end != BringUpEnd::no_program) result.reason += ". Take its power and its USB away for a moment";
     enter(hopeless ? FalconPhase::failed : FalconPhase::connecting, "the Falcon cannot be used: " + result.reason);
     return !hopeless;
 }

@@ -1,6 +1,8 @@
 #include "device/falcon/falcon_firmware.h"
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <fmt/format.h>
 #include <fstream>
 #include <iterator>
@@ -102,16 +104,19 @@ FirmwareFile read_falcon_firmware(const std::filesystem::path& chosen)
     const auto size = std::filesystem::file_size(file.path, none);
     std::ifstream stream(file.path, std::ios::binary);
     if (none || !stream) {
-        file.error = fmt::format("the Falcon's firmware cannot be read from '{}'", file.path.string());
+        file.error = fmt::format("the Falcon's firmware cannot be read from '{}' ({}): expected a file that you may "
+                                 "read; HAPTEL_FALCON_FIRMWARE names another",
+                                 file.path.string(), none ? none.message() : std::strerror(errno));
         return file;
     }
-    if (size > file_bytes_max) {
-        file.error = fmt::format("'{}' is no firmware of a Falcon: it is too long", file.path.string());
-        return file;
-    }
-    file.image.assign(std::istreambuf_iterator<char>(stream), {});
-    if (const std::string fault = firmware_fault(file.image); !fault.empty()) {
-        file.error = fmt::format("'{}' is no firmware of a Falcon: {}", file.path.string(), fault);
+    if (size <= file_bytes_max) file.image.assign(std::istreambuf_iterator<char>(stream), {});
+    const std::string fault = size > file_bytes_max
+                                  ? fmt::format("it has {} bytes, more than the Falcon has memory for", size)
+                                  : firmware_fault(file.image);
+    if (!fault.empty()) {
+        file.error =
+            fmt::format("'{}' is no firmware of a Falcon: {}. Copy nvent_firmware.bin of Novint's driver there",
+                        file.path.string(), fault);
         file.image.clear();
     }
     return file;

@@ -16,6 +16,8 @@ namespace {
 
 constexpr int64_t ns_per_ms = 1'000'000;
 
+constexpr const char* plug_in_again = ". Unplug it and plug it in again";
+
 // Requests: to the device and to an interface of it.
 constexpr uint8_t from_device = 0x80, from_interface = 0x81, get_descriptor = 6;
 constexpr uint8_t to_class = 0x21, from_class = 0xa1, set_report = 9, get_report = 1;
@@ -38,7 +40,7 @@ public:
     {
         const Silence silence{*this}; // however this ends
         const std::string why = bring_up(client);
-        if (!why.empty()) return "the device cannot be used: " + why;
+        if (!why.empty()) return "the device cannot be used: " + why + plug_in_again;
         Stream stream(*this, client);
         const UsbError error = client.wants_more() ? transport_->stream(settings(), wake, stream) : UsbError::cancelled;
         if (stream.is_deaf()) return "the device was lost: it takes no forces any longer";
@@ -245,7 +247,7 @@ std::optional<std::vector<uint8_t>> read_descriptor(Transport& transport, const 
     std::vector<uint8_t> read(bytes);
     const Transferred got = transport.control(request, read, timeout_ms);
     if (got.error != UsbError::none) {
-        why = fmt::format("the device does not say what it is: {}", words_of(got.error));
+        why = fmt::format("the device does not say what it is: {}{}", words_of(got.error), plug_in_again);
         return std::nullopt;
     }
     read.resize(std::min(got.bytes, bytes));
@@ -294,7 +296,7 @@ OpenedAxes open_pid_axes(const OpenInterface& open, int first, const PidTimes& t
             return {make_pid_axes(std::move(opened.transport), each, PidReports(descriptor), times), "", false};
         why = "the device cannot be pushed: " + why;
     }
-    return not_usable(std::move(why));
+    return not_usable(std::move(why) + ". If Linux can push it, open its file: evdev:FILE");
 }
 
 } // namespace haptel::device

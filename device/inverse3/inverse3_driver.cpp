@@ -179,10 +179,12 @@ Inverse3Driver::Ending Inverse3Driver::exchange(ServiceSocket& socket, const Inv
 // Empty: it is a state.
 Inverse3Driver::Ending Inverse3Driver::hear(const ServiceSocket& socket, const Inverse3Listed& device)
 {
-    if (const std::string_view fault = socket.message_fault(); !fault.empty()) return {std::string(fault), false};
+    constexpr const char* restart = ": restart Haply's Inverse service";
+    if (const std::string_view fault = socket.message_fault(); !fault.empty())
+        return {std::string(fault) + restart, false};
     const Inverse3Reply reply = read_inverse3_state(socket.message(), device.id);
     switch (reply.heard) {
-    case Inverse3Heard::malformed: return {"it sends what is no state of an Inverse3", false};
+    case Inverse3Heard::malformed: return {std::string("it sends what is no state of an Inverse3") + restart, false};
     case Inverse3Heard::no_device:
         return {fmt::format("the service no longer has the Inverse3 {}: is it plugged in?", device.id), true};
     case Inverse3Heard::state: break;

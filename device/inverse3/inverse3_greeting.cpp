@@ -20,9 +20,10 @@ Inverse3Greeting greet_inverse3(ServiceSocket& socket, const ServiceAddress& add
     if (event != SocketEvent::message) {
         greeting.error =
             event == SocketEvent::lost
-                ? fmt::format("the service at {} does not say which devices it has: {}", address.text(), socket.error())
-                : fmt::format("the service at {} does not say within {} ms which devices it has", address.text(),
-                              limit_ms);
+                ? fmt::format("the service at {} does not say which devices it has: {}. Restart it", address.text(),
+                              socket.error())
+                : fmt::format("the service at {} does not say within {} ms which devices it has: restart it",
+                              address.text(), limit_ms);
         return greeting;
     }
     greeting.is_absent = false;
@@ -32,7 +33,9 @@ Inverse3Greeting greet_inverse3(ServiceSocket& socket, const ServiceAddress& add
         greeting.error = greeting.inventory.error;
     }
     if (!greeting.error.empty())
-        greeting.error = fmt::format("what listens at {} is no Inverse3 service: {}", address.text(), greeting.error);
+        greeting.error = fmt::format(
+            "what listens at {} is no Inverse3 service: {}. Name its place by HAPTEL_INVERSE3_SERVICE=HOST:PORT",
+            address.text(), greeting.error);
     return greeting;
 }
 

@@ -11,11 +11,12 @@ namespace haptel::device {
 
 namespace {
 
+constexpr const char* service_variable = "HAPTEL_INVERSE3_SERVICE";
 constexpr int open_ms = 1000, list_ms = 300, goodbye_ms = 50;
 
 ServiceAddressText address_of_environment()
 {
-    const char* place = std::getenv("HAPTEL_INVERSE3_SERVICE");
+    const char* place = std::getenv(service_variable);
     return read_service_address(place ? place : "");
 }
 
@@ -62,8 +63,9 @@ Inverse3List list_inverse3s()
     const ServiceAddressText place = address_of_environment();
     Inverse3List list{{}, place.address.text(), place.error};
     if (!list.error.empty()) return list;
-    for (Inverse3Listed& device : ask_once(place.address, list_ms).inventory.devices)
-        list.ids.push_back(std::move(device.id));
+    Inverse3Greeting greeting = ask_once(place.address, list_ms);
+    if (!greeting.is_absent || std::getenv(service_variable)) list.error = std::move(greeting.error);
+    for (Inverse3Listed& device : greeting.inventory.devices) list.ids.push_back(std::move(device.id));
     return list;
 }
 

@@ -17,9 +17,9 @@ runtime::DeviceResult open_inverse3(std::string_view id, const runtime::DeviceRe
 struct Inverse3List {
     std::vector<std::string> ids;
     std::string at;    // of the service
-    std::string error; // what the environment says is no place
+    std::string error; // what answers is no such service; or none does where the environment says that there is one
 };
-// Within 0.3 s. None, and no error, where no service answers.
+// Within 0.3 s. None, and no error, where no service is told of and none answers.
 Inverse3List list_inverse3s();
 
 } // namespace haptel::device

@@ -31,6 +31,9 @@ std::vector<asio::ip::address> addresses_of(const std::string& host)
     return bad ? std::vector<asio::ip::address>{} : std::vector{address};
 }
 
+constexpr const char* what_to_do =
+    "start Haply's Inverse service, or name its place by HAPTEL_INVERSE3_SERVICE=HOST:PORT";
+
 std::string words_of(const error_code& error)
 {
     if (error == websocket::error::closed || error == asio::error::eof) return "the service closed the connection";
@@ -134,22 +137,21 @@ std::string ServiceSocket::connect(const ServiceAddress& address, int limit_ms, 
         socket.close(ignored);
         socket.async_connect({one, address.port}, link.when_done());
         if (!link.run_until_done(until_ns, &quit))
-            return fmt::format("no service answers at {} within {} ms", address.text(), limit_ms);
+            return fmt::format("no service answers at {} within {} ms: {}", address.text(), limit_ms, what_to_do);
         if (!link.outcome) break;
     }
     if (link.outcome)
-        return fmt::format("no service answers at {} ({}): start Haply's Inverse service, or name another place by "
-                           "HAPTEL_INVERSE3_SERVICE=HOST:PORT",
-                           address.text(), link.outcome.message());
+        return fmt::format("no service answers at {} ({}): {}", address.text(), link.outcome.message(), what_to_do);
     socket.set_option(tcp::no_delay(true), ignored);
     link.stream.read_message_max(0); // arm_read() sees to it
     link.stream.auto_fragment(false);
     link.stream.text(true);
     link.stream.async_handshake(address.text(), "/", link.when_done());
     if (!link.run_until_done(until_ns, &quit))
-        return fmt::format("what listens at {} does not answer within {} ms", address.text(), limit_ms);
+        return fmt::format("what listens at {} does not answer within {} ms: {}", address.text(), limit_ms, what_to_do);
     if (link.outcome)
-        return fmt::format("what listens at {} is no WebSocket service: {}", address.text(), words_of(link.outcome));
+        return fmt::format("what listens at {} is no WebSocket service ({}): {}", address.text(),
+                           words_of(link.outcome), what_to_do);
     link.is_connected = true;
     return "";
 }

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fstream>
 #include <libusb.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 namespace haptel::device {
@@ -62,25 +63,30 @@ std::string usb_open_failure(int libusb_code, UsbIds ids, int bus, int address)
         const std::string users = usb_device_users(bus, address);
         return fmt::format("{}: in use by {}. Close that first", place, users.empty() ? "another program" : users);
     }
-    case UsbError::gone: return fmt::format("{}: unplugged", place);
-    case UsbError::not_found: return fmt::format("{}: it lacks the interface that this driver talks to", place);
-    default: return fmt::format("{}: cannot be opened ({})", place, libusb_error_name(libusb_code));
+    case UsbError::gone: return fmt::format("{}: it was unplugged. Plug it in again", place);
+    case UsbError::not_found:
+        return fmt::format("{}: it lacks the interface that this driver talks to. Does it run its maker's firmware?",
+                           place);
+    default:
+        return fmt::format("{}: cannot be opened ({}). Unplug it and plug it in again", place,
+                           libusb_error_name(libusb_code));
     }
 }
 
-// Who holds a file open is told by the links in /proc/PID/fd.
+// Who holds a file open is told by the links in /proc/PID/fd, by whatever name they opened it.
 std::string usb_device_users(int bus, int address)
 {
     namespace fs = std::filesystem;
-    const fs::path node = fmt::format("/dev/bus/usb/{:03}/{:03}", bus, address);
+    struct stat node{}, held{};
+    if (stat(fmt::format("/dev/bus/usb/{:03}/{:03}", bus, address).c_str(), &node) != 0) return "";
     std::string users;
     std::error_code none;
     for (fs::directory_iterator process("/proc", none), end; process != end; process.increment(none)) {
         const std::string id = process->path().filename();
         if (id.find_first_not_of("0123456789") != id.npos || id == std::to_string(getpid())) continue;
         for (fs::directory_iterator open(process->path() / "fd", none); !none && open != end; open.increment(none)) {
-            std::error_code unreadable;
-            if (fs::read_symlink(open->path(), unreadable) != node) continue;
+            if (stat(open->path().c_str(), &held) != 0 || held.st_dev != node.st_dev || held.st_ino != node.st_ino)
+                continue;
             std::string name;
             std::getline(std::ifstream(process->path() / "comm"), name);
             if (name == guard_process_name) break; // of somebody who is listed, or of this program

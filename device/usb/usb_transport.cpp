@@ -8,10 +8,12 @@
 #include <algorithm>
 #include <array>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <libusb.h>
 #include <limits>
 #include <memory>
 #include <utility>
+#include <vector>
 
 namespace haptel::device {
 
@@ -90,9 +92,21 @@ std::string claim(libusb_device_handle* handle, const UsbInterface& interface, U
     return usb_open_failure(code, usb_ids(device), libusb_get_bus_number(device), libusb_get_device_address(device));
 }
 
-// Without a transport if `device` is another one or cannot be had; then `refused` says why.
+// `others`: serial numbers of those that are connected.
+OpenedTransport not_connected(const UsbIds& ids, std::string_view serial, std::vector<std::string> others)
+{
+    std::ranges::sort(others);
+    std::string why = fmt::format("no USB device {:04x}:{:04x}{} is connected", ids.vendor, ids.product,
+                                  serial.empty() ? "" : fmt::format(" with the serial number '{}'", serial));
+    why += others.empty() ? ": plug it in and switch it on" : fmt::format(": there are {}", fmt::join(others, ", "));
+    return not_opened(UsbError::not_found, std::move(why));
+}
+
+// Without a transport if `device` is another one, whose serial number goes to `others`, or cannot be had: `refused`
+// says why.
 std::unique_ptr<Transport> open_and_claim(libusb_device* device, std::string_view serial, const UsbInterface& interface,
-                                          UsbContext& context, OpenedTransport& refused)
+                                          UsbContext& context, OpenedTransport& refused,
+                                          std::vector<std::string>& others)
 {
     int code = LIBUSB_SUCCESS;
     const int bus = libusb_get_bus_number(device), address = libusb_get_device_address(device);
@@ -102,7 +116,10 @@ std::unique_ptr<Transport> open_and_claim(libusb_device* device, std::string_vie
         refused = not_opened(usb_error(code), usb_open_failure(code, usb_ids(device), bus, address));
         return {};
     }
-    if (!serial.empty() && usb_serial(handle.get()) != serial) return {};
+    if (std::string its = usb_serial(handle.get()); !serial.empty() && its != serial) {
+        others.push_back(its.empty() ? "one without" : "'" + its + "'");
+        return {};
+    }
     refused.error = claim(handle.get(), interface, refused.code);
     if (!refused.error.empty()) return {};
     return std::make_unique<UsbTransport>(std::move(context), std::move(file), std::move(handle), interface);
@@ -115,16 +132,15 @@ OpenedTransport open_usb(const UsbIds& ids, std::string_view serial, const UsbIn
     std::string error;
     UsbContext context = make_usb_context(UsbDiscovery::on, error);
     if (!context) return not_opened(UsbError::failed, std::move(error));
-    OpenedTransport refused = not_opened(
-        UsbError::not_found, fmt::format("no USB device {:04x}:{:04x}{} is connected", ids.vendor, ids.product,
-                                         serial.empty() ? "" : fmt::format(" with the serial number '{}'", serial)));
+    OpenedTransport refused;
+    std::vector<std::string> others;
     const auto devices = usb_devices(context.get());
     for (const UsbDevicePtr& device : devices) {
         if (usb_ids(device.get()) != ids) continue;
-        if (auto transport = open_and_claim(device.get(), serial, interface, context, refused))
+        if (auto transport = open_and_claim(device.get(), serial, interface, context, refused, others))
             return {std::move(transport), UsbError::none, {}};
     }
-    return refused;
+    return refused.error.empty() ? not_connected(ids, serial, std::move(others)) : std::move(refused);
 }
 
 OpenedTransport open_usb(int file_descriptor, const UsbInterface& interface)

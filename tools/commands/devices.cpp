@@ -4,6 +4,7 @@
 #include "runtime/geometry/finite.h"
 #include "runtime/servo/real_time.h"
 #include "tools/commands/command.h"
+#include "tools/commands/interrupt.h"
 #include "tools/output/json.h"
 #include "tools/output/terminal.h"
 
@@ -40,7 +41,7 @@ Readings look_at(runtime::HapticDevice& device, double seconds)
     glm::dvec3 before(0);
     const auto periods = static_cast<uint64_t>(std::lround(seconds * look_rate_hz));
     int64_t deadline_ns = runtime::monotonic_ns();
-    for (uint64_t period = 0; period < periods; ++period) {
+    for (uint64_t period = 0; period < periods && !interrupted(); ++period) {
         runtime::DevicePose pose;
         seen.status = device.read(pose);
         ++seen.reads;
@@ -85,6 +86,7 @@ runtime::DeviceRequest request_for(const std::string& name)
 
 ExitCode open_and_look(const DevicesOptions& options)
 {
+    listen_for_interrupts(); // a device that is nudged keeps the force if nobody takes it away
     const runtime::DeviceResult opened = device::open_device(request_for(options.open));
     if (!opened.device) {
         say_error(fmt::format("device '{}': {}", lang::printable(options.open), lang::printable(opened.error)));
@@ -117,10 +119,11 @@ ExitCode open_and_look(const DevicesOptions& options)
     if (seen.moved()) return ExitCode::fine;
     const std::string state = opened.device->state();
     say_error(seen.poses == 0
-                  ? fmt::format("'{}' gave no pose within {:g} s: {}", info.name, options.seconds,
+                  ? fmt::format("'{}' gave no pose within {:g} s: {}", info.name,
+                                static_cast<double>(seen.reads) / look_rate_hz,
                                 state.empty() ? "is it homed, and switched on?" : lang::printable(state))
                   : fmt::format("'{}' never said another place than its first: move it while this looks. If it was "
-                                "moved, it speaks another protocol, or another program holds it",
+                                "moved, it speaks another protocol, or another program drives it",
                                 info.name));
     return ExitCode::findings;
 }

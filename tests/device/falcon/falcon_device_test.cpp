@@ -195,12 +195,16 @@ TEST_CASE("one that stays away is disconnected, one that cannot be loaded is a f
     no_firmware.firmware.clear();
     FalconDevice unloaded("falcon", open_fake(empty), no_firmware);
     CHECK(becomes(unloaded, DeviceStatus::fault));
-    CHECK(unloaded.state() == "the Falcon cannot be used: it runs no program, and no firmware file was given");
+    CHECK(unloaded.state() ==
+          "the Falcon cannot be used: it runs no program, and there is no firmware to load: put Novint's "
+          "nvent_firmware.bin at ~/.config/haptel/falcon_firmware.bin, or name it in HAPTEL_FALCON_FIRMWARE");
 
     FakeFalcon broken(false);
     broken.inject(FakeFault::wrong_bytes, 0, uint64_t{1} << 60);
     FalconDevice unloadable("falcon", open_fake(broken), quick_options());
     CHECK(becomes(unloadable, DeviceStatus::fault));
-    CHECK(unloadable.state() == "the Falcon cannot be used: its boot loader does not answer");
+    CHECK(unloadable.state() ==
+          "the Falcon cannot be used: its boot loader does not answer. Take its power and its USB "
+          "away for a moment");
     CHECK(unloadable.write({0, 0, 1}, dvec3(0)) == DeviceStatus::fault);
 }

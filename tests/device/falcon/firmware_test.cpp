@@ -66,10 +66,15 @@ TEST_CASE("the firmware's file is the chosen one, else the environment's, else t
     CHECK(read_falcon_firmware({}).image == synthetic_firmware(2));
     CHECK(read_falcon_firmware(folder / "chosen.bin").image == synthetic_firmware(3));
     CHECK(read_falcon_firmware(folder / "absent.bin").error ==
-          "the Falcon's firmware cannot be read from '" + (folder / "absent.bin").string() + "'");
+          "the Falcon's firmware cannot be read from '" + (folder / "absent.bin").string() +
+              "' (No such file or directory): expected a file that you may read; HAPTEL_FALCON_FIRMWARE names another");
+    CHECK(read_falcon_firmware(folder).error.find("(Is a directory)") != std::string::npos);
     const FirmwareFile wrong = read_falcon_firmware(folder / "wrong.bin");
     CHECK(wrong.image.empty());
     CHECK(wrong.error.find("is no firmware of a Falcon: it begins with 0x0201") != std::string::npos);
+    CHECK(wrong.error.find("Copy nvent_firmware.bin of Novint's driver there") != std::string::npos);
+    write_image(folder / "long.bin", std::vector<uint8_t>((1u << 18) + 1));
+    CHECK(read_falcon_firmware(folder / "long.bin").error.find("it has 262145 bytes") != std::string::npos);
     unsetenv("HAPTEL_FALCON_FIRMWARE");
     unsetenv("XDG_CONFIG_HOME");
     std::filesystem::remove_all(folder);

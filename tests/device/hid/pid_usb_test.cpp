@@ -159,7 +159,8 @@ TEST_CASE("open_hid takes a file descriptor, and finds the interface that can be
     CHECK(result.device->read(pose) == DeviceStatus::ok);
     fake.inject(BoardFault::bad_descriptor, 0, 1'000'000);
     CHECK(open_hid(request, shim.file_descriptor(), 2, {}).error ==
-          "the device cannot be pushed: its report descriptor cannot be read: it is cut off");
+          "the device cannot be pushed: its report descriptor cannot be read: it is cut off. If Linux can push it, "
+          "open its file: evdev:FILE");
 }
 
 TEST_CASE("faults of a board over libusb end with a pose again, and without force in the end")

@@ -69,7 +69,8 @@ TEST_CASE("an Inverse3 that stays away is disconnected, and one that talks nonse
     service.inject(ServiceFault::bad_json);
     Inverse3Device device("inverse3", address_of(service), "", times);
     CHECK(tick_until(device, push_n, DeviceStatus::fault));
-    CHECK(device.state() == "the Inverse3 cannot be used: it sends what is no state of an Inverse3");
+    CHECK(device.state() == "the Inverse3 cannot be used: it sends what is no state of an Inverse3: restart Haply's "
+                            "Inverse service");
     CHECK(service.messages_with_force() == 0);
 }
 

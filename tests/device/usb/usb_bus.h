@@ -1,6 +1,7 @@
 // A USB made of fake devices, as libusb finds it in /sys and /dev and as the kernel answers for it there: umockdev
 // shows it to this process and to those that it starts. For what is there, who may open it and who holds it; slow, so
-// not for times. Programs run with libumockdev-preload.so.0 preloaded, or skip themselves.
+// not for times, nor for programs that are killed within a transfer. Programs run with libumockdev-preload.so.0
+// preloaded, or skip themselves.
 #pragma once
 
 #include "tests/device/usb/fake_usb_device.h"

@@ -78,7 +78,7 @@ TEST_CASE("on a USB without devices none is listed, and opening one says that it
     CHECK(list_openffboards().devices.empty());
     const DeviceResult falcon = open_falcon(request_for("falcon"), "");
     CHECK(!falcon.device);
-    CHECK(contains(falcon.error, "no USB device 0403:cb48 is connected"));
+    CHECK(contains(falcon.error, "no USB device 0403:cb48 is connected: plug it in"));
     CHECK(contains(open_openffboard("", request_for("openffboard")).error, "no USB device 1209:ffb0 is connected"));
 }
 
@@ -118,7 +118,7 @@ TEST_CASE("of two Falcons the one of the serial number is opened")
     CHECK(second.requests().size() == 1);
     const OpenedTransport other = open_usb(falcon_ids, "FALCON-C", falcon_interface);
     CHECK(other.code == UsbError::not_found);
-    CHECK(contains(other.error, "with the serial number 'FALCON-C'"));
+    CHECK(contains(other.error, "with the serial number 'FALCON-C' is connected: there are 'FALCON-A', 'FALCON-B'"));
 }
 
 TEST_CASE("an OpenFFBoard is taken off the kernel's driver to be used, not to be listed, and given back")

@@ -1,8 +1,15 @@
-// haptel devices: what it lists on a machine without devices, and when a device counts as opened.
+// haptel devices: what it lists on a machine without devices, when a device counts as opened, and what it says of an
+// Inverse3 service that is not as it should be.
+#include "tests/device/inverse3/fake_service.h"
 #include "tests/support/catch.h"
 #include "tests/tools/commands/run_command.h"
 #include "tools/output/json.h"
 
+#include <string>
+#include <tuple>
+
+using haptel::device::FakeService;
+using haptel::device::ServiceFault;
 using namespace haptel::test;
 using haptel::tools::Json;
 
@@ -40,4 +47,48 @@ TEST_CASE("devices: one that is not there, or unknown, is told with what to do")
     CHECK(unknown.code == 1);
     CHECK(unknown.err.find("did you mean 'falcon'?") != std::string::npos);
     CHECK(run_command("devices --open simulated --seconds -1").code == 2);
+}
+
+TEST_CASE(
+    "devices: an Inverse3 is listed and opened through its service; what answers otherwise is told with what to do")
+{
+    FakeService service;
+    const std::string place = "127.0.0.1:" + std::to_string(service.port());
+    const std::string before = "HAPTEL_INVERSE3_SERVICE=" + place;
+    CHECK(contains(run_command("devices", before).out,
+                   "  inverse3:049D              Haply Inverse3, service at " + place + "\n"));
+    const Ran still = run_command("devices --open inverse3:049D --seconds 1", before);
+    CHECK(contains(still.out, "inverse3:049D: senses xyz, pushes xyz, at most 10 N"));
+    CHECK(contains(still.err, "move it while this looks"));
+    CHECK(contains(run_command("devices --open inverse3:77", before).err, "has no Inverse3 '77': there are 049D"));
+    CHECK(service.messages_with_force() == 0);
+
+    const std::string name_it = "HAPTEL_INVERSE3_SERVICE=HOST:PORT";
+    const std::tuple<ServiceFault, std::string, std::string> faults[] = {
+        {ServiceFault::mute, "what listens at " + place + " does not answer within", name_it},
+        {ServiceFault::web_page, "what listens at " + place + " is no WebSocket service (", name_it},
+        {ServiceFault::bad_inventory, "what listens at " + place + " is no Inverse3 service: it lists", name_it},
+        {ServiceFault::no_inventory, "does not say within", "restart it"}};
+    for (const auto& [fault, found, to_do] : faults) {
+        CAPTURE(found);
+        service.inject(fault);
+        const std::string error = run_command("devices --open inverse3", before).err;
+        CHECK(contains(error, found));
+        CHECK(contains(error, to_do));
+        const std::string listed = run_command("devices", before).out;
+        CHECK(contains(listed, "  not looked for: Haply Inverse3: "));
+        CHECK(contains(listed, found));
+        CHECK(contains(listed, to_do));
+    }
+    service.inject(ServiceFault::no_device);
+    CHECK(
+        contains(run_command("devices --open inverse3", before).err, "has no Inverse3: is it plugged in and switched"));
+    service.inject(ServiceFault::bad_state);
+    CHECK(contains(run_command("devices --open inverse3 --seconds 3", before).err,
+                   "it sends what is no state of an Inverse3: restart Haply's Inverse service"));
+    service.stop();
+    CHECK(contains(run_command("devices --open inverse3", before).err, "start Haply's Inverse service, or name its"));
+    CHECK(contains(run_command("devices", before).out, "no service answers at " + place));
+    CHECK(contains(run_command("devices --open inverse3", "HAPTEL_INVERSE3_SERVICE=example.org").err,
+                   "is localhost or an IP address, as in"));
 }
