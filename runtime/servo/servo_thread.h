@@ -33,7 +33,7 @@ struct ServoOptions {
     ServoClock clock = ServoClock::wall;
     double seconds = std::numeric_limits<double>::infinity(); // then it finishes
     bool ask_for_real_time = true;                            // wall clock only
-    std::optional<unsigned> core;                             // processor to stay on, from 0; wall clock only
+    std::optional<unsigned> core = {};                        // processor to stay on, from 0; wall clock only
     std::size_t telemetry_capacity = 1 << 14;                 // records
     // Virtual clock only: wait while the telemetry ring is full, so that no record is lost. Somebody must read it.
     bool wait_for_reader = false;
