@@ -1,12 +1,13 @@
 #include "device/usb/usb_handle.h"
 
+#include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstdint>
-#include <fcntl.h>
+#include <charconv>
+#include <filesystem>
 #include <fmt/format.h>
 #include <libusb.h>
-#include <unistd.h>
+#include <sys/stat.h>
+#include <system_error>
 
 namespace haptel::device {
 
@@ -37,29 +38,6 @@ UsbIds usb_ids(libusb_device* device) noexcept
     return {descriptor.idVendor, descriptor.idProduct};
 }
 
-UsbFile::~UsbFile()
-{
-    if (ours_) close(file_descriptor_);
-}
-
-UsbFile open_usb_file(int bus, int address, int& code)
-{
-    const int file_descriptor = open(fmt::format("/dev/bus/usb/{:03}/{:03}", bus, address).c_str(), O_RDWR | O_CLOEXEC);
-    code = file_descriptor >= 0                 ? LIBUSB_SUCCESS
-           : errno == EACCES || errno == EPERM  ? LIBUSB_ERROR_ACCESS
-           : errno == ENOENT || errno == ENODEV ? LIBUSB_ERROR_NO_DEVICE
-           : errno == ENOMEM                    ? LIBUSB_ERROR_NO_MEM
-                                                : LIBUSB_ERROR_IO;
-    return {file_descriptor, file_descriptor >= 0};
-}
-
-UsbHandle open_usb_handle(libusb_context* context, const UsbFile& file, int& code)
-{
-    libusb_device_handle* handle = nullptr;
-    code = libusb_wrap_sys_device(context, static_cast<intptr_t>(file.file_descriptor()), &handle);
-    return UsbHandle(code == LIBUSB_SUCCESS ? handle : nullptr);
-}
-
 UsbHandle open_usb_handle(libusb_device* device, int& code)
 {
     libusb_device_handle* handle = nullptr;
@@ -76,6 +54,22 @@ std::string usb_serial(libusb_device_handle* handle)
     const int size = libusb_get_string_descriptor_ascii(handle, descriptor.iSerialNumber, text.data(),
                                                         static_cast<int>(text.size()));
     return size > 0 ? std::string(text.begin(), text.begin() + size) : std::string();
+}
+
+int usb_file_descriptor(int bus, int address)
+{
+    struct stat node{}, open{};
+    if (stat(fmt::format("/dev/bus/usb/{:03}/{:03}", bus, address).c_str(), &node) != 0) return -1;
+    int newest = -1; // of several the one opened last, mostly
+    std::error_code none;
+    for (std::filesystem::directory_iterator file("/proc/self/fd", none), end; file != end; file.increment(none)) {
+        const std::string name = file->path().filename();
+        int number = -1;
+        std::from_chars(name.data(), name.data() + name.size(), number);
+        if (fstat(number, &open) == 0 && open.st_dev == node.st_dev && open.st_ino == node.st_ino)
+            newest = std::max(newest, number);
+    }
+    return newest;
 }
 
 } // namespace haptel::device

@@ -26,8 +26,11 @@ OpenedTransport not_opened(UsbError code, std::string why)
 
 class UsbTransport final : public Transport {
 public:
-    UsbTransport(UsbContext context, UsbFile file, UsbHandle handle, const UsbInterface& interface)
-        : context_(std::move(context)), file_(std::move(file)), handle_(std::move(handle)), interface_(interface)
+    UsbTransport(UsbContext context, UsbHandle handle, int file_descriptor, const UsbInterface& interface)
+        : context_(std::move(context))
+        , handle_(std::move(handle))
+        , file_descriptor_(file_descriptor)
+        , interface_(interface)
     {
     }
     ~UsbTransport() override { libusb_release_interface(handle_.get(), interface_.number); }
@@ -56,7 +59,7 @@ public:
     {
         std::array<uint8_t, 64> word{};
         const std::size_t size = std::min(client.last_word(word), word.size());
-        ForceGuard guard(file_.file_descriptor(), settings.out_endpoint, {word.data(), size});
+        ForceGuard guard(file_descriptor_, settings.out_endpoint, {word.data(), size});
         UsbStream running(context_.get(), handle_.get(), interface_.kind == EndpointKind::interrupt, settings, client);
         return running.run(wake, guard);
     }
@@ -76,8 +79,8 @@ private:
     }
 
     UsbContext context_;
-    UsbFile file_;
     UsbHandle handle_;
+    int file_descriptor_; // the handle's or the caller's; -1: not known
     UsbInterface interface_;
 };
 
@@ -110,8 +113,7 @@ std::unique_ptr<Transport> open_and_claim(libusb_device* device, std::string_vie
 {
     int code = LIBUSB_SUCCESS;
     const int bus = libusb_get_bus_number(device), address = libusb_get_device_address(device);
-    UsbFile file = open_usb_file(bus, address, code);
-    UsbHandle handle = code == LIBUSB_SUCCESS ? open_usb_handle(context.get(), file, code) : UsbHandle();
+    UsbHandle handle = open_usb_handle(device, code);
     if (!handle) {
         refused = not_opened(usb_error(code), usb_open_failure(code, usb_ids(device), bus, address));
         return {};
@@ -122,7 +124,8 @@ std::unique_ptr<Transport> open_and_claim(libusb_device* device, std::string_vie
     }
     refused.error = claim(handle.get(), interface, refused.code);
     if (!refused.error.empty()) return {};
-    return std::make_unique<UsbTransport>(std::move(context), std::move(file), std::move(handle), interface);
+    return std::make_unique<UsbTransport>(std::move(context), std::move(handle), usb_file_descriptor(bus, address),
+                                          interface);
 }
 
 } // namespace
@@ -148,16 +151,16 @@ OpenedTransport open_usb(int file_descriptor, const UsbInterface& interface)
     std::string error;
     UsbContext context = make_usb_context(UsbDiscovery::off, error);
     if (!context) return not_opened(UsbError::failed, std::move(error));
-    UsbFile file(file_descriptor, false);
-    int code = LIBUSB_SUCCESS;
-    UsbHandle handle = open_usb_handle(context.get(), file, code);
+    libusb_device_handle* handle = nullptr;
+    const int code = libusb_wrap_sys_device(context.get(), static_cast<intptr_t>(file_descriptor), &handle);
     if (code != LIBUSB_SUCCESS)
         return not_opened(usb_error(code), fmt::format("file descriptor {} is no USB device that can be used ({})",
                                                        file_descriptor, libusb_error_name(code)));
+    UsbHandle owned(handle);
     UsbError refused = UsbError::none;
-    std::string why = claim(handle.get(), interface, refused);
+    std::string why = claim(handle, interface, refused);
     if (!why.empty()) return not_opened(refused, std::move(why));
-    return {std::make_unique<UsbTransport>(std::move(context), std::move(file), std::move(handle), interface),
+    return {std::make_unique<UsbTransport>(std::move(context), std::move(owned), file_descriptor, interface),
             UsbError::none,
             {}};
 }
