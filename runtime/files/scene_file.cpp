@@ -3,7 +3,6 @@
 #include "input/regular_file.h"
 #include "runtime/files/device_reader.h"
 #include "runtime/files/effects_reader.h"
-#include "runtime/process/fork_server.h"
 #include "runtime/files/joining.h"
 #include "runtime/files/mesh_surface.h"
 #include "runtime/files/motion_reader.h"
@@ -11,6 +10,7 @@
 #include "runtime/files/open_hands.h"
 #include "runtime/files/table_reader.h"
 #include "runtime/files/toml_syntax.h"
+#include "runtime/process/fork_server.h"
 #include "runtime/surface/shapes.h"
 #include "runtime/texture/shading.h"
 

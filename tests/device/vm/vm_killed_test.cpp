@@ -1,5 +1,5 @@
-// What becomes of the force when the process that pushes a device is killed or stopped, by the kernel's hand and by that
-// of the guard, and what the next process finds.
+// What becomes of the force when the process that pushes a device is killed or stopped, by the kernel's hand and by
+// that of the guard, and what the next process finds.
 #include "tests/device/falcon/fake_falcon.h"
 #include "tests/device/hid/board_ticks.h"
 #include "tests/device/usb/usbip_port.h"

@@ -1,6 +1,6 @@
 // Mesh files as they should not be: cut off, damaged, and what reads them crashing or never ending.
-#include "runtime/process/fork_server.h"
 #include "runtime/files/mesh_process.h"
+#include "runtime/process/fork_server.h"
 #include "tests/support/catch.h"
 #include "tests/support/folder.h"
 #include "tests/support/mesh_bytes.h"
