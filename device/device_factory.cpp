@@ -195,6 +195,9 @@ DeviceResult open_device(const DeviceRequest& request)
     const auto [name, variant] = split(request.name);
     for (const Driver& driver : drivers)
         if (driver.name == name) return driver.open(variant, request);
+    if (name == "audio")
+        return refused("a sound card senses no hand: `haptel render SCENE --play` makes a stroke of its own, plays its "
+                       "force to a card or a voice coil, and follows the textures' files");
     return refused(unknown("device", name, names_of(drivers)) + "; `haptel devices` lists what is connected");
 }
 

@@ -57,6 +57,7 @@ TEST_CASE("unknown names are answered with what was meant, or with what there is
                                                          "hid, evdev; `haptel devices` lists what is connected"));
     CHECK(contains(error_of(request_on_plane("")),
                    "there are simulated, replay, falcon, inverse3, openffboard, hid, evdev"));
+    CHECK(contains(error_of(request_on_plane("audio")), "`haptel render SCENE --play`"));
     CHECK(contains(error_of(request_on_plane("replay:")), "replay:trace.csv"));
     CHECK(error_of(request_on_plane(std::string(1'000'000, 'x'))).size() < 300);
 }

@@ -7,13 +7,16 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <optional>
 #include <poll.h>
 #include <string>
+#include <string_view>
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
+#include <utility>
 #include <vector>
 
 using namespace haptel::device;
@@ -21,6 +24,7 @@ using namespace haptel::device;
 namespace {
 
 using Clock = std::chrono::steady_clock;
+constexpr int patience_ms = 20'000, moment_ms = 300;
 
 struct GuardedDevice {
     std::array<int, 2> ends{-1, -1}; // ours, the device's
@@ -42,14 +46,37 @@ struct GuardedDevice {
         const ssize_t size = read(ends[1], bytes.data(), bytes.size());
         return {bytes.data(), static_cast<std::size_t>(std::max<ssize_t>(size, 0))};
     }
-    ForceGuard guard() const
+    static std::span<const uint8_t> last_word()
     {
         static constexpr std::string_view word = "no force";
-        return {ends[0], 0, std::span(reinterpret_cast<const uint8_t*>(word.data()), word.size())};
+        return {reinterpret_cast<const uint8_t*>(word.data()), word.size()};
+    }
+    ForceGuard guard() const { return {ends[0], 0, last_word()}; }
+    // All until it has been silent for a moment: a program that is late by itself is silenced before its end, too.
+    bool hears_words_alone() const
+    {
+        std::string all = hears(patience_ms);
+        for (std::string more; !(more = hears(moment_ms)).empty();) all += more;
+        const std::string word = "no force";
+        for (std::size_t at = 0; at < all.size(); at += word.size())
+            if (all.compare(at, word.size(), word) != 0) return false;
+        return !all.empty();
     }
 };
 
-constexpr int patience_ms = 20'000, moment_ms = 300;
+double milliseconds_since(Clock::time_point start)
+{
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+// Under a force for so short a time that no guard finds it long, whatever else the machine does.
+template <typename Force>
+bool is_for_a_moment(Force force)
+{
+    const auto start = Clock::now();
+    force();
+    return milliseconds_since(start) < guard_silence_ms / 2;
+}
 
 void pause_for(int ms)
 {
@@ -82,35 +109,43 @@ TEST_CASE("a guard takes the force away from a thread that is silent, and that i
     ForceGuard guard = device.guard();
     std::vector<double> took_ms;
     for (int i = 0; i < 21; ++i) {
-        guard.hear(true);
         const auto start = Clock::now();
+        guard.hear(true);
         CHECK(device.hears(patience_ms) == "no force");
-        took_ms.push_back(std::chrono::duration<double, std::milli>(Clock::now() - start).count());
-        CHECK(guard.hear(true));
+        took_ms.push_back(milliseconds_since(start));
+        CHECK(guard.hear(false));
     }
     std::sort(took_ms.begin(), took_ms.end());
     CHECK(took_ms.front() > guard_silence_ms - 1);
     WARN("the word came after " << took_ms[took_ms.size() / 2] << " ms in the median, the longest " << took_ms.back());
-    guard.hear(false);
     CHECK(!guard.hear(true));
 }
 
 TEST_CASE("a guard is silent where there is no force, while it hears of one, and after an end in order")
 {
     const GuardedDevice device;
-    {
+    const auto rests = [&] {
         ForceGuard guard = device.guard();
-        guard.hear(true);
-        guard.hear(false);
-        CHECK(device.hears(moment_ms) == "");
+        const bool short_enough = is_for_a_moment([&] {
+            guard.hear(true);
+            guard.hear(false);
+        });
+        const std::string heard = device.hears(moment_ms);
         CHECK(!guard.hear(false));
+        return !short_enough || heard.empty();
+    };
+    const auto ends = [&] {
+        std::optional<ForceGuard> guard(std::in_place, device.ends[0], 0, GuardedDevice::last_word());
+        const bool short_enough = is_for_a_moment([&] {
+            guard->hear(true);
+            guard.reset();
+        });
+        return device.hears(moment_ms).empty() || !short_enough;
+    };
+    for (int i = 0; i < 3; ++i) {
+        CHECK(rests());
+        CHECK(ends());
     }
-    CHECK(device.hears(moment_ms) == "");
-    {
-        ForceGuard guard = device.guard();
-        guard.hear(true);
-    }
-    CHECK(device.hears(moment_ms) == "");
     const std::vector<uint8_t> long_word(ForceGuard::last_word_bytes_max + 1);
     ForceGuard nothing(device.ends[0], 0, {});
     nothing.hear(true);
@@ -126,20 +161,18 @@ TEST_CASE("however a program ends that holds a force, or is stopped, its device 
         volatile int* volatile nowhere = nullptr;
         *nowhere = 1;
     };
-    const auto word_of = [&](auto end) {
+    const auto says_its_word = [&](auto end) {
         const pid_t program = program_that_ends(device, end);
-        const std::string word = device.hears(patience_ms);
-        CHECK(waitpid(program, nullptr, 0) == program);
-        return word;
+        return waitpid(program, nullptr, 0) == program && device.hears_words_alone();
     };
-    CHECK(word_of([] { raise(SIGKILL); }) == "no force");
-    CHECK(word_of([] { std::abort(); }) == "no force");
-    CHECK(word_of(null_pointer) == "no force");
-    CHECK(word_of([] {}) == "no force"); // exit() without an end in order
+    CHECK(says_its_word([] { raise(SIGKILL); }));
+    CHECK(says_its_word([] { std::abort(); }));
+    CHECK(says_its_word(null_pointer));
+    CHECK(says_its_word([] {})); // exit() without an end in order
 
     const pid_t stopped = program_that_ends(device, [] { raise(SIGSTOP); });
-    CHECK(device.hears(patience_ms) == "no force");
-    kill(stopped, SIGCONT);
-    CHECK(device.hears(patience_ms) == "no force"); // it ends by _exit()
+    CHECK(device.hears_words_alone());
+    kill(stopped, SIGCONT); // it ends by _exit()
+    CHECK(device.hears_words_alone());
     CHECK(waitpid(stopped, nullptr, 0) == stopped);
 }
