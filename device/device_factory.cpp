@@ -8,6 +8,7 @@
 #include "device/replay_device.h"
 #include "device/simulated_device.h"
 #include "lang/text/near_name.h"
+#include "runtime/process/fork_server.h"
 
 #include <algorithm>
 #include <cmath>
@@ -192,6 +193,7 @@ constexpr std::array<Driver, 7> drivers = {
 
 DeviceResult open_device(const DeviceRequest& request)
 {
+    runtime::start_fork_server(); // guards come from there: before a device is open, so that it never holds its file
     const auto [name, variant] = split(request.name);
     for (const Driver& driver : drivers)
         if (driver.name == name) return driver.open(variant, request);

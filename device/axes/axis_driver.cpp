@@ -176,15 +176,15 @@ AxisLevels AxisDriver::levels() noexcept
     }
     commands_.take(command_);
     const bool silent = now_ns - command_.time_ns > ns_per_ms * times_.watchdog_ms;
-    if (silent && command_.shares != AxisLevels{}) force_was_taken();
+    if (silent) was_silenced();
     if (halted_.load(std::memory_order_acquire)) return wanted;
     for (std::size_t i = 0; i < count_; ++i) wanted[i] = axes_[i].sign * command_.shares[i];
     return wanted;
 }
 
-void AxisDriver::force_was_taken() noexcept
+void AxisDriver::was_silenced() noexcept
 {
-    command_.shares = {};
+    if (std::exchange(command_.shares, {}) == AxisLevels{}) return;
     dropped_.store(true, std::memory_order_release);
 }
 

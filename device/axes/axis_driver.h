@@ -73,7 +73,7 @@ private:
     void moved(int axis, int64_t value) noexcept override;
     AxisLevels levels() noexcept override;
     bool wants_more() noexcept override { return !quitting(); }
-    void force_was_taken() noexcept override;
+    void was_silenced() noexcept override;
 
     void run();
     bool connect(); // false: there is no use in going on

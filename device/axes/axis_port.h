@@ -32,7 +32,7 @@ public:
     // That the motors should have now. Asked at least every few milliseconds.
     virtual AxisLevels levels() noexcept = 0;
     virtual bool wants_more() noexcept = 0;
-    virtual void force_was_taken() noexcept = 0; // by somebody else, for this process stood still
+    virtual void was_silenced() noexcept = 0; // the force was taken away, for this thread stood still
 };
 
 class AxisPort {

@@ -4,6 +4,7 @@
 #include "runtime/servo/real_time.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace haptel::device {
 
@@ -121,10 +122,11 @@ std::size_t FalconLink::last_word(std::span<uint8_t> room) noexcept
     return bytes.size();
 }
 
-void FalconLink::force_was_taken() noexcept
+void FalconLink::was_silenced() noexcept
 {
     command_ = {}; // of no session
-    sent_motors_ = {};
+    if (std::exchange(sent_motors_, {}) == FalconCounts{}) return;
+    sent_ns_ = 0; // no force is said at once, in case it was not
     dropped_.fetch_add(1, relaxed);
     force_dropped_.store(true, std::memory_order_release);
 }

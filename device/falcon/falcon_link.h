@@ -66,8 +66,7 @@ public:
     void out_failed() noexcept override;
     bool wants_more() noexcept override;
     std::size_t last_word(std::span<uint8_t> room) noexcept override;
-    bool holds_force() const noexcept override { return sent_motors_ != FalconCounts{}; }
-    void force_was_taken() noexcept override;
+    void was_silenced() noexcept override;
 
 private:
     struct Command {

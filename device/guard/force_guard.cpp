@@ -16,17 +16,15 @@
 #include <sys/socket.h>
 #include <sys/syscall.h>
 #include <unistd.h>
-#include <utility>
 
 namespace haptel::device {
 
 namespace {
 
 constexpr int64_t ns_per_ms = 1'000'000;
-constexpr int64_t told_again_ns = ns_per_ms * guard_silence_ms / 4;
 constexpr unsigned word_timeout_ms = 100;
 
-enum class Said : uint8_t { word, force_stands, no_force, done };
+enum class Said : uint8_t { word, alive, done };
 
 // The first byte of a message; all but the word are no more. With the word comes the device's file descriptor.
 struct Told {
@@ -107,19 +105,18 @@ void guard(int program)
     if (sched_setscheduler(0, SCHED_FIFO, &first) != 0) runtime::use_exact_timers();
     Told word;
     int device = -1;
-    bool stands = false;
-    for (;;) {
+    for (bool silenced = false;;) {
         pollfd heard{program, POLLIN, 0};
-        if (poll(&heard, 1, stands ? guard_silence_ms : -1) == 0) {
-            say(word, device);
-            stands = false;
+        if (poll(&heard, 1, silenced ? -1 : guard_silence_ms) == 0) {
+            if (device >= 0) say(word, device);
+            silenced = true;
             continue;
         }
         Told told;
         if (!receive(program, told, device)) break;
         if (told.said == Said::done) return;
         if (told.said == Said::word) word = told;
-        stands = told.said == Said::force_stands;
+        silenced = false;
     }
     if (device >= 0) say(word, device);
 } // and lets go of the device
@@ -133,6 +130,7 @@ ForceGuard::ForceGuard(int file_descriptor, uint8_t endpoint, std::span<const ui
     std::copy(last_word.begin(), last_word.end(), word.bytes.begin());
     std::string without_a_guard;
     guard_ = runtime::start_companion(guard, without_a_guard);
+    told_ns_ = runtime::monotonic_ns();
     if (guard_ < 0 || send_device(guard_, word, file_descriptor)) return;
     close(guard_);
     guard_ = -1;
@@ -145,16 +143,16 @@ ForceGuard::~ForceGuard()
     close(guard_);
 }
 
-bool ForceGuard::hear(bool force_stands) noexcept
+bool ForceGuard::hear() noexcept
 {
     if (guard_ < 0) return false;
     const int64_t now_ns = runtime::monotonic_ns();
     const int64_t silent_ns = now_ns - told_ns_;
-    const bool stood = std::exchange(stands_, force_stands);
-    if (stood == force_stands && (!force_stands || silent_ns < told_again_ns)) return false;
-    tell(guard_, force_stands ? Said::force_stands : Said::no_force);
+    if (silent_ns < ns_per_ms * guard_hears_ms) return false;
     told_ns_ = now_ns;
-    return stood && silent_ns >= ns_per_ms * guard_silence_ms;
+    tell(guard_, Said::alive);
+    // Sooner than the guard finds it long, so that no word is said that this does not know of.
+    return silent_ns >= ns_per_ms * (guard_silence_ms - guard_hears_ms);
 }
 
 } // namespace haptel::device

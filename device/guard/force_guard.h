@@ -14,6 +14,7 @@ namespace haptel::device {
 
 // Twice what a servo may be silent for (servo_silence.h): the stream's thread takes the force away before.
 inline constexpr int guard_silence_ms = 10;
+inline constexpr int guard_hears_ms = 2;
 
 // As the system lists it.
 inline constexpr const char* guard_process_name = "haptel-guard";
@@ -28,13 +29,12 @@ public:
     ForceGuard(const ForceGuard&) = delete;
     ForceGuard& operator=(const ForceGuard&) = delete;
 
-    // The stream's thread, every few milliseconds; waits for nothing. True: the force that stood was taken away since,
-    // for the call came too late.
-    bool hear(bool force_stands) noexcept;
+    // The stream's thread, at least every guard_hears_ms; waits for nothing. True: so long after the call before that
+    // the last word may have been said.
+    bool hear() noexcept;
 
 private:
     int guard_ = -1; // the other end of it; -1: none
-    bool stands_ = false;
     int64_t told_ns_ = 0;
 };
 

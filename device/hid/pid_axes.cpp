@@ -112,13 +112,9 @@ private:
             std::ranges::copy(report.span(), room.begin());
             return report.size;
         }
-        bool holds_force() const noexcept override
+        void was_silenced() noexcept override
         {
-            return std::ranges::any_of(sent_, [](const auto& counts) { return counts.value_or(0) != 0; });
-        }
-        void force_was_taken() noexcept override
-        {
-            client_.force_was_taken();
+            client_.was_silenced();
             sent_ = {};
             replays_ = 0;
             replay_ns_ = 0;

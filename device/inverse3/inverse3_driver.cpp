@@ -154,7 +154,7 @@ Inverse3Driver::Ending Inverse3Driver::exchange(ServiceSocket& socket, const Inv
     const std::string word = ServiceSocket::frame_of(inverse3_force(device.id, no_force_n).view());
     ForceGuard guard(socket.file_descriptor(), 0, {reinterpret_cast<const uint8_t*>(word.data()), word.size()});
     while (!quitting()) {
-        if (guard.hear(said_n_ != no_force_n)) force_was_taken();
+        if (guard.hear()) was_silenced();
         is_fresh_ = commands_.take(command_) || is_fresh_;
         const int64_t now_ns = runtime::monotonic_ns();
         const glm::dvec3 force_n = wanted_n(now_ns);
@@ -217,13 +217,11 @@ void Inverse3Driver::note_what_is_dropped(const glm::dvec3& force_n) noexcept
     count_dropped();
 }
 
-// This process stood still, and its guard has spoken. The service answers that, too.
-void Inverse3Driver::force_was_taken() noexcept
+// This thread stood still, and its guard may have spoken. An answer to that comes beside those that are owed.
+void Inverse3Driver::was_silenced() noexcept
 {
     command_ = {}; // of no session
-    said_n_ = no_force_n;
-    if (owed_++ == 0) owed_since_ns_ = runtime::monotonic_ns();
-    count_dropped();
+    if (std::exchange(said_n_, no_force_n) != no_force_n) count_dropped();
 }
 
 void Inverse3Driver::count_dropped() noexcept
@@ -243,9 +241,8 @@ int64_t Inverse3Driver::next_deadline_ns() const noexcept
 {
     const int64_t next_ns =
         owed_ > 0 ? owed_since_ns_ + ns_per_ms * times_.silence_ms : said_ns_ + ns_per_ms * times_.keep_alive_ms;
-    if (said_n_ == no_force_n) return next_ns;
-    const int64_t heard_by_guard_ns = runtime::monotonic_ns() + ns_per_ms * guard_silence_ms / 4;
-    return std::min({next_ns, command_.time_ns + ns_per_ms * times_.watchdog_ms, heard_by_guard_ns});
+    const int64_t watched_ns = std::min(next_ns, runtime::monotonic_ns() + ns_per_ms * guard_hears_ms);
+    return said_n_ == no_force_n ? watched_ns : std::min(watched_ns, command_.time_ns + ns_per_ms * times_.watchdog_ms);
 }
 
 // Where it was not sent the connection is lost, and the wait that follows says why.

@@ -87,7 +87,7 @@ private:
     bool is_due(const glm::dvec3& force_n, int64_t now_ns) const noexcept;
     int64_t next_deadline_ns() const noexcept;
     void note_what_is_dropped(const glm::dvec3& force_n) noexcept;
-    void force_was_taken() noexcept;
+    void was_silenced() noexcept;
     void count_dropped() noexcept;
     void said(bool was_sent, const std::string& id, const glm::dvec3& force_n);
     void say_last(ServiceSocket& socket, const std::string& id);

@@ -62,9 +62,8 @@ public:
     // What the OUT endpoint is sent where this process can send nothing any more, so that no force stays: fills `room`
     // and returns how much of it. 0: the device holds no force by itself.
     virtual std::size_t last_word(std::span<uint8_t> /*room*/) noexcept { return 0; }
-    virtual bool holds_force() const noexcept { return false; } // by what it was sent last
-    // The last word was said, for this process stood still; it may go on.
-    virtual void force_was_taken() noexcept {}
+    // The last word may have been said, for this thread stood still; it may go on.
+    virtual void was_silenced() noexcept {}
 };
 
 // One claimed interface of a device. Each function comes back within its time limit. One thread at a time uses it.

@@ -117,7 +117,7 @@ UsbError UsbStream::run(WakeEvent& wake, ForceGuard& guard)
     for (auto& slot : in_) post_in(*slot);
     std::vector<pollfd> fds = polled(context_, wake);
     while (ended_ == UsbError::none && client_.wants_more()) {
-        if (guard.hear(client_.holds_force())) client_.force_was_taken();
+        if (guard.hear()) client_.was_silenced();
         offer_out();
         poll(fds.data(), fds.size(), wait_ms);
         if (fds.front().revents & POLLIN) wake.clear();

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <optional>
 #include <poll.h>
 #include <string>
 #include <string_view>
@@ -16,7 +15,6 @@
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
-#include <utility>
 #include <vector>
 
 using namespace haptel::device;
@@ -69,12 +67,12 @@ double milliseconds_since(Clock::time_point start)
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-// Under a force for so short a time that no guard finds it long, whatever else the machine does.
-template <typename Force>
-bool is_for_a_moment(Force force)
+// So short a time that no guard finds it long, whatever else the machine does.
+template <typename Work>
+bool is_for_a_moment(Work work)
 {
     const auto start = Clock::now();
-    force();
+    work();
     return milliseconds_since(start) < guard_silence_ms / 2;
 }
 
@@ -94,7 +92,7 @@ pid_t program_that_ends(const GuardedDevice& device, End end)
     for (const int number : {SIGABRT, SIGSEGV}) std::signal(number, SIG_DFL);
     ForceGuard guard = device.guard();
     for (int i = 0; i < 5; ++i) {
-        guard.hear(true);
+        guard.hear();
         pause_for(2);
     }
     end();
@@ -107,50 +105,52 @@ TEST_CASE("a guard takes the force away from a thread that is silent, and that i
 {
     const GuardedDevice device;
     ForceGuard guard = device.guard();
+    pause_for(guard_hears_ms);
     std::vector<double> took_ms;
     for (int i = 0; i < 21; ++i) {
         const auto start = Clock::now();
-        guard.hear(true);
+        CHECK((guard.hear() || i == 0));
         CHECK(device.hears(patience_ms) == "no force");
         took_ms.push_back(milliseconds_since(start));
-        CHECK(guard.hear(false));
     }
     std::sort(took_ms.begin(), took_ms.end());
     CHECK(took_ms.front() > guard_silence_ms - 1);
     WARN("the word came after " << took_ms[took_ms.size() / 2] << " ms in the median, the longest " << took_ms.back());
-    CHECK(!guard.hear(true));
+    CHECK(device.hears(moment_ms) == "");
+    CHECK(guard.hear());
+    CHECK(!guard.hear());
 }
 
-TEST_CASE("a guard is silent where there is no force, while it hears of one, and after an end in order")
+TEST_CASE("a guard is silent while it hears of the stream, and after an end in order")
 {
     const GuardedDevice device;
-    const auto rests = [&] {
+    const auto goes_on = [&] {
         ForceGuard guard = device.guard();
-        const bool short_enough = is_for_a_moment([&] {
-            guard.hear(true);
-            guard.hear(false);
-        });
-        const std::string heard = device.hears(moment_ms);
-        CHECK(!guard.hear(false));
-        return !short_enough || heard.empty();
+        bool in_time = true;
+        for (int i = 0; i < 100; ++i)
+            in_time = is_for_a_moment([&] {
+                          pause_for(1);
+                          guard.hear();
+                      }) &&
+                      in_time;
+        return in_time;
     };
-    const auto ends = [&] {
-        std::optional<ForceGuard> guard(std::in_place, device.ends[0], 0, GuardedDevice::last_word());
-        const bool short_enough = is_for_a_moment([&] {
-            guard->hear(true);
-            guard.reset();
-        });
-        return device.hears(moment_ms).empty() || !short_enough;
-    };
-    for (int i = 0; i < 3; ++i) {
-        CHECK(rests());
-        CHECK(ends());
+    const auto ends = [&] { return is_for_a_moment([&] { const ForceGuard guard = device.guard(); }); };
+    int tried = 0; // a machine that is late by itself proves nothing
+    for (int i = 0; i < 50 && tried < 6; ++i) {
+        if (!(i % 2 == 0 ? goes_on() : ends())) {
+            device.hears(moment_ms);
+            continue;
+        }
+        ++tried;
+        CHECK(device.hears(moment_ms) == "");
     }
+    CHECK(tried > 0);
     const std::vector<uint8_t> long_word(ForceGuard::last_word_bytes_max + 1);
     ForceGuard nothing(device.ends[0], 0, {});
-    nothing.hear(true);
+    nothing.hear();
     ForceGuard too_long(device.ends[0], 0, long_word);
-    too_long.hear(true);
+    too_long.hear();
     CHECK(device.hears(moment_ms) == "");
 }
 
