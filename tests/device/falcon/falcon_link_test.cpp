@@ -105,6 +105,27 @@ TEST_CASE("a reply tells how long ago the packet that it answers was sent")
     CHECK(link_ms() == 0);
 }
 
+TEST_CASE("a link whose thread stood still says no force at once, and none again until a servo asks for one")
+{
+    FalconLink link(unhurried);
+    link.begin_session();
+    hear(link, true);
+    link.command(some_force);
+    CHECK(said(link) == force_in_blue);
+    link.was_silenced();
+    CHECK(said(link) == none_in_green);
+    CHECK(link.force_was_dropped());
+    CHECK(link.counters().dropped == 1);
+    CHECK(said(link).empty());
+    link.was_silenced(); // under no force there is nothing to tell
+    CHECK(!link.force_was_dropped());
+    link.command(some_force);
+    CHECK(said(link) == force_in_blue);
+    std::array<uint8_t, 64> room{};
+    const std::size_t size = link.last_word(room);
+    CHECK(std::string(room.begin(), room.begin() + static_cast<std::ptrdiff_t>(size)) == none_in_green);
+}
+
 TEST_CASE("a force is taken away when its servo is silent, and that is told once")
 {
     FalconLink link({.keep_alive_ms = 60'000, .watchdog_ms = 200, .silence_ms = 60'000});
