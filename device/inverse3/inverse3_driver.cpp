@@ -152,7 +152,8 @@ Inverse3Driver::Ending Inverse3Driver::converse(ServiceSocket& socket, const Inv
 Inverse3Driver::Ending Inverse3Driver::exchange(ServiceSocket& socket, const Inverse3Listed& device)
 {
     const std::string word = ServiceSocket::frame_of(inverse3_force(device.id, no_force_n).view());
-    ForceGuard guard(socket.file_descriptor(), 0, {reinterpret_cast<const uint8_t*>(word.data()), word.size()});
+    ForceGuard guard(times_.guarded ? socket.file_descriptor() : -1, 0,
+                     {reinterpret_cast<const uint8_t*>(word.data()), word.size()});
     while (!quitting()) {
         if (guard.hear()) was_silenced();
         is_fresh_ = commands_.take(command_) || is_fresh_;
@@ -221,6 +222,8 @@ void Inverse3Driver::note_what_is_dropped(const glm::dvec3& force_n) noexcept
 void Inverse3Driver::was_silenced() noexcept
 {
     command_ = {}; // of no session
+    asked_ns_ = 0;
+    unsure_until_ns_ = runtime::monotonic_ns() + ns_per_ms * times_.silence_ms;
     if (std::exchange(said_n_, no_force_n) != no_force_n) count_dropped();
 }
 
@@ -252,7 +255,7 @@ void Inverse3Driver::said(bool was_sent, const std::string& id, const glm::dvec3
     if (force_n != no_force_n) held_by_ = id;
     said_n_ = force_n;
     said_ns_ = runtime::monotonic_ns();
-    asked_ns_ = owed_ == 0 ? said_ns_ : 0;
+    asked_ns_ = owed_ == 0 && said_ns_ >= unsure_until_ns_ ? said_ns_ : 0;
     if (owed_++ == 0) owed_since_ns_ = said_ns_;
     is_fresh_ = false;
     sent_count_.fetch_add(1, std::memory_order_relaxed);

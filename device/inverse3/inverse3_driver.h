@@ -29,6 +29,7 @@ struct Inverse3Times {
     int tries = 10;           // with a service that talks nonsense, before that is a fault
     double patience_s = 60;   // absent for so long, it is disconnected for good
     bool real_time = true;    // asks the system not to be late
+    bool guarded = true;      // by a process beside this one (force_guard.h)
 };
 
 enum class Inverse3Phase : uint8_t { connecting, streaming, disconnected, failed };
@@ -114,10 +115,11 @@ private:
     bool is_fresh_ = false; // the command was not said yet
     glm::dvec3 said_n_{0};  // by the newest message
     int64_t said_ns_ = 0;
-    int64_t owed_since_ns_ = 0; // since when a state is awaited
-    int64_t asked_ns_ = 0;      // when the one message was sent that a state is owed for; 0: none, or several
-    int owed_ = 0;              // states
-    std::string held_by_;       // the device that may still hold a force of ours; empty: none does
+    int64_t owed_since_ns_ = 0;   // since when a state is awaited
+    int64_t unsure_until_ns_ = 0; // the guard may have spoken, and an answer be to that
+    int64_t asked_ns_ = 0;        // when the one message was sent that a state is owed for; 0: none, or several
+    int owed_ = 0;                // states
+    std::string held_by_;         // the device that may still hold a force of ours; empty: none does
     uint32_t sessions_ = 0;
     uint64_t session_states_ = 0;
     int64_t absent_since_ns_ = 0; // 0: it is there

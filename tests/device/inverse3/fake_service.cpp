@@ -96,7 +96,7 @@ struct FakeService::Service::Session : std::enable_shared_from_this<Session> {
     websocket::stream<tcp::socket, false> stream;
     beast::flat_buffer buffer;
     std::vector<std::string> queue; // of what is to be written; the first is being written
-    bool is_first = true;
+    bool is_first = true, is_closing = false;
     glm::dvec3 last_n{0};
 
     void drop()
@@ -184,7 +184,8 @@ struct FakeService::Service::Session : std::enable_shared_from_this<Session> {
         case ServiceFault::endless:
             return write_raw(std::string("\x81\x7f\0\0\1\0\0\0\0\0", 10) + std::string(1000, ' '));
         case ServiceFault::goodbye:
-            stream.async_close(websocket::close_code::going_away, [self](const error_code&) {});
+            if (!std::exchange(is_closing, true))
+                stream.async_close(websocket::close_code::going_away, [self](const error_code&) {});
             return;
         case ServiceFault::reset: {
             error_code ignored;

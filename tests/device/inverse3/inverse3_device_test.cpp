@@ -193,7 +193,9 @@ TEST_CASE("the force of a program that is stopped or killed is taken from an Inv
     for (const int signal : {SIGSTOP, SIGKILL}) {
         const pid_t program = fork();
         if (program == 0) {
-            Inverse3Device device("inverse3", address_of(service), "", quick_times());
+            Inverse3Times times = quick_times();
+            times.guarded = true;
+            Inverse3Device device("inverse3", address_of(service), "", times);
             tick_until(device, {0, 0, 5}, [](auto, auto&) { return false; });
             _exit(0);
         }
