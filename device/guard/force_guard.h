@@ -2,8 +2,9 @@
 // crashed, it called exit(), or a signal or a debugger has stopped it. Motors hold the last command for as long as they
 // hear no other.
 //
-// It is given the device's file descriptor and the bytes that end the force (the last word). While a force stands it
-// must hear from the stream's thread; after guard_silence_ms it says the word, and at the end of this process, at once.
+// It is given the device's file descriptor and the bytes that end the force (the last word). It says them when it has
+// heard nothing from the stream's thread for guard_silence_ms, and at once at the end of this process. It does not ask
+// whether a force stands: a thread can be stopped between its force and its word about it.
 #pragma once
 
 #include <cstddef>
