@@ -137,56 +137,113 @@ DeviceResult open_connected_falcon(std::string_view serial, const DeviceRequest&
     return open_falcon(request, serial);
 }
 
-void list_usb(ConnectedDevices& found, const UsbList& list, std::string_view name, std::string_view what)
+using Listed = std::vector<ListedDevice>;
+
+// What is wrong with the search for a kind of device, not with one of them.
+ListedDevice not_looked_for(std::string what, const std::string& why)
 {
-    if (!list.error.empty()) found.errors.push_back(fmt::format("{}: {}", what, list.error));
+    ListedDevice one;
+    one.what = std::move(what);
+    one.state = DeviceState::faulty;
+    one.refused.reason = why;
+    return one;
+}
+
+ListedDevice listed(std::string name, std::string what, std::string at, Refusal refused)
+{
+    ListedDevice one;
+    one.name = std::move(name);
+    one.what = std::move(what);
+    one.at = std::move(at);
+    one.state = refused.empty() ? DeviceState::ready : DeviceState::refused;
+    one.refused = std::move(refused);
+    return one;
+}
+
+Listed list_usb(const UsbList& list, std::string_view name, const std::string& what)
+{
+    Listed found;
+    if (!list.error.empty()) found.push_back(not_looked_for(what, list.error));
     for (const UsbListed& one : list.devices)
-        found.devices.push_back({one.serial.empty() ? std::string(name) : fmt::format("{}:{}", name, one.serial),
-                                 std::string(what), fmt::format("USB bus {} device {}", one.bus, one.address),
-                                 one.error});
+        found.push_back(listed(one.serial.empty() ? std::string(name) : fmt::format("{}:{}", name, one.serial), what,
+                               fmt::format("USB bus {} device {}", one.bus, one.address), one.refused));
+    return found;
 }
 
-void list_connected_falcons(ConnectedDevices& found)
+Listed list_simulated()
 {
-    list_usb(found, list_falcons(), "falcon", "Novint Falcon");
+    Listed found;
+    for (const DevicePreset& preset : device_presets()) {
+        found.push_back(
+            listed(fmt::format("simulated:{}", preset.name), "a hand and a device in the computer", "", {}));
+        found.back().axes = preset.model.axes;
+        found.back().force_max_n = preset.model.force_max_n;
+        found.back().rate_hz = preset.model.update_hz;
+    }
+    return found;
 }
 
-void list_connected_openffboards(ConnectedDevices& found)
+Listed list_connected_falcons()
 {
-    list_usb(found, list_openffboards(), "openffboard", "OpenFFBoard");
+    Listed found = list_usb(list_falcons(), "falcon", "Novint Falcon");
+    for (ListedDevice& one : found) {
+        one.axes.emplace();
+        one.force_max_n = falcon_force_max_n;
+        one.rate_hz = 1000; // the timer of its USB chip
+    }
+    return found;
 }
 
-void list_connected_inputs(ConnectedDevices& found)
+Listed list_connected_openffboards()
 {
-    for (const ListedInput& one : list_input_ports())
-        found.devices.push_back({"evdev:" + one.path, one.name, one.path, one.error});
+    Listed found = list_usb(list_openffboards(), "openffboard", "OpenFFBoard");
+    for (ListedDevice& one : found) one.rate_hz = 1000; // a report a frame of the bus
+    return found;
 }
 
-void list_served_inverse3s(ConnectedDevices& found)
+Listed list_connected_inputs()
 {
+    Listed found;
+    for (ListedInput& input : list_input_ports()) {
+        found.push_back(listed("evdev:" + input.path, input.name, input.path, std::move(input.refused)));
+        const glm::bvec3 along(true, input.axes > 1, false);
+        if (input.axes > 0) found.back().axes = {along, along};
+    }
+    return found;
+}
+
+Listed list_served_inverse3s()
+{
+    Listed found;
     const Inverse3List list = list_inverse3s();
-    if (!list.error.empty()) found.errors.push_back("Haply Inverse3: " + list.error);
-    for (const std::string& id : list.ids)
-        found.devices.push_back({"inverse3:" + id, "Haply Inverse3", "service at " + list.at, ""});
+    if (!list.error.empty()) found.push_back(not_looked_for("Haply Inverse3", list.error));
+    for (const std::string& id : list.ids) {
+        found.push_back(listed("inverse3:" + id, "Haply Inverse3", "service at " + list.at, {}));
+        found.back().axes.emplace();
+        found.back().force_max_n = inverse3_force_max_n;
+    }
+    return found;
 }
 
 // One entry per driver.
 struct Driver {
-    std::string_view name, syntax, what;
+    std::string_view name, transport, syntax, what;
     DeviceResult (*open)(std::string_view variant, const DeviceRequest& request);
-    void (*list)(ConnectedDevices& found); // null: nothing is connected
+    Listed (*list)(); // null: it cannot be looked for
 };
 constexpr std::array<Driver, 7> drivers = {
-    {{"simulated", "simulated[:PRESET[:HAND]]", "a hand and a device in the computer", open_simulated, nullptr},
-     {"replay", "replay:FILE", "the hand of an earlier run", open_recording, nullptr},
-     {"falcon", "falcon[:SERIAL]", "Novint Falcon, three axes, USB", open_connected_falcon, list_connected_falcons},
-     {"inverse3", "inverse3[:DEVICE_ID]", "Haply Inverse3, three axes, through Haply's Inverse service", open_inverse3,
-      list_served_inverse3s},
-     {"openffboard", "openffboard[:SERIAL]", "OpenFFBoard, one axis or two, USB", open_openffboard,
+    {{"simulated", "none", "simulated[:PRESET[:HAND]]", "a hand and a device in the computer", open_simulated,
+      list_simulated},
+     {"replay", "none", "replay:FILE", "the hand of an earlier run", open_recording, nullptr},
+     {"falcon", "usb", "falcon[:SERIAL]", "Novint Falcon, three axes, USB", open_connected_falcon,
+      list_connected_falcons},
+     {"inverse3", "service", "inverse3[:DEVICE_ID]", "Haply Inverse3, three axes, through Haply's Inverse service",
+      open_inverse3, list_served_inverse3s},
+     {"openffboard", "usb", "openffboard[:SERIAL]", "OpenFFBoard, one axis or two, USB", open_openffboard,
       list_connected_openffboards},
-     {"hid", "hid:VID:PID[:SERIAL]", "other wheel or stick of the USB's Physical Interface class, one axis or two",
-      open_hid, nullptr},
-     {"evdev", "evdev:FILE", "wheel or stick with force feedback, one axis or two, by its file in /dev/input",
+     {"hid", "usb", "hid:VID:PID[:SERIAL]",
+      "other wheel or stick of the USB's Physical Interface class, one axis or two", open_hid, nullptr},
+     {"evdev", "kernel", "evdev:FILE", "wheel or stick with force feedback, one axis or two, by its file in /dev/input",
       open_evdev, list_connected_inputs}}};
 
 } // namespace
@@ -225,12 +282,25 @@ std::vector<SupportedDevice> supported_devices()
     return all;
 }
 
-ConnectedDevices connected_devices()
+std::vector<ListedDevice> listed_devices()
 {
-    ConnectedDevices found;
-    for (const Driver& driver : drivers)
-        if (driver.list) driver.list(found);
-    return found;
+    Listed all;
+    for (const Driver& driver : drivers) {
+        if (!driver.list) continue;
+        Listed found = driver.list();
+        if (found.empty()) {
+            found.push_back(listed(std::string(driver.name), std::string(driver.what), "", {}));
+            found.back().state = DeviceState::absent;
+            found.back().refused = {"none is connected", "Plug it in and switch it on"};
+        }
+        for (ListedDevice& one : found) {
+            if (one.name.empty()) one.name = driver.name;
+            one.kind = driver.name;
+            one.transport = driver.transport;
+            all.push_back(std::move(one));
+        }
+    }
+    return all;
 }
 
 } // namespace haptel::device

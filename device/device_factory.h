@@ -9,9 +9,12 @@
 //   evdev:FILE                  a wheel or a stick with force feedback, through the kernel
 #pragma once
 
+#include "device/refusal.h"
 #include "runtime/hand/haptic_device.h"
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace haptel::device {
@@ -28,16 +31,23 @@ struct SupportedDevice {
 };
 std::vector<SupportedDevice> supported_devices();
 
-struct ConnectedDevice {
-    std::string name; // that open_device opens it by
-    std::string what, at;
-    std::string refused; // why it cannot be opened, and what to do about it; empty: it can
+enum class DeviceState : uint8_t {
+    ready,
+    absent,  // none of its kind is connected
+    refused, // it is there and cannot be opened
+    faulty,  // its kind cannot be looked for
 };
 
-struct ConnectedDevices {
-    std::vector<ConnectedDevice> devices;
-    std::vector<std::string> errors; // what could not be looked for, and why
+struct ListedDevice {
+    std::string name; // that open_device opens it by
+    std::string_view kind, transport;
+    std::string what, at;
+    DeviceState state = DeviceState::ready;
+    Refusal refused;                         // unless it is ready
+    std::optional<runtime::DeviceAxes> axes; // as far as known without opening it
+    double force_max_n = 0, rate_hz = 0;     // what it can do; 0: not known without opening it
 };
-ConnectedDevices connected_devices();
+// All that is connected, the simulated devices, and a line for each kind of which none is there.
+std::vector<ListedDevice> listed_devices();
 
 } // namespace haptel::device

@@ -134,14 +134,14 @@ std::string name_of_input(int file)
     return ioctl(file, static_cast<int>(EVIOCGNAME(name.size() - 1)), name.data()) < 0 ? "" : name.data();
 }
 
-std::string open_failure(const std::string& path, int error)
+Refusal open_failure(const std::string& path, int error)
 {
     if (error == EACCES || error == EPERM)
-        return path + " may not be opened for writing: be in the group `input` (usermod -aG input USER, then log in "
-                      "again), or run as its owner";
+        return {path + " may not be opened for writing",
+                "Be in the group `input` (usermod -aG input USER, then log in again), or run as its owner"};
     if (error == ENOENT || error == ENODEV)
-        return path + " is not there: plug the device in; `haptel devices` lists what is";
-    return path + " cannot be opened: " + std::strerror(error);
+        return {path + " is not there", "Plug the device in; `haptel devices` lists what is"};
+    return {path + " cannot be opened: " + std::strerror(error), ""};
 }
 
 } // namespace
@@ -149,7 +149,7 @@ std::string open_failure(const std::string& path, int error)
 OpenedInput open_input_port(const std::string& path)
 {
     const int file = open(path.c_str(), O_RDWR | O_NONBLOCK | O_CLOEXEC);
-    if (file < 0) return {nullptr, open_failure(path, errno), errno == ENOENT || errno == ENODEV};
+    if (file < 0) return {nullptr, open_failure(path, errno).text(), errno == ENOENT || errno == ENODEV};
     int version = 0;
     if (ioctl(file, EVIOCGVERSION, &version) < 0) {
         close(file);
@@ -177,7 +177,7 @@ std::vector<ListedInput> list_input_ports()
         const std::string name = name_of_input(file);
         close(file);
         const OpenedInput opened = open_input_port(path); // what has no force feedback is no haptic device
-        if (opened.port) found.push_back({path, name, opened.port->axis(1) ? 2 : 1, ""});
+        if (opened.port) found.push_back({path, name, opened.port->axis(1) ? 2 : 1, {}});
     }
     // What may not even be read is known by its link.
     for (const fs::directory_entry& entry : fs::directory_iterator("/dev/input/by-id", ignored)) {

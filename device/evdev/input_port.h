@@ -3,6 +3,7 @@
 #pragma once
 
 #include "device/axes/axis_port.h"
+#include "device/refusal.h"
 
 #include <cstdint>
 #include <memory>
@@ -42,8 +43,8 @@ OpenedInput open_input_port(const std::string& path);
 
 struct ListedInput {
     std::string path, name;
-    int axes = 0;      // that can be pushed along
-    std::string error; // why it cannot be opened; empty: it can
+    int axes = 0; // that can be pushed along; 0: not known
+    Refusal refused;
 };
 
 // Of /dev/input: those with force feedback, and those that cannot be looked at but have a stick or a wheel by their

@@ -9,7 +9,7 @@ namespace haptel::device {
 
 namespace {
 
-constexpr double falcon_force_max_n = 7, falcon_stiffness_max_n_per_m = 2000;
+constexpr double falcon_stiffness_max_n_per_m = 2000;
 constexpr double falcon_workspace_radius_m = 0.04, falcon_resolution_m = 0.04e-3;
 
 } // namespace

@@ -14,6 +14,8 @@
 
 namespace haptel::device {
 
+inline constexpr double falcon_force_max_n = 7;
+
 // Of the grip, from where the device says it is; directions are turned alike.
 glm::dvec3 falcon_world_m(const glm::dvec3& place_m) noexcept;
 glm::dvec3 falcon_device_direction(const glm::dvec3& world) noexcept;

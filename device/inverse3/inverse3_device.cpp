@@ -9,7 +9,7 @@ namespace haptel::device {
 
 namespace {
 
-constexpr double inverse3_force_max_n = 10, inverse3_stiffness_max_n_per_m = 1000, inverse3_workspace_radius_m = 0.15;
+constexpr double inverse3_stiffness_max_n_per_m = 1000, inverse3_workspace_radius_m = 0.15;
 
 } // namespace
 

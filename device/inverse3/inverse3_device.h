@@ -10,6 +10,8 @@
 
 namespace haptel::device {
 
+inline constexpr double inverse3_force_max_n = 10;
+
 // Of the middle of the workspace, where the service's origin is the device's base.
 inline constexpr glm::dvec3 inverse3_centre_m{0, -0.15, 0.2};
 

@@ -34,7 +34,7 @@ UsbListed listed(libusb_device* device, const UsbIds& ids, int interface)
         entry.serial = usb_serial(handle.get());
         if (is_held_by_program(handle.get(), interface)) code = LIBUSB_ERROR_BUSY;
     }
-    if (code != LIBUSB_SUCCESS) entry.error = usb_open_failure(code, ids, entry.bus, entry.address);
+    if (code != LIBUSB_SUCCESS) entry.refused = usb_open_failure(code, ids, entry.bus, entry.address);
     return entry;
 }
 
@@ -50,26 +50,25 @@ UsbList list_usb_devices(const UsbIds& ids, int interface)
     return list;
 }
 
-std::string usb_open_failure(int libusb_code, UsbIds ids, int bus, int address)
+Refusal usb_open_failure(int libusb_code, UsbIds ids, int bus, int address)
 {
     const std::string place =
         fmt::format("USB device {:04x}:{:04x} (bus {}, device {})", ids.vendor, ids.product, bus, address);
     switch (usb_error(libusb_code)) {
     case UsbError::denied:
-        return fmt::format("{}: no permission to open it. Install the udev rule (device/udev/60-haptel.rules into "
-                           "/etc/udev/rules.d), run `udevadm control --reload` as root and plug the device in again",
-                           place);
+        return {place + ": no permission to open it",
+                "Install the udev rule (device/udev/60-haptel.rules into /etc/udev/rules.d), run `udevadm control "
+                "--reload` as root and plug the device in again"};
     case UsbError::busy: {
         const std::string users = usb_device_users(bus, address);
-        return fmt::format("{}: in use by {}. Close that first", place, users.empty() ? "another program" : users);
+        return {fmt::format("{}: in use by {}", place, users.empty() ? "another program" : users), "Close that first"};
     }
-    case UsbError::gone: return fmt::format("{}: it was unplugged. Plug it in again", place);
+    case UsbError::gone: return {place + ": it was unplugged", "Plug it in again"};
     case UsbError::not_found:
-        return fmt::format("{}: it lacks the interface that this driver talks to. Does it run its maker's firmware?",
-                           place);
+        return {place + ": it lacks the interface that this driver talks to", "Does it run its maker's firmware?"};
     default:
-        return fmt::format("{}: cannot be opened ({}). Unplug it and plug it in again", place,
-                           libusb_error_name(libusb_code));
+        return {fmt::format("{}: cannot be opened ({})", place, libusb_error_name(libusb_code)),
+                "Unplug it and plug it in again"};
     }
 }
 

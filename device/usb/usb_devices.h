@@ -1,6 +1,8 @@
 // Which USB devices of a kind are connected, and whether they can be opened.
 #pragma once
 
+#include "device/refusal.h"
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -18,7 +20,7 @@ struct UsbIds {
 struct UsbListed {
     std::string serial; // empty: it has none, or cannot be opened
     int bus = 0, address = 0;
-    std::string error; // why it cannot be opened, in words; empty if it can
+    Refusal refused;
 };
 
 struct UsbList {
@@ -30,7 +32,7 @@ struct UsbList {
 UsbList list_usb_devices(const UsbIds& ids, int interface);
 
 // What to tell the user when opening or claiming fails with this libusb_error.
-std::string usb_open_failure(int libusb_code, UsbIds ids, int bus, int address);
+Refusal usb_open_failure(int libusb_code, UsbIds ids, int bus, int address);
 
 // The names of other programs that have the device open, as far as this user may see them: "gimp (1234)".
 std::string usb_device_users(int bus, int address);

@@ -92,7 +92,8 @@ std::string claim(libusb_device_handle* handle, const UsbInterface& interface, U
     error = usb_error(code);
     libusb_device* device = libusb_get_device(handle);
     if (code == LIBUSB_SUCCESS) return {};
-    return usb_open_failure(code, usb_ids(device), libusb_get_bus_number(device), libusb_get_device_address(device));
+    return usb_open_failure(code, usb_ids(device), libusb_get_bus_number(device), libusb_get_device_address(device))
+        .text();
 }
 
 // `others`: serial numbers of those that are connected.
@@ -115,7 +116,7 @@ std::unique_ptr<Transport> open_and_claim(libusb_device* device, std::string_vie
     const int bus = libusb_get_bus_number(device), address = libusb_get_device_address(device);
     UsbHandle handle = open_usb_handle(device, code);
     if (!handle) {
-        refused = not_opened(usb_error(code), usb_open_failure(code, usb_ids(device), bus, address));
+        refused = not_opened(usb_error(code), usb_open_failure(code, usb_ids(device), bus, address).text());
         return {};
     }
     if (std::string its = usb_serial(handle.get()); !serial.empty() && its != serial) {

@@ -7,8 +7,10 @@
 #include "tools/commands/interrupt.h"
 #include "tools/output/json.h"
 #include "tools/output/terminal.h"
+#include "tools/report/axes_json.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -17,6 +19,9 @@
 namespace haptel::tools {
 
 namespace {
+
+using device::DeviceState;
+using device::ListedDevice;
 
 struct DevicesOptions {
     std::string open;
@@ -99,8 +104,7 @@ ExitCode open_and_look(const DevicesOptions& options)
     const glm::dvec3 range_m = seen.most_m - seen.least_m;
     if (options.json) {
         print_json({{"device", info.name},
-                    {"senses", axes_of(info.axes.senses)},
-                    {"pushes", axes_of(info.axes.pushes)},
+                    {"axes", to_json(info.axes)},
                     {"force_max_n", info.force_max_n},
                     {"reads", seen.reads},
                     {"poses", seen.poses},
@@ -128,28 +132,54 @@ ExitCode open_and_look(const DevicesOptions& options)
     return ExitCode::findings;
 }
 
+std::string_view name_of(DeviceState state)
+{
+    constexpr std::array<std::string_view, 4> names = {"ready", "absent", "refused", "faulty"};
+    return names[static_cast<size_t>(state)];
+}
+
+Json json_of(const ListedDevice& one)
+{
+    const auto known = [](double value) { return value > 0 ? Json(value) : Json(nullptr); };
+    const auto said = [](const std::string& text) { return text.empty() ? Json(nullptr) : Json(text); };
+    return {{"name", one.name},
+            {"kind", one.kind},
+            {"transport", one.transport},
+            {"what", one.what},
+            {"at", said(one.at)},
+            {"state", name_of(one.state)},
+            {"reason", said(one.refused.reason)},
+            {"cure", said(one.refused.cure)},
+            {"axes", one.axes ? to_json(*one.axes) : Json(nullptr)},
+            {"rate_hz", known(one.rate_hz)},
+            {"force_max_n", known(one.force_max_n)}};
+}
+
 ExitCode run(const DevicesOptions& options)
 {
     if (!options.open.empty()) return open_and_look(options);
-    const device::ConnectedDevices connected = device::connected_devices();
+    std::vector<ListedDevice> listed = device::listed_devices();
     const auto supported = device::supported_devices();
     if (options.json) {
         Json list = Json::array(), kinds = Json::array();
-        for (const device::ConnectedDevice& one : connected.devices)
-            list.push_back({{"name", one.name},
-                            {"what", one.what},
-                            {"at", one.at},
-                            {"refused", one.refused.empty() ? Json(nullptr) : Json(one.refused)}});
+        for (const ListedDevice& one : listed) list.push_back(json_of(one));
         for (const device::SupportedDevice& one : supported) kinds.push_back({{"name", one.name}, {"what", one.what}});
-        print_json({{"connected", list}, {"supported", kinds}, {"not_looked_for", connected.errors}});
+        print_json({{"devices", list}, {"supported", kinds}});
         return ExitCode::fine;
     }
+    std::erase_if(listed,
+                  [](const ListedDevice& one) { return one.transport == "none" || one.state == DeviceState::absent; });
     fmt::print("connected\n");
-    if (connected.devices.empty()) fmt::print("  nothing that haptel knows\n");
-    for (const device::ConnectedDevice& one : connected.devices)
-        fmt::print("  {:<26} {}, {}{}\n", lang::printable(one.name), lang::printable(one.what), lang::printable(one.at),
-                   one.refused.empty() ? "" : "\n" + std::string(29, ' ') + lang::printable(one.refused));
-    for (const std::string& error : connected.errors) fmt::print("  not looked for: {}\n", lang::printable(error));
+    if (std::ranges::all_of(listed, [](const ListedDevice& one) { return one.state == DeviceState::faulty; }))
+        fmt::print("  nothing that haptel knows\n");
+    for (const ListedDevice& one : listed) {
+        if (one.state == DeviceState::faulty)
+            fmt::print("  not looked for: {}: {}\n", lang::printable(one.what), lang::printable(one.refused.text()));
+        else
+            fmt::print("  {:<26} {}, {}{}\n", lang::printable(one.name), lang::printable(one.what),
+                       lang::printable(one.at),
+                       one.refused.empty() ? "" : "\n" + std::string(29, ' ') + lang::printable(one.refused.text()));
+    }
     fmt::print("supported, by the name for --device and [device]\n");
     for (const device::SupportedDevice& one : supported) fmt::print("  {:<26} {}\n", one.name, one.what);
     return ExitCode::fine;

@@ -25,11 +25,10 @@ ExploreHands::ExploreHands(std::shared_ptr<const runtime::Scene> scene, std::vec
         runtime::ServoOptions own = options;
         own.hand = hands[i].settings;
         Hand& hand = hands_.emplace_back();
-        hand.device = hands[i].device->info().name;
+        hand.device = hands[i].device->info();
         hand.workspace = hands[i].settings.workspace;
-        hand.position_resolution_m = hands[i].device->info().position_resolution_m;
         if (!kept.recording.empty()) {
-            kept.origin.device = hands[i].device->info();
+            kept.origin.device = hand.device;
             kept.origin.hand = static_cast<uint32_t>(i + 1);
             hand.recording = std::make_unique<runtime::TraceLog>(recording_of_hand(kept.recording, i), kept.origin);
         }
@@ -78,7 +77,7 @@ std::string ExploreHands::take_messages()
         if (std::string state = hand.servo->device_state(); state != hand.device_state) {
             hand.device_state = std::move(state);
             if (!hand.device_state.empty())
-                messages += fmt::format("{}: {}\n", hand.device, lang::printable(hand.device_state));
+                messages += fmt::format("{}: {}\n", hand.device.name, lang::printable(hand.device_state));
         }
     return messages;
 }
@@ -112,7 +111,7 @@ std::vector<HandOutcome> ExploreHands::wait(ExploreStatus& status)
 {
     if (turns_) turns_->wait();
     std::vector<HandOutcome> outcomes;
-    for (Hand& hand : hands_) outcomes.push_back({hand.device, hand.servo->wait(), {}, {}, hand.position_resolution_m});
+    for (Hand& hand : hands_) outcomes.push_back({hand.device, hand.servo->wait(), {}, {}});
     drain(status);
     for (Hand& hand : hands_)
         if (hand.recording) hand.recording->hand_over();

@@ -56,10 +56,10 @@ public:
 
 private:
     struct Hand {
-        std::string device, device_state;
+        runtime::DeviceInfo device;
+        std::string device_state;
         runtime::Workspace workspace;
-        double position_resolution_m = 0; // of its device; 0: not known
-        HeightRange heights;              // that it felt
+        HeightRange heights; // that it felt
         UnfeltContact unfelt;
         std::unique_ptr<runtime::ServoThread> servo;
         std::optional<ExploreFiles> files;

@@ -1,5 +1,7 @@
 #include "tools/report/explore_report.h"
 
+#include "tools/report/axes_json.h"
+
 #include "lang/abi/abi.h"
 #include "runtime/render/renderer.h"
 
@@ -91,7 +93,8 @@ std::string micrometres(double metres)
 void add(Json& json, const HandOutcome& hand)
 {
     const runtime::ServoReport& servo = hand.servo;
-    json["device"] = hand.device;
+    json["device"] = hand.device.name;
+    json["axes"] = to_json(hand.device.axes);
     json["seconds"] = servo.seconds;
     json["rate_hz"] = servo.rate_hz;
     json["ticks"] = servo.ticks;
@@ -118,7 +121,8 @@ void add(Json& json, const HandOutcome& hand)
     json["energy_j"] = finite_or_null(servo.energy_j);
     json["felt_height_m"]["minimum"] = finite_or_null(hand.heights.minimum_m);
     json["felt_height_m"]["maximum"] = finite_or_null(hand.heights.maximum_m);
-    json["position_resolution_m"] = hand.position_resolution_m > 0 ? Json(hand.position_resolution_m) : Json(nullptr);
+    const double resolution_m = hand.device.position_resolution_m;
+    json["position_resolution_m"] = resolution_m > 0 ? Json(resolution_m) : Json(nullptr);
     json["texture_below_resolution"] = hand.hides_texture();
     json["unfelt"] = {{"longest_s", hand.unfelt_s()}, {"depth_m", hand.unfelt.depth_m}};
     json["faults"] = servo.faults;
@@ -144,7 +148,7 @@ std::string lines_of(const HandOutcome& hand, const ExploreOutcome& outcome)
     const auto line = [&](const char* name, const std::string& value) {
         text += fmt::format("  {:<12} {}\n", name, value);
     };
-    text += fmt::format("{} with {}: {}\n", outcome.scene, hand.device, servo.stop_reason);
+    text += fmt::format("{} with {}: {}\n", outcome.scene, hand.device.name, servo.stop_reason);
     line("time", fmt::format("{:.3f} s, {} ticks at {:g} Hz, {} missed deadlines", servo.seconds, servo.ticks,
                              servo.rate_hz, servo.missed_deadlines));
     line("contact", fmt::format("{} ticks ({:.1f} %)", servo.contact_ticks, percent(servo.contact_ticks, servo.ticks)));
@@ -183,10 +187,10 @@ std::string lines_of(const HandOutcome& hand, const ExploreOutcome& outcome)
                          "felt",
                          hand.unfelt_s(), micrometres(hand.unfelt.depth_m)));
     if (hand.hides_texture())
-        line("note",
-             fmt::format("the texture is {} high along the path, but {} measures positions in steps of {}: the "
-                         "steps hide it. Make the texture deeper, or take a finer device",
-                         micrometres(hand.heights.width_m()), hand.device, micrometres(hand.position_resolution_m)));
+        line("note", fmt::format("the texture is {} high along the path, but {} measures positions in steps of {}: the "
+                                 "steps hide it. Make the texture deeper, or take a finer device",
+                                 micrometres(hand.heights.width_m()), hand.device.name,
+                                 micrometres(hand.device.position_resolution_m)));
     return text;
 }
 
@@ -212,7 +216,7 @@ void UnfeltContact::add(const runtime::TickRecord& tick, double scale)
 
 bool HandOutcome::hides_texture() const
 {
-    return heights.width_m() > 0 && heights.width_m() < 2 * position_resolution_m;
+    return heights.width_m() > 0 && heights.width_m() < 2 * device.position_resolution_m;
 }
 
 Json to_json(const ExploreOutcome& outcome)

@@ -1,6 +1,7 @@
 // What an exploration was like, for scripts and for people.
 #pragma once
 
+#include "runtime/hand/haptic_device.h"
 #include "runtime/servo/servo_report.h"
 #include "runtime/servo/telemetry.h"
 #include "tools/output/json.h"
@@ -34,11 +35,10 @@ private:
 
 // One hand of the exploration.
 struct HandOutcome {
-    std::string device; // as given on the command line or in the scene
+    runtime::DeviceInfo device; // named as on the command line or in the scene
     runtime::ServoReport servo;
     HeightRange heights;
     UnfeltContact unfelt;
-    double position_resolution_m = 0; // of the device; 0: not known
 
     // The texture is less than two of the device's position steps high: the force jumps by a step as much as by the
     // texture.

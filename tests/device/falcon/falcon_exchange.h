@@ -3,6 +3,7 @@
 #pragma once
 
 #include "device/falcon/falcon_device.h"
+#include "runtime/servo/real_time.h"
 #include "tests/device/falcon/fake_falcon.h"
 #include "tests/device/falcon/falcon_truth.h"
 
@@ -45,18 +46,24 @@ inline Exchange exchange(FalconDevice& device, FakeFalcon& falcon, double second
     const uint64_t packets_before = falcon.packets(), late_before = device.late();
     const auto start = Clock::now();
     const auto passed_s = [start] { return std::chrono::duration<double>(Clock::now() - start).count(); };
-    for (auto next = start; passed_s() < seconds; ++done.ticks) {
-        next = std::max(next + std::chrono::milliseconds(1), Clock::now() - std::chrono::milliseconds(1));
-        std::this_thread::sleep_until(next);
-        const double t = 1e-3 * done.ticks;
-        falcon.set_encoders(encoders_at({0.02 * std::sin(2 * t), 0.02 * std::cos(2 * t), 0.125 + 0.01 * std::sin(t)}));
-        runtime::DevicePose pose;
-        const bool ok = device.read(pose) == runtime::DeviceStatus::ok;
-        const glm::dvec3 force_n = 2.0 * glm::dvec3(std::sin(3 * t), std::cos(5 * t), 1);
-        device.write(force_n, glm::dvec3(0));
-        if (ok)
-            asked.push_back({{force_n.x, force_n.z, -force_n.y}, {pose.tip_m.x, pose.tip_m.z, 0.125 - pose.tip_m.y}});
-    }
+    std::thread servo([&] {
+        runtime::ask_for_real_time(); // as the runtime's does
+        for (auto next = start; passed_s() < seconds; ++done.ticks) {
+            next = std::max(next + std::chrono::milliseconds(1), Clock::now() - std::chrono::milliseconds(1));
+            std::this_thread::sleep_until(next);
+            const double t = 1e-3 * done.ticks;
+            falcon.set_encoders(
+                encoders_at({0.02 * std::sin(2 * t), 0.02 * std::cos(2 * t), 0.125 + 0.01 * std::sin(t)}));
+            runtime::DevicePose pose;
+            const bool ok = device.read(pose) == runtime::DeviceStatus::ok;
+            const glm::dvec3 force_n = 2.0 * glm::dvec3(std::sin(3 * t), std::cos(5 * t), 1);
+            device.write(force_n, glm::dvec3(0));
+            if (ok)
+                asked.push_back(
+                    {{force_n.x, force_n.z, -force_n.y}, {pose.tip_m.x, pose.tip_m.z, 0.125 - pose.tip_m.y}});
+        }
+    });
+    servo.join();
     done.seconds = passed_s();
     std::this_thread::sleep_for(std::chrono::milliseconds(10)); // what is on its way
     const FalconCounters after = device.counters();

@@ -94,7 +94,7 @@ TEST_CASE("a Falcon is listed by its serial number and its place, and other devi
     CHECK(list.devices[0].serial == "FALCON-A");
     CHECK(list.devices[0].bus == 1);
     CHECK(list.devices[0].address == 5);
-    CHECK(list.devices[0].error == "");
+    CHECK(list.devices[0].refused.empty());
     CHECK(!bus.is_held(5));
     CHECK(falcon.requests().empty()); // nothing is sent to it
 }
@@ -129,7 +129,7 @@ TEST_CASE("an OpenFFBoard is taken off the kernel's driver to be used, not to be
     const UsbList list = list_openffboards();
     REQUIRE(list.devices.size() == 1);
     CHECK(list.devices[0].serial == "1234");
-    CHECK(list.devices[0].error == "");
+    CHECK(list.devices[0].refused.empty());
     CHECK(bus.kernel_has(4));
     {
         const DeviceResult opened = open_openffboard("1234", request_for("openffboard:1234"));
@@ -151,11 +151,11 @@ TEST_CASE("a device that this user may not open is listed with what to do about 
     const WithoutPrivilege nobody;
     const UsbList list = list_falcons();
     REQUIRE(list.devices.size() == 1);
-    CHECK(contains(list.devices[0].error, "0403:cb48 (bus 1, device 2): no permission to open it"));
-    CHECK(contains(list.devices[0].error, "60-haptel.rules"));
+    CHECK(contains(list.devices[0].refused.text(), "0403:cb48 (bus 1, device 2): no permission to open it"));
+    CHECK(contains(list.devices[0].refused.text(), "60-haptel.rules"));
     const OpenedTransport opened = open_usb(falcon_ids, "", falcon_interface);
     CHECK(opened.code == UsbError::denied);
-    CHECK(opened.error == list.devices[0].error);
+    CHECK(opened.error == list.devices[0].refused.text());
 }
 
 TEST_CASE("a device that another program holds is listed as in use, and is free when that ends")
@@ -172,10 +172,10 @@ TEST_CASE("a device that another program holds is listed as in use, and is free 
         const UsbList list = list_falcons();
         REQUIRE(list.devices.size() == 1);
         CHECK(list.devices[0].serial == "FALCON-A");
-        CHECK(list.devices[0].error == second.error);
+        CHECK(list.devices[0].refused.text() == second.error);
         CHECK(bus.is_held(2)); // by the one who had it before
     }
-    CHECK(list_falcons().devices.at(0).error == "");
+    CHECK(list_falcons().devices.at(0).refused.empty());
     CHECK(open_usb(falcon_ids, "", falcon_interface).error == "");
 }
 

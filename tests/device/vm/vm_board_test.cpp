@@ -47,8 +47,8 @@ TEST_CASE("an OpenFFBoard is taken from the kernel's driver, pushed with the for
     FakeBoard board;
     UsbipPort port(board, "F7");
     REQUIRE(comes([&] { return port.kernel_driver(2) == "usbhid" && !input_file(port).empty(); }));
-    const auto listed = connected_devices().devices;
-    CHECK(std::ranges::count(listed, "openffboard:F7", &ConnectedDevice::name) == 1);
+    const auto listed = listed_devices();
+    CHECK(std::ranges::count(listed, "openffboard:F7", &ListedDevice::name) == 1);
     std::unique_ptr<HapticDevice> device = open_by_name("openffboard:F7" + settings);
     REQUIRE(becomes(*device, DeviceStatus::ok));
     CHECK(port.kernel_driver(2) == "usbfs");
@@ -91,8 +91,8 @@ TEST_CASE("the kernel's driver of the class PID and ours for wheels agree on the
     UsbipPort port(board, "F7");
     REQUIRE(comes([&] { return !input_file(port).empty(); }));
     const std::string name = "evdev:" + input_file(port);
-    const auto listed = connected_devices().devices;
-    CHECK(std::ranges::count(listed, name, &ConnectedDevice::name) == 1);
+    const auto listed = listed_devices();
+    CHECK(std::ranges::count(listed, name, &ListedDevice::name) == 1);
     std::unique_ptr<HapticDevice> device = open_by_name(name + settings);
     REQUIRE(becomes(*device, DeviceStatus::ok));
     const BoardExchange done = exchange(*device, board, strongest_n, exchange_seconds());

@@ -69,11 +69,11 @@ TEST_CASE("a wheel of the kernel's is listed, nudged, pushed the right way round
 {
     std::optional<UinputWheel> wheel(std::in_place);
     const std::string name = "evdev:" + wheel->path();
-    const auto listed = connected_devices().devices;
-    const auto found = std::ranges::find(listed, name, &ConnectedDevice::name);
+    const auto listed = listed_devices();
+    const auto found = std::ranges::find(listed, name, &ListedDevice::name);
     REQUIRE(found != listed.end());
     CHECK(found->what == "a wheel of uinput");
-    CHECK(found->refused == "");
+    CHECK(found->refused.empty());
     std::unique_ptr<HapticDevice> device = open_by_name(name + ",travel_m=0.4,force_max_n=20");
     REQUIRE(becomes(*device, DeviceStatus::ok));
     // To the right; the motor is wired the other way round, so a negative level does that.

@@ -5,6 +5,8 @@
 #include "tests/tools/commands/run_command.h"
 #include "tools/output/json.h"
 
+#include <algorithm>
+#include <map>
 #include <string>
 #include <tuple>
 
@@ -18,7 +20,19 @@ TEST_CASE("devices: lists what is supported, by the names that open it")
     const Ran ran = run_command("devices --json");
     REQUIRE(ran.code == 0);
     const Json all = Json::parse(ran.out);
-    CHECK(all["connected"].is_array());
+    // No board is in the machine that tests, and the simulated ones are in all.
+    std::map<std::string, Json> listed;
+    for (const Json& one : all["devices"]) listed[one["name"]] = one;
+    REQUIRE(listed.count("falcon") == 1);
+    CHECK(listed["falcon"]["state"] == "absent");
+    CHECK(listed["falcon"]["transport"] == "usb");
+    CHECK(listed["falcon"]["cure"] == "Plug it in and switch it on");
+    const Json wheel = listed["simulated:wheel"]; // 15 N on a rim, an effect every 2 ms
+    CHECK(wheel["state"] == "ready");
+    CHECK(wheel["reason"].is_null());
+    CHECK(wheel["axes"] == Json::parse(R"({"sensed": ["x"], "pushed": ["x"]})"));
+    CHECK(wheel["rate_hz"] == 500);
+    CHECK(wheel["force_max_n"] == 15);
     bool has_falcon = false;
     for (const Json& one : all["supported"]) has_falcon |= one["name"] == "falcon[:SERIAL]";
     CHECK(has_falcon);
@@ -33,8 +47,7 @@ TEST_CASE("devices: one that moves is opened; its axes, its range and its readin
     REQUIRE(ran.code == 0);
     const Json said = Json::parse(ran.out);
     CHECK(said["opened"] == true);
-    CHECK(said["senses"] == "x");
-    CHECK(said["pushes"] == "x");
+    CHECK(said["axes"] == Json::parse(R"({"sensed": ["x"], "pushed": ["x"]})"));
     CHECK(said["reads"] == 2000); // two seconds at 1 kHz
     CHECK(said["poses"] == 2000);
     CHECK(said["range_m"][0] > 1e-4);
@@ -57,6 +70,13 @@ TEST_CASE(
     const std::string before = "HAPTEL_INVERSE3_SERVICE=" + place;
     CHECK(contains(run_command("devices", before).out,
                    "  inverse3:049D              Haply Inverse3, service at " + place + "\n"));
+    for (const Json& one : Json::parse(run_command("devices --json", before).out)["devices"])
+        if (one["kind"] == "inverse3") {
+            CHECK(one["name"] == "inverse3:049D");
+            CHECK(one["transport"] == "service");
+            CHECK(one["state"] == "ready");
+            CHECK(one["force_max_n"] == 10); // its maker's
+        }
     const Ran still = run_command("devices --open inverse3:049D --seconds 1", before);
     CHECK(contains(still.out, "inverse3:049D: senses xyz, pushes xyz, at most 10 N"));
     CHECK(contains(still.err, "move it while this looks"));
@@ -75,6 +95,8 @@ TEST_CASE(
         const std::string error = run_command("devices --open inverse3", before).err;
         CHECK(contains(error, found));
         CHECK(contains(error, to_do));
+        const Json faulty = Json::parse(run_command("devices --json", before).out)["devices"];
+        CHECK(std::ranges::count(faulty, "faulty", [](const Json& one) { return one["state"]; }) == 1);
         const std::string listed = run_command("devices", before).out;
         CHECK(contains(listed, "  not looked for: Haply Inverse3: "));
         CHECK(contains(listed, found));
