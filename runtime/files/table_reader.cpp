@@ -85,13 +85,17 @@ void FileMessages::write(toml::source_position at, std::string_view severity, co
         ++left_out_;
         return;
     }
-    at.line = std::max<toml::source_index>(at.line, 1);
-    at.column = std::max<toml::source_index>(at.column, 1);
     messages_.push_back(
-        {at, file_.string() + ":" + std::to_string(at.line) + ":" + std::to_string(at.column) + ": " +
-                 std::string(severity) + ": " +
+        {at, place(at) + ": " + std::string(severity) + ": " +
                  (message.size() > message_bytes_max ? message.substr(0, message_bytes_max) + " ..." : message) +
                  "\n"});
+}
+
+std::string FileMessages::place(toml::source_position at) const
+{
+    if (file_.empty()) return at.line == 0 ? "scene" : "object " + std::to_string(at.line);
+    return file_.string() + ":" + std::to_string(std::max<toml::source_index>(at.line, 1)) + ":" +
+           std::to_string(std::max<toml::source_index>(at.column, 1));
 }
 
 std::string FileMessages::text() const
@@ -101,7 +105,7 @@ std::string FileMessages::text() const
     std::string all;
     for (const Message& message : sorted) all += message.text;
     if (left_out_ > 0)
-        all += file_.string() + ":1:1: note: " + std::to_string(left_out_) +
+        all += place({}) + ": note: " + std::to_string(left_out_) +
                " more errors, warnings and notes are not shown: mend the first ones first\n";
     return all + added_;
 }

@@ -22,7 +22,8 @@
 namespace haptel::runtime {
 
 // Messages about one file: "FILE:LINE:COLUMN: error: ...", one per line, in the order of the file. Of a file that is
-// wrong all over the first ones are kept, none longer than a screen, and the others are counted.
+// wrong all over the first ones are kept, none longer than a screen, and the others are counted. Without a file they
+// are about a scene that a program made, whose lines are its objects: "object 2: error: ...", "scene: error: ...".
 class FileMessages {
 public:
     static constexpr std::size_t messages_max = 200, message_bytes_max = 2000;
@@ -45,6 +46,7 @@ private:
         toml::source_position at;
         std::string text;
     };
+    std::string place(toml::source_position at) const;
     void write(toml::source_position at, std::string_view severity, const std::string& message);
 
     std::filesystem::path file_;
