@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include <glm/gtc/matrix_transform.hpp>
-
 namespace haptel::runtime {
 
 namespace {
@@ -120,13 +118,7 @@ Placement read_placement(TableReader& table)
     placement_fields(placement, table.fields());
     glm::dvec3 turn_deg(0);
     table.three_numbers("rotation_deg", turn_deg, Quantity::angle_deg, {-3600, 3600});
-    glm::dmat4 rotation(1);
-    for (const int axis : {2, 1, 0}) { // about x first, then y, then z: the last factor turns first
-        glm::dvec3 direction(0);
-        direction[axis] = 1;
-        if (turn_deg[axis] != 0) rotation = glm::rotate(rotation, glm::radians(turn_deg[axis]), direction);
-    }
-    placement.rotation = glm::dmat3(rotation);
+    placement.rotation = rotation_about_axes(turn_deg);
     return placement;
 }
 

@@ -1,6 +1,7 @@
 #include "runtime/geometry/placement.h"
 
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 
 namespace haptel::runtime {
 
@@ -16,6 +17,17 @@ bool is_rotation(const glm::dmat3& m)
 }
 
 } // namespace
+
+glm::dmat3 rotation_about_axes(const glm::dvec3& turn_deg)
+{
+    glm::dmat4 rotation(1);
+    for (const int axis : {2, 1, 0}) { // the last factor turns first
+        glm::dvec3 direction(0);
+        direction[axis] = 1;
+        if (turn_deg[axis] != 0) rotation = glm::rotate(rotation, glm::radians(turn_deg[axis]), direction);
+    }
+    return glm::dmat3(rotation);
+}
 
 std::string placement_fault(const Placement& placement)
 {

@@ -23,6 +23,9 @@ struct Placement {
     glm::dvec3 direction_to_object(const glm::dvec3& v) const { return v * rotation; }
 };
 
+// Of turns about x first, then y, then z, in degrees.
+glm::dmat3 rotation_about_axes(const glm::dvec3& turn_deg);
+
 inline bool finite(const Placement& placement)
 {
     return finite(placement.rotation[0]) && finite(placement.rotation[1]) && finite(placement.rotation[2]) &&

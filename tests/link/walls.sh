@@ -14,7 +14,10 @@ houses=(
     'jit: codegen engine picture texture live check | input lang stdlib'
     'runtime: process geometry hand surface surface/build contact texture scene force files render servo | input lang/abi lang/text/near_name.h'
     'device: . | !runtime/files runtime lang/abi lang/text/near_name.h'
+    'api: . | include/haptel runtime device/device_factory.h lang/abi lang/parameter_value.h lang/text/near_name.h'
+    'api/compiler: . | include/haptel api jit'
     'tools: output arguments plot sound report commands . | input lang stdlib jit runtime device bench'
+    'tests/api: . | tests/support'
     'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h runtime/servo/allocation_count.h lang stdlib'
     'tests/runtime: . | tests/support runtime lang/abi'
 )
@@ -24,6 +27,7 @@ declare -A home=(
     [llvm/]='jit tests/jit' [llvm-c/]='jit' [libusb]='device' [toml++/]='runtime/files'
     [assimp/]='runtime/files' [boost/]='lang/math device/inverse3 tests' [stb/]='jit/picture tests' [tiff]='jit/picture tests'
     [OpenEXR/]='jit/picture' [Imath/]='jit/picture' [CLI/]='tools' [cairo]='tools/plot'
+    [haptel/]='include/haptel api examples/library tests/api'
     [nlohmann/]='tools device/inverse3 tests bench' [sndfile]='device tests' [alsa/]='device'
 )
 

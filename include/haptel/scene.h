@@ -1,0 +1,104 @@
+// What there is to touch. A scene that a program builds is held to the same rules, and is told of faults in the same
+// words, as one from a scene file (docs/scenes.md).
+#pragma once
+
+#include <haptel/mesh.h>
+#include <haptel/texture.h>
+
+#include <memory>
+#include <string>
+
+namespace haptel {
+
+struct Material {
+    double stiffness_n_per_m = 800; // > 0, per metre of the hand's way
+    double damping_n_s_per_m = 1;   // >= 0, along the normal
+    double static_friction = 0.3;   // >= dynamic_friction: largest sideways over normal force that sticks
+    double dynamic_friction = 0.2;  // >= 0: the same while sliding
+};
+
+struct Placement {
+    Vec3 position_m = {};
+    Vec3 rotation_deg = {}; // about x, then y, then z
+};
+
+enum class ProbeKind { point, sphere, stylus, gripper };
+
+struct Probe {
+    ProbeKind kind = ProbeKind::point;
+    double length_m = 0.15; // of a stylus, from tip to tail
+    double radius_m = 0;    // of a sphere
+};
+
+enum class ForceModel { displaced, paper, paper_unit, ho99, lateral }; // docs/forces.md
+
+struct SceneSettings {
+    double rate_hz = 1000;
+    double force_limit_n = 7;
+    double v_max_m_per_s = 0.3; // hand speed that textures are band-limited for
+    double force_rise_s = 0.1;  // after start and interruptions
+    ForceModel force_model = ForceModel::displaced;
+    Probe probe = {};
+};
+
+class SceneBuilder;
+
+// One object of a scene, before and after it is built. Cheap to copy; all copies are the same object.
+class HAPTEL_API Object {
+public:
+    // Before the scene is built.
+    Object& texture(std::string reference, Parameters parameters = {});
+    Object& place(const Placement& placement);
+    Object& apart(); // with a seam where it meets others; otherwise objects that meet are felt as one
+
+    // Of the texture, while it is felt: the next tick fades to the new value. Nothing is compiled. Returns why not, or
+    // nothing. Any thread but a servo's.
+    std::string set(const std::string& parameter, const std::string& value);
+
+    struct State;
+    explicit Object(std::shared_ptr<State> state) : state_(std::move(state)) {}
+
+private:
+    friend class SceneBuilder;
+    std::shared_ptr<State> state_;
+};
+
+// Immutable, and shared by all that feel it. Cheap to copy.
+class HAPTEL_API Scene {
+public:
+    explicit operator bool() const; // false: messages() says why
+    // Errors, warnings and notes, a line each: "object 1: warning: ...", or with file, line and column.
+    const std::string& messages() const;
+
+    struct State;
+    explicit Scene(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+    const State& state() const { return *state_; }
+    std::shared_ptr<const State> share() const { return state_; }
+
+private:
+    std::shared_ptr<const State> state_; // never null
+};
+
+class HAPTEL_API SceneBuilder {
+public:
+    explicit SceneBuilder(TextureSource textures = {});
+    ~SceneBuilder();
+    SceneBuilder(SceneBuilder&&) noexcept;
+    SceneBuilder& operator=(SceneBuilder&&) noexcept;
+
+    Object add(Mesh mesh, const Material& material = {});
+    // A mesh file; scaled until its largest side has that size, 0: as it is.
+    Object add_file(std::string file, double size_m = 0, const Material& material = {});
+
+    // Builds all surfaces and textures. Once.
+    Scene finish(const SceneSettings& settings = {});
+
+private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+// From a scene file. Its devices are left to the program.
+HAPTEL_API Scene load_scene(const std::string& file, TextureSource textures = {});
+
+} // namespace haptel

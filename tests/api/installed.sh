@@ -1,0 +1,48 @@
+#!/usr/bin/env bash
+# installed.sh BUILD SOURCE FOLDER COMPILER: installs BUILD into FOLDER, and uses it from there as a program of somebody
+# else does: each public header alone, with all warnings and no header of a library; the examples by find_package and by
+# pkg-config; without a compiler of textures no LLVM is loaded.
+set -euo pipefail
+
+build=$1 source=$2 folder=$3 compiler=$4
+fail() { printf 'installed.sh: %s\n' "$*" >&2; exit 1; }
+
+rm -rf "$folder"
+for part in runtime compiler development; do
+    cmake --install "$build" --prefix "$folder/root" --component "$part" >"$folder.log" || { cat "$folder.log"; exit 1; }
+done
+root=$folder/root
+
+for header in "$root"/include/haptel/*.h; do
+    name=haptel/${header##*/}
+    printf '#include <%s>\n#include <%s>\nint main() {}\n' "$name" "$name" >"$folder/alone.cpp"
+    "$compiler" -std=c++20 -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Werror -fsyntax-only -I"$root/include" \
+        "$folder/alone.cpp" || fail "$name cannot be included by itself"
+    "$compiler" -std=c++20 -I"$root/include" -M "$folder/alone.cpp" | tr ' \\' '\n\n' |
+        grep -E 'glm|llvm|toml|fmt|libusb|assimp|catch' && fail "$name includes a header of a library"
+done
+printf '#include <haptel/abi.h>\nint main(void) { return 0; }\n' >"$folder/abi.c"
+cc -std=c99 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I"$root/include" "$folder/abi.c"
+
+cmake -S "$source/examples/library" -B "$folder/examples" -DCMAKE_PREFIX_PATH="$root" -DCMAKE_CXX_COMPILER="$compiler" \
+    >"$folder.log" && cmake --build "$folder/examples" >>"$folder.log" || { cat "$folder.log"; exit 1; }
+"$folder/examples/own_loop" || fail "the example with its own loop failed"
+"$folder/examples/ball" "$source/examples/textures/stone.haptel:stone" || fail "the example of a ball failed"
+LD_LIBRARY_PATH=$root/lib ldd "$folder/examples/own_loop" | grep -i llvm && fail "LLVM is loaded without a compiler"
+
+export PKG_CONFIG_PATH
+PKG_CONFIG_PATH=$(find "$root" -type d -name pkgconfig)
+libraries=$(dirname "$PKG_CONFIG_PATH")
+# shellcheck disable=SC2046
+"$compiler" -std=c++20 "$source/examples/library/own_loop.cpp" -o "$folder/by_pkg_config" \
+    $(pkg-config --define-variable=prefix="$root" --cflags --libs haptel)
+LD_LIBRARY_PATH=$libraries "$folder/by_pkg_config" >/dev/null || fail "the program by pkg-config failed"
+
+# What the libraries show is what the headers declare.
+for library in haptel haptel_compiler; do
+    nm -DC --defined-only "$libraries/lib$library.so" |
+        grep -E ' (T|D|B) ' | grep -vE ' (haptel::[A-Za-z_]+(::|\()|(vtable|typeinfo)|_edata|_end|__bss_start)' && fail "lib$library shows more"
+    nm -DC --defined-only "$libraries/lib$library.so" | grep -E ' T .*haptel::(runtime|jit|lang|ir|device|input)::' &&
+        fail "lib$library shows what is inside"
+done
+echo "installed, and used from there"
