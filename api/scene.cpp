@@ -70,7 +70,7 @@ void check(const runtime::SceneText& text, FileMessages& messages)
         check_material(object.object.material, broken_here);
         placement_fields(object.object.placement, runtime::RangeCheck(broken_here));
         if (const std::string fault = placement_fault(object.object.placement); !fault.empty())
-            messages.error(object.mesh_at, "its place " + fault);
+            messages.error(object.mesh_at, fault);
     }
     if (text.objects.empty()) messages.error("a scene needs something to touch: add() an object");
 }
@@ -126,6 +126,13 @@ Scene::operator bool() const
 const std::string& Scene::messages() const
 {
     return state_->messages;
+}
+
+std::vector<Object> Scene::objects() const
+{
+    std::vector<Object> all;
+    for (const auto& object : state_->objects) all.emplace_back(object);
+    return all;
 }
 
 struct SceneBuilder::State {
@@ -193,7 +200,8 @@ Scene SceneBuilder::finish(const SceneSettings& settings)
         for (std::size_t i = 0; i < state_->objects.size(); ++i)
             connect(*state_->objects[i], state->scene->objects[i], state_->textures);
     state->messages = messages.text();
-    state->objects = std::move(state_->objects);
+    if (state->scene) state->objects = std::move(state_->objects);
+    state_->objects.clear();
     return Scene(std::move(state));
 }
 

@@ -3,7 +3,11 @@
 
 #include <haptel/texture.h>
 
+#include <haptel/mesh.h>
+
 #include <functional>
+#include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -19,5 +23,36 @@ struct CompilerOptions {
 // Compiles what objects ask for as "FILE.haptel:NAME". Relative paths start from the working directory, and those of a
 // scene file from its folder.
 HAPTEL_API TextureSource compiler(CompilerOptions options = {});
+
+// One texture with its values, to be looked at rather than felt: for figures, tests and other programs' forces. Cheap
+// to copy.
+class HAPTEL_API Texture {
+public:
+    explicit operator bool() const; // false: messages() says why
+    const std::string& messages() const;
+    // Of one that was compiled, as long as it lives.
+    const haptel_texture& table() const;
+    const void* block() const;
+    const haptel_facts& facts() const; // proven over the box
+    // Where the surface is flat and faces +z. As many heights as points; as many gradients, or none. Any thread.
+    void evaluate(std::span<const Vec3> points_m, std::span<double> heights_m, std::span<Vec3> gradients = {}) const;
+
+    struct State;
+    explicit Texture(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+
+private:
+    std::shared_ptr<const State> state_; // never null
+};
+
+// Of an object that a texture is on.
+struct Box {
+    Vec3 minimum_m = {-0.05, -0.05, -0.05}, maximum_m = {0.05, 0.05, 0.05};
+};
+
+// Of a text; without a name its only texture. Everything is computed in 64 bits, as for a servo.
+HAPTEL_API Texture compile(std::string_view text, const std::string& name = {}, const Parameters& parameters = {},
+                           const Box& box = {});
+HAPTEL_API Texture compile_file(const std::string& file, const std::string& name = {},
+                                const Parameters& parameters = {}, const Box& box = {});
 
 } // namespace haptel

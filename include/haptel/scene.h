@@ -7,6 +7,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace haptel {
 
@@ -69,6 +70,7 @@ public:
     explicit operator bool() const; // false: messages() says why
     // Errors, warnings and notes, a line each: "object 1: warning: ...", or with file, line and column.
     const std::string& messages() const;
+    std::vector<Object> objects() const; // in the order in which they were added; none of a refused scene
 
     struct State;
     explicit Scene(std::shared_ptr<const State> state) : state_(std::move(state)) {}

@@ -9,7 +9,9 @@
 #include <fstream>
 #include <haptel/compiler.h>
 #include <mutex>
+#include <span>
 #include <thread>
+#include <vector>
 
 using namespace haptel;
 using namespace haptel::test;
@@ -159,4 +161,37 @@ TEST_CASE("texture: precompiled ones take their values as written, by name, unit
     SceneBuilder of_old{precompiled({&old})};
     of_old.add(plane(0.2)).texture("precompiled:flat");
     CHECK(contains(of_old.finish().messages(), "another version of haptel/abi.h"));
+}
+
+TEST_CASE("texture: one that is only looked at has the heights, gradients and bounds of its formula")
+{
+    const Texture rings = compile(waves, "", {{"depth", "0.2mm"}});
+    INFO(rings.messages());
+    REQUIRE(rings);
+    std::vector<Vec3> points, gradients(1000);
+    std::vector<double> heights(1000);
+    for (int i = 0; i < 1000; ++i) points.push_back({1e-5 * i, 1e-3 * i, 0});
+    rings.evaluate(points, heights, gradients);
+    constexpr double two_pi = 6.283185307179586;
+    double worst_m = 0, worst_slope = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const double angle = two_pi * points[i].x / 4e-3;
+        worst_m = std::fmax(worst_m, std::fabs(heights[i] - 2e-4 * std::sin(angle)));
+        worst_slope = std::fmax(worst_slope, std::fabs(gradients[i].x - 2e-4 * two_pi / 4e-3 * std::cos(angle)));
+        CHECK(gradients[i].y == 0);
+    }
+    CHECK(worst_m < 1e-17);
+    CHECK(worst_slope < 1e-14);
+    CHECK(rings.facts().height_max_m >= 2e-4);
+    CHECK(rings.facts().height_max_m < 2.001e-4);
+    CHECK(std::string(rings.table().name) == "waves");
+
+    const Texture broken = compile("texture t() { return dept; }");
+    CHECK(!broken);
+    CHECK(contains(broken.messages(), "error"));
+    CHECK(contains(compile_file("nowhere.haptel").messages(), "nowhere.haptel:1:1: error: "));
+    CHECK(contains(compile(waves, "wave").messages(), "did you mean 'waves'?"));
+    double untouched = 1;
+    broken.evaluate(std::span(points).first(1), std::span(&untouched, 1));
+    CHECK(untouched == 1);
 }

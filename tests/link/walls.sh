@@ -15,7 +15,7 @@ houses=(
     'runtime: process geometry hand surface surface/build contact texture scene force files render servo | input lang/abi lang/text/near_name.h'
     'device: . | !runtime/files runtime lang/abi lang/text/near_name.h'
     'api: . | include/haptel runtime device/device_factory.h lang/abi lang/parameter_value.h lang/text/near_name.h'
-    'api/compiler: . | include/haptel api jit'
+    'api/compiler: . | include/haptel api jit lang/abi'
     'tools: output arguments plot sound report commands . | input lang stdlib jit runtime device bench'
     'tests/api: . | tests/support'
     'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h runtime/servo/allocation_count.h lang stdlib'
