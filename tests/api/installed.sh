@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # installed.sh BUILD SOURCE FOLDER COMPILER: installs BUILD into FOLDER, and uses it from there as a program of somebody
 # else does: each public header alone, with all warnings and no header of a library; the examples by find_package and by
-# pkg-config; without a compiler of textures no LLVM is loaded.
+# pkg-config; in C and in Python; without a compiler of textures no LLVM is loaded.
 set -euo pipefail
 
 build=$1 source=$2 folder=$3 compiler=$4
@@ -23,10 +23,12 @@ for header in "$root"/include/haptel/*.h; do
 done
 printf '#include <haptel/abi.h>\nint main(void) { return 0; }\n' >"$folder/abi.c"
 cc -std=c99 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I"$root/include" "$folder/abi.c"
+cc -std=c99 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I"$root/include" "$source/examples/library/plain.c"
 
 cmake -S "$source/examples/library" -B "$folder/examples" -DCMAKE_PREFIX_PATH="$root" -DCMAKE_CXX_COMPILER="$compiler" \
     >"$folder.log" && cmake --build "$folder/examples" >>"$folder.log" || { cat "$folder.log"; exit 1; }
 "$folder/examples/own_loop" || fail "the example with its own loop failed"
+"$folder/examples/plain" "$source/examples/textures/stone.haptel:stone" || fail "the example in C failed"
 "$folder/examples/ball" "$source/examples/textures/stone.haptel:stone" || fail "the example of a ball failed"
 LD_LIBRARY_PATH=$root/lib ldd "$folder/examples/own_loop" | grep -i llvm && fail "LLVM is loaded without a compiler"
 
@@ -38,10 +40,13 @@ libraries=$(dirname "$PKG_CONFIG_PATH")
     $(pkg-config --define-variable=prefix="$root" --cflags --libs haptel)
 LD_LIBRARY_PATH=$libraries "$folder/by_pkg_config" >/dev/null || fail "the program by pkg-config failed"
 
+HAPTEL_LIBRARIES=$libraries PYTHONPATH=$(dirname "$(find "$root" -name haptel.py)") PYTHONDONTWRITEBYTECODE=1 \
+    python3 "$source/tests/api/python_test.py" || fail "the Python module failed"
+
 # What the libraries show is what the headers declare.
 for library in haptel haptel_compiler; do
     nm -DC --defined-only "$libraries/lib$library.so" |
-        grep -E ' (T|D|B) ' | grep -vE ' (haptel::[A-Za-z_]+(::|\()|(vtable|typeinfo)|_edata|_end|__bss_start)' && fail "lib$library shows more"
+        grep -E ' (T|D|B) ' | grep -vE ' (haptel::[A-Za-z_]+(::|\()|haptel_[a-z_]+$|(vtable|typeinfo)|_edata|_end|__bss_start)' && fail "lib$library shows more"
     nm -DC --defined-only "$libraries/lib$library.so" | grep -E ' T .*haptel::(runtime|jit|lang|ir|device|input)::' &&
         fail "lib$library shows what is inside"
 done

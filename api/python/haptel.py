@@ -1,0 +1,256 @@
+"""Haptel from Python, over its C interface (haptel/c.h): textures as arrays of heights and gradients, and scenes.
+
+    import haptel
+    ripple = haptel.Texture("texture ripple() { return 50um * sinturn(p.x / 4mm); }")
+    heights, gradients = ripple.evaluate([(0.001 * i, 0, 0) for i in range(100)])
+
+Points are triples in metres: a list of them, or any array of doubles of shape (n, 3), which then also come back
+(numpy's, if it is there). What is refused raises haptel.Error with the message that the command line gives.
+"""
+
+import array
+import ctypes
+import os
+
+_double, _size, _text = ctypes.c_double, ctypes.c_size_t, ctypes.c_char_p
+
+
+class Error(Exception):
+    pass
+
+
+class _Value(ctypes.Structure):
+    _fields_ = [("name", _text), ("value", _text)]
+
+
+class Material(ctypes.Structure):
+    _fields_ = [("stiffness_n_per_m", _double), ("damping_n_s_per_m", _double), ("static_friction", _double),
+                ("dynamic_friction", _double)]
+
+    def __init__(self, stiffness_n_per_m=800, damping_n_s_per_m=1, static_friction=0.3, dynamic_friction=0.2):
+        super().__init__(stiffness_n_per_m, damping_n_s_per_m, static_friction, dynamic_friction)
+
+
+class Settings(ctypes.Structure):
+    _fields_ = [("rate_hz", _double), ("force_limit_n", _double), ("force_rise_s", _double)]
+
+    def __init__(self, rate_hz=1000, force_limit_n=7, force_rise_s=0.1):
+        super().__init__(rate_hz, force_limit_n, force_rise_s)
+
+
+class Force(ctypes.Structure):
+    _fields_ = [("force_n", _double * 3), ("torque_n_m", _double * 3), ("depth_m", _double), ("height_m", _double),
+                ("contacts", ctypes.c_uint32), ("faults", ctypes.c_uint32)]
+
+
+class Report(ctypes.Structure):
+    _fields_ = [("faulted", ctypes.c_int32), ("seconds", _double)] + [
+        (name, ctypes.c_uint64) for name in ("ticks", "contact_ticks", "missed_deadlines", "faults",
+                                             "textures_changed")] + [
+        (name, _double) for name in ("force_rms_n", "force_max_n", "energy_j", "tick_ns_median", "tick_ns_p99")]
+
+
+class Facts(ctypes.Structure):
+    _fields_ = [(name, _double) for name in ("height_min_m", "height_max_m", "slope_max", "curvature_max_per_m")] + [
+        ("continuity", ctypes.c_uint32), ("operations_max", ctypes.c_uint32)]
+
+
+def _library(name):
+    # HAPTEL_LIBRARIES: the folder of the two, where the system does not find them by itself.
+    folder = os.environ.get("HAPTEL_LIBRARIES")
+    return ctypes.CDLL(os.path.join(folder, name) if folder else name, mode=ctypes.RTLD_GLOBAL)
+
+
+_runtime, _compiler = _library("libhaptel.so.0.1"), _library("libhaptel_compiler.so.0.1")
+
+
+def _declare(library, result, name, *arguments):
+    function = getattr(library, "haptel_" + name)
+    function.restype, function.argtypes = result, arguments
+    return function
+
+
+_handle, _number, _of_doubles = ctypes.c_void_p, ctypes.c_uint32, ctypes.POINTER(_double)
+_values = (ctypes.POINTER(_Value), _size)
+_compile = _declare(_compiler, _handle, "compile", _text, _text, *_values)
+_compiled_ok = _declare(_compiler, ctypes.c_int32, "compiled_ok", _handle)
+_compiled_messages = _declare(_compiler, _text, "compiled_messages", _handle)
+_compiled_facts = _declare(_compiler, Facts, "compiled_facts", _handle)
+_compiled_free = _declare(_compiler, None, "compiled_free", _handle)
+_evaluate = _declare(_compiler, ctypes.c_int32, "evaluate", _handle, ctypes.c_void_p, _size, ctypes.c_void_p,
+                     ctypes.c_void_p)
+_compiler_new = _declare(_compiler, _handle, "compiler", ctypes.c_int32)
+_source_free = _declare(_runtime, None, "source_free", _handle)
+_builder_new = _declare(_runtime, _handle, "builder_new", _handle)
+_builder_free = _declare(_runtime, None, "builder_free", _handle)
+_of_material = ctypes.POINTER(Material)
+_add_shape = _declare(_runtime, _number, "add_shape", _handle, _text, _double, _of_material)
+_add_file = _declare(_runtime, _number, "add_file", _handle, _text, _double, _of_material)
+_add_mesh = _declare(_runtime, _number, "add_mesh", _handle, ctypes.c_void_p, _size, ctypes.c_void_p, _size,
+                     _of_material)
+_object_texture = _declare(_runtime, ctypes.c_int32, "object_texture", _handle, _number, _text, *_values)
+_object_place = _declare(_runtime, ctypes.c_int32, "object_place", _handle, _number, _double * 3, _double * 3)
+_build = _declare(_runtime, _handle, "build", _handle, ctypes.POINTER(Settings))
+_load_scene = _declare(_runtime, _handle, "load_scene", _text, _handle)
+_scene_ok = _declare(_runtime, ctypes.c_int32, "scene_ok", _handle)
+_scene_messages = _declare(_runtime, _text, "scene_messages", _handle)
+_scene_set = _declare(_runtime, _text, "scene_set", _handle, _number, _text, _text)
+_scene_free = _declare(_runtime, None, "scene_free", _handle)
+_servo_new = _declare(_runtime, _handle, "servo_new", _handle, _text, _double, ctypes.c_int32)
+_servo_ok = _declare(_runtime, ctypes.c_int32, "servo_ok", _handle)
+_servo_messages = _declare(_runtime, _text, "servo_messages", _handle)
+_servo_start = _declare(_runtime, None, "servo_start", _handle)
+_servo_request_stop = _declare(_runtime, None, "servo_request_stop", _handle)
+_servo_wait = _declare(_runtime, Report, "servo_wait", _handle)
+_servo_free = _declare(_runtime, None, "servo_free", _handle)
+_renderer_new = _declare(_runtime, _handle, "renderer_new", _handle)
+_renderer_messages = _declare(_runtime, _text, "renderer_messages", _handle)
+_tick = _declare(_runtime, Force, "tick", _handle, _double * 3, _double * 3)
+_between_ticks = _declare(_runtime, None, "between_ticks", _handle)
+_renderer_free = _declare(_runtime, None, "renderer_free", _handle)
+version = _declare(_runtime, _text, "version")().decode()
+
+
+def _bytes(text):
+    return os.fspath(text).encode()
+
+
+def _named(values):
+    pairs = [(name.encode(), str(value).encode()) for name, value in (values or {}).items()]
+    return (_Value * len(pairs))(*pairs), len(pairs)
+
+
+def _three(values):
+    return (_double * 3)(*values)
+
+
+class _Owner:
+    _handle = None
+    _free = None
+
+    def __del__(self):
+        if self._handle:
+            type(self)._free(self._handle)
+
+
+class Texture(_Owner):
+    """One texture of a text, with values: Texture(text, "ripple", depth="80um")."""
+
+    _free = _compiled_free
+
+    def __init__(self, text, name="", **values):
+        self._handle = _compile(text.encode(), name.encode(), *_named(values))
+        if not _compiled_ok(self._handle):
+            raise Error(_compiled_messages(self._handle).decode())
+
+    @property
+    def facts(self):
+        """What is proven over a box of 10 cm: heights in metres, slope, curvature in 1/m."""
+        return _compiled_facts(self._handle)
+
+    def evaluate(self, points):
+        """Heights in metres, and gradients as triples, at points in metres."""
+        if hasattr(points, "__array_interface__"):
+            import numpy
+            at = numpy.ascontiguousarray(points, dtype=float).reshape(-1, 3)
+            heights, gradients = numpy.empty(len(at)), numpy.empty((len(at), 3))
+            _evaluate(self._handle, at.ctypes.data, len(at), heights.ctypes.data, gradients.ctypes.data)
+            return heights, gradients
+        at = array.array("d", (number for point in points for number in point))
+        count = len(at) // 3
+        if len(at) != 3 * len(points):
+            raise Error("expected points of three numbers each")
+        heights, gradients = array.array("d", bytes(8 * count)), array.array("d", bytes(24 * count))
+        _evaluate(self._handle, at.buffer_info()[0], count, heights.buffer_info()[0], gradients.buffer_info()[0])
+        return list(heights), [tuple(gradients[3 * i:3 * i + 3]) for i in range(count)]
+
+
+class Scene(_Owner):
+    """What SceneBuilder.finish() and load_scene() give. `messages` holds warnings and notes."""
+
+    _free = _scene_free
+
+    def __init__(self, handle):
+        self._handle = handle
+        self.messages = _scene_messages(handle).decode()
+        if not _scene_ok(handle):
+            raise Error(self.messages)
+
+    def set(self, number, **values):
+        """Of the texture of the object of that number, from 1: felt from the next tick on."""
+        for name, value in values.items():
+            refused = _scene_set(self._handle, number, name.encode(), str(value).encode()).decode()
+            if refused:
+                raise Error(refused)
+
+    def run(self, device="simulated:premium", seconds=1, virtual_time=True):
+        """Feels it with a device for a while; returns a Report."""
+        servo = _servo_new(self._handle, device.encode(), seconds, virtual_time)
+        try:
+            if not _servo_ok(servo):
+                raise Error(_servo_messages(servo).decode())
+            _servo_start(servo)
+            return _servo_wait(servo)
+        finally:
+            _servo_free(servo)
+
+
+def load_scene(file, follow_files=False):
+    textures = _compiler_new(follow_files)
+    try:
+        return Scene(_load_scene(_bytes(file), textures))
+    finally:
+        _source_free(textures)
+
+
+class SceneBuilder(_Owner):
+    """Adds objects, each known by its number, from 1."""
+
+    _free = _builder_free
+
+    def __init__(self, follow_files=False):
+        textures = _compiler_new(follow_files)
+        self._handle = _builder_new(textures)
+        _source_free(textures)
+
+    def add(self, shape, size_m, material=None, texture="", values=None, position_m=None, rotation_deg=None):
+        """A shape ("plane", "box", "sphere", "icosphere", "torus"), or a mesh file, scaled to that size; 0: as it is."""
+        own = ctypes.byref(material or Material())
+        number = _add_shape(self._handle, shape.encode(), size_m, own) or _add_file(self._handle, _bytes(shape), size_m,
+                                                                                   own)
+        return self._dress(number, texture, values, position_m, rotation_deg)
+
+    def add_mesh(self, positions_m, triangles, material=None, texture="", values=None, position_m=None,
+                 rotation_deg=None):
+        """Positions as triples of metres, triangles as triples of their indices."""
+        at = array.array("d", (number for point in positions_m for number in point))
+        corners = array.array("I", (index for triangle in triangles for index in triangle))
+        number = _add_mesh(self._handle, at.buffer_info()[0], len(at) // 3, corners.buffer_info()[0],
+                           len(corners) // 3, ctypes.byref(material or Material()))
+        return self._dress(number, texture, values, position_m, rotation_deg)
+
+    def _dress(self, number, texture, values, position_m, rotation_deg):
+        if texture:
+            _object_texture(self._handle, number, _bytes(texture), *_named(values))
+        if position_m or rotation_deg:
+            _object_place(self._handle, number, _three(position_m or (0, 0, 0)), _three(rotation_deg or (0, 0, 0)))
+        return number
+
+    def finish(self, settings=None):
+        return Scene(_build(self._handle, ctypes.byref(settings or Settings())))
+
+
+class Renderer(_Owner):
+    """A loop of one's own: the force for a pose, once per period of the scene's rate."""
+
+    _free = _renderer_free
+
+    def __init__(self, scene):
+        self._handle = _renderer_new(scene._handle)
+        if refused := _renderer_messages(self._handle).decode():
+            raise Error(refused)
+
+    def tick(self, tip_m, tail_m=(0, 0, 0)):
+        force = _tick(self._handle, _three(tip_m), _three(tail_m))
+        _between_ticks(self._handle)
+        return force
