@@ -1,6 +1,7 @@
 #include "runtime/files/scene_file.h"
 
 #include "input/regular_file.h"
+#include "input/toml/toml_syntax.h"
 #include "runtime/files/device_reader.h"
 #include "runtime/files/effects_reader.h"
 #include "runtime/files/joining.h"
@@ -9,7 +10,6 @@
 #include "runtime/files/object_texture.h"
 #include "runtime/files/open_hands.h"
 #include "runtime/files/table_reader.h"
-#include "runtime/files/toml_syntax.h"
 #include "runtime/process/fork_server.h"
 #include "runtime/surface/shapes.h"
 #include "runtime/texture/shading.h"
@@ -269,17 +269,10 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
                                                               : "the scene " + why);
         return loaded;
     }
-    if (const std::optional<TooDeep> fault = too_deep(source.bytes)) {
-        messages.error(fault->at, fault->message);
-        return loaded;
-    }
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
     SceneText text;
-    try {
-        text = read_scene(toml::parse(source.bytes), folder, changes, messages);
-    } catch (const toml::parse_error& problem) {
-        messages.error(problem.source(), said_of_syntax(problem));
-    }
+    if (const std::optional<toml::table> tables = input::parse_toml(source.bytes, messages))
+        text = read_scene(*tables, folder, changes, messages);
     if (messages.any_error()) return loaded;
 
     using Geometry = std::tuple<std::string, std::string, double, double, bool>;

@@ -8,7 +8,7 @@ set -euo pipefail
 # HOUSE: ITS ROOMS FROM THE GROUND UP | WHAT OF OTHER HOUSES ALL OF THEM MAY USE. A room may include its own files and
 # those of rooms before it; '.' is the house's own folder. '!' refuses what a later word would allow.
 houses=(
-    'input: . |'
+    'input: . toml | lang/text/near_name.h'
     'lang: abi text math ir ir/run ir/derive ir/bounds syntax format program lower check check/dimension . |'
     'stdlib: . |'
     'jit: codegen engine picture texture live check | input lang stdlib'
@@ -16,12 +16,12 @@ houses=(
     'device: . | !runtime/files runtime lang/abi lang/text/near_name.h'
     'tools: output arguments plot sound report commands . | input lang stdlib jit runtime device bench'
     'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h runtime/servo/allocation_count.h lang stdlib'
-    'tests/runtime: . | tests/support runtime lang/abi'
+    'tests/runtime: . | tests/support input/toml runtime lang/abi'
 )
 
 # Which folders alone may include a library.
 declare -A home=(
-    [llvm/]='jit tests/jit' [llvm-c/]='jit' [libusb]='device' [toml++/]='runtime/files'
+    [llvm/]='jit tests/jit' [llvm-c/]='jit' [libusb]='device' [toml++/]='input/toml'
     [assimp/]='runtime/files' [boost/]='lang/math device/inverse3 tests' [stb/]='jit/picture tests' [tiff]='jit/picture tests'
     [OpenEXR/]='jit/picture' [Imath/]='jit/picture' [CLI/]='tools' [cairo]='tools/plot'
     [nlohmann/]='tools device/inverse3 tests bench' [sndfile]='device tests' [alsa/]='device'
