@@ -12,7 +12,7 @@ namespace haptel {
 
 namespace {
 
-using runtime::FileMessages;
+using input::FileMessages;
 
 const TextureResolver& resolver_of(const TextureSource& textures)
 {

@@ -19,7 +19,7 @@ namespace {
 
 // Devices are opened where the scene's first object lies, as those of a scene file.
 std::vector<runtime::LoadedHand> open_for(const std::shared_ptr<const runtime::Scene>& scene,
-                                          DeviceSource::Implementation& source, runtime::FileMessages& messages)
+                                          DeviceSource::Implementation& source, input::FileMessages& messages)
 {
     std::vector<runtime::DeviceText> texts(1);
     texts[0].request.name = source.name;
@@ -46,7 +46,7 @@ Servo::Servo(const Scene& scene, DeviceSource device, const ServoOptions& option
         state_->messages = "error: a servo needs a device: open_device() or own_device()\n";
         return;
     }
-    runtime::FileMessages messages{{}};
+    input::FileMessages messages{{}};
     std::vector<runtime::LoadedHand> hands = open_for(scene.state().scene, *source, messages);
     state_->messages = messages.text();
     if (messages.any_error() || hands.empty()) return;

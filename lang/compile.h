@@ -26,7 +26,8 @@ struct Imported {
     }
 };
 
-// `path` as written, `importer` the name of the file that asks.
+// `path` as written, "wood/oak.haptel", or "wood.oak" for a file of a library (lang/abi/library_name.h); `importer` the
+// name of the file that asks.
 using ImportLoader = std::function<Imported(std::string_view path, std::string_view importer)>;
 
 struct CompileOptions {

@@ -139,7 +139,7 @@ class LiveTexture::Client {
 public:
     Client(TextureRequest asked, LiveCallbacks called, LiveOptions options)
         : request(std::move(asked))
-        , reference(split_reference(request.reference))
+        , reference(split_reference(request.reference, request.folder))
         , callbacks(std::move(called))
         , cache(std::move(options.cache))
         , in_hand(cache->known(reference.file))

@@ -63,7 +63,7 @@ const std::shared_ptr<ProgramCache>& ProgramCache::shared()
 TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache)
 {
     return [cache = std::move(cache)](const TextureRequest& request) -> TextureResult {
-        const TextureReference reference = split_reference(request.reference);
+        const TextureReference reference = split_reference(request.reference, request.folder);
         const auto compiled = cache->load(reference.file);
         if (!compiled->program) return {std::nullopt, compiled->rendered()};
         TextureResult result = make_binding(program_of(compiled), reference.texture, request);

@@ -1,9 +1,10 @@
 #include "jit/texture/source_file.h"
 
 #include "input/regular_file.h"
+#include "lang/abi/library_name.h"
 #include "lang/text/diagnostic.h"
 #include "lang/text/near_name.h"
-#include "lang/text/number.h"
+#include "libraries/find.h"
 
 #include <algorithm>
 #include <filesystem>
@@ -41,13 +42,6 @@ std::string did_you_mean(const fs::path& path)
     return "it was looked for in " + there + ", which holds " + list + (names.size() > listed_max ? ", ..." : "");
 }
 
-bool is_name(std::string_view text)
-{
-    const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-    return !text.empty() && is_letter(text[0]) &&
-           std::ranges::all_of(text, [&](char c) { return is_letter(c) || lang::is_digit(c); });
-}
-
 // With the error as a clause of its own: "it is a pipe".
 SourceText read(const std::string& path)
 {
@@ -66,6 +60,9 @@ SourceText read(const std::string& path)
 
 SourceText read_source(const std::string& path)
 {
+    if (names_library_file(path)) // it was not to be found
+        if (libraries::FoundFile found = libraries::find_file(path, {}); found.file.empty())
+            return {{}, std::move(found.why), std::move(found.hint)};
     SourceText source = read(path);
     if (!source.error.empty()) source.error.insert(0, "cannot read this file: ");
     return source;
@@ -73,17 +70,24 @@ SourceText read_source(const std::string& path)
 
 lang::Imported load_beside(std::string_view path, std::string_view importer)
 {
-    const fs::path full = (fs::path(importer).parent_path() / fs::path(path)).lexically_normal();
+    const fs::path folder = fs::path(importer).parent_path();
+    fs::path full = (folder / fs::path(path)).lexically_normal();
+    if (names_library_file(path)) {
+        libraries::FoundFile found = libraries::find_file(path, folder);
+        if (found.file.empty()) return {std::nullopt, std::move(found.why), std::move(found.hint)};
+        full = std::move(found.file);
+    }
     SourceText source = read(full);
     if (!source.error.empty()) return {std::nullopt, std::move(source.error), std::move(source.hint)};
     return {lang::SourceFile{full, std::move(source.text)}};
 }
 
-TextureReference split_reference(std::string_view reference)
+TextureReference split_reference(std::string_view reference, const std::string& folder)
 {
     const size_t colon = reference.rfind(':');
-    if (colon == reference.npos || !is_name(reference.substr(colon + 1))) return {std::string(reference), {}};
-    return {std::string(reference.substr(0, colon)), std::string(reference.substr(colon + 1))};
+    const bool has_texture = colon != reference.npos && is_plain_name(reference.substr(colon + 1));
+    return {libraries::path_named(has_texture ? reference.substr(0, colon) : reference, folder),
+            std::string(has_texture ? reference.substr(colon + 1) : std::string_view())};
 }
 
 std::string about_file(const std::string& file, std::string_view messages)

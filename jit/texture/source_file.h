@@ -18,14 +18,15 @@ struct SourceText {
 SourceText read_source(const std::string& path);
 inline constexpr size_t source_bytes_max = 16u << 20;
 
-// lang::ImportLoader: `path` is relative to the file that imports it.
+// lang::ImportLoader: `path` is relative to the file that imports it, or names a file of an installed library.
 lang::Imported load_beside(std::string_view path, std::string_view importer);
 
-// "rock.haptel:rock" taken apart; `texture` is empty where the reference is a path alone.
+// "rock.haptel:rock" taken apart; `texture` is empty where the reference is a path alone. "wood.oak:board" is of the
+// library that a file in `folder` would import; the name stays where there is none.
 struct TextureReference {
     std::string file, texture;
 };
-TextureReference split_reference(std::string_view reference);
+TextureReference split_reference(std::string_view reference, const std::string& folder = {});
 
 // Messages of a line each, and hints set in below them, as messages about that file.
 std::string about_file(const std::string& file, std::string_view messages);

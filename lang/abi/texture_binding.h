@@ -46,7 +46,9 @@ struct UvFigures {
 
 // What an object asks for. Text stays text: only the resolver knows parameters' types and units.
 struct TextureRequest {
-    std::string reference; // "rock.haptel:rock" (a path, absolute after scene loading, a colon, a texture's name)
+    // "rock.haptel:rock": a path, absolute after scene loading, or the name of a library's file (library_name.h), a colon,
+    // a texture's name.
+    std::string reference;
     std::vector<std::pair<std::string, std::string>> parameters; // name, value as written: "60um", "5"
     double box_minimum_m[3] = {0, 0, 0};                         // the object's bounding box, object space
     double box_maximum_m[3] = {0, 0, 0};
@@ -56,7 +58,9 @@ struct TextureRequest {
     double normal_turn_max_per_m = std::numeric_limits<double>::infinity();
     UvFigures uv = {};
     double servo_period_s = 0; // of the servo that will call it and must not be held up; 0: none
-    std::string folder = {};   // that relative paths among the values start from; empty: the working directory
+    // Of who asks: relative paths among the values start from it, and so does the search for libraries. Empty: the
+    // working directory.
+    std::string folder = {};
 };
 
 // Either a binding or none and the reason. Diagnostics may hold warnings beside a binding; rendered as text, ready to

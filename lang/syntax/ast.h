@@ -309,7 +309,7 @@ struct Struct {
     Span span;
 };
 struct Import {
-    std::string path; // "wood/oak.haptel"
+    std::string path; // "wood/oak.haptel", or "wood.oak" of a library
     Name prefix;      // "as oak": what stands before the file's names; none: they stand alone
     Span span;
 };

@@ -40,6 +40,7 @@ private:
     using Statements = std::vector<ast::StatementPtr>;
 
     // parse_declaration.cpp
+    size_t library_file_ahead() const;
     void import_declaration(ast::File& result);
     void find_prefixes();
     void texture(ast::File& result);

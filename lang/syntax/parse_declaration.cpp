@@ -103,34 +103,46 @@ void Grammar::find_prefixes()
     }
 }
 
-// import = "import" string ["as" name] ";"
+// How many tokens the name of a library's file takes here, "wood.oak"; 0: none stands here. "oak.haptel" lacks quotes.
+size_t Grammar::library_file_ahead() const
+{
+    size_t last = 0;
+    while (kind(last) == Token::name && kind(last + 1) == Token::dot) last += 2;
+    return last > 0 && kind(last) == Token::name && text(last) != "haptel" ? last + 1 : 0;
+}
+
+// import = "import" (string | name "." name {"." name}) ["as" name] ";"
 void Grammar::import_declaration(File& result)
 {
     const Span first = span();
     advance();
     Import import;
-    if (at(Token::string)) {
-        const std::string_view quoted = text();
-        import.path = quoted.substr(1, quoted.size() - 2);
+    const size_t names = library_file_ahead();
+    if (at(Token::string) || names > 0) {
+        for (size_t i = 0; i < names; ++i) import.path += text(i);
+        if (names == 0) import.path = text().substr(1, text().size() - 2);
         if (import.path.empty()) diagnostics.error(span(), "import", "expected a path between the quotes");
-        advance();
+        advance(std::max<size_t>(names, 1));
         if (text() == "as") {
             advance();
             import.prefix = name("after 'as'");
         }
         if (!lost) expect_semicolon("the import");
-    } else { // "wood.oak": files are known by their paths, there are no modules
-        Diagnostic& reported = error(span(), "import", "expected a path in quotes after 'import'" + found());
+    } else {
+        Diagnostic& reported = error(
+            span(), "import", "expected a path in quotes, or a file of a library, after 'import'" + found());
         std::string path;
         for (bool is_name = true; at(is_name ? Token::name : Token::dot); is_name = !is_name, advance())
             path += is_name ? text() : "/";
+        if (path.ends_with("/haptel")) path.resize(path.size() - std::string_view("/haptel").size());
         std::string prefix;
         if (text() == "as" && kind(1) == Token::name) {
             import.prefix = {std::string(text(1)), span(1)};
             prefix = " as " + import.prefix.text;
         }
         reported.hint =
-            "write the path of a file: import \"" + (path.empty() ? "wood/oak" : path) + ".haptel\"" + prefix + ";";
+            "write the path of a file: import \"" + (path.empty() ? "wood/oak" : path) + ".haptel\"" + prefix +
+            "; or the name of an installed one: import wood.oak;";
     }
     import.span = since(first);
     if (!import.path.empty() || !import.prefix.text.empty()) result.imports.push_back(std::move(import));

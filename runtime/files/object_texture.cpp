@@ -1,5 +1,6 @@
 #include "runtime/files/object_texture.h"
 
+#include "lang/abi/library_name.h"
 #include "runtime/surface/surface.h"
 #include "runtime/texture/shading.h"
 
@@ -99,9 +100,11 @@ void load_texture(SceneObject& object, const TextureText& text, const HandLimits
         return;
     }
     TextureRequest request = request_of(object, hands);
-    request.reference =
-        std::filesystem::absolute(folder / text.reference.substr(0, colon)).lexically_normal().string() +
-        text.reference.substr(colon);
+    const std::string file = text.reference.substr(0, colon);
+    request.reference = names_library_file(file) // which the resolver knows where to find
+                            ? text.reference
+                            : std::filesystem::absolute(folder / file).lexically_normal().string() +
+                                  text.reference.substr(colon);
     request.parameters = text.parameters;
     request.folder = std::filesystem::absolute(folder).lexically_normal().string();
 

@@ -1,13 +1,13 @@
 #include "runtime/files/scene_file.h"
 
 #include "input/regular_file.h"
+#include "input/toml/toml_syntax.h"
 #include "runtime/files/assemble_scene.h"
 #include "runtime/files/device_reader.h"
 #include "runtime/files/effects_reader.h"
 #include "runtime/files/motion_reader.h"
 #include "runtime/files/object_texture.h"
 #include "runtime/files/table_reader.h"
-#include "runtime/files/toml_syntax.h"
 #include "runtime/process/fork_server.h"
 #include "runtime/surface/shapes.h"
 
@@ -132,17 +132,10 @@ LoadedScene load(const std::filesystem::path& file, const TextureResolver& textu
                                                               : "the scene " + why);
         return loaded;
     }
-    if (const std::optional<TooDeep> fault = too_deep(source.bytes)) {
-        messages.error(fault->at, fault->message);
-        return loaded;
-    }
     const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
     SceneText text;
-    try {
-        text = read_scene(toml::parse(source.bytes), folder, changes, messages);
-    } catch (const toml::parse_error& problem) {
-        messages.error(problem.source(), said_of_syntax(problem));
-    }
+    if (const std::optional<toml::table> tables = input::parse_toml(source.bytes, messages))
+        text = read_scene(*tables, folder, changes, messages);
     if (messages.any_error()) return loaded;
 
     return assemble_scene(std::move(text), folder, textures, devices, surfaces, loading, messages);

@@ -26,7 +26,7 @@ void count(const char* what, uint64_t how_many = 1);
 [[noreturn]] void fail(const std::string& what);
 
 // text_targets.cpp, falcon_target.cpp, hid_target.cpp, inverse3_target.cpp, picture_target.cpp, mesh_target.cpp,
-// recording_target.cpp, program_targets.cpp
+// recording_target.cpp, library_target.cpp, program_targets.cpp
 void parse_text(std::string_view bytes);
 void compile_text(std::string_view bytes);
 void format_text(std::string_view bytes);
@@ -37,6 +37,7 @@ void hear_inverse3(std::string_view bytes);
 void read_picture(std::string_view bytes);
 void read_mesh(std::string_view bytes);
 void read_recording(std::string_view bytes);
+void read_library(std::string_view bytes);
 void run_program(std::string_view bytes);
 void bound_program(std::string_view bytes);
 std::vector<std::string> haptel_corpus();
@@ -47,5 +48,6 @@ std::vector<std::string> inverse3_corpus();
 std::vector<std::string> picture_corpus();
 std::vector<std::string> mesh_corpus();
 std::vector<std::string> recording_corpus();
+std::vector<std::string> library_corpus();
 
 } // namespace haptel::fuzz

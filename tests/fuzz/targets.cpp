@@ -21,6 +21,7 @@ constexpr Target all[] = {
     {"inverse3", "what the service of the Inverse3 says", false, inverse3_corpus, hear_inverse3},
     {"recording", "readers of recorded runs on bytes, and what they read written again", false, recording_corpus,
      read_recording},
+    {"library", "archives of texture libraries, their manifests and locks", false, library_corpus, read_library},
     {"programs", "random programs: interpreter, 113-bit oracle and machine code", true, nullptr, run_program},
     {"bounds", "random programs: what is measured lies in the bounds", true, nullptr, bound_program},
 };

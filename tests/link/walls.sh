@@ -8,26 +8,28 @@ set -euo pipefail
 # HOUSE: ITS ROOMS FROM THE GROUND UP | WHAT OF OTHER HOUSES ALL OF THEM MAY USE. A room may include its own files and
 # those of rooms before it; '.' is the house's own folder. '!' refuses what a later word would allow.
 houses=(
-    'input: . |'
+    'input: . toml | lang/text/near_name.h'
     'lang: abi text math ir ir/run ir/derive ir/bounds syntax format program lower check check/dimension . |'
+    'libraries: . package | input lang/abi lang/text/near_name.h'
     'stdlib: . |'
-    'jit: codegen engine picture texture live check | input lang stdlib'
+    'jit: codegen engine picture texture live check | !libraries/package libraries input lang stdlib'
     'runtime: process geometry hand surface surface/build contact texture scene force files render servo | input lang/abi lang/text/near_name.h'
     'device: . | !runtime/files runtime lang/abi lang/text/near_name.h'
-    'api: . | include/haptel runtime device/device_factory.h lang/abi lang/parameter_value.h lang/text/near_name.h'
+    'api: . | include/haptel input/toml runtime device/device_factory.h lang/abi lang/parameter_value.h lang/text/near_name.h'
     'api/compiler: . | include/haptel api jit lang/abi'
-    'tools: output arguments plot sound report commands . | input lang stdlib jit runtime device bench'
+    'tools: output arguments plot sound report library commands . | input libraries lang stdlib jit runtime device bench'
     'tests/api: . | tests/support'
     'tests/lang: . | tests/support tests/conformance/case.h bench/elementary_truth.h runtime/servo/allocation_count.h lang stdlib'
-    'tests/runtime: . | tests/support runtime lang/abi'
+    'tests/runtime: . | tests/support input/toml runtime lang/abi'
 )
 
 # Which folders alone may include a library.
 declare -A home=(
-    [llvm/]='jit tests/jit' [llvm-c/]='jit' [libusb]='device' [toml++/]='runtime/files'
+    [llvm/]='jit tests/jit' [llvm-c/]='jit' [libusb]='device' [toml++/]='input/toml'
     [assimp/]='runtime/files' [boost/]='lang/math device/inverse3 tests' [stb/]='jit/picture tests' [tiff]='jit/picture tests'
     [OpenEXR/]='jit/picture' [Imath/]='jit/picture' [CLI/]='tools' [cairo]='tools/plot'
     [haptel/]='include/haptel api examples/library tests/api'
+    [zip.h]='libraries/package' [sha2.h]='libraries'
     [nlohmann/]='tools device/inverse3 tests bench' [sndfile]='device tests' [alsa/]='device'
 )
 
@@ -102,7 +104,7 @@ while IFS=: read -r file line directive; do
     elif [[ -n $from_house ]] && ((${floor[$room]:-99} > ${floor[$from_room]})); then
         crossed "$from_room may not look up to \"$header\""
     fi
-done < <(for folder in input lang stdlib jit runtime device tools examples bench tests; do
+done < <(for folder in input libraries lang stdlib jit runtime device tools examples bench tests; do
     [[ ! -d $folder ]] || grep -rnE '^[[:space:]]*#[[:space:]]*include[[:space:]]*[<"]' "$folder" \
         --include='*.h' --include='*.c' --include='*.cpp' --include='*.def' --exclude-dir=broken_house || true
 done)

@@ -1,5 +1,7 @@
 #include "tools/arguments/texture_argument.h"
 
+#include "libraries/find.h"
+
 #include <fmt/format.h>
 
 namespace haptel::tools {
@@ -9,7 +11,7 @@ Parsed<TextureArgument> parse_texture_argument(std::string_view text)
     const auto colon = text.rfind(':');
     if (colon == text.npos || colon == 0 || colon + 1 == text.size())
         return {{}, fmt::format("expected FILE:NAME, such as rock.haptel:rock, found '{}'", text)};
-    return {{std::string(text.substr(0, colon)), std::string(text.substr(colon + 1))}, {}};
+    return {{libraries::path_named(text.substr(0, colon)), std::string(text.substr(colon + 1))}, {}};
 }
 
 CLI::Option* add_texture(CLI::App& app, TextureArgument& texture)

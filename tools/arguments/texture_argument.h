@@ -16,7 +16,7 @@ struct TextureArgument {
     std::string file, name;
 };
 
-// At the last colon; both sides must be there.
+// At the last colon; both sides must be there. The file of an installed library, "wood.oak", becomes its path.
 Parsed<TextureArgument> parse_texture_argument(std::string_view text);
 
 // What TextureRequest::parameters wants: text stays text.

@@ -5,6 +5,7 @@
 #include "jit/texture/source_file.h"
 #include "jit/texture/texture.h"
 #include "lang/parameter_value.h"
+#include "libraries/find.h"
 #include "lang/text/near_name.h"
 #include "stdlib/stdlib.h"
 #include "tools/arguments/quantity.h"
@@ -320,7 +321,7 @@ struct Outcome {
 Outcome check_all(const CheckOptions& options)
 {
     CheckRun checks(options);
-    for (const std::string& path : options.files) checks.check(path);
+    for (const std::string& file : options.files) checks.check(libraries::path_named(file));
     checks.report_unknown_parameters();
     if (options.json)
         print_json(checks.report.to_json());

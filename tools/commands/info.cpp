@@ -1,5 +1,6 @@
 // haptel info: what there is to call, and what a file's textures are.
 #include "jit/texture/source_file.h"
+#include "lang/abi/library_name.h"
 #include "lang/compile.h"
 #include "lang/syntax/parser.h"
 #include "lang/text/near_name.h"
@@ -26,7 +27,8 @@ struct InfoOptions {
 
 bool is_file(const std::string& what)
 {
-    return what.find(".haptel") != std::string::npos || what.find('/') != std::string::npos;
+    return what.find(".haptel") != std::string::npos || what.find('/') != std::string::npos ||
+           names_library_file(std::string_view(what).substr(0, what.find(':')));
 }
 
 ExitCode show_entry(const InfoOptions& options)
@@ -109,9 +111,8 @@ std::string to_text(const lang::SourceSet& sources, const std::string& head,
 
 ExitCode show_file(const InfoOptions& options)
 {
-    const size_t colon = options.what.rfind(".haptel:");
-    const std::string path = colon == std::string::npos ? options.what : options.what.substr(0, colon + 7);
-    const std::string wanted = colon == std::string::npos ? "" : options.what.substr(colon + 8);
+    const jit::TextureReference named = jit::split_reference(options.what);
+    const std::string &path = named.file, &wanted = named.texture;
     jit::SourceText source = jit::read_source(path);
     if (!source.error.empty()) {
         say_error(fmt::format("{}: {}", path, source.error));

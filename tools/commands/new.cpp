@@ -1,6 +1,8 @@
-// haptel new: a first texture to change.
+// haptel new: a first texture to change, or a first library.
 #include "lang/text/lexer.h"
+#include "libraries/manifest.h"
 #include "tools/commands/command.h"
+#include "tools/library/new_library.h"
 #include "tools/output/terminal.h"
 
 #include <cerrno>
@@ -11,6 +13,8 @@
 #include <memory>
 
 namespace haptel::tools {
+
+namespace fs = std::filesystem;
 
 namespace {
 
@@ -34,6 +38,7 @@ texture {0}(
 
 struct NewOptions {
     std::string name, folder = ".";
+    bool library = false;
 };
 
 bool is_name(const std::string& text)
@@ -46,29 +51,56 @@ bool is_name(const std::string& text)
            list.tokens[0].end - list.tokens[0].begin == text.size();
 }
 
+// Never over a file that exists. Says what went wrong.
+bool write_new(const std::string& path, const std::string& text)
+{
+    std::FILE* file = std::fopen(path.c_str(), "wx");
+    if (!file) {
+        say_error(errno == EEXIST ? fmt::format("{} exists already: choose another name or --out DIR", path)
+                                  : fmt::format("{} cannot be written: {}", path, std::strerror(errno)));
+        return false;
+    }
+    const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
+    if (std::fclose(file) == 0 && written) return true;
+    say_error(fmt::format("{} could not be written whole: is the disk full?", path));
+    return false;
+}
+
+ExitCode create_library(const NewOptions& options)
+{
+    if (!libraries::is_library_name(options.name)) {
+        say_error(
+            fmt::format("'{}' cannot be the name of a library: expected small letters, digits and _, such as wood",
+                        lang::printable(options.name)));
+        return ExitCode::misuse;
+    }
+    std::error_code fault;
+    const fs::path folder = (fs::path(options.folder) / options.name).lexically_normal();
+    if (fs::exists(folder, fault)) {
+        say_error(fmt::format("{} exists already: choose another name or --out DIR", folder.string()));
+        return ExitCode::findings;
+    }
+    for (const auto& [path, text] : new_library(options.name)) {
+        fs::create_directories((folder / path).parent_path(), fault);
+        if (!write_new((folder / path).string(), text)) return ExitCode::findings;
+    }
+    fmt::print("{}\n", folder.string());
+    fmt::print(stderr, "haptel: try: haptel pack {}\n", folder.string());
+    return ExitCode::fine;
+}
+
 ExitCode create(const NewOptions& options)
 {
+    if (options.library) return create_library(options);
     if (!is_name(options.name)) {
         say_error(fmt::format("'{}' cannot be the name of a texture: expected letters, digits and _, such as oak_board",
                               lang::printable(options.name)));
         return ExitCode::misuse;
     }
     std::error_code fault;
-    std::filesystem::create_directories(options.folder, fault);
-    const std::string path =
-        (std::filesystem::path(options.folder) / (options.name + ".haptel")).lexically_normal().string();
-    std::FILE* file = std::fopen(path.c_str(), "wx"); // x: never over a file that exists
-    if (!file) {
-        say_error(errno == EEXIST ? fmt::format("{} exists already: choose another name or --out DIR", path)
-                                  : fmt::format("{} cannot be written: {}", path, std::strerror(errno)));
-        return ExitCode::findings;
-    }
-    const std::string text = fmt::format(first_texture, options.name);
-    const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-    if (std::fclose(file) != 0 || !written) {
-        say_error(fmt::format("{} could not be written whole: is the disk full?", path));
-        return ExitCode::findings;
-    }
+    fs::create_directories(options.folder, fault);
+    const std::string path = (fs::path(options.folder) / (options.name + ".haptel")).lexically_normal().string();
+    if (!write_new(path, fmt::format(first_texture, options.name))) return ExitCode::findings;
     fmt::print("{}\n", path);
     fmt::print(stderr, "haptel: try: haptel check {}\n", path);
     return ExitCode::fine;
@@ -79,10 +111,14 @@ ExitCode create(const NewOptions& options)
 Command new_command(CLI::App& app)
 {
     const auto options = std::make_shared<NewOptions>();
-    CLI::App* command = app.add_subcommand("new", "Write a first texture to change");
-    command->add_option("name", options->name, "Name of the texture and its file")->required()->type_name("NAME");
+    CLI::App* command = app.add_subcommand("new", "Write a first texture to change, or a first library");
+    command->add_option("name", options->name, "Name of the texture and its file, or of the library and its folder")
+        ->required()
+        ->type_name("NAME");
     command->add_option("--out", options->folder, "Folder to write it to [.]")->type_name("DIR");
+    command->add_flag("--library", options->library, "A folder with a library.toml, a texture and its test");
     set_examples(*command, "  haptel new oak\n"
+                           "  haptel new --library wood\n"
                            "  haptel new oak --out textures");
     return {command, [options] { return create(*options); }};
 }

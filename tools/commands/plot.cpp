@@ -1,15 +1,13 @@
 // haptel plot: pictures of a texture.
-#include "jit/check/oracle.h"
 #include "jit/texture/texture.h"
-#include "lang/abi/evaluate.h"
 #include "tools/arguments/quantity.h"
 #include "tools/arguments/texture_argument.h"
 #include "tools/commands/command.h"
 #include "tools/output/terminal.h"
 #include "tools/plot/plot_texture.h"
+#include "tools/report/texture_picture.h"
 
 #include <cmath>
-#include <filesystem>
 #include <fmt/format.h>
 #include <memory>
 #include <optional>
@@ -20,89 +18,19 @@ namespace haptel::tools {
 
 namespace {
 
-struct PlotOptions {
-    TextureArgument texture;
-    ParameterTexts parameters;
-    std::string out, kind = "shaded";
-    double window_m = 0.02, footprint_m = 0;
-    glm::dvec3 center_m{0};
-    std::optional<std::pair<glm::dvec3, glm::dvec3>> section_m; // its ends
-    std::optional<glm::dvec3> direction;                        // of the section, of any length
-    int size_px = 512;
+struct PlotOptions : PictureOptions {
+    std::string out;
 };
-
-const plot::TextureKind* find_kind(const std::string& name)
-{
-    for (const plot::TextureKind& kind : plot::texture_kinds())
-        if (kind.name == name) return &kind;
-    return nullptr;
-}
-
-// The texture over a cube of the window's size round its centre, its parameters set.
-TextureRequest request_of(const PlotOptions& options)
-{
-    TextureRequest request;
-    request.parameters = options.parameters;
-    request.footprint_m = options.footprint_m;
-    for (int axis = 0; axis < 3; ++axis) {
-        request.box_minimum_m[axis] = options.center_m[axis] - options.window_m / 2;
-        request.box_maximum_m[axis] = options.center_m[axis] + options.window_m / 2;
-    }
-    return request;
-}
-
-// The plane z = const faces +z; mesh coordinates run from 0 to 1 over the window.
-haptel_point point_of(const PlotOptions& options, const glm::dvec3& p)
-{
-    haptel_point point{};
-    for (int axis = 0; axis < 3; ++axis) point.p[axis] = p[axis];
-    point.n[2] = 1;
-    for (int axis = 0; axis < 2; ++axis) {
-        point.uv[axis] = (p[axis] - options.center_m[axis]) / options.window_m + 0.5;
-        point.uv_dp[axis][axis] = 1 / options.window_m;
-    }
-    return point;
-}
 
 ExitCode draw(const PlotOptions& options)
 {
-    jit::TextureOptions compile;
-    compile.entries = jit::Entries::both_and_batches;
-    compile.only_texture = options.texture.name;
-    if (options.kind == "gradient-error") compile.precision = jit::Precision::f64; // whose error it is
-    const jit::CompiledTextures compiled = jit::compile_texture_file(options.texture.file, compile);
+    const jit::CompiledTextures compiled = jit::compile_texture_file(options.texture.file, compile_options(options));
     fmt::print(stderr, "{}", compiled.rendered(stderr_has_color()));
     if (!compiled.program) return ExitCode::findings;
-    const TextureResult texture =
-        jit::make_binding(compiled.program, options.texture.name, request_of(options), jit::For::figures);
-    fmt::print(stderr, "{}", texture.diagnostics);
-    if (!texture.binding) return ExitCode::findings;
-
-    plot::TextureView view;
-    view.title =
-        fmt::format("{}:{}", std::filesystem::path(options.texture.file).filename().string(), options.texture.name);
-    for (const auto& [name, value] : options.parameters) view.title += fmt::format("  {} = {}", name, value);
-    view.on_plane = [&](const glm::dvec3& p_m) { return point_of(options, p_m); };
-    view.samples = [&](std::span<const haptel_point> points, std::span<haptel_sample> samples) {
-        evaluate(*texture.binding, points, samples);
-    };
-    jit::Oracle oracle(compiled.program, *texture.binding);
-    view.true_gradient = [&](const glm::dvec3& p) {
-        const jit::OracleSample truth = oracle.sample(point_of(options, p));
-        return glm::dvec3(truth.gradient[0], truth.gradient[1], truth.gradient[2]);
-    };
-    view.center_m = options.center_m;
-    view.section_m = options.section_m;
-    if (options.direction) {
-        const glm::dvec3 half_m = options.window_m / 2 * glm::normalize(*options.direction);
-        view.section_m.emplace(options.center_m - half_m, options.center_m + half_m);
-    }
-    view.is_bounded =
-        std::isfinite(texture.binding->facts.height_min_m) && std::isfinite(texture.binding->facts.height_max_m);
-    view.say = [&](const std::string& text) { fmt::print(stderr, "{}: {}\n", options.texture.file, text); };
-    view.window_m = options.window_m;
-    view.size_px = options.size_px;
-    const std::string error = find_kind(options.kind)->draw(view).write_png(options.out);
+    std::optional<plot::Picture> picture =
+        draw_texture(compiled.program, options, [](const std::string& text) { fmt::print(stderr, "{}", text); });
+    if (!picture) return ExitCode::findings;
+    const std::string error = picture->write_png(options.out);
     if (error.empty()) return ExitCode::fine;
     say_error(error);
     return ExitCode::findings;

@@ -1,5 +1,4 @@
 // haptel test: is every texture's gradient the gradient of its height, to rounding? Does every scene feel as it did?
-#include "jit/check/check_gradient.h"
 #include "lang/parameter_value.h"
 #include "tools/arguments/feel_files.h"
 #include "tools/arguments/quantity.h"
@@ -12,7 +11,6 @@
 #include "tools/report/test_report.h"
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -65,21 +63,11 @@ private:
 void TestRun::test(const TextureTarget& target, const std::shared_ptr<const jit::CompiledProgram>& program,
                    const char* name)
 {
-    TestedTexture tested{target.file, name, {}, {}, 0};
     request.parameters.clear(); // each texture takes the values whose names it has
     const ir::Texture& source = program->source_of(*program->find(name));
     for (const auto& value : options.parameters)
         if (!lang::parameters_called(value.first, source).empty()) request.parameters.push_back(value);
-    const auto start = std::chrono::steady_clock::now();
-    const TextureResult bound = jit::make_binding(program, name, request, jit::For::figures);
-    if (bound.binding)
-        tested.check = jit::check_gradient(program, *bound.binding, box, options.points, options.seed);
-    else
-        tested.fault = bound.diagnostics;
-    if (tested.check && tested.check->amplified)
-        tested.amplified = place_of(*tested.check->amplified, program->sources());
-    tested.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    report.textures.push_back(std::move(tested));
+    report.textures.push_back(test_texture(program, target.file, name, request, box, options.points, options.seed));
 }
 
 void TestRun::test(const TextureTarget& target)

@@ -33,7 +33,7 @@ using KindByFile = std::map<fs::path, std::string>;
 
 void add_texture(const TextureRequest& request, KindByFile& kinds)
 {
-    const jit::TextureReference reference = jit::split_reference(request.reference);
+    const jit::TextureReference reference = jit::split_reference(request.reference, request.folder);
     kinds.emplace(whole_path(reference.file), "texture");
     const auto compiled = jit::ProgramCache::shared()->known(reference.file);
     if (!compiled || !compiled->program) return;

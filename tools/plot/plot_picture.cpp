@@ -134,4 +134,15 @@ std::string Picture::write_png(const std::string& file)
                        is_of_system ? std::strerror(errno) : cairo_status_to_string(status));
 }
 
+std::string Picture::png()
+{
+    std::string bytes;
+    const auto append = [](void* to, const unsigned char* data, unsigned int count) {
+        static_cast<std::string*>(to)->append(reinterpret_cast<const char*>(data), count);
+        return CAIRO_STATUS_SUCCESS;
+    };
+    const cairo_status_t status = cairo_surface_write_to_png_stream(surface_.get(), append, &bytes);
+    return status == CAIRO_STATUS_SUCCESS ? bytes : "";
+}
+
 } // namespace haptel::tools::plot

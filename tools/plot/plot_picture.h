@@ -77,6 +77,8 @@ public:
 
     // Empty, or why the file could not be written.
     std::string write_png(const std::string& file);
+    // The bytes of such a file; empty where there is no memory for them.
+    std::string png();
 
 private:
     void use(const Color& color);

@@ -3,6 +3,7 @@
 #include "lang/text/source.h"
 
 #include <algorithm>
+#include <chrono>
 #include <fmt/format.h>
 
 namespace haptel::tools {
@@ -17,16 +18,6 @@ Json finite_or_null(const std::optional<double>& value)
 std::string title(const TestedTexture& texture)
 {
     return lang::printable(texture.name.empty() ? texture.file : texture.file + ":" + texture.name);
-}
-
-// Everything that is wrong with it, one line each.
-std::vector<std::string> reasons(const TestedTexture& texture)
-{
-    std::vector<std::string> lines;
-    if (!texture.fault.empty()) lines.push_back(texture.fault);
-    if (!texture.check) return lines;
-    lines.insert(lines.end(), texture.check->failures.begin(), texture.check->failures.end());
-    return lines;
 }
 
 // Of larger errors that are no fault, and what to do about them: lines too.
@@ -90,6 +81,32 @@ std::string escaped(const std::string& text)
 }
 
 } // namespace
+
+std::vector<std::string> reasons(const TestedTexture& texture)
+{
+    std::vector<std::string> lines;
+    if (!texture.fault.empty()) lines.push_back(texture.fault);
+    if (!texture.check) return lines;
+    lines.insert(lines.end(), texture.check->failures.begin(), texture.check->failures.end());
+    return lines;
+}
+
+TestedTexture test_texture(const std::shared_ptr<const jit::CompiledProgram>& program, const std::string& file,
+                           const std::string& name, const TextureRequest& request, const jit::CheckBox& box,
+                           uint32_t points, uint64_t seed)
+{
+    TestedTexture tested{file, name, {}, {}, 0};
+    const auto start = std::chrono::steady_clock::now();
+    const TextureResult bound = jit::make_binding(program, name, request, jit::For::figures);
+    if (bound.binding)
+        tested.check = jit::check_gradient(program, *bound.binding, box, points, seed);
+    else
+        tested.fault = bound.diagnostics;
+    if (tested.check && tested.check->amplified)
+        tested.amplified = place_of(*tested.check->amplified, program->sources());
+    tested.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return tested;
+}
 
 size_t TestReport::passed() const
 {

@@ -128,9 +128,10 @@ TEST_CASE("textures and functions that are incomplete")
     CHECK(in_file("float grad(float a) { return a; }") == "");
     CHECK(in_file("float f(float a);\n") ==
           "1:1-18 prototype: functions may stand in any order: a prototype does nothing\n");
-    CHECK(in_file("import 3;\nimport wood.;") == "1:8 import: expected a path in quotes after 'import', found '3'\n"
-                                                 "2:8-12 import: expected a path in quotes after 'import', found "
-                                                 "'wood'\n");
+    CHECK(in_file("import 3;\nimport wood.;") == "1:8 import: expected a path in quotes, or a file of a library, after "
+                                                 "'import', found '3'\n"
+                                                 "2:8-12 import: expected a path in quotes, or a file of a library, "
+                                                 "after 'import', found 'wood'\n");
     CHECK(in_file("a = 3;\ntexture t() { return 1 1; }") ==
           "1:1 syntax: expected a texture, function, constant, struct or import, found 'a'\n"
           "2:24 syntax: expected ';' at the end of 'return', found '1'\n");

@@ -1,7 +1,6 @@
 // Scenes that nobody means well with: too deep, too large, too many, or no files at all.
+#include "input/toml/toml_syntax.h"
 #include "runtime/files/mesh_process.h"
-#include "runtime/files/table_reader.h"
-#include "runtime/files/toml_syntax.h"
 #include "tests/runtime/files/scene_folder.h"
 
 #include <algorithm>
@@ -14,6 +13,7 @@
 #include <vector>
 
 using namespace haptel;
+using namespace haptel::input;
 using namespace haptel::runtime;
 using namespace haptel::tests;
 

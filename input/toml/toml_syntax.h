@@ -1,17 +1,17 @@
-// What to write where a file is no TOML, and what keeps the parser of TOML from harm.
+// The text of a TOML file as a table, or what is wrong with it and how to mend it.
 #pragma once
+
+#include "input/toml/file_messages.h"
 
 #include <optional>
 #include <string>
 #include <string_view>
 
-#include <toml++/toml.h>
+namespace haptel::input {
 
-namespace haptel::runtime {
-
-// What the parser found, and how to mend it where that is a usual slip: text without quotes, a decimal comma, a unit
-// without quotes.
-std::string said_of_syntax(const toml::parse_error& problem);
+// Nothing, and an error, where it is no TOML: what the parser found, and how to mend it where that is a usual slip:
+// text without quotes, a decimal comma, a unit without quotes. Harmless whatever the bytes.
+std::optional<toml::table> parse_toml(std::string_view text, FileMessages& messages);
 
 struct TooDeep {
     toml::source_region at;
@@ -24,4 +24,4 @@ struct TooDeep {
 std::optional<TooDeep> too_deep(std::string_view text);
 inline constexpr unsigned levels_max = 64;
 
-} // namespace haptel::runtime
+} // namespace haptel::input

@@ -1,10 +1,10 @@
-#include "runtime/files/toml_syntax.h"
+#include "input/toml/toml_syntax.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <string_view>
 
-namespace haptel::runtime {
+namespace haptel::input {
 
 namespace {
 
@@ -41,8 +41,6 @@ constexpr Slip slips[] = {
     {"expected value, saw", "Write a value behind the `=`, or leave the key out"},
 };
 
-} // namespace
-
 std::string said_of_syntax(const toml::parse_error& problem)
 {
     constexpr std::string_view opening = "Error while parsing ", whole_file = "root table";
@@ -57,8 +55,6 @@ std::string said_of_syntax(const toml::parse_error& problem)
         if (found.find(slip.words) != std::string_view::npos) return said.append(". ").append(slip.mend);
     return said;
 }
-
-namespace {
 
 // Goes through a text by what may hide brackets and dots from a reader: strings and comments.
 class Depth {
@@ -128,7 +124,21 @@ std::optional<TooDeep> too_deep(std::string_view text)
     const toml::source_position at = depth.place();
     return TooDeep{{at, at, nullptr},
                    "keys and brackets nest deeper than " + std::to_string(levels_max) +
-                       " levels, and a scene needs four: is a bracket open, or is it the right file?"};
+                       " levels, and a file needs four: is a bracket open, or is it the right file?"};
 }
 
-} // namespace haptel::runtime
+std::optional<toml::table> parse_toml(std::string_view text, FileMessages& messages)
+{
+    if (const std::optional<TooDeep> fault = too_deep(text)) {
+        messages.error(fault->at, fault->message);
+        return std::nullopt;
+    }
+    try {
+        return toml::parse(text);
+    } catch (const toml::parse_error& problem) {
+        messages.error(problem.source(), said_of_syntax(problem));
+    }
+    return std::nullopt;
+}
+
+} // namespace haptel::input

@@ -1,0 +1,3 @@
+#include "jit/texture/texture.h"
+#include "libraries/package/archive.h"
+#include <zip.h>
