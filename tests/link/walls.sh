@@ -9,9 +9,9 @@ set -euo pipefail
 # those of rooms before it; '.' is the house's own folder. '!' refuses what a later word would allow.
 houses=(
     'input: . |'
-    'lang: abi text math ir ir/run ir/derive ir/bounds syntax format program lower check check/dimension . |'
+    'lang: abi text math ir ir/run ir/derive ir/bounds emit_c syntax format program lower check check/dimension . |'
     'stdlib: . |'
-    'jit: codegen engine picture texture live check | input lang stdlib'
+    'jit: codegen engine picture texture ahead live check | input lang stdlib'
     'runtime: process geometry hand surface surface/build contact texture scene force files render servo | input lang/abi lang/text/near_name.h'
     'device: . | !runtime/files runtime lang/abi lang/text/near_name.h'
     'tools: output arguments plot sound report commands . | input lang stdlib jit runtime device bench'
