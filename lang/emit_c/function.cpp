@@ -36,6 +36,11 @@ std::string place_of(ir::Input input)
     return place;
 }
 
+bool changes_nothing(ir::Op op)
+{
+    return op == ir::Op::detach || op == ir::Op::i_as_u || op == ir::Op::u_as_i;
+}
+
 std::string readable(std::string_view name)
 {
     std::string word;
@@ -77,7 +82,7 @@ private:
     ModuleText& module;
     ir::Function function; // without what no result needs
     const ir::Texture* const texture;
-    std::vector<std::string> texts; // by value: literals that stand for it
+    std::vector<std::string> texts; // by value: what stands for it and is not its own name
     std::set<uint32_t> used;        // by what is written
     std::string margin = "    ";
 
@@ -142,6 +147,10 @@ private:
     {
         std::vector<std::string> operands;
         for (ir::Value operand : made.operands) operands.push_back(text(operand));
+        if (changes_nothing(operation.op)) {
+            texts[made.results[0].index] = operands[0];
+            return;
+        }
         define(made.results[0], expression(operation.op, operands, module.is_single));
     }
     void write(const ir::Instruction& made, const ir::ReadInput& read)

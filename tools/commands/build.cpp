@@ -22,7 +22,7 @@ namespace haptel::tools {
 namespace {
 
 struct BuildOptions {
-    std::string what, emit, out, isa = "baseline", precision;
+    std::string what, emit, out, isa = "baseline", precision, depfile;
     bool json = false;
 };
 
@@ -30,6 +30,7 @@ struct BuildOptions {
 struct Library {
     std::vector<std::shared_ptr<const lang::Program>> programs;
     std::vector<emit_c::LibraryTexture> textures;
+    std::vector<std::string> files; // read, with what they import
     bool is_sound = true;
 };
 
@@ -37,6 +38,7 @@ void add_file(Library& library, const TextureTarget& target)
 {
     const lang::CompileResult checked = jit::check_texture_file(target.file, {.only_texture = target.texture});
     fmt::print(stderr, "{}", lang::render(checked.diagnostics.all(), checked.sources, stderr_has_color()));
+    library.files.insert(library.files.end(), checked.files.begin(), checked.files.end());
     if (!checked.program) {
         library.is_sound = false;
         return;
@@ -141,6 +143,27 @@ const Maker* maker_of(const std::string& name)
     return nullptr;
 }
 
+// A rule as make and ninja read it: the output is older than none of these.
+std::string depfile_of(const Library& library, const BuildOptions& options)
+{
+    const auto escaped = [](const std::string& path) {
+        std::string text;
+        for (const char c : path)
+            text += c == ' ' || c == '#' || c == '\\' ? std::string("\\") + c : c == '$' ? "$$" : std::string(1, c);
+        return text;
+    };
+    std::string rule = escaped(options.out) + ":";
+    for (const std::string& file : library.files) rule += " \\\n " + escaped(file);
+    return rule + "\n";
+}
+
+// Empty, or why not.
+std::string write_output(const std::string& path, std::string_view bytes)
+{
+    const std::string why = write_file(path, bytes);
+    return why.empty() ? "" : fmt::format("{} could not be written: {}", path, why);
+}
+
 Json to_json(const Library& library, const BuildOptions& options, size_t bytes)
 {
     Json textures = Json::array();
@@ -167,9 +190,11 @@ ExitCode build(const BuildOptions& options)
     const Library library = library_of(options.what);
     if (!library.is_sound) return ExitCode::findings;
     const jit::AheadResult made = maker_of(options.emit)->make(library, options);
-    const std::string error = made.error.empty() ? write_file(options.out, made.bytes) : made.error;
+    std::string error = made.error;
+    if (error.empty()) error = write_output(options.out, made.bytes);
+    if (error.empty() && !options.depfile.empty()) error = write_output(options.depfile, depfile_of(library, options));
     if (!error.empty()) {
-        say_error(made.error.empty() ? fmt::format("{} could not be written: {}", options.out, error) : error);
+        say_error(error);
         return ExitCode::findings;
     }
     if (options.json) print_json(to_json(library, options, made.bytes.size()));
@@ -203,6 +228,9 @@ Command build_command(CLI::App& app)
         ->add_option("--precision", options->precision,
                      "Of the code: f64, mixed or f32 [f64 for one point, mixed for many; c: f64]")
         ->check(CLI::IsMember({"f64", "mixed", "f32"}));
+    command
+        ->add_option("--depfile", options->depfile, "Write a rule for make and ninja: the files that it was made from")
+        ->type_name("PATH");
     command->add_flag("--json", options->json, "One JSON object on standard output: what was made");
     set_examples(*command, "  haptel build rock.haptel --emit static -o librock.a\n"
                            "  haptel build rock.haptel --emit header -o rock.h\n"

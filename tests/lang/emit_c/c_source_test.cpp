@@ -280,19 +280,23 @@ TEST_CASE("equal textures give equal text, which asks for no heap and tells its 
     CHECK(text.find("Constant tables: 0 bytes") != text.npos);
 }
 
-TEST_CASE("a microcontroller's compiler takes the text", "[arm]")
+TEST_CASE("a microcontroller's compiler takes the text")
 {
-    const Compiler compiler{"arm-none-eabi-gcc",
-                            "arm-none-eabi-gcc -std=c99 -Os -mcpu=cortex-m4 -mthumb -mfloat-abi=hard"};
-    if (!is_here(compiler)) {
-        WARN("arm-none-eabi-gcc is not here: not tried");
+    const std::string compiler =
+        "arm-none-eabi-gcc -std=c99 -Os -mcpu=cortex-m4 -mthumb -mfloat-abi=hard -mfpu=fpv4-sp-d16 ";
+    if (std::system(("echo '#include <math.h>' | " + compiler + "-E -x c - >/dev/null 2>&1").c_str()) != 0) {
+        WARN("not tried: gcc-arm-none-eabi and libnewlib-arm-none-eabi are not here");
         return;
     }
     const auto program = program_of("n.haptel", "texture n() { return 1mm * fbm(p / 1mm, 4); }");
-    const Folder folder;
-    folder.write("n.c", emit_c::source("n", textures_of(*program), true));
-    const std::string object = folder.file("n.o");
-    CHECK(std::system((compiler.command + std::string(warnings) + "-c '" + folder.file("n.c") + "' -o '" + object +
-                       "' && arm-none-eabi-size '" + object + "'")
-                          .c_str()) == 0);
+    for (const bool is_single : {true, false}) {
+        const Folder folder;
+        folder.write("n.c", emit_c::source("n", textures_of(*program), is_single));
+        REQUIRE(std::system(("cd '" + folder.path.string() + "' && " + compiler + warnings +
+                             " -c n.c && arm-none-eabi-size n.o >size && arm-none-eabi-nm -u n.o >called")
+                                .c_str()) == 0);
+        WARN((is_single ? "in float, bytes:\n" : "in double, bytes:\n") << text_of(folder.path / "size"));
+        const std::string called = text_of(folder.path / "called");
+        for (const char* heap : {"malloc", "free", "memcpy"}) CHECK(called.find(heap) == called.npos);
+    }
 }

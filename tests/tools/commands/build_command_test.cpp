@@ -104,6 +104,19 @@ TEST_CASE("a folder becomes one library, and FILE:NAME one texture of it")
     CHECK(contains(twice.err, "both have a texture 'b'"));
 }
 
+TEST_CASE("a rule for make names all that a library was made from")
+{
+    const Folder folder;
+    folder.write("my part.haptel", "float f(float x) { return 2.0 * x; }\n");
+    const std::string file =
+        folder.write("t.haptel", "import \"my part.haptel\";\ntexture t() { return 1um * f(1.0); }\n");
+    const std::string out = folder.file("t.h"), rule = folder.file("t.d");
+    REQUIRE(run_command("build '" + file + "' --emit header -o '" + out + "' --depfile '" + rule + "'").code == 0);
+    std::string part = folder.file("my part.haptel");
+    part.insert(part.find(' '), "\\");
+    CHECK(read_file(rule) == out + ": \\\n " + file + " \\\n " + part + "\n");
+}
+
 TEST_CASE("what cannot be built leaves the file as it was, and says why")
 {
     const Folder folder;
