@@ -147,32 +147,100 @@ TEST_CASE("C text has the bits of the interpreter, whatever compiles it, and no 
     CHECK(compiled > 0);
 }
 
-TEST_CASE("elementary functions in C have the bits of ours, at any operand")
+TEST_CASE("every operation in C has the bits of the interpreter, at any operand")
 {
-    for (const char* term :
-         {"sin(p.x)",       "cos(p.x)",         "tan(p.x)",     "asin(p.x)", "acos(p.x)",     "atan(p.x)",
-          "atan(p.x, p.y)", "atanpi(p.x, p.y)", "sinh(p.x)",    "cosh(p.x)", "tanh(p.x)",     "asinh(p.x)",
-          "acosh(p.x)",     "atanh(p.x)",       "exp(p.x)",     "exp2(p.x)", "log(p.x)",      "log2(p.x)",
-          "pow(p.x, p.y)",  "sinturn(p.x)",     "costurn(p.x)", "length(p)", "mod(p.x, p.y)", "min(p.x, p.y)"}) {
-        const auto program = program_of("t.haptel", std::string("texture t() { return 1.0 * ") + term + "; }");
-        const ir::Texture& texture = program->module.textures[0];
-        ir::Interpreter<double> interpreter(program->module);
-        ForeignTextures library;
-        library.write("textures.c", emit_c::source("t", textures_of(*program), false));
-        library.open(library_command(c_compilers[0]));
-        const haptel_texture& made = *library.texture("t");
-        const std::vector<double> block(7);
-        std::mt19937_64 random(3);
+    constexpr const char* terms[] = {"sin(p.x)",
+                                     "cos(p.x)",
+                                     "tan(p.x)",
+                                     "asin(p.x)",
+                                     "acos(p.x)",
+                                     "atan(p.x)",
+                                     "atan(p.x, p.y)",
+                                     "atanpi(p.x, p.y)",
+                                     "sinh(p.x)",
+                                     "cosh(p.x)",
+                                     "tanh(p.x)",
+                                     "asinh(p.x)",
+                                     "acosh(p.x)",
+                                     "atanh(p.x)",
+                                     "exp(p.x)",
+                                     "exp2(p.x)",
+                                     "log(p.x)",
+                                     "log2(p.x)",
+                                     "pow(p.x, p.y)",
+                                     "sinturn(p.x)",
+                                     "costurn(p.x)",
+                                     "sqrt(p.x)",
+                                     "length(p.xy)",
+                                     "length(p)",
+                                     "length(vec4(p, p.x))",
+                                     "mod(p.x, p.y)",
+                                     "fract(p.x)",
+                                     "min(p.x, p.y)",
+                                     "max(p.x, p.y)",
+                                     "abs(p.x)",
+                                     "sign(p.x)",
+                                     "floor(p.x)",
+                                     "ceil(p.x)",
+                                     "trunc(p.x)",
+                                     "round(p.x)",
+                                     "p.x < p.y ? p.z : 2.0 * p.z",
+                                     "float(int(p.x))",
+                                     "float(uint(p.x))",
+                                     "float(a + b)",
+                                     "float(a - b)",
+                                     "float(a * b)",
+                                     "float(a / b)",
+                                     "float(a % b)",
+                                     "float(a & b)",
+                                     "float(a | b)",
+                                     "float(a ^ b)",
+                                     "float(a << b)",
+                                     "float(a >> b)",
+                                     "float(min(a, b))",
+                                     "float(max(a, b))",
+                                     "float(c / d)",
+                                     "float(c % d)",
+                                     "float(c >> d)",
+                                     "float(min(c, d))",
+                                     "float(max(c, d))",
+                                     "float(int(c))",
+                                     "a < b ? 1.0 : 0.0",
+                                     "c < d ? 1.0 : 0.0",
+                                     "a == b || c <= d ? 1.0 : 0.0",
+                                     "a != b && !(a <= b) ? 1.0 : 0.0",
+                                     "(a < b) != (c < d) ? 1.0 : 0.0"};
+    std::string text;
+    for (size_t i = 0; i < std::size(terms); ++i)
+        text += "texture t" + std::to_string(i) + "(int a = 1, int b = 1, uint c = 1u, uint d = 1u) { return 1.0 * (" +
+                terms[i] + "); }\n";
+    const auto program = program_of("t.haptel", text);
+    ForeignTextures library;
+    library.write("textures.c", emit_c::source("t", textures_of(*program), false));
+    library.open(library_command(c_compilers[0]));
+    ir::Interpreter<double> interpreter(program->module);
+    std::mt19937_64 random(3);
+    constexpr double edges[] = {0.0, -0.0, 1, -1, 0.5, -0.5, 2, 1e22, 4294967296.0, HUGE_VAL, -HUGE_VAL, NAN};
+    constexpr uint32_t words[] = {0, 1, ~0u, 0x80000000u, 0x7fffffffu, 31, 33};
+    for (const ir::Texture& texture : program->module.textures) {
         size_t different = 0;
-        for (int i = 0; i < 4000; ++i) {
+        for (int i = 0; i < 3000; ++i) {
             haptel_point point{};
             for (double& number : point.p)
-                number = i % 2 ? std::bit_cast<double>(random()) : std::uniform_real_distribution(-4.0, 4.0)(random);
+                number = i % 3 == 0   ? std::bit_cast<double>(random())
+                         : i % 3 == 1 ? std::uniform_real_distribution(-4.0, 4.0)(random)
+                                      : edges[random() % std::size(edges)];
+            std::vector<double> block(texture.block_size / sizeof(double));
+            for (const ir::Parameter& parameter : texture.parameters) {
+                const uint32_t word =
+                    random() % 2 ? static_cast<uint32_t>(random()) : words[random() % std::size(words)];
+                std::memcpy(reinterpret_cast<char*>(block.data()) + parameter.offset, &word, sizeof word);
+            }
             haptel_sample sample = blank_sample;
-            made.height_gradient(&point, block.data(), &sample);
+            library.texture(texture.name)->height_gradient(&point, block.data(), &sample);
             different += !same_samples(sample, expected(interpreter, texture, point, block, true));
         }
-        CAPTURE(term);
+        CAPTURE(terms[&texture - program->module.textures.data()]);
         CHECK(different == 0);
     }
 }
