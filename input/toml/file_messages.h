@@ -12,8 +12,8 @@
 namespace haptel::input {
 
 // Messages about one file: "FILE:LINE:COLUMN: error: ...", one per line, in the order of the file. Of a file that is
-// wrong all over the first ones are kept, none longer than a screen, and the others are counted. Without a file they are
-// about a scene that a program made, whose lines are its objects: "object 2: error: ...", "scene: error: ...".
+// wrong all over the first ones are kept, none longer than a screen, and the others are counted. Without a file they
+// are about a scene that a program made, whose lines are its objects: "object 2: error: ...", "scene: error: ...".
 class FileMessages {
 public:
     static constexpr std::size_t messages_max = 200, message_bytes_max = 2000;

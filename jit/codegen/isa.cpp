@@ -3,6 +3,7 @@
 #include "jit/codegen/llvm.h"
 
 #include <algorithm>
+#include <llvm/TargetParser/Host.h>
 #include <vector>
 
 namespace haptel::jit {
@@ -51,6 +52,33 @@ std::string restrict_to_isa(llvm::orc::JITTargetMachineBuilder& host, std::strin
     return "HAPTEL_ISA is '" + std::string(name) +
            (is_known ? "', which this machine has not: " : "', which is no instruction set that Haptel knows: ") +
            "it has " + choices + "host";
+}
+
+std::optional<llvm::orc::JITTargetMachineBuilder> machine_with_isa(std::string_view name, std::string& error)
+{
+    const llvm::Triple host(llvm::sys::getProcessTriple());
+    const auto fits = [&](const Isa& isa) {
+        return name == isa.name ? name != "baseline" || isa.architecture == host.getArch()
+                                : name == "aarch64" && isa.architecture == llvm::Triple::aarch64;
+    };
+    const Isa* const found = std::ranges::find_if(known, fits);
+    if (found == std::end(known)) {
+        error = "'" + std::string(name) +
+                "' is no instruction set that Haptel builds for: expected baseline, avx2, "
+                "avx512 or aarch64";
+        return {};
+    }
+    llvm::Triple triple = host;
+    if (found->architecture != host.getArch())
+        triple = llvm::Triple(llvm::Triple::getArchTypeName(found->architecture), "unknown", "linux", "gnu");
+    std::string why;
+    if (!llvm::TargetRegistry::lookupTarget(triple.str(), why)) {
+        error = "this LLVM was built without a code generator for " + triple.str() + ": install one that has all";
+        return {};
+    }
+    llvm::orc::JITTargetMachineBuilder machine(triple);
+    machine.setCPU(found->processor);
+    return machine;
 }
 
 Processor processor_of(const llvm::TargetMachine& machine)

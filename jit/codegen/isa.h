@@ -10,6 +10,7 @@
 
 #include "jit/codegen/codegen.h"
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -24,6 +25,10 @@ namespace haptel::jit {
 
 // Leaves to `host`, which describes this processor, only what the named set has. Empty, or why not and what there is.
 std::string restrict_to_isa(llvm::orc::JITTargetMachineBuilder& host, std::string_view name);
+
+// A machine that has the named set and nothing beyond it, for programs that run elsewhere: one of the sets above, or
+// aarch64, the least of that architecture. Nothing, and `error` says why and what there is.
+std::optional<llvm::orc::JITTargetMachineBuilder> machine_with_isa(std::string_view name, std::string& error);
 
 // What generated code may use and should be like on such a machine.
 Processor processor_of(const llvm::TargetMachine& machine);

@@ -25,6 +25,39 @@ haptel_parameter described(const ir::Parameter& parameter)
             parameter.offset,       parameter.value,        parameter.minimum,     parameter.maximum};
 }
 
+lang::CompileOptions language_options(const TextureOptions& options)
+{
+    lang::CompileOptions language{{}, options.load_import, options.only_texture};
+    if (options.standard_library)
+        for (const stdlib::LibraryFile& file : stdlib::library())
+            language.library.push_back({std::string(file.name), std::string(file.text)});
+    return language;
+}
+
+// The engine starts beside the front end of the first text: neither needs the other.
+std::future<void> start_engine()
+{
+    static std::atomic<bool> has_begun{false};
+    return has_begun.exchange(true) ? std::future<void>() : std::async(std::launch::async, [] { engine_info(); });
+}
+
+CompiledTextures with_code(lang::CompileResult checked, const TextureOptions& options)
+{
+    CompiledTextures result{nullptr, std::move(checked.diagnostics), std::move(checked.sources),
+                            std::move(checked.files)};
+    if (!checked.program) return result;
+    std::vector<EntryPoint> entries = entry_points(checked.program->module, options);
+    CodeResult code = compile_code(checked.program->module, entries, {options.effort, options.kernels});
+    if (code.code)
+        result.program = std::make_shared<CompiledProgram>(std::move(checked.program), std::move(entries),
+                                                           std::move(code.code), options.facts_over_ranges);
+    else
+        result.diagnostics.error({}, "no-code", "no machine code could be made: " + code.error);
+    return result;
+}
+
+} // namespace
+
 std::vector<EntryPoint> entry_points(const ir::Module& module, const TextureOptions& options)
 {
     const Entries wanted = options.entries;
@@ -46,17 +79,6 @@ std::vector<EntryPoint> entry_points(const ir::Module& module, const TextureOpti
             {entries[i].name + of_many, entries[i].texture, entries[i].kind, LaneForm::points, of_many_precision});
     return entries;
 }
-
-lang::CompileOptions language_options(const TextureOptions& options)
-{
-    lang::CompileOptions language{{}, options.load_import, options.only_texture};
-    if (options.standard_library)
-        for (const stdlib::LibraryFile& file : stdlib::library())
-            language.library.push_back({std::string(file.name), std::string(file.text)});
-    return language;
-}
-
-} // namespace
 
 CompiledProgram::CompiledProgram(std::shared_ptr<const lang::Program> checked, std::vector<EntryPoint> of_code,
                                  std::shared_ptr<const Code> machine_code, bool has_facts)
@@ -105,37 +127,28 @@ TextureOptions servo_options()
     return {.entries = Entries::height_gradient, .effort = Effort::draft, .iterations_in_lanes = true};
 }
 
-CompiledTextures compile_texture(std::string_view text, const TextureOptions& options)
+lang::CompileResult check_texture_file(const std::string& path, TextureOptions options)
 {
-    // The engine starts beside the front end of the first text: neither needs the other.
-    static std::atomic<bool> has_begun{false};
-    const std::future<void> starting =
-        has_begun.exchange(true) ? std::future<void>() : std::async(std::launch::async, [] { engine_info(); });
-    lang::CompileResult checked = lang::compile({options.name, std::string(text)}, language_options(options));
-    CompiledTextures result{nullptr, std::move(checked.diagnostics), std::move(checked.sources),
-                            std::move(checked.files)};
-    if (!checked.program) return result;
-    std::vector<EntryPoint> entries = entry_points(checked.program->module, options);
-    CodeResult code = compile_code(checked.program->module, entries, {options.effort, options.kernels});
-    if (code.code)
-        result.program = std::make_shared<CompiledProgram>(std::move(checked.program), std::move(entries),
-                                                           std::move(code.code), options.facts_over_ranges);
-    else
-        result.diagnostics.error({}, "no-code", "no machine code could be made: " + code.error);
-    return result;
-}
-
-CompiledTextures compile_texture_file(const std::string& path, TextureOptions options)
-{
-    options.name = path;
     options.load_import = load_beside;
     SourceText source = read_source(path);
-    if (source.error.empty()) return compile_texture(source.text, options);
-    CompiledTextures result;
+    if (source.error.empty()) return lang::compile({path, std::move(source.text)}, language_options(options));
+    lang::CompileResult result;
     result.files = {path};
     result.sources.add({path, {}});
     result.diagnostics.error({}, "unreadable-file", source.error, source.hint);
     return result;
+}
+
+CompiledTextures compile_texture(std::string_view text, const TextureOptions& options)
+{
+    const std::future<void> starting = start_engine();
+    return with_code(lang::compile({options.name, std::string(text)}, language_options(options)), options);
+}
+
+CompiledTextures compile_texture_file(const std::string& path, TextureOptions options)
+{
+    const std::future<void> starting = start_engine();
+    return with_code(check_texture_file(path, options), options);
 }
 
 } // namespace haptel::jit

@@ -95,6 +95,12 @@ struct CompiledTextures {
 
 CompiledTextures compile_texture(std::string_view text, const TextureOptions& options = {});
 
+// The first half of it: what there is to say about the text, and its IR; no code is made.
+lang::CompileResult check_texture_file(const std::string& path, TextureOptions options = {});
+
+// What becomes code of such a program, under these options.
+std::vector<EntryPoint> entry_points(const ir::Module& module, const TextureOptions& options);
+
 // The same of a file; imports are read beside the files that name them. A file that cannot be read is an error at 1:1.
 // `options.name` and `options.load_import` are set from `path`.
 CompiledTextures compile_texture_file(const std::string& path, TextureOptions options = {});

@@ -1,6 +1,7 @@
 // Angles of any size as quarter turns: the product with so many bits of 2 / pi that all which count are exact.
 #include "lang/math/elementary_constants.h"
 #include "lang/math/elementary_pair.h"
+#include "lang/math/two_over_pi.h"
 
 #include <limits>
 
@@ -9,30 +10,6 @@ namespace {
 
 __extension__ using Wide = unsigned __int128;
 using Real = Number<double>;
-
-// After 64 bits of zeros, 2 / pi to 1344 bits: those that a double of 1023 as its exponent can meet, and 192 more.
-constexpr uint64_t two_over_pi_words[] = {0,
-                                          0xa2f9836e4e441529,
-                                          0xfc2757d1f534ddc0,
-                                          0xdb6295993c439041,
-                                          0xfe5163abdebbc561,
-                                          0xb7246e3a424dd2e0,
-                                          0x06492eea09d1921c,
-                                          0xfe1deb1cb129a73e,
-                                          0xe88235f52ebb4484,
-                                          0xe99c7026b45f7e41,
-                                          0x3991d639835339f4,
-                                          0x9c845f8bbdf9283b,
-                                          0x1ff897ffde05980f,
-                                          0xef2f118b5a0a6d1f,
-                                          0x6d367ecf27cb09b7,
-                                          0x4f463f669e5fea2d,
-                                          0x7527bac7ebe5f17b,
-                                          0x3d0739f78a5292ea,
-                                          0x6bfb5fb11f8d5d08,
-                                          0x56033046fc7b6bab,
-                                          0xf0cfbc209af4361d,
-                                          0xa9e391615ee61b08};
 
 // 64 bits of them, from the bit of that number.
 uint64_t bits_from(int first)
@@ -71,10 +48,10 @@ Angle<Real> reduced(double angle)
     const double sign = is_beyond_half ? -1 : 1;
     const Real high = std::ldexp(sign * static_cast<double>(high_part), -high_bits - zeros),
                low = std::ldexp(sign * static_cast<double>(low_part), -high_bits - 64 - zeros);
-    // times pi / 2, of which the upper part is short
+    // times pi / 2
     constexpr auto& quarter = Constants<double>::quarter_turn;
     const Pair<Real> part = halves(Pair<Real>{high, Real(0)});
-    constexpr double upper = 0x1.921fb5p+0, rest = (quarter[0] - upper) + quarter[1];
+    constexpr double upper = quarter_turn_upper, rest = (quarter[0] - upper) + quarter[1];
     const Real others = part.low * upper + (high * rest + low * upper);
     const Pair<Real> product = exact_sum_of_ordered(part.high * upper, others);
     return {static_cast<double>(quarters), product.high, product.low};

@@ -9,10 +9,10 @@ set -euo pipefail
 # those of rooms before it; '.' is the house's own folder. '!' refuses what a later word would allow.
 houses=(
     'input: . toml | lang/text/near_name.h'
-    'lang: abi text math ir ir/run ir/derive ir/bounds syntax format program lower check check/dimension . |'
+    'lang: abi text math ir ir/run ir/derive ir/bounds emit_c syntax format program lower check check/dimension . |'
     'libraries: . package | input lang/abi lang/text/near_name.h'
     'stdlib: . |'
-    'jit: codegen engine picture texture live check | !libraries/package libraries input lang stdlib'
+    'jit: codegen engine picture texture ahead live check | !libraries/package libraries input lang stdlib'
     'runtime: process geometry hand surface surface/build contact texture scene force files render servo | input lang/abi lang/text/near_name.h'
     'device: . | !runtime/files runtime lang/abi lang/text/near_name.h'
     'api: . | include/haptel input/toml runtime device/device_factory.h lang/abi lang/parameter_value.h lang/text/near_name.h'
