@@ -1,5 +1,6 @@
 // haptel install: a library from an archive or a folder, put where imports find it.
 #include "libraries/package/install.h"
+#include "libraries/lock.h"
 #include "libraries/package/archive.h"
 #include "tools/commands/command.h"
 #include "tools/library/library_place.h"
@@ -41,9 +42,12 @@ Installing install(const InstallOptions& options, const LibraryPlace& place)
         made.messages = options.what + ": error: " + why + "\n";
         return made;
     };
-    if (place.folder.empty()) return refused("there is no HOME to install it in: haptel install --project");
+    if (place.folder.empty()) return refused(no_place);
     std::string missing = missing_dependency(made.package->manifest, libraries::search_path(place.project));
     if (!missing.empty()) return refused(missing);
+    const std::string unreadable =
+        place.is_project ? libraries::read_lock_file(place.project / libraries::lock_name).fault : "";
+    if (!unreadable.empty()) return refused(unreadable);
     made.done = libraries::install(*made.package, place.folder);
     if (made.done.folder.empty()) return refused(made.done.why);
     if (place.is_project)
@@ -64,7 +68,7 @@ ExitCode run(const InstallOptions& options)
                     {"version", of_package([](const auto& manifest) { return to_text(manifest.version); })},
                     {"folder", is_done ? Json(made.done.folder.string()) : Json(nullptr)},
                     {"was_there", made.done.was_there},
-                    {"problem", is_done ? Json(nullptr) : Json(made.messages)}});
+                    {"problems", lines_of(made.messages)}});
     } else if (is_done) {
         fmt::print("{}\n", made.done.folder.string());
         const libraries::Manifest& manifest = made.package->manifest;

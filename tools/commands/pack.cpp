@@ -65,12 +65,10 @@ Packed pack(const PackOptions& options)
 
 Json to_json(const Packed& made)
 {
-    Json textures = Json::array(), problems = Json::array();
+    Json textures = Json::array();
     for (const InspectedTexture& texture : made.inspection.textures)
         textures.push_back(
             {{"file", texture.file}, {"name", texture.name}, {"doc", texture.doc}, {"preview", texture.preview}});
-    for (std::string rest = made.messages; !rest.empty(); rest.erase(0, rest.find('\n') + 1))
-        problems.push_back(rest.substr(0, rest.find('\n')));
     const auto of_package = [&](auto value) { return made.package ? Json(value(*made.package)) : Json(nullptr); };
     const auto of_archive = [&](Json value) { return made.out.empty() ? Json(nullptr) : std::move(value); };
     return {{"name", of_package([](const auto& package) { return package.manifest.name; })},
@@ -79,7 +77,7 @@ Json to_json(const Packed& made)
             {"bytes", of_archive(made.bytes.size())},
             {"sha256", of_archive(libraries::sha256(made.bytes))},
             {"textures", std::move(textures)},
-            {"problems", std::move(problems)}};
+            {"problems", lines_of(made.messages)}};
 }
 
 ExitCode run(const PackOptions& options)

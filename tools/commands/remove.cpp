@@ -64,16 +64,20 @@ ExitCode run(const RemoveOptions& options)
         return ExitCode::misuse;
     }
     const LibraryPlace place = library_place(options.place);
+    if (place.folder.empty()) {
+        say_error(no_place);
+        return ExitCode::findings;
+    }
     const Chosen chosen = choose(name, version, place);
     std::string why = chosen.why;
-    if (chosen.library) why = libraries::remove(*chosen.library);
     if (why.empty() && place.is_project) why = libraries::unlock(place.project, *chosen.library);
+    if (why.empty()) why = libraries::remove(*chosen.library);
     if (!why.empty()) say_error(why);
     if (options.json)
         print_json({{"name", name},
                     {"version", chosen.library ? Json(to_text(chosen.library->version)) : Json(nullptr)},
                     {"folder", chosen.library ? Json(chosen.library->folder.string()) : Json(nullptr)},
-                    {"problem", why.empty() ? Json(nullptr) : Json(why)}});
+                    {"problems", lines_of(why)}});
     else if (why.empty())
         fmt::print("{} {} is gone from {}\n", name, to_text(chosen.library->version), place.folder.string());
     return why.empty() ? ExitCode::fine : ExitCode::findings;

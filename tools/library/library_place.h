@@ -13,10 +13,11 @@ struct PlaceOptions {
 void add_place(CLI::App& app, PlaceOptions& place);
 
 struct LibraryPlace {
-    std::filesystem::path folder;  // of the libraries; empty: there is none
+    std::filesystem::path folder;  // of the libraries; empty: there is none, see no_place
     std::filesystem::path project; // that the working directory belongs to, or may become
     bool is_project = false;
 };
+inline constexpr const char* no_place = "there is no HOME where libraries could be: give --project";
 LibraryPlace library_place(const PlaceOptions& options);
 
 } // namespace haptel::tools

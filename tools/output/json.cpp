@@ -1,5 +1,6 @@
 #include "tools/output/json.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -8,6 +9,17 @@ namespace haptel::tools {
 Json finite_or_null(double value)
 {
     return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json lines_of(const std::string& text)
+{
+    Json lines = Json::array();
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        lines.push_back(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return lines;
 }
 
 std::string to_text(const Json& json)

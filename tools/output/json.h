@@ -21,6 +21,9 @@ Json value_or_null(const std::optional<T>& value)
     return value ? Json(*value) : Json(nullptr);
 }
 
+// Each line of a text.
+Json lines_of(const std::string& text);
+
 // Indented text without a final newline; bytes that are no UTF-8 become U+FFFD.
 std::string to_text(const Json& json);
 

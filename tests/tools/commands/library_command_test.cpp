@@ -144,9 +144,19 @@ TEST_CASE("hostile archives are refused, and nothing is written")
         ++tried;
     }
     CHECK(tried >= 60);
+    const std::string homeless = "cd '" + root.work.string() + "' && env -u HOME -u XDG_DATA_HOME ";
+    write_library(root, "wood/1.0.0", "wood", "1.0.0", "1"); // as where libraries are installed
+    for (const char* const command : {"install sound.haptlib", "remove wood"}) {
+        const auto before = root.state();
+        const Ran ran = run_command(command, homeless);
+        CHECK(ran.code == 1);
+        CHECK(contains(ran.err, "there is no HOME"));
+        CHECK((root.state() == before));
+    }
     const Json json = root.json("install evil.haptlib");
     CHECK(json["folder"].is_null());
-    CHECK(contains(json["problem"], "evil.haptlib"));
+    REQUIRE(json["problems"].size() == 1);
+    CHECK(contains(json["problems"][0], "evil.haptlib"));
     CHECK(contains(root.run("install none.haptlib").err, "none.haptlib: error: it does not exist"));
 }
 
@@ -190,7 +200,7 @@ TEST_CASE("two major versions stand side by side, each for who needs it; a confl
     CHECK(contains(root.run("remove woood").err, "did you mean 'wood'?"));
     CHECK(root.run("remove wood@2").code == 2);
     CHECK(root.run("remove ../wood").code == 2);
-    CHECK(root.json("remove wood@1.2.0")["problem"].is_null());
+    CHECK(root.json("remove wood@1.2.0")["problems"].empty());
     ran = root.run("check both.haptel");
     CHECK(ran.code == 1);
     CHECK(contains(ran.err, "library 'old' needs wood 1.1.0 or one that can take its place, and there is 2.0.0 in "));
@@ -218,6 +228,13 @@ TEST_CASE("a project has libraries of its own, and a lock that holds it to them"
     CHECK(!contains(read_file(root.work / "project/haptel.lock"), "wood"));
     CHECK(height() == "height_m 0.002");
     CHECK(root.run("install ../wood1 --project --user", "project").code == 2);
+
+    root.write("project/haptel.lock", "what\n");
+    const auto before = root.state();
+    const Ran refused = root.run("install ../wood1 --project", "project");
+    CHECK(refused.code == 1);
+    CHECK(contains(refused.err, "haptel.lock:1:"));
+    CHECK((root.state() == before));
 }
 
 TEST_CASE("an installed file that is edited is felt at once")

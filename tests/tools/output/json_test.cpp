@@ -28,3 +28,10 @@ TEST_CASE("what is not finite is null, numbers round-trip, and bytes that are no
     CHECK(back.begin().key() == "z_first"); // in the order in which they were added
     CHECK(text.find("Infinity") == std::string::npos);
 }
+
+TEST_CASE("the lines of a text are its JSON array, with a line break at its end or without")
+{
+    CHECK(lines_of("") == Json::array());
+    CHECK(lines_of("a\n\nb") == Json({"a", "", "b"}));
+    CHECK(lines_of("a\nb\n") == Json({"a", "b"}));
+}
