@@ -8,7 +8,7 @@ build=$1 source=$2 folder=$3 compiler=$4
 fail() { printf 'installed.sh: %s\n' "$*" >&2; exit 1; }
 
 rm -rf "$folder"
-for part in runtime compiler development; do
+for part in runtime compiler tools development; do
     cmake --install "$build" --prefix "$folder/root" --component "$part" >"$folder.log" || { cat "$folder.log"; exit 1; }
 done
 root=$folder/root
@@ -36,9 +36,9 @@ export PKG_CONFIG_PATH
 PKG_CONFIG_PATH=$(find "$root" -type d -name pkgconfig)
 libraries=$(dirname "$PKG_CONFIG_PATH")
 # shellcheck disable=SC2046
-"$compiler" -std=c++20 "$source/examples/library/own_loop.cpp" -o "$folder/by_pkg_config" \
-    $(pkg-config --define-variable=prefix="$root" --cflags --libs haptel)
-LD_LIBRARY_PATH=$libraries "$folder/by_pkg_config" >/dev/null || fail "the program by pkg-config failed"
+"$compiler" -std=c++20 "$source/examples/library/ball.cpp" -o "$folder/by_pkg_config" \
+    $(pkg-config --define-variable=prefix="$root" --cflags --libs haptel-compiler)
+LD_LIBRARY_PATH=$libraries "$folder/by_pkg_config" "$source/examples/textures/stone.haptel:stone" >/dev/null || fail "the program by pkg-config failed"
 
 HAPTEL_LIBRARIES=$libraries PYTHONPATH=$(dirname "$(find "$root" -name haptel.py)") PYTHONDONTWRITEBYTECODE=1 \
     python3 "$source/tests/api/python_test.py" || fail "the Python module failed"

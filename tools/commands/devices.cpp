@@ -104,7 +104,7 @@ ExitCode open_and_look(const DevicesOptions& options)
     const glm::dvec3 range_m = seen.most_m - seen.least_m;
     if (options.json) {
         print_json({{"device", info.name},
-                    {"axes", to_json(info.axes)},
+                    {"axes", axes_json(info.axes)},
                     {"force_max_n", info.force_max_n},
                     {"reads", seen.reads},
                     {"poses", seen.poses},
@@ -150,7 +150,7 @@ Json json_of(const ListedDevice& one)
             {"state", name_of(one.state)},
             {"reason", said(one.refused.reason)},
             {"cure", said(one.refused.cure)},
-            {"axes", one.axes ? to_json(*one.axes) : Json(nullptr)},
+            {"axes", one.axes ? axes_json(*one.axes) : Json(nullptr)},
             {"rate_hz", known(one.rate_hz)},
             {"force_max_n", known(one.force_max_n)}};
 }

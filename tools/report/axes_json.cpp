@@ -16,7 +16,7 @@ Json names_of(const glm::bvec3& axes)
 
 } // namespace
 
-Json to_json(const runtime::DeviceAxes& axes)
+Json axes_json(const runtime::DeviceAxes& axes)
 {
     return {{"sensed", names_of(axes.senses)}, {"pushed", names_of(axes.pushes)}};
 }

@@ -7,6 +7,6 @@
 namespace haptel::tools {
 
 // {"sensed": ["x"], "pushed": ["x"]}
-Json to_json(const runtime::DeviceAxes& axes);
+Json axes_json(const runtime::DeviceAxes& axes);
 
 } // namespace haptel::tools

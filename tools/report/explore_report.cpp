@@ -94,7 +94,7 @@ void add(Json& json, const HandOutcome& hand)
 {
     const runtime::ServoReport& servo = hand.servo;
     json["device"] = hand.device.name;
-    json["axes"] = to_json(hand.device.axes);
+    json["axes"] = axes_json(hand.device.axes);
     json["seconds"] = servo.seconds;
     json["rate_hz"] = servo.rate_hz;
     json["ticks"] = servo.ticks;

@@ -90,8 +90,8 @@ TEST_CASE("a texture lower than two position steps of the device is told, one th
     const auto outcome_of = [](double height_m, double resolution_m, double scale) {
         ExploreOutcome outcome;
         HandOutcome& hand = outcome.hands.emplace_back();
-        hand.device = "simulated:premium";
-        hand.position_resolution_m = resolution_m;
+        hand.device.name = "simulated:premium";
+        hand.device.position_resolution_m = resolution_m;
         TickRecord above;
         above.height_m = 1; // not touched: no height was felt
         hand.heights.add(above, scale);
