@@ -21,7 +21,7 @@ houses=(
 
 # Which folders alone may include a library.
 declare -A home=(
-    [llvm/]='jit tests/jit' [llvm-c/]='jit' [libusb]='device' [toml++/]='runtime/files'
+    [llvm/]='jit' [llvm-c/]='jit' [libusb]='device' [toml++/]='runtime/files'
     [assimp/]='runtime/files' [boost/]='lang/math device/inverse3 tests' [stb/]='jit/picture tests' [tiff]='jit/picture tests'
     [OpenEXR/]='jit/picture' [Imath/]='jit/picture' [CLI/]='tools' [cairo]='tools/plot'
     [nlohmann/]='tools device/inverse3 tests bench' [sndfile]='device tests' [alsa/]='device'
