@@ -221,7 +221,7 @@ private:
     }
 };
 
-// A chain of functions recurses here as deep as it is long, which `verify` bounds.
+// Recurses as deep as functions call each other, which is 128 at most (lang/check/call_graph.cpp).
 const ModuleText::Named& ModuleText::function(uint32_t index)
 {
     if (const auto known = written.find(index); known != written.end()) return known->second;

@@ -18,7 +18,7 @@ public:
     {
     }
 
-    // A haptel_entry: the function and all that it calls follow in text(). Returns its name.
+    // The name of a haptel_entry, which then stands in functions() with all that it calls.
     std::string entry(const LibraryTexture& library_texture, bool with_gradient);
 
     const ir::Module* source() const { return &module; }

@@ -25,7 +25,7 @@ houses=(
 
 # Which folders alone may include a library.
 declare -A home=(
-    [llvm/]='jit tests/jit' [llvm-c/]='jit' [libusb]='device' [toml++/]='input/toml'
+    [llvm/]='jit' [llvm-c/]='jit' [libusb]='device' [toml++/]='input/toml'
     [assimp/]='runtime/files' [boost/]='lang/math device/inverse3 tests' [stb/]='jit/picture tests' [tiff]='jit/picture tests'
     [OpenEXR/]='jit/picture' [Imath/]='jit/picture' [CLI/]='tools' [cairo]='tools/plot'
     [haptel/]='include/haptel api examples/library tests/api'
