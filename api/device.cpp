@@ -31,6 +31,7 @@ public:
     {
         return status_of(device_->write(from_glm(force_n), from_glm(torque_n_m)));
     }
+    void write_grip(double grip_force_n) noexcept override { device_->write_grip(grip_force_n); }
     void stop() noexcept override { device_->stop(); }
 
 private:

@@ -51,6 +51,7 @@ Force Renderer::tick(const Pose& pose, uint64_t periods) noexcept
     Force force;
     force.force_n = from_glm(result.force_n);
     force.torque_n_m = from_glm(result.torque_n_m);
+    force.grip_force_n = result.grip_force_n;
     force.contacts = result.contacts;
     force.depth_m = result.depth_m;
     force.height_m = result.height_m;

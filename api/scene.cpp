@@ -26,6 +26,7 @@ const TextureResolver& resolver_of(const TextureSource& textures)
 // From here on set() reaches the slot that the servos read.
 void connect(Object::State& object, const runtime::SceneObject& built, const TextureSource& textures)
 {
+    const std::lock_guard lock(object.mutex);
     object.textures = textures;
     object.slot = built.texture;
     object.request = built.request;
@@ -54,6 +55,18 @@ runtime::ProbeSettings probe_of(const Probe& probe)
     return settings;
 }
 
+// Repair leaves out what does not fit, which is no help to who meant it.
+void check_mesh(const runtime::Mesh& mesh, const toml::source_region& at, FileMessages& messages)
+{
+    const auto check = [&](std::string_view name, size_t found, std::string_view of, size_t wanted) {
+        if (found != 0 && found != wanted)
+            messages.error(at, "`" + std::string(name) + "` must be one per " + std::string(of) + ", " +
+                                   std::to_string(wanted) + ", or empty, found " + std::to_string(found));
+    };
+    check("uv", mesh.uv.size(), "position", mesh.positions_m.size());
+    check("smoothing_groups", mesh.smoothing_groups.size(), "triangle", mesh.triangles.size());
+}
+
 // Of what the textures are asked for, before anything is built.
 void check(const runtime::SceneText& text, FileMessages& messages)
 {
@@ -69,6 +82,10 @@ void check(const runtime::SceneText& text, FileMessages& messages)
         material_fields(object.object.material, runtime::RangeCheck(broken_here));
         check_material(object.object.material, broken_here);
         placement_fields(object.object.placement, runtime::RangeCheck(broken_here));
+        if (!(object.size_m >= 0 && object.size_m <= 1000))
+            messages.error(object.mesh_at,
+                           "`size_m` must be from 0 to 1000, found " + runtime::shortest(object.size_m));
+        if (object.own_mesh) check_mesh(*object.own_mesh, object.mesh_at, messages);
         if (const std::string fault = placement_fault(object.object.placement); !fault.empty())
             messages.error(object.mesh_at, fault);
     }
@@ -103,13 +120,13 @@ std::string Object::set(const std::string& parameter, const std::string& value)
     if (!state_->slot) return "the scene is not built";
     if (!state_->request) return "the object has no texture";
     TextureRequest changed = *state_->request;
-    const auto known = std::ranges::find(changed.parameters, parameter, &std::pair<std::string, std::string>::first);
-    if (known == changed.parameters.end())
-        changed.parameters.emplace_back(parameter, value);
-    else
-        known->second = value;
-    TextureResult made = resolver_of(state_->textures)(changed);
-    if (!made.binding) return made.diagnostics;
+    std::erase_if(changed.parameters, [&](const auto& known) { return known.first == parameter; });
+    changed.parameters.emplace_back(parameter, value); // the last counts, of a vector and its components too
+    TextureResult made = state_->textures.implementation()->rebind(changed);
+    const bool may_wait = state_->followed && made.diagnostics.empty(); // until the file is mended
+    if (!made.binding && !may_wait)
+        return made.diagnostics.empty() ? "the texture's file has mistakes now, and was compiled again: mend it first"
+                                        : made.diagnostics;
     if (state_->followed)
         state_->followed->set(parameter, value);
     else if (std::string fault = state_->slot->publish(std::move(*made.binding)); !fault.empty())
@@ -179,7 +196,6 @@ Object SceneBuilder::add_file(std::string file, double size_m, const Material& m
 
 Scene SceneBuilder::finish(const SceneSettings& settings)
 {
-    runtime::start_fork_server(); // strangers' mesh files are read by another process
     auto state = std::make_shared<Scene::State>();
     FileMessages messages{{}};
     runtime::SceneText text;
@@ -188,17 +204,19 @@ Scene SceneBuilder::finish(const SceneSettings& settings)
     text.devices.emplace_back().probe = text.probe;
     for (const auto& object : state_->objects) text.objects.push_back(std::move(object->text));
     check(text, messages);
+    const auto is_file = [](const runtime::ObjectText& object) { return !object.mesh.empty(); };
+    if (std::ranges::any_of(text.objects, is_file)) runtime::start_fork_server(); // which reads what strangers wrote
     try {
         if (!messages.any_error())
             state->scene =
                 runtime::assemble_scene(std::move(text), ".", resolver_of(state_->textures), {}, nullptr, {}, messages)
                     .scene;
-    } catch (const std::exception& problem) { // no memory
+        for (std::size_t i = 0; state->scene && i < state_->objects.size(); ++i)
+            connect(*state_->objects[i], state->scene->objects[i], state_->textures);
+    } catch (const std::exception& problem) { // no memory, no thread
+        state->scene = nullptr;
         messages.error(std::string("the scene could not be built: ") + problem.what());
     }
-    if (state->scene)
-        for (std::size_t i = 0; i < state_->objects.size(); ++i)
-            connect(*state_->objects[i], state->scene->objects[i], state_->textures);
     state->messages = messages.text();
     if (state->scene) state->objects = std::move(state_->objects);
     state_->objects.clear();

@@ -1,10 +1,12 @@
 #include "api/device_state.h"
 #include "api/scene_state.h"
 #include "runtime/files/open_hands.h"
+#include "runtime/scene/scene_fields.h"
 #include "runtime/servo/servo_thread.h"
 
 #include <haptel/servo.h>
 
+#include <exception>
 #include <utility>
 
 namespace haptel {
@@ -12,10 +14,16 @@ namespace haptel {
 struct Servo::State {
     std::shared_ptr<const Scene::State> scene; // whose textures go on following their files
     std::unique_ptr<runtime::ServoThread> thread;
+    bool is_started = false;
     std::string messages;
 };
 
 namespace {
+
+bool pushes_a_hand(const DeviceSource::Implementation& source)
+{
+    return !source.own && !source.name.starts_with("simulated") && !source.name.starts_with("replay:");
+}
 
 // Devices are opened where the scene's first object lies, as those of a scene file.
 std::vector<runtime::LoadedHand> open_for(const std::shared_ptr<const runtime::Scene>& scene,
@@ -46,6 +54,15 @@ Servo::Servo(const Scene& scene, DeviceSource device, const ServoOptions& option
         state_->messages = "error: a servo needs a device: open_device() or own_device()\n";
         return;
     }
+    if (!(options.seconds >= 0)) {
+        state_->messages = "error: `seconds` must be at least 0, found " + runtime::shortest(options.seconds) + "\n";
+        return;
+    }
+    if (options.virtual_time && pushes_a_hand(*source)) {
+        state_->messages =
+            "error: `virtual_time` is for simulated devices, and '" + source->name + "' pushes a hand: leave it out\n";
+        return;
+    }
     input::FileMessages messages{{}};
     std::vector<runtime::LoadedHand> hands = open_for(scene.state().scene, *source, messages);
     state_->messages = messages.text();
@@ -53,6 +70,7 @@ Servo::Servo(const Scene& scene, DeviceSource device, const ServoOptions& option
     runtime::ServoOptions own;
     own.hand = hands.front().settings;
     if (options.seconds > 0) own.seconds = options.seconds;
+    own.ask_for_real_time = options.ask_for_real_time;
     own.clock = options.virtual_time ? runtime::ServoClock::virtual_time : runtime::ServoClock::wall;
     state_->scene = scene.share();
     state_->thread = std::make_unique<runtime::ServoThread>(scene.state().scene, std::move(hands.front().device), own);
@@ -74,7 +92,13 @@ const std::string& Servo::messages() const
 
 void Servo::start()
 {
-    if (state_->thread) state_->thread->start();
+    if (!state_->thread || std::exchange(state_->is_started, true)) return;
+    try {
+        state_->thread->start();
+    } catch (const std::exception& problem) { // the system has no thread for it
+        state_->messages += std::string("error: the servo cannot run: ") + problem.what() + "\n";
+        state_->thread.reset();
+    }
 }
 
 void Servo::request_stop()

@@ -20,6 +20,9 @@ public:
 
 struct TextureSource::Implementation {
     TextureResolver resolve;
+    // The same with the program that is in use, for other values: nothing is read but pictures. Nothing, and no
+    // diagnostics: the file was compiled again and has mistakes.
+    TextureResolver rebind;
     // Empty: its textures do not follow their files. What is published comes on another thread; the publisher says why
     // it is not used, or nothing.
     std::function<std::unique_ptr<FollowedTexture>(TextureRequest, std::function<std::string(TextureBinding)>)> follow;

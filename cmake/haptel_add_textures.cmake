@@ -16,7 +16,7 @@ function(haptel_add_textures target)
     if(NOT ARG_UNPARSED_ARGUMENTS)
         message(FATAL_ERROR "haptel_add_textures: expected texture files behind ${target}, found none")
     endif()
-    if(TARGET haptel)
+    if(TARGET haptel_tools) # of a build of Haptel itself: no other program has this name
         set(command haptel)
     else()
         find_program(HAPTEL_COMMAND haptel REQUIRED)

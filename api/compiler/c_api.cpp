@@ -38,23 +38,23 @@ int32_t haptel_compiled_ok(const haptel_compiled* compiled)
 
 const char* haptel_compiled_messages(const haptel_compiled* compiled)
 {
-    return compiled->texture.messages().c_str();
+    return compiled ? compiled->texture.messages().c_str() : "error: there is no memory for it\n";
 }
 
 const haptel_texture* haptel_compiled_table(const haptel_compiled* compiled)
 {
-    return compiled->texture ? &compiled->texture.table() : nullptr;
+    return haptel_compiled_ok(compiled) ? &compiled->texture.table() : nullptr;
 }
 
 haptel_facts haptel_compiled_facts(const haptel_compiled* compiled)
 {
-    return compiled->texture.facts();
+    return haptel_compiled_ok(compiled) ? compiled->texture.facts() : haptel_facts{};
 }
 
 int32_t haptel_evaluate(const haptel_compiled* compiled, const double* points_m, size_t count, double* heights_m,
                         double* gradients)
 {
-    if (!compiled->texture) return 0;
+    if (!haptel_compiled_ok(compiled)) return 0;
     constexpr size_t at_once = 256;
     std::array<haptel::Vec3, at_once> points_of_some, gradients_of_some;
     for (size_t first = 0; first < count; first += at_once) {

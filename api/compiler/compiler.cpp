@@ -31,6 +31,7 @@ TextureSource compiler(CompilerOptions options)
 {
     auto source = std::make_shared<TextureSource::Implementation>();
     source->resolve = jit::make_resolver();
+    source->rebind = jit::make_rebinder();
     if (options.follow_files)
         source->follow = [report = std::move(options.report)](TextureRequest request,
                                                               std::function<std::string(TextureBinding)> publish) {

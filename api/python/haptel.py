@@ -11,6 +11,7 @@ Points are triples in metres: a list of them, or any array of doubles of shape (
 import array
 import ctypes
 import os
+import time
 
 _double, _size, _text = ctypes.c_double, ctypes.c_size_t, ctypes.c_char_p
 
@@ -32,14 +33,20 @@ class Material(ctypes.Structure):
 
 
 class Settings(ctypes.Structure):
-    _fields_ = [("rate_hz", _double), ("force_limit_n", _double), ("force_rise_s", _double)]
+    _fields_ = [("rate_hz", _double), ("force_limit_n", _double), ("v_max_m_per_s", _double), ("force_rise_s", _double),
+                ("force_model", ctypes.c_int32), ("probe", ctypes.c_int32), ("probe_length_m", _double),
+                ("probe_radius_m", _double)]
+    force_models = ("displaced", "paper", "paper_unit", "ho99", "lateral")
+    probes = ("point", "sphere", "stylus", "gripper")
 
-    def __init__(self, rate_hz=1000, force_limit_n=7, force_rise_s=0.1):
-        super().__init__(rate_hz, force_limit_n, force_rise_s)
+    def __init__(self, rate_hz=1000, force_limit_n=7, v_max_m_per_s=0.3, force_rise_s=0.1, force_model="displaced",
+                 probe="point", probe_length_m=0.15, probe_radius_m=0):
+        super().__init__(rate_hz, force_limit_n, v_max_m_per_s, force_rise_s, self.force_models.index(force_model),
+                         self.probes.index(probe), probe_length_m, probe_radius_m)
 
 
 class Force(ctypes.Structure):
-    _fields_ = [("force_n", _double * 3), ("torque_n_m", _double * 3), ("depth_m", _double), ("height_m", _double),
+    _fields_ = [("force_n", _double * 3), ("torque_n_m", _double * 3), ("grip_force_n", _double), ("depth_m", _double), ("height_m", _double),
                 ("contacts", ctypes.c_uint32), ("faults", ctypes.c_uint32)]
 
 
@@ -58,10 +65,10 @@ class Facts(ctypes.Structure):
 def _library(name):
     # HAPTEL_LIBRARIES: the folder of the two, where the system does not find them by itself.
     folder = os.environ.get("HAPTEL_LIBRARIES")
-    return ctypes.CDLL(os.path.join(folder, name) if folder else name, mode=ctypes.RTLD_GLOBAL)
+    return ctypes.CDLL(os.path.join(folder, name) if folder else name)
 
 
-_runtime, _compiler = _library("libhaptel.so.0.1"), _library("libhaptel_compiler.so.0.1")
+_runtime, _compiler = _library("libhaptel.so.@so_version@"), _library("libhaptel_compiler.so.@so_version@")
 
 
 def _declare(library, result, name, *arguments):
@@ -101,11 +108,13 @@ _servo_ok = _declare(_runtime, ctypes.c_int32, "servo_ok", _handle)
 _servo_messages = _declare(_runtime, _text, "servo_messages", _handle)
 _servo_start = _declare(_runtime, None, "servo_start", _handle)
 _servo_request_stop = _declare(_runtime, None, "servo_request_stop", _handle)
+_servo_running = _declare(_runtime, ctypes.c_int32, "servo_running", _handle)
+_servo_stop_reason = _declare(_runtime, _text, "servo_stop_reason", _handle)
 _servo_wait = _declare(_runtime, Report, "servo_wait", _handle)
 _servo_free = _declare(_runtime, None, "servo_free", _handle)
 _renderer_new = _declare(_runtime, _handle, "renderer_new", _handle)
 _renderer_messages = _declare(_runtime, _text, "renderer_messages", _handle)
-_tick = _declare(_runtime, Force, "tick", _handle, _double * 3, _double * 3)
+_tick = _declare(_runtime, Force, "tick", _handle, _double * 3, _double * 3, ctypes.c_uint64)
 _between_ticks = _declare(_runtime, None, "between_ticks", _handle)
 _renderer_free = _declare(_runtime, None, "renderer_free", _handle)
 version = _declare(_runtime, _text, "version")().decode()
@@ -124,6 +133,12 @@ def _three(values):
     return (_double * 3)(*values)
 
 
+def _in_threes(rows, code, what):
+    if any(len(row) != 3 for row in rows):
+        raise Error("expected " + what + " of three numbers each")
+    return array.array(code, (number for row in rows for number in row))
+
+
 class _Owner:
     _handle = None
     _free = None
@@ -134,11 +149,11 @@ class _Owner:
 
 
 class Texture(_Owner):
-    """One texture of a text, with values: Texture(text, "ripple", depth="80um")."""
+    """One texture of a text, with values: Texture(text, "ripple", depth="80um"). `**{"size.x": 1}` sets a component."""
 
     _free = _compiled_free
 
-    def __init__(self, text, name="", **values):
+    def __init__(self, text, name="", /, **values):
         self._handle = _compile(text.encode(), name.encode(), *_named(values))
         if not _compiled_ok(self._handle):
             raise Error(_compiled_messages(self._handle).decode())
@@ -152,14 +167,14 @@ class Texture(_Owner):
         """Heights in metres, and gradients as triples, at points in metres."""
         if hasattr(points, "__array_interface__"):
             import numpy
-            at = numpy.ascontiguousarray(points, dtype=float).reshape(-1, 3)
+            at = numpy.ascontiguousarray(points, dtype=float)
+            if at.ndim != 2 or at.shape[1] != 3:
+                raise Error("expected points of three numbers each")
             heights, gradients = numpy.empty(len(at)), numpy.empty((len(at), 3))
             _evaluate(self._handle, at.ctypes.data, len(at), heights.ctypes.data, gradients.ctypes.data)
             return heights, gradients
-        at = array.array("d", (number for point in points for number in point))
-        count = len(at) // 3
-        if len(at) != 3 * len(points):
-            raise Error("expected points of three numbers each")
+        at = _in_threes(points, "d", "points")
+        count = len(points)
         heights, gradients = array.array("d", bytes(8 * count)), array.array("d", bytes(24 * count))
         _evaluate(self._handle, at.buffer_info()[0], count, heights.buffer_info()[0], gradients.buffer_info()[0])
         return list(heights), [tuple(gradients[3 * i:3 * i + 3]) for i in range(count)]
@@ -176,21 +191,31 @@ class Scene(_Owner):
         if not _scene_ok(handle):
             raise Error(self.messages)
 
-    def set(self, number, **values):
+    def set(self, number, /, **values):
         """Of the texture of the object of that number, from 1: felt from the next tick on."""
         for name, value in values.items():
             refused = _scene_set(self._handle, number, name.encode(), str(value).encode()).decode()
             if refused:
                 raise Error(refused)
 
-    def run(self, device="simulated:premium", seconds=1, virtual_time=True):
-        """Feels it with a device for a while; returns a Report."""
+    def run(self, device="simulated:premium", seconds=1, virtual_time=None):
+        """Feels it with a device for a while, 0: until Ctrl-C; returns a Report.
+
+        A simulated hand lives in virtual time, unless it is not to: as fast as it can, and the same in every run.
+        """
+        if virtual_time is None:
+            virtual_time = seconds > 0 and device.startswith(("simulated", "replay"))
         servo = _servo_new(self._handle, device.encode(), seconds, virtual_time)
         try:
             if not _servo_ok(servo):
                 raise Error(_servo_messages(servo).decode())
             _servo_start(servo)
-            return _servo_wait(servo)
+            while _servo_running(servo):
+                time.sleep(0.001) # here an interrupt is seen, and ends the run
+            report = _servo_wait(servo)
+            if report.faulted:
+                raise Error(_servo_stop_reason(servo).decode())
+            return report
         finally:
             _servo_free(servo)
 
@@ -216,15 +241,14 @@ class SceneBuilder(_Owner):
     def add(self, shape, size_m, material=None, texture="", values=None, position_m=None, rotation_deg=None):
         """A shape ("plane", "box", "sphere", "icosphere", "torus"), or a mesh file, scaled to that size; 0: as it is."""
         own = ctypes.byref(material or Material())
-        number = _add_shape(self._handle, shape.encode(), size_m, own) or _add_file(self._handle, _bytes(shape), size_m,
+        number = _add_shape(self._handle, _bytes(shape), size_m, own) or _add_file(self._handle, _bytes(shape), size_m,
                                                                                    own)
         return self._dress(number, texture, values, position_m, rotation_deg)
 
     def add_mesh(self, positions_m, triangles, material=None, texture="", values=None, position_m=None,
                  rotation_deg=None):
         """Positions as triples of metres, triangles as triples of their indices."""
-        at = array.array("d", (number for point in positions_m for number in point))
-        corners = array.array("I", (index for triangle in triangles for index in triangle))
+        at, corners = _in_threes(positions_m, "d", "positions"), _in_threes(triangles, "I", "triangles")
         number = _add_mesh(self._handle, at.buffer_info()[0], len(at) // 3, corners.buffer_info()[0],
                            len(corners) // 3, ctypes.byref(material or Material()))
         return self._dress(number, texture, values, position_m, rotation_deg)
@@ -232,8 +256,9 @@ class SceneBuilder(_Owner):
     def _dress(self, number, texture, values, position_m, rotation_deg):
         if texture:
             _object_texture(self._handle, number, _bytes(texture), *_named(values))
-        if position_m or rotation_deg:
-            _object_place(self._handle, number, _three(position_m or (0, 0, 0)), _three(rotation_deg or (0, 0, 0)))
+        nowhere = (0, 0, 0)
+        _object_place(self._handle, number, _three(nowhere if position_m is None else position_m),
+                      _three(nowhere if rotation_deg is None else rotation_deg))
         return number
 
     def finish(self, settings=None):
@@ -250,7 +275,7 @@ class Renderer(_Owner):
         if refused := _renderer_messages(self._handle).decode():
             raise Error(refused)
 
-    def tick(self, tip_m, tail_m=(0, 0, 0)):
-        force = _tick(self._handle, _three(tip_m), _three(tail_m))
+    def tick(self, tip_m, tail_m=(0, 0, 0), periods=1):
+        force = _tick(self._handle, _three(tip_m), _three(tail_m), periods)
         _between_ticks(self._handle)
         return force

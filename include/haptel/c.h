@@ -2,8 +2,9 @@
  * (libhaptel_compiler: haptel_compiler, haptel_compile and haptel_evaluate).
  *
  * What a function makes is freed by its haptel_..._free, in any order; null may be freed. Nothing is null but for want
- * of memory: what was refused is made, too, and says why. Text is UTF-8 and valid until its owner is freed or asked
- * again. An object of a scene is known by its number, from 1, in the order of adding. Units are SI.
+ * of memory: what was refused is made, too, and says why. Where a null is given in its place nothing happens. Text is
+ * UTF-8 and valid until its owner is freed. An object of a scene is known by its number, from 1, in the order of
+ * adding. Units are SI.
  */
 #ifndef HAPTEL_C_H
 #define HAPTEL_C_H
@@ -34,11 +35,17 @@ typedef struct {
 } haptel_material;
 
 typedef struct {
-    double rate_hz, force_limit_n, force_rise_s;
+    double rate_hz, force_limit_n;
+    double v_max_m_per_s;                  /* hand speed that textures are band-limited for */
+    double force_rise_s;                   /* after start and interruptions */
+    int32_t force_model;                   /* 0 displaced, 1 paper, 2 paper_unit, 3 ho99, 4 lateral */
+    int32_t probe;                         /* 0 point, 1 sphere, 2 stylus, 3 gripper */
+    double probe_length_m, probe_radius_m; /* of a stylus from tip to tail; of a sphere */
 } haptel_scene_settings;
 
 typedef struct {
     double force_n[3], torque_n_m[3]; /* on the hand; the torque of a stylus about its grip */
+    double grip_force_n;              /* of a gripper: how hard its fingers are pushed apart */
     double depth_m, height_m;         /* below the base surface, of the texture there */
     uint32_t contacts, faults;        /* objects touched; bits, 0: none */
 } haptel_force;
@@ -81,16 +88,19 @@ HAPTEL_API int32_t haptel_object_texture(haptel_builder* builder, uint32_t objec
 HAPTEL_API int32_t haptel_object_place(haptel_builder* builder, uint32_t object, const double position_m[3],
                                        const double rotation_deg[3]);
 
+HAPTEL_API int32_t haptel_object_apart(haptel_builder* builder, uint32_t object); /* not joined to what it meets */
+
 /* Null settings are the default ones. The builder is empty afterwards. */
 HAPTEL_API haptel_scene* haptel_build(haptel_builder* builder, const haptel_scene_settings* settings);
 HAPTEL_API haptel_scene* haptel_load_scene(const char* file, const haptel_source* textures);
 HAPTEL_API int32_t haptel_scene_ok(const haptel_scene* scene); /* 0: the messages say why not */
 HAPTEL_API const char* haptel_scene_messages(const haptel_scene* scene);
-/* Of an object's texture, while it is felt: why not, or an empty text. */
+/* Of an object's texture, while it is felt: why not, or an empty text, until this thread asks again. Any thread. */
 HAPTEL_API const char* haptel_scene_set(haptel_scene* scene, uint32_t object, const char* parameter, const char* value);
 HAPTEL_API void haptel_scene_free(haptel_scene* scene);
 
-/* Null: the default device, "simulated:premium". 0 seconds: until it is asked to stop. */
+/* Null: the default device, "simulated:premium". 0 seconds: until it is asked to stop. Virtual time is for simulated
+ * devices. */
 HAPTEL_API haptel_servo* haptel_servo_new(const haptel_scene* scene, const char* device, double seconds,
                                           int32_t virtual_time);
 HAPTEL_API int32_t haptel_servo_ok(const haptel_servo* servo);
@@ -98,14 +108,16 @@ HAPTEL_API const char* haptel_servo_messages(const haptel_servo* servo);
 HAPTEL_API void haptel_servo_start(haptel_servo* servo);
 HAPTEL_API void haptel_servo_request_stop(haptel_servo* servo);
 HAPTEL_API int32_t haptel_servo_running(const haptel_servo* servo);
-HAPTEL_API haptel_report haptel_servo_wait(haptel_servo* servo); /* for the end */
-HAPTEL_API void haptel_servo_free(haptel_servo* servo);          /* ends the run */
+HAPTEL_API haptel_report haptel_servo_wait(haptel_servo* servo);            /* for the end */
+HAPTEL_API const char* haptel_servo_stop_reason(const haptel_servo* servo); /* once it was waited for */
+HAPTEL_API void haptel_servo_free(haptel_servo* servo);                     /* ends the run */
 
 /* For a loop of one's own: haptel_tick once per period. Neither it nor haptel_between_ticks allocates, locks or waits.
  */
 HAPTEL_API haptel_renderer* haptel_renderer_new(const haptel_scene* scene);
 HAPTEL_API const char* haptel_renderer_messages(const haptel_renderer* renderer); /* why all forces are 0 */
-HAPTEL_API haptel_force haptel_tick(haptel_renderer* renderer, const double tip_m[3], const double tail_m[3]);
+HAPTEL_API haptel_force haptel_tick(haptel_renderer* renderer, const double tip_m[3], const double tail_m[3],
+                                    uint64_t periods); /* that went by: 1, or more where the loop was late */
 HAPTEL_API void haptel_between_ticks(haptel_renderer* renderer);
 HAPTEL_API void haptel_renderer_free(haptel_renderer* renderer);
 

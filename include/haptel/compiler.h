@@ -15,7 +15,9 @@ namespace haptel {
 
 struct CompilerOptions {
     // Textures follow their files: what is saved is felt as soon as it is compiled. A file that is broken, half written
-    // or gone leaves the old texture in the hand, and `report` hears why, on a thread of the compiler's.
+    // or gone leaves the old texture in the hand, and `report` hears why, on a thread of the compiler's, for as long as
+    // there is a scene, a servo, a renderer or an object of it. Whoever lets go of the last waits for a report: it may
+    // neither let go of them nor wait for who does.
     bool follow_files = false;
     std::function<void(std::string_view)> report = {};
 };

@@ -17,19 +17,21 @@ struct Pose {
 enum class DeviceState {
     ok,
     finished,     // nothing more comes: the run ends without alarm
-    not_ready,    // no pose yet: no force is sent
-    disconnected, // the run waits
-    failed,       // the run ends
+    not_ready,    // no pose for now, as while it reconnects: no force is sent, and the run goes on
+    disconnected, // for good: the run ends
+    failed,       // likewise
 };
 
-// A device of your own. read and write are called once per tick by the servo's thread alone: they may not allocate,
-// lock, wait or throw.
+// A device of your own. read, write and write_grip are called in each tick, and once more at the end, by the servo's
+// thread alone: they may not allocate, lock, wait or throw.
 class HAPTEL_API Device {
 public:
     virtual ~Device() = default;
     virtual DeviceState read(Pose& pose) noexcept = 0;
     // On the hand, held until the next call. The torque is about the grip of a stylus.
     virtual DeviceState write(const Vec3& force_n, const Vec3& torque_n_m) noexcept = 0;
+    // Of a gripper alone, before write: how hard its fingers are to be pushed apart.
+    virtual void write_grip(double /*grip_force_n*/) noexcept {}
     virtual void stop() noexcept = 0;                // no force, motors off; at any time
     virtual double force_max_n() const { return 0; } // 0: not known, the scene's limit alone holds
 };

@@ -12,11 +12,12 @@ namespace haptel {
 
 struct Force {
     Vec3 force_n = {};
-    Vec3 torque_n_m = {};  // of a stylus, about its grip
-    uint32_t contacts = 0; // objects touched
-    double depth_m = 0;    // below the base surface
-    double height_m = 0;   // of the texture there
-    uint32_t faults = 0;   // bits; 0: none
+    Vec3 torque_n_m = {};    // of a stylus, about its grip
+    double grip_force_n = 0; // of a gripper: how hard its fingers are pushed apart
+    uint32_t contacts = 0;   // objects touched
+    double depth_m = 0;      // below the base surface
+    double height_m = 0;     // of the texture there
+    uint32_t faults = 0;     // bits; 0: none
 };
 
 class HAPTEL_API Renderer {

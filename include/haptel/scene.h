@@ -52,8 +52,8 @@ public:
     Object& place(const Placement& placement);
     Object& apart(); // with a seam where it meets others; otherwise objects that meet are felt as one
 
-    // Of the texture, while it is felt: the next tick fades to the new value. Nothing is compiled. Returns why not, or
-    // nothing. Any thread but a servo's.
+    // Of the texture, while it is felt: the next tick fades to the new value. Nothing is compiled, nor read from files
+    // but pictures. Returns why not, or nothing. Any thread but a servo's.
     std::string set(const std::string& parameter, const std::string& value);
 
     struct State;
@@ -89,7 +89,7 @@ public:
     SceneBuilder& operator=(SceneBuilder&&) noexcept;
 
     Object add(Mesh mesh, const Material& material = {});
-    // A mesh file; scaled until its largest side has that size, 0: as it is.
+    // A mesh file; scaled until its largest side has that size, at most 1 km; 0: as it is.
     Object add_file(std::string file, double size_m = 0, const Material& material = {});
 
     // Builds all surfaces and textures. Once.

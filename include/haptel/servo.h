@@ -11,8 +11,10 @@
 namespace haptel {
 
 struct ServoOptions {
-    double seconds = 0;        // then it ends; 0: when it is asked to, or its device is at an end
-    bool virtual_time = false; // as fast as it can, the same forces in every run: for simulated devices
+    double seconds = 0;        // >= 0; then it ends; 0: when it is asked to, or its device is at an end
+    bool virtual_time = false; // as fast as it can, the same forces in every run: for simulated devices and your own
+    // Asks the system for real-time priority, and to keep all memory of this program in place.
+    bool ask_for_real_time = true;
 };
 
 struct Report {

@@ -72,4 +72,16 @@ TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache)
     };
 }
 
+TextureResolver make_rebinder(std::shared_ptr<ProgramCache> cache)
+{
+    return [cache = std::move(cache)](const TextureRequest& request) -> TextureResult {
+        const TextureReference reference = split_reference(request.reference, request.folder);
+        const auto compiled = cache->known(reference.file);
+        if (!compiled || !compiled->program) return {};
+        TextureResult result = make_binding(program_of(compiled), reference.texture, request);
+        result.diagnostics = about_file(reference.file, result.diagnostics);
+        return result;
+    };
+}
+
 } // namespace haptel::jit

@@ -55,7 +55,12 @@ ServoThread::~ServoThread()
 void ServoThread::start()
 {
     running_.store(true, std::memory_order_release);
-    thread_ = std::thread([this] { run(); });
+    try {
+        thread_ = std::thread([this] { run(); });
+    } catch (...) { // the system has none
+        running_.store(false, std::memory_order_release);
+        throw;
+    }
 }
 
 std::string ServoThread::publish(std::shared_ptr<const Scene> scene)

@@ -49,7 +49,7 @@ public:
     ServoThread(const ServoThread&) = delete;
     ServoThread& operator=(const ServoThread&) = delete;
 
-    void start(); // once
+    void start(); // once; throws std::system_error where the system has no thread
     void request_stop() noexcept { stop_requested_.store(true, std::memory_order_relaxed); }
     // Waits for the end of the loop and returns what it was like. Valid until destruction.
     const ServoReport& wait();

@@ -66,6 +66,7 @@ TEST_CASE("servo: a program's own device gets its forces, within its own limit, 
         Servo servo{table(), own_device(std::make_unique<Plunger>(forces_n, stopped)), {.virtual_time = true}};
         REQUIRE(servo);
         servo.start();
+        servo.start(); // is nothing
         const Report report = servo.wait();
         CHECK(!report.faulted);
         CHECK(report.contact_ticks > 200);
@@ -94,4 +95,8 @@ TEST_CASE("servo: without a scene or a device nothing runs, and it says why")
     CHECK(contains(none.messages(), "a servo needs a device"));
     Servo unnamed{table(), open_device("")};
     CHECK(!unnamed);
+    Servo backwards{table(), open_device("simulated"), {.seconds = -1}};
+    CHECK(contains(backwards.messages(), "`seconds` must be at least 0, found -1"));
+    Servo hurried{table(), open_device("falcon"), {.seconds = 1, .virtual_time = true}};
+    CHECK(contains(hurried.messages(), "`virtual_time` is for simulated devices"));
 }

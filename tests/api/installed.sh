@@ -8,10 +8,21 @@ build=$1 source=$2 folder=$3 compiler=$4
 fail() { printf 'installed.sh: %s\n' "$*" >&2; exit 1; }
 
 rm -rf "$folder"
-for part in runtime compiler tools development; do
-    cmake --install "$build" --prefix "$folder/root" --component "$part" >"$folder.log" || { cat "$folder.log"; exit 1; }
-done
 root=$folder/root
+install_parts() {
+    for part in "$@"; do
+        cmake --install "$build" --prefix "$root" --component "$part" >"$folder.log" || { cat "$folder.log"; exit 1; }
+    done
+}
+configure() {
+    cmake -S "$source/examples/library" -B "$folder/$1" -DCMAKE_PREFIX_PATH="$root" -DCMAKE_CXX_COMPILER="$compiler" \
+        >"$folder.log" && cmake --build "$folder/$1" >>"$folder.log" || { cat "$folder.log"; exit 1; }
+}
+install_parts runtime tools development
+configure without_compiler
+"$folder/without_compiler/own_loop" || fail "the example with its own loop failed"
+ldd "$folder/without_compiler/own_loop" | grep -i llvm && fail "LLVM is loaded without a compiler"
+install_parts compiler
 
 for header in "$root"/include/haptel/*.h; do
     name=haptel/${header##*/}
@@ -25,19 +36,16 @@ printf '#include <haptel/abi.h>\nint main(void) { return 0; }\n' >"$folder/abi.c
 cc -std=c99 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I"$root/include" "$folder/abi.c"
 cc -std=c99 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I"$root/include" "$source/examples/library/plain.c"
 
-cmake -S "$source/examples/library" -B "$folder/examples" -DCMAKE_PREFIX_PATH="$root" -DCMAKE_CXX_COMPILER="$compiler" \
-    >"$folder.log" && cmake --build "$folder/examples" >>"$folder.log" || { cat "$folder.log"; exit 1; }
-"$folder/examples/own_loop" || fail "the example with its own loop failed"
+configure examples
 "$folder/examples/plain" "$source/examples/textures/stone.haptel:stone" || fail "the example in C failed"
 "$folder/examples/ball" "$source/examples/textures/stone.haptel:stone" || fail "the example of a ball failed"
-LD_LIBRARY_PATH=$root/lib ldd "$folder/examples/own_loop" | grep -i llvm && fail "LLVM is loaded without a compiler"
 
 export PKG_CONFIG_PATH
 PKG_CONFIG_PATH=$(find "$root" -type d -name pkgconfig)
 libraries=$(dirname "$PKG_CONFIG_PATH")
 # shellcheck disable=SC2046
 "$compiler" -std=c++20 "$source/examples/library/ball.cpp" -o "$folder/by_pkg_config" \
-    $(pkg-config --define-variable=prefix="$root" --cflags --libs haptel-compiler)
+    $(pkg-config --cflags --libs haptel-compiler)
 LD_LIBRARY_PATH=$libraries "$folder/by_pkg_config" "$source/examples/textures/stone.haptel:stone" >/dev/null || fail "the program by pkg-config failed"
 
 HAPTEL_LIBRARIES=$libraries PYTHONPATH=$(dirname "$(find "$root" -name haptel.py)") PYTHONDONTWRITEBYTECODE=1 \

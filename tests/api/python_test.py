@@ -30,8 +30,9 @@ class Textures(unittest.TestCase):
                                          (WAVES, "", {"depht": "1um"}, "did you mean 'depth'?")):
             with self.assertRaisesRegex(haptel.Error, said.replace("?", r"\?")):
                 haptel.Texture(text, name, **values)
-        with self.assertRaises(haptel.Error):
-            haptel.Texture(WAVES).evaluate([(1, 2)])
+        for points in ([(1, 2)], [(1, 2), (3, 4, 5, 6)]):
+            with self.assertRaisesRegex(haptel.Error, "of three numbers each"):
+                haptel.Texture(WAVES).evaluate(points)
 
 
 class Scenes(unittest.TestCase):
@@ -71,6 +72,10 @@ class Scenes(unittest.TestCase):
             self.table().set(1, depth="1um")
         with self.assertRaisesRegex(haptel.Error, "did you mean 'falcon'"):
             self.table().run("falkon")
+        with self.assertRaisesRegex(haptel.Error, "`virtual_time` is for simulated devices"):
+            self.table().run("falcon", virtual_time=True)
+        with self.assertRaisesRegex(haptel.Error, "`seconds` must be at least 0"):
+            self.table().run(seconds=-1)
 
 
 if __name__ == "__main__":

@@ -55,7 +55,10 @@ TEST_CASE("scene: a mesh of nothing, of NaN or of wrong indices is refused or re
     short_of_uv.uv.pop_back();
     SceneBuilder build;
     build.add(short_of_uv);
-    CHECK(!build.finish().messages().empty());
+    CHECK(contains(build.finish().messages(), "object 1: error: `uv` must be one per position, 4, or empty, found 3"));
+    SceneBuilder of_file;
+    of_file.add_file("some.obj", -1);
+    CHECK(contains(of_file.finish().messages(), "object 1: error: `size_m` must be from 0 to 1000, found -1"));
 }
 
 TEST_CASE("scene: a texture without a source, a missing file and a place that is none are told")

@@ -2,6 +2,7 @@
 #include "tests/api/scenes.h"
 #include "tests/support/catch.h"
 
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -96,6 +97,12 @@ TEST_CASE("texture: a value that is set is felt from the next tick on, and whole
     CHECK(contains(top.set("dephth", "1mm"), "did you mean 'depth'?"));
     CHECK(contains(top.set("depth", "1kg"), "depth"));
     CHECK(renderer.tick(in_groove).force_n.z == last_n);
+
+    // Values change the program that is felt, whatever became of its file.
+    file.write("texture waves(");
+    CHECK(top.set("depth", "0.2mm").empty());
+    for (int tick = 0; tick < 60; ++tick) last_n = renderer.tick(in_groove).force_n.z;
+    CHECK(std::fabs(last_n - 500 * (2e-3 - 2 * 0.2e-3)) < 1e-4);
 }
 
 TEST_CASE("texture: files are followed if the compiler is asked to; what is broken is reported, and changes nothing")
@@ -156,6 +163,22 @@ TEST_CASE("texture: precompiled ones take their values as written, by name, unit
     SceneBuilder other{precompiled({&texture, nullptr})};
     other.add(plane(0.2)).texture("precompiled:rock");
     CHECK(contains(other.finish().messages(), "no precompiled texture is called 'rock': there are flat"));
+    CHECK(contains(top.set("height", "1mm"), "its bounds hold for its range alone"));
+    const auto refused = [&](auto&& change) {
+        haptel_texture changed = texture;
+        std::array<haptel_parameter, 2> own = {parameters[0], parameters[1]};
+        changed.parameters = own.data();
+        change(changed, own);
+        SceneBuilder of_changed{precompiled({&changed})};
+        of_changed.add(plane(0.2)).texture("precompiled:flat");
+        return of_changed.finish().messages();
+    };
+    CHECK(contains(refused([](auto& t, auto&) { t.block_size = 8; }), "its block is smaller than haptel_block_head"));
+    CHECK(contains(refused([](auto&, auto& p) { p[1].offset = 1 << 20; }), "'kind' does not lie in its block"));
+    CHECK(contains(refused([](auto&, auto& p) { p[1].offset += 2; }), "'kind' does not lie in its block"));
+    CHECK(contains(refused([](auto&, auto& p) { p[0].name = nullptr; }), "a parameter has no name"));
+    CHECK(contains(refused([](auto&, auto& p) { p[0].type = 9; }), "'height' has no type of haptel/abi.h"));
+    CHECK(refused([](auto&, auto& p) { p[0].unit = nullptr; }).find("error") == std::string::npos);
     haptel_texture old = texture;
     old.abi = 0;
     SceneBuilder of_old{precompiled({&old})};
