@@ -34,8 +34,8 @@ private:
 // Owns what load() gave.
 std::shared_ptr<const CompiledProgram> program_of(const std::shared_ptr<const CompiledTextures>& compiled);
 
-// Resolves "PATH.haptel:NAME", or "PATH.haptel" where the file holds one texture; "wood.oak:NAME" of an installed library. The result's diagnostics start with
-// the file's name; warnings stand beside a binding. Any thread.
+// Resolves "PATH.haptel:NAME", or "PATH.haptel" where the file holds one texture; "wood.oak:NAME" of an installed
+// library. The result's diagnostics start with the file's name; warnings stand beside a binding. Any thread.
 TextureResolver make_resolver(std::shared_ptr<ProgramCache> cache = ProgramCache::shared());
 
 } // namespace haptel::jit
