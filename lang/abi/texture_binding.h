@@ -46,8 +46,8 @@ struct UvFigures {
 
 // What an object asks for. Text stays text: only the resolver knows parameters' types and units.
 struct TextureRequest {
-    // "rock.haptel:rock": a path, absolute after scene loading, or the name of a library's file (library_name.h), a colon,
-    // a texture's name.
+    // "rock.haptel:rock": a path, absolute after scene loading, or the name of a library's file (library_name.h), a
+    // colon, a texture's name.
     std::string reference;
     std::vector<std::pair<std::string, std::string>> parameters; // name, value as written: "60um", "5"
     double box_minimum_m[3] = {0, 0, 0};                         // the object's bounding box, object space

@@ -129,8 +129,8 @@ void Grammar::import_declaration(File& result)
         }
         if (!lost) expect_semicolon("the import");
     } else {
-        Diagnostic& reported = error(
-            span(), "import", "expected a path in quotes, or a file of a library, after 'import'" + found());
+        Diagnostic& reported =
+            error(span(), "import", "expected a path in quotes, or a file of a library, after 'import'" + found());
         std::string path;
         for (bool is_name = true; at(is_name ? Token::name : Token::dot); is_name = !is_name, advance())
             path += is_name ? text() : "/";
@@ -140,9 +140,8 @@ void Grammar::import_declaration(File& result)
             import.prefix = {std::string(text(1)), span(1)};
             prefix = " as " + import.prefix.text;
         }
-        reported.hint =
-            "write the path of a file: import \"" + (path.empty() ? "wood/oak" : path) + ".haptel\"" + prefix +
-            "; or the name of an installed one: import wood.oak;";
+        reported.hint = "write the path of a file: import \"" + (path.empty() ? "wood/oak" : path) + ".haptel\"" +
+                        prefix + "; or the name of an installed one: import wood.oak;";
     }
     import.span = since(first);
     if (!import.path.empty() || !import.prefix.text.empty()) result.imports.push_back(std::move(import));

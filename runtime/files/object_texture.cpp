@@ -101,10 +101,10 @@ void load_texture(SceneObject& object, const TextureText& text, const HandLimits
     }
     TextureRequest request = request_of(object, hands);
     const std::string file = text.reference.substr(0, colon);
-    request.reference = names_library_file(file) // which the resolver knows where to find
-                            ? text.reference
-                            : std::filesystem::absolute(folder / file).lexically_normal().string() +
-                                  text.reference.substr(colon);
+    request.reference =
+        names_library_file(file) // which the resolver knows where to find
+            ? text.reference
+            : std::filesystem::absolute(folder / file).lexically_normal().string() + text.reference.substr(colon);
     request.parameters = text.parameters;
     request.folder = std::filesystem::absolute(folder).lexically_normal().string();
 

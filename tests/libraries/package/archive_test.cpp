@@ -25,6 +25,7 @@ TEST_CASE("what is packed is read, and the same files give the same bytes")
     const ArchiveResult archive = write_archive(package);
     CHECK(archive.error == "");
     CHECK(write_archive(package).bytes == archive.bytes);
+    CHECK(archive.bytes.substr(10, 4) == std::string("\0\0\x21\0", 4)); // 1980-01-01 00:00, whatever the clock says
     const PackageResult read = read_archive(archive.bytes, "wood.haptlib");
     CHECK(read.messages == "");
     REQUIRE(read.package);
