@@ -70,7 +70,8 @@ TEST_CASE(
     const std::string before = "HAPTEL_INVERSE3_SERVICE=" + place;
     CHECK(contains(run_command("devices", before).out,
                    "  inverse3:049D              Haply Inverse3, service at " + place + "\n"));
-    for (const Json& one : Json::parse(run_command("devices --json", before).out)["devices"])
+    const Json served = Json::parse(run_command("devices --json", before).out);
+    for (const Json& one : served["devices"])
         if (one["kind"] == "inverse3") {
             CHECK(one["name"] == "inverse3:049D");
             CHECK(one["transport"] == "service");
