@@ -7,11 +7,12 @@
 
 namespace haptel::device {
 
-// Milliseconds without a command: 5, or two and a half periods where that is more, so that a slow servo is not silent
-// between two of its ticks.
+// Milliseconds without a command: 3, so that no force stands 5 ms after the servo's last tick: the driver looks every
+// millisecond, and its last word waits for a frame of the bus, another one. Two and a half periods where that is more,
+// so that a slow servo is not silent between two of its ticks.
 inline int servo_silence_ms(double rate_hz)
 {
-    return std::max(5, static_cast<int>(std::ceil(2500 / rate_hz)));
+    return std::max(3, static_cast<int>(std::ceil(2500 / rate_hz)));
 }
 
 } // namespace haptel::device

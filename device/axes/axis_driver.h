@@ -22,7 +22,7 @@ namespace haptel::device {
 using OpenAxes = std::function<OpenedAxes()>;
 
 struct AxisTimes {
-    int watchdog_ms = 5; // without a command for so long, the force is taken away
+    int watchdog_ms = 3; // without a command for so long, the force is taken away
     int nudge_ms = 120;  // each, and the rest before it
     int again_ms = 500;  // between two tries to open or to nudge
     double patience_s = 60;

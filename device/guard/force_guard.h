@@ -13,9 +13,10 @@
 
 namespace haptel::device {
 
-// Twice what a servo may be silent for (servo_silence.h): the stream's thread takes the force away before.
-inline constexpr int guard_silence_ms = 10;
-inline constexpr int guard_hears_ms = 2;
+// More than a servo at 1 kHz may be silent for (servo_silence.h): the stream's thread takes the force away before, and
+// with a frame of the bus no force stands 5 ms after the program was stopped.
+inline constexpr int guard_silence_ms = 4;
+inline constexpr int guard_hears_ms = 1;
 
 // As the system lists it.
 inline constexpr const char* guard_process_name = "haptel-guard";

@@ -21,7 +21,7 @@ struct Inverse3Times {
     int connect_ms = 1000;    // to connect and to hear the inventory
     int silence_ms = 500;     // a service that owes a state for so long is lost
     int keep_alive_ms = 5;    // without a command the newest is said again after so long, so that places go on
-    int watchdog_ms = 5;      // without a command for so long, the force is taken away
+    int watchdog_ms = 3;      // without a command for so long, the force is taken away
     int close_ms = 100;       // to say goodbye
     int rescue_ms = 200;      // to connect once more at the end, where a force is left
     int pose_age_max_ms = 10; // an older state is no pose

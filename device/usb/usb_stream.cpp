@@ -13,7 +13,7 @@ namespace haptel::device {
 
 namespace {
 
-constexpr int wait_ms = 2;                                  // the client is asked at least this often
+constexpr int wait_ms = 1;                                  // the client is asked at least this often
 constexpr unsigned out_timeout_ms = 100;                    // a device that takes nothing for so long has failed
 constexpr int failures_max = 16;                            // in a row, before the stream ends
 constexpr auto ending_max = std::chrono::milliseconds(250); // to get cancelled transfers back

@@ -111,7 +111,7 @@ TEST_CASE("a guard takes the force away from a thread that is silent, and that i
         const auto start = Clock::now();
         CHECK((guard.hear() || i == 0));
         CHECK(device.hears(patience_ms) == "no force");
-        took_ms.push_back(milliseconds_since(start));
+        if (i > 0) took_ms.push_back(milliseconds_since(start)); // the first has to begin
     }
     std::sort(took_ms.begin(), took_ms.end());
     CHECK(took_ms.front() > guard_silence_ms - 1);
