@@ -12,7 +12,7 @@ houses=(
     'lang: abi text math ir ir/run ir/derive ir/bounds emit_c syntax format program lower check check/dimension . |'
     'libraries: . package | input lang/abi lang/text/near_name.h'
     'stdlib: . |'
-    'jit: codegen engine picture texture ahead live check | !libraries/package libraries input lang stdlib'
+    'jit: codegen engine picture texture fit ahead live check | !libraries/package libraries input lang stdlib'
     'runtime: process geometry hand surface surface/build contact texture scene force files render servo | input lang/abi lang/text/near_name.h'
     'device: . | !runtime/files runtime lang/abi lang/text/near_name.h'
     'api: . | include/haptel input/toml runtime device/device_factory.h lang/abi lang/parameter_value.h lang/text/near_name.h'
@@ -29,6 +29,7 @@ declare -A home=(
     [assimp/]='runtime/files' [boost/]='lang/math device/inverse3 tests' [stb/]='jit/picture tests' [tiff]='jit/picture tests'
     [OpenEXR/]='jit/picture' [Imath/]='jit/picture' [CLI/]='tools' [cairo]='tools/plot'
     [haptel/]='include/haptel api examples/library tests/api'
+    [Eigen/]='jit/fit' [unsupported/Eigen/]='jit/fit'
     [zip.h]='libraries/package' [sha2.h]='libraries'
     [nlohmann/]='tools device/inverse3 tests bench' [sndfile]='device tests' [alsa/]='device'
 )

@@ -12,6 +12,7 @@ struct Propagation {
     Dependences& callees;
     InputActivity input_is_active;
     Activity& activity;
+    std::span<const uint32_t> of_texture;
 
     static constexpr uint32_t rounds_max = 8;
 
@@ -35,6 +36,9 @@ struct Propagation {
         } else if (const auto* read = std::get_if<ReadInput>(&made.kind)) {
             for (size_t d = 0; d < activity.directions(); ++d)
                 if (input_is_active && input_is_active(read->input, d)) activity.set(made.results[0], d);
+        } else if (const auto* parameter = std::get_if<ReadParameter>(&made.kind)) {
+            for (size_t d = 0; d < of_texture.size(); ++d)
+                if (of_texture[d] == parameter->parameter && is_real(made.results[0])) activity.set(made.results[0], d);
         } else if (const auto* call = std::get_if<Call>(&made.kind)) {
             const Dependence& depends = callees.of(call->function);
             for (size_t r = 0; r < made.results.size(); ++r)
@@ -88,9 +92,10 @@ const Dependence& Dependences::of(uint32_t function)
     return known[function];
 }
 
-void propagate(const Function& function, Dependences& callees, InputActivity input_is_active, Activity& activity)
+void propagate(const Function& function, Dependences& callees, InputActivity input_is_active, Activity& activity,
+               std::span<const uint32_t> of_texture)
 {
-    Propagation analysis{function, callees, input_is_active, activity};
+    Propagation analysis{function, callees, input_is_active, activity, of_texture};
     Dataflow(analysis).forwards(function.body);
 }
 

@@ -4,6 +4,7 @@
 
 #include "lang/ir/ir.h"
 
+#include <span>
 #include <vector>
 
 namespace haptel::ir {
@@ -46,8 +47,10 @@ private:
     std::vector<Dependence> known; // by function
 };
 
-// Spreads what is set (parameters) to all values; inputs of the point are active where `input_directions` says so.
+// Spreads what is set (parameters) to all values; inputs of the point are active where `input_is_active` says so, and
+// parameters of the texture, by their index, in a direction each.
 using InputActivity = bool (*)(Input input, size_t direction);
-void propagate(const Function& function, Dependences& callees, InputActivity input_is_active, Activity& activity);
+void propagate(const Function& function, Dependences& callees, InputActivity input_is_active, Activity& activity,
+               std::span<const uint32_t> of_texture = {});
 
 } // namespace haptel::ir

@@ -149,7 +149,7 @@ private:
     }
 
     template <typename Simple>
-    void copy(const Instruction& made, const Simple& kind) // constants, and what is read but moves with no point
+    void copy(const Instruction& made, const Simple& kind) // constants, and what is read but moves with nothing
     {
         const Value result = made.results[0];
         set_primal(result, builder.simple(kind, primals_of(made.operands), function.type(result)));
@@ -178,6 +178,14 @@ private:
                 set_tangent(result, d,
                             read.input <= Input::p_z ? builder.real(1)
                                                      : builder.input(input_derivative(read.input, d)));
+    }
+
+    void copy(const Instruction& made, const ReadParameter& read)
+    {
+        const Value result = made.results[0];
+        set_primal(result, builder.simple(read, {}, function.type(result)));
+        for (size_t d = 0; d < activity.directions(); ++d)
+            if (activity(result, d)) set_tangent(result, d, builder.real(1));
     }
 
     void copy(const Instruction& made, const Call& call)

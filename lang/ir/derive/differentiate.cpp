@@ -148,18 +148,27 @@ void Differentiator::make_entries(Texture& texture)
 {
     if (point_uses.of(texture.body).asks)
         texture.body = derivative({texture.body, {}, PointDerivatives::resolved, false}).function;
-    texture.height = entry(texture, 0, texture.name + " height");
-    texture.height_gradient = entry(texture, axes, texture.name + " height and gradient");
+    texture.height = entry(texture, By::nothing, texture.name + " height");
+    texture.height_gradient = entry(texture, By::point, texture.name + " height and gradient");
     texture.reads = inputs_read(module.functions[texture.height].body) |
                     inputs_read(module.functions[texture.height_gradient].body);
 }
 
-// In no direction, of the height alone; in three, of its gradient and the material outputs too.
-uint32_t Differentiator::entry(const Texture& texture, size_t directions, const std::string& name)
+uint32_t Differentiator::parameter_gradient(const Texture& texture, std::span<const uint32_t> parameters)
+{
+    Texture alone = texture;
+    alone.writes = 0;
+    return entry(alone, By::parameters, texture.name + " height by parameters", parameters);
+}
+
+// By nothing: of the height alone; else of its gradient and the material outputs too.
+uint32_t Differentiator::entry(const Texture& texture, By by, const std::string& name,
+                               std::span<const uint32_t> parameters)
 {
     const Function source = module.functions[texture.body];
+    const size_t directions = by == By::nothing ? 0 : axes;
     Activity activity(source.value_types.size(), directions);
-    propagate(source, dependences, input_is_active, activity);
+    propagate(source, dependences, by == By::point ? input_is_active : nullptr, activity, parameters);
     DerivativeEmitter emitter(module, name, source, activity, *this, PointDerivatives::vary);
     emitter.emit(source.body);
 

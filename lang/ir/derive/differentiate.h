@@ -11,6 +11,8 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace haptel::ir {
@@ -65,6 +67,10 @@ public:
     // respect to p is replaced by one that holds their values.
     void make_entries(Texture& texture);
 
+    // An entry like height_gradient of a texture without outputs, whose gradient is with respect to real parameters of
+    // the texture, by their index, at most as many as there are axes. After make_entries().
+    uint32_t parameter_gradient(const Texture& texture, std::span<const uint32_t> parameters);
+
     // Nothing where no result has a tangent, else the way that needs fewer directions inside the callee. The chain rule
     // at the call is no way for a callee that asks for derivatives with respect to the point: there it matters how the
     // tangents themselves move.
@@ -76,7 +82,8 @@ private:
     PointUses point_uses;
     std::map<DerivativeRequest, Derivative> memo;
 
-    uint32_t entry(const Texture& texture, size_t directions, const std::string& name);
+    enum class By : uint8_t { nothing, point, parameters };
+    uint32_t entry(const Texture& texture, By by, const std::string& name, std::span<const uint32_t> parameters = {});
 };
 
 } // namespace haptel::ir

@@ -1,0 +1,64 @@
+#include "jit/fit/fit.h"
+#include "jit/fit/spectrum_misfit.h"
+#include "jit/fit/texture_to_fit.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <utility>
+
+namespace haptel::jit {
+
+namespace {
+
+constexpr std::size_t samples_min = 128;
+// One line of a rough texture is not like another.
+constexpr std::size_t lines_at_first = 4, lines_at_last = 32;
+constexpr FitEffort of_strokes{24, 40, 4};
+
+// Samples of a line, so that the lowest third of an octave that is felt has four frequencies.
+std::size_t samples_of(const Stroke& stroke)
+{
+    const double wanted = 4 * stroke.rate_hz / (felt_from_hz * (std::cbrt(2) - 1));
+    return std::bit_floor(
+        std::min(stroke.values.size(), std::bit_ceil(static_cast<std::size_t>(std::min(wanted, 1e6)))));
+}
+
+} // namespace
+
+FitResult fit_stroke(const std::shared_ptr<const CompiledProgram>& program, const FitRequest& request,
+                     const Stroke& stroke)
+{
+    FitResult refused;
+    if (stroke.values.size() < samples_min) {
+        refused.failure = "expected a stroke of at least " + std::to_string(samples_min) + " samples, found " +
+                          std::to_string(stroke.values.size());
+        return refused;
+    }
+    const std::size_t samples = samples_of(stroke);
+    const double side_m = stroke.step_m() * static_cast<double>(samples);
+    TextureToFit fit(program, request, side_m, side_m);
+    refused.failure = fit.failure();
+    if (!refused.failure.empty()) return refused;
+
+    std::vector<std::unique_ptr<Misfit>> levels;
+    levels.push_back(std::make_unique<SpectrumMisfit>(fit.texture(), stroke, samples, lines_at_first));
+    auto last = std::make_unique<SpectrumMisfit>(fit.texture(), stroke, samples, lines_at_last);
+    SpectrumMisfit& whole = *last;
+    levels.push_back(std::move(last));
+    if (levels.front()->rows() < 3) {
+        refused.failure =
+            "the stroke tells fewer than three thirds of octaves of what can be felt, 20 Hz to 1 kHz: it is "
+            "too short or sampled too slowly";
+        return refused;
+    }
+    const std::vector<Found> all = search(fit.unknowns(), levels, *levels.front(), of_strokes, request.seed);
+    FitResult result = fit.result(all, whole);
+    const std::vector<double> off_db = whole.off_db(fit.unknowns().block(all.front().guess));
+    for (std::size_t band = 0; band < whole.rows(); ++band)
+        result.bands.push_back({whole.bands()[band].from * stroke.speed_m_per_s,
+                                whole.bands()[band].to * stroke.speed_m_per_s, off_db[band]});
+    return result;
+}
+
+} // namespace haptel::jit

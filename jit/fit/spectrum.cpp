@@ -1,0 +1,99 @@
+#include "jit/fit/spectrum.h"
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <utility>
+
+#include <unsupported/Eigen/FFT>
+
+namespace haptel::jit {
+
+namespace {
+
+constexpr double third = 1.2599210498948732; // 2^(1/3)
+constexpr double frequencies_min = 3;
+
+} // namespace
+
+double Band::middle() const
+{
+    return std::sqrt(from * to);
+}
+
+std::vector<Band> thirds_of_octaves(double from, double to, std::size_t count, double step)
+{
+    const double apart = 1 / (static_cast<double>(count) * step), highest = 0.9 * 0.5 / step;
+    std::vector<Band> bands;
+    for (double low = from; low * third <= std::min(to, highest) * (1 + 1e-9); low *= third)
+        if (low * (third - 1) >= frequencies_min * apart) bands.push_back({low, low * third});
+    return bands;
+}
+
+LineSpectrum::LineSpectrum(std::size_t count, double apart, std::vector<Band> of_bands)
+    : all(std::move(of_bands)), step(apart), window(count), band_of(count / 2, -1)
+{
+    for (std::size_t i = 0; i < count; ++i) // with a mean square of 1
+        window[i] = (1 - std::cos(2 * std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(count))) /
+                    std::sqrt(1.5);
+    for (std::size_t k = 1; k < band_of.size(); ++k)
+        for (std::size_t band = 0; band < all.size(); ++band)
+            if (frequency(k) >= all[band].from && frequency(k) < all[band].to) band_of[k] = static_cast<int>(band);
+}
+
+std::vector<std::complex<double>> LineSpectrum::transform(std::span<const double> line) const
+{
+    const double mean = std::reduce(line.begin(), line.end()) / static_cast<double>(line.size());
+    std::vector<double> values(line.size());
+    for (std::size_t i = 0; i < line.size(); ++i) values[i] = window[i] * (line[i] - mean);
+    std::vector<std::complex<double>> transformed;
+    Eigen::FFT<double> fourier;
+    fourier.fwd(transformed, values);
+    return transformed;
+}
+
+std::vector<double> LineSpectrum::powers(std::span<const double> line)
+{
+    line_transform = transform(line);
+    std::vector<double> sums(all.size());
+    const double scale = 2 / std::pow(static_cast<double>(window.size()), 2); // both halves of the transform
+    for (std::size_t k = 1; k < band_of.size(); ++k)
+        if (band_of[k] >= 0) sums[static_cast<std::size_t>(band_of[k])] += scale * std::norm(line_transform[k]);
+    return sums;
+}
+
+std::vector<double> LineSpectrum::moves(std::span<const double> line_moves)
+{
+    const std::vector<std::complex<double>> moved = transform(line_moves);
+    std::vector<double> sums(all.size());
+    const double scale = 4 / std::pow(static_cast<double>(window.size()), 2);
+    for (std::size_t k = 1; k < band_of.size(); ++k)
+        if (band_of[k] >= 0)
+            sums[static_cast<std::size_t>(band_of[k])] += scale * (std::conj(line_transform[k]) * moved[k]).real();
+    return sums;
+}
+
+std::vector<double> LineSpectrum::mean_powers(std::span<const double> record, const std::function<double(double)>& gain)
+{
+    std::vector<double> sums(all.size());
+    const std::size_t count = window.size(), pieces = 1 + (record.size() - count) / (count / 2);
+    const double scale = 2 / std::pow(static_cast<double>(count), 2) / static_cast<double>(pieces);
+    for (std::size_t piece = 0; piece < pieces; ++piece) {
+        const std::vector<std::complex<double>> one = transform(record.subspan(piece * (count / 2), count));
+        for (std::size_t k = 1; k < band_of.size(); ++k)
+            if (band_of[k] >= 0)
+                sums[static_cast<std::size_t>(band_of[k])] += scale * gain(frequency(k)) * std::norm(one[k]);
+    }
+    return sums;
+}
+
+std::vector<double> LineSpectrum::noise(const std::function<double(double)>& gain) const
+{
+    std::vector<double> sums(all.size());
+    for (std::size_t k = 1; k < band_of.size(); ++k)
+        if (band_of[k] >= 0)
+            sums[static_cast<std::size_t>(band_of[k])] += 2 * gain(frequency(k)) / static_cast<double>(window.size());
+    return sums;
+}
+
+} // namespace haptel::jit

@@ -1,0 +1,26 @@
+// A recorded stroke over a surface: what a hand felt or an accelerometer measured, at one speed.
+#pragma once
+
+#include <vector>
+
+namespace haptel::jit {
+
+struct Stroke {
+    enum class Of : unsigned char {
+        force,        // along the normal, newtons: stiffness times height
+        acceleration, // along the normal, m/s^2, of a tip that follows the surface
+    };
+    Of of = Of::force;
+    double rate_hz = 1000, speed_m_per_s = 0.1;
+    double stiffness_n_per_m = 0; // of a force
+    std::vector<double> values;
+
+    double step_m() const { return speed_m_per_s / rate_hz; }
+    // Power of heights over that of the values, at so many cycles per metre.
+    double power_of_height(double cycles_per_m) const;
+};
+
+// What a hand feels of a vibration.
+inline constexpr double felt_from_hz = 20, felt_to_hz = 1000;
+
+} // namespace haptel::jit
