@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr uint32_t points_of_gradient = 4000;
 constexpr uint64_t points_seed = 1;
 constexpr int preview_px = 256;
 
@@ -126,7 +125,7 @@ private:
         constexpr double half_m = library_box_m / 2;
         const jit::CheckBox box{{-half_m, -half_m, -half_m}, {half_m, half_m, half_m}};
         const TestedTexture tested =
-            test_texture(program, path, name, library_request(), box, points_of_gradient, points_seed);
+            test_texture(program, path, name, library_request(), box, jit::default_check_points, points_seed);
         if (!tested.passed())
             for (const std::string& reason : reasons(tested))
                 problem(path, fmt::format("texture '{}' does not pass haptel test: {}", name, reason));

@@ -62,7 +62,7 @@ TextureRequest library_request()
 
 std::string why_not_held(const std::shared_ptr<const jit::CompiledProgram>& tests, const std::string& name)
 {
-    const TextureResult bound = jit::make_binding(tests, name, library_request(), jit::For::figures);
+    const TextureResult bound = jit::make_binding(tests, name, library_request()); // needs no bounds
     if (!bound.binding) return bound.diagnostics;
     const uint32_t body = tests->source_of(*tests->find(name)).height_gradient;
     const uint64_t operations = std::max<uint64_t>(ir::operations_max(tests->module(), body), 1);
