@@ -33,6 +33,10 @@ struct Packed {
 Packed pack(const PackOptions& options)
 {
     Packed made;
+    if (const std::string why = options.gallery.empty() ? "" : why_not_written(options.gallery); !why.empty()) {
+        made.messages = options.gallery + ": error: it cannot be written: " + why + "\n";
+        return made;
+    }
     libraries::PackageResult read = libraries::read_folder(options.folder);
     made.messages = read.messages;
     if (!read.package) return made;

@@ -62,7 +62,7 @@ std::string write_gallery(const libraries::Manifest& manifest, const LibraryInsp
         const fs::path picture = folder / path.substr(std::string_view(previews_folder).size());
         fs::create_directories(picture.parent_path(), fault);
         const std::string why = write_file(picture.string(), bytes);
-        if (!why.empty()) return picture.string() + ": error: it cannot be written: " + why;
+        if (!why.empty()) return picture.string() + ": error: it cannot be written: " + why + "\n";
         drawn.insert(picture);
     }
     std::vector<fs::path> gone;
@@ -70,7 +70,7 @@ std::string write_gallery(const libraries::Manifest& manifest, const LibraryInsp
         if (entry->path().extension() == ".png" && !drawn.contains(entry->path())) gone.push_back(entry->path());
     for (const fs::path& picture : gone) fs::remove(picture, fault);
     const std::string why = write_file(page, gallery_page(manifest, inspection, at.stem().string()));
-    return why.empty() ? "" : page + ": error: it cannot be written: " + why;
+    return why.empty() ? "" : page + ": error: it cannot be written: " + why + "\n";
 }
 
 } // namespace haptel::tools

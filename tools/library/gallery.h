@@ -13,7 +13,7 @@ std::string gallery_page(const libraries::Manifest& manifest, const LibraryInspe
                          const std::string& pictures);
 
 // Writes the page to PAGE.md and its pictures beside it, into PAGE/, where those of textures that are gone go too. Why
-// it could not be done; empty: it is done.
+// it could not be done, a line; empty: it is done.
 std::string write_gallery(const libraries::Manifest& manifest, const LibraryInspection& inspection,
                           const std::string& page);
 
