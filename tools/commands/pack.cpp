@@ -63,7 +63,7 @@ Packed pack(const PackOptions& options)
         made.messages = out + ": error: it cannot be written: " + fault + "\n";
         return made;
     }
-    if (!options.gallery.empty()) made.messages = write_gallery(manifest, made.inspection, options.gallery);
+    if (!options.gallery.empty()) made.messages = write_gallery(*made.package, made.inspection, options.gallery);
     if (!made.messages.empty()) return made;
     made.bytes = std::move(archive.bytes);
     made.out = out;

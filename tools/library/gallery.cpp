@@ -31,13 +31,14 @@ std::string family_of(const std::string& file)
 } // namespace
 
 std::string gallery_page(const libraries::Manifest& manifest, const LibraryInspection& inspection,
-                         const std::string& pictures)
+                         const std::string& read_me, const std::string& pictures)
 {
-    std::string page = fmt::format("# {}\n\n{}. Library `{}` {}, {}: {} textures.\n\n`haptel pack --gallery` makes "
-                                   "this page from the doc comments of the textures and draws the pictures.\n",
-                                   manifest.name, manifest.tagline, manifest.name, to_text(manifest.version),
-                                   manifest.license, inspection.textures.size());
-    std::string family, file;
+    std::string page = read_me.empty() ? fmt::format("# {}\n\n{}.\n", manifest.name, manifest.tagline) : read_me;
+    page +=
+        fmt::format("\nThese are the textures of version {}, under the licence {}. `haptel pack --gallery` makes this "
+                    "page of their doc comments.\n",
+                    to_text(manifest.version), manifest.license);
+    std::string family;
     for (const InspectedTexture& texture : inspection.textures) {
         const libraries::TextureName name{texture.file.substr(0, texture.file.rfind('.')), texture.name};
         if (family_of(name.file) != family) {
@@ -51,7 +52,7 @@ std::string gallery_page(const libraries::Manifest& manifest, const LibraryInspe
     return page;
 }
 
-std::string write_gallery(const libraries::Manifest& manifest, const LibraryInspection& inspection,
+std::string write_gallery(const libraries::Package& package, const LibraryInspection& inspection,
                           const std::string& page)
 {
     const fs::path at(page);
@@ -69,7 +70,10 @@ std::string write_gallery(const libraries::Manifest& manifest, const LibraryInsp
     for (fs::recursive_directory_iterator entry(folder, fault), end; !fault && entry != end; entry.increment(fault))
         if (entry->path().extension() == ".png" && !drawn.contains(entry->path())) gone.push_back(entry->path());
     for (const fs::path& picture : gone) fs::remove(picture, fault);
-    const std::string why = write_file(page, gallery_page(manifest, inspection, at.stem().string()));
+    const auto read_me = package.contents.find("README.md");
+    const std::string why =
+        write_file(page, gallery_page(package.manifest, inspection,
+                                      read_me == package.contents.end() ? "" : read_me->second, at.stem().string()));
     return why.empty() ? "" : page + ": error: it cannot be written: " + why + "\n";
 }
 

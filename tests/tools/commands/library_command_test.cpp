@@ -270,10 +270,14 @@ TEST_CASE("pack writes a gallery that shows each texture, its name and its doc c
     INFO(ran.err);
     CHECK(ran.code == 0);
     const std::string page = read_file(root.work / "page.md");
-    CHECK(page.starts_with("# wood\n\nFor tests. Library `wood` 1.0.0, CC0-1.0: 1 textures.\n"));
+    CHECK(page.starts_with(
+        "# wood\n\nFor tests.\n\nThese are the textures of version 1.0.0, under the licence CC0-1.0."));
     CHECK(contains(page, "### board\n\n![oak/board](page/oak/board.png)\n\n`wood.oak:board`, 12 mm wide\n\nFlat.\n"));
     CHECK(read_file(root.work / "page/oak/board.png").starts_with("\x89PNG"));
     CHECK_FALSE(fs::exists(root.work / "page/oak/gone.png"));
+    root.write("wood/README.md", "# Wood of tests\n");
+    CHECK(root.run("pack wood -o wood.haptlib --gallery page.md").code == 0);
+    CHECK(read_file(root.work / "page.md").starts_with("# Wood of tests\n\nThese are the textures of version 1.0.0"));
     CHECK(root.run("pack wood -o wood.haptlib --gallery nowhere/page.md").code == 1);
 }
 
