@@ -13,6 +13,7 @@ namespace haptel::libraries {
 namespace {
 
 constexpr std::size_t name_max = 64, line_max = 200; // bytes
+constexpr double preview_least_m = 1e-4, preview_greatest_m = 10;
 
 bool is_line(std::string_view text)
 {
@@ -85,6 +86,7 @@ public:
         read_version("haptel", made.haptel_least, parse_least_version, "the least version of Haptel, such as \"0.1\"");
         keys.whole_number("language", made.language_least);
         read_dependencies(made);
+        read_previews(made);
         keys.report_unknown_keys();
         return made;
     }
@@ -191,6 +193,28 @@ private:
                                                    " = \"1.2\", found " + input::kind_of(value));
             else
                 made.dependencies.push_back({name, *least});
+        }
+    }
+
+    void read_previews(Manifest& made)
+    {
+        const toml::table* table = keys.table("previews", "{ \"oak:board\" = 0.01 }");
+        if (!table) return;
+        for (const auto& [key, value] : *table) {
+            const std::string_view name = key.str();
+            const std::size_t colon = std::min(name.find(':'), name.size());
+            const TextureName texture{std::string(name.substr(0, colon)),
+                                      std::string(name.substr(std::min(colon + 1, name.size())))};
+            const std::optional<double> size = value.is_number() ? value.value<double>() : std::nullopt;
+            if (std::find(made.textures.begin(), made.textures.end(), texture) == made.textures.end())
+                messages.error(key.source(), "expected one of `textures`, such as \"oak:board\", found \"" +
+                                                 std::string(name) + "\"");
+            else if (!size || !(*size >= preview_least_m && *size <= preview_greatest_m))
+                messages.error(value.source(),
+                               "expected how wide the picture is, 0.0001 .. 10 metres, such as 0.01, found " +
+                                   input::kind_of(value));
+            else
+                made.previews.push_back({texture, *size});
         }
     }
 

@@ -32,6 +32,12 @@ struct Dependency {
     Version least;
 };
 
+// How wide a texture's picture is.
+struct PreviewSize {
+    TextureName of;
+    double window_m;
+};
+
 struct Manifest {
     std::string name, tagline, license;
     Version version;
@@ -40,6 +46,7 @@ struct Manifest {
     Version haptel_least;
     uint64_t language_least = 1;
     std::vector<Dependency> dependencies;
+    std::vector<PreviewSize> previews; // of those whose size is said
 };
 
 // Nothing where `messages` has got an error.

@@ -33,7 +33,7 @@ TEST_CASE("library.toml: every key is read")
         read_manifest("schema = 1\nname = \"wood\"\nversion = \"1.2.3\"\ntagline = \"Boards\"\n"
                       "authors = [\"A <a@example.org>\", \"B\"]\nlicense = \"MIT OR (CC0-1.0 AND X)\"\n"
                       "textures = [\"oak:board\", \"old/pine:bark\"]\ntags = [\"rough\"]\nhaptel = \"0.1\"\n"
-                      "language = 1\n[dependencies]\ngrain = \"2.1\"\n",
+                      "language = 1\n[dependencies]\ngrain = \"2.1\"\n[previews]\n\"old/pine:bark\" = 0.12\n",
                       messages);
     CHECK(messages.text() == "");
     REQUIRE(made);
@@ -48,7 +48,21 @@ TEST_CASE("library.toml: every key is read")
     REQUIRE(made->dependencies.size() == 1);
     CHECK(made->dependencies[0].name == "grain");
     CHECK(made->dependencies[0].least == Version{2, 1, 0});
+    REQUIRE(made->previews.size() == 1);
+    CHECK(made->previews[0].of == TextureName{"old/pine", "bark"});
+    CHECK(made->previews[0].window_m == 0.12);
     CHECK(why_too_new(*made) == "");
+}
+
+TEST_CASE("library.toml: a preview is of a texture that is named, and of a size")
+{
+    const std::string text = test::manifest_text("wood", "1.2.0");
+    CHECK(test::says(said_of(text + "[previews]\n\"oak:bord\" = 0.01\n"), "expected one of `textures`"));
+    CHECK(test::says(said_of(text + "[previews]\n\"oak\" = 0.01\n"), "expected one of `textures`"));
+    for (const char* wrong : {"0", "-0.01", "11", "nan", "\"6mm\"", "[1]"})
+        CHECK(test::says(said_of(text + "[previews]\n\"oak:board\" = " + wrong + "\n"),
+                         "expected how wide the picture is, 0.0001 .. 10 metres, such as 0.01"));
+    CHECK(said_of(text + "[previews]\n\"oak:board\" = 1\n") == "");
 }
 
 TEST_CASE("library.toml: what is missing or wrong is told by its place, with what to write")

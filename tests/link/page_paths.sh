@@ -13,7 +13,7 @@ check() { # check PAGE FOLDER-IT-STARTS-FROM, one path per line on standard inpu
 }
 for page in README.md CONTRIBUTING.md docs/*.md; do
     # In backquotes, from the root: the name of a folder of ours, and what follows it up to an argument or a colon.
-    check "$page" . < <(grep -oE '`(bench|device|docs|examples|input|jit|lang|libraries|runtime|stdlib|tests|tools)/[A-Za-z0-9_./-]*' "$page" |
+    check "$page" . < <(grep -oE '`(bench|device|docs|examples|input|jit|lang|libraries|materials|runtime|stdlib|tests|tools)/[A-Za-z0-9_./-]*' "$page" |
         sed 's/^`//' | sort -u)
     # Links and pictures, from the page; an address has a colon and is left alone.
     check "$page" "$(dirname "$page")" < <(grep -oE '\]\([A-Za-z0-9_./-]+(#[^)]*)?\)' "$page" |

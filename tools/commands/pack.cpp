@@ -3,6 +3,7 @@
 #include "libraries/package/archive.h"
 #include "libraries/sha256.h"
 #include "tools/commands/command.h"
+#include "tools/library/gallery.h"
 #include "tools/library/inspect_library.h"
 #include "tools/output/json.h"
 #include "tools/output/replace_file.h"
@@ -18,7 +19,7 @@ namespace haptel::tools {
 namespace {
 
 struct PackOptions {
-    std::string folder, out;
+    std::string folder, out, gallery;
     bool json = false;
 };
 
@@ -32,6 +33,10 @@ struct Packed {
 Packed pack(const PackOptions& options)
 {
     Packed made;
+    if (const std::string why = options.gallery.empty() ? "" : why_not_written(options.gallery); !why.empty()) {
+        made.messages = options.gallery + ": error: it cannot be written: " + why + "\n";
+        return made;
+    }
     libraries::PackageResult read = libraries::read_folder(options.folder);
     made.messages = read.messages;
     if (!read.package) return made;
@@ -44,7 +49,7 @@ Packed pack(const PackOptions& options)
     progress.hide();
     for (const std::string& problem : made.inspection.problems) made.messages += problem + "\n";
     if (!made.messages.empty()) return made;
-    contents.merge(made.inspection.previews);
+    contents.insert(made.inspection.previews.begin(), made.inspection.previews.end());
     read = libraries::make_package(std::move(contents), options.folder);
     made.messages = read.messages;
     if (!read.package) return made;
@@ -58,6 +63,8 @@ Packed pack(const PackOptions& options)
         made.messages = out + ": error: it cannot be written: " + fault + "\n";
         return made;
     }
+    if (!options.gallery.empty()) made.messages = write_gallery(*made.package, made.inspection, options.gallery);
+    if (!made.messages.empty()) return made;
     made.bytes = std::move(archive.bytes);
     made.out = out;
     return made;
@@ -108,9 +115,15 @@ Command pack_command(CLI::App& app)
         app.add_subcommand("pack", "Check and test a texture library, draw its textures, and make one file of it");
     command->add_option("folder", options->folder, "Folder with a library.toml")->required()->type_name("DIR");
     command->add_option("-o,--out", options->out, "File to write [NAME-VERSION.haptlib]")->type_name("X.haptlib");
+    command
+        ->add_option("--gallery", options->gallery,
+                     "Page to write too, with the picture and the doc comment of each texture; pictures go into a "
+                     "folder of its name")
+        ->type_name("X.md");
     command->add_flag("--json", options->json, "One JSON object on standard output");
     set_examples(*command, "  haptel pack wood\n"
-                           "  haptel pack wood -o wood.haptlib --json");
+                           "  haptel pack wood -o wood.haptlib --json\n"
+                           "  haptel pack wood --gallery wood.md");
     return {command, [options] { return run(*options); }};
 }
 

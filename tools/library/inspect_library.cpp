@@ -1,18 +1,16 @@
 #include "tools/library/inspect_library.h"
 
 #include "jit/texture/texture.h"
-#include "lang/abi/evaluate.h"
 #include "lang/text/near_name.h"
 #include "libraries/places.h"
+#include "tools/library/library_test.h"
 #include "tools/output/terminal.h"
 #include "tools/report/test_report.h"
 #include "tools/report/texture_picture.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fmt/format.h>
 #include <map>
-#include <random>
 
 namespace haptel::tools {
 
@@ -20,40 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr double box_m = 0.05; // as of haptel test
-constexpr uint32_t points_of_gradient = 4000, points_of_flat = 4000;
-constexpr double flat_m = 1e-9;
 constexpr uint64_t points_seed = 1;
 constexpr int preview_px = 256;
-constexpr double preview_m = 0.03;
-
-TextureRequest test_request()
-{
-    TextureRequest request;
-    for (int axis = 0; axis < 3; ++axis) {
-        request.box_minimum_m[axis] = -box_m / 2;
-        request.box_maximum_m[axis] = box_m / 2;
-    }
-    return request;
-}
-
-// The height of a texture where it is not flat, in words; empty: it is flat wherever it was tried.
-std::string not_flat(const TextureBinding& binding)
-{
-    std::mt19937_64 random(points_seed);
-    std::uniform_real_distribution<double> within(-box_m / 2, box_m / 2);
-    for (uint32_t i = 0; i < points_of_flat; ++i) {
-        haptel_point point{};
-        for (double& p : point.p) p = within(random);
-        point.n[2] = 1;
-        haptel_sample sample{};
-        evaluate(binding, {&point, 1}, {&sample, 1});
-        if (std::abs(sample.height_m) > flat_m || sample.faults != 0)
-            return fmt::format("{} m at {}, {}, {}{}", sample.height_m, point.p[0], point.p[1], point.p[2],
-                               sample.faults != 0 ? ", with a fault" : "");
-    }
-    return {};
-}
 
 std::string dotted(std::string path)
 {
@@ -99,7 +65,8 @@ private:
     {
         if (const auto known = all.find(path); known != all.end()) return known->second;
         jit::TextureOptions options;
-        options.entries = jit::Entries::both_and_batches;
+        options.entries =
+            path.starts_with(tests_folder) ? jit::Entries::height_gradient : jit::Entries::both_and_batches;
         const auto& compiled = all[path] = jit::compile_texture_file(path_of(path), options);
         fmt::print(stderr, "{}", compiled.rendered(stderr_has_color()));
         for (const std::string& file : compiled.files)
@@ -155,20 +122,22 @@ private:
         if (doc.empty())
             problem(path,
                     fmt::format("texture '{}' has no doc comment: say above it, behind ///, what it feels like", name));
-        const jit::CheckBox box{{-box_m / 2, -box_m / 2, -box_m / 2}, {box_m / 2, box_m / 2, box_m / 2}};
+        constexpr double half_m = library_box_m / 2;
+        const jit::CheckBox box{{-half_m, -half_m, -half_m}, {half_m, half_m, half_m}};
         const TestedTexture tested =
-            test_texture(program, path, name, test_request(), box, points_of_gradient, points_seed);
+            test_texture(program, path, name, library_request(), box, jit::default_check_points, points_seed);
         if (!tested.passed())
             for (const std::string& reason : reasons(tested))
                 problem(path, fmt::format("texture '{}' does not pass haptel test: {}", name, reason));
         run_test(file, name);
         draw(file, program, name);
-        made.textures.push_back({path, name, doc, previews_folder + file + "/" + name + ".png"});
+        made.textures.push_back({path, name, doc, previews_folder + file + "/" + name + ".png",
+                                 manifest.name + "." + dotted(file) + ":" + name});
     }
 
     void run_test(const std::string& file, const std::string& name)
     {
-        const std::string path = "tests/" + file + ".haptel";
+        const std::string path = tests_folder + file + ".haptel";
         const bool has_tests = contents.contains(path);
         if (has_tests && !compile(path).program) return; // which is told
         const Program tests = has_tests ? compile(path).program : nullptr;
@@ -183,11 +152,8 @@ private:
         if (std::none_of(read.begin(), read.end(), [&](const std::string& one) { return whole(one) == tested; }))
             return problem(path,
                            fmt::format("it does not import what it tests: import {}.{};", manifest.name, dotted(file)));
-        const TextureResult bound = jit::make_binding(tests, name, test_request(), jit::For::figures);
-        const std::string fault = bound.binding ? not_flat(*bound.binding) : bound.diagnostics;
-        if (!fault.empty())
-            problem(path,
-                    fmt::format("the test '{}' is not flat, as it is where what it tests holds: {}", name, fault));
+        const std::string fault = why_not_held(tests, name);
+        if (!fault.empty()) problem(path, fmt::format("the test '{}' {}", name, fault));
     }
 
     void draw(const std::string& file, const Program& program, const std::string& name)
@@ -196,6 +162,8 @@ private:
         options.texture = {file + ".haptel", name};
         options.kind = "relief";
         options.window_m = preview_m;
+        for (const libraries::PreviewSize& size : manifest.previews)
+            if (size.of == libraries::TextureName{file, name}) options.window_m = size.window_m;
         options.size_px = preview_px;
         std::string said;
         std::optional<plot::Picture> picture =

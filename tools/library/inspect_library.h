@@ -16,6 +16,7 @@ namespace haptel::tools {
 
 struct InspectedTexture {
     std::string file, name, doc, preview; // oak.haptel, board, its doc comment, previews/oak/board.png
+    std::string called;                   // wood.oak:board
 };
 
 struct LibraryInspection {
@@ -25,6 +26,7 @@ struct LibraryInspection {
 };
 
 inline constexpr const char* previews_folder = "previews/";
+inline constexpr double preview_m = 0.03; // how wide a picture is where `previews` of library.toml does not say
 
 // `folder` is the library's; `progress` hears the share that is done. What the compiler says goes to standard error.
 LibraryInspection inspect_library(const libraries::Manifest& manifest, const libraries::Contents& contents,

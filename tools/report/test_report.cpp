@@ -169,8 +169,8 @@ std::string TestReport::to_table() const
                                 figure(check.gradient_error_difference), figure(check.conditioning),
                                 check.points_at_kinks, result);
         } else {
-            text += fmt::format("{:<{}}  {:>7} {:>8} {:>8} {:>8} {:>8} {:>5}  FAILED\n", title(texture), width, "-",
-                                "-", "-", "-", "-", "-");
+            text += fmt::format("{:<{}}  {:>7} {:>8} {:>8} {:>8} {:>8} {:>5}  {}\n", title(texture), width, "-", "-",
+                                "-", "-", "-", "-", texture.passed() ? "passed, is flat" : "FAILED");
         }
         for (const std::string& line : reasons(texture)) text += "    " + lang::printable(line) + "\n";
         for (const std::string& line : remarks(texture)) text += "    " + lang::printable(line) + "\n";

@@ -258,3 +258,48 @@ TEST_CASE("an installed file that is edited is felt at once")
     CHECK(ran.code == 0);
     CHECK(Json::parse(ran.out)["reloads"] == 2); // by its name in the scene, and by an import
 }
+
+TEST_CASE("pack writes a gallery that shows each texture, its name and its doc comment, and draws pictures of the size "
+          "that is said")
+{
+    const LibraryRoot root;
+    write_library(root, "wood", "wood", "1.0.0", "1", "[previews]\n\"oak:board\" = 0.012\n");
+    fs::create_directories(root.work / "page/oak");
+    root.write("page/oak/gone.png", "of a texture that is no more");
+    Ran ran = root.run("pack wood -o wood.haptlib --gallery page.md");
+    INFO(ran.err);
+    CHECK(ran.code == 0);
+    const std::string page = read_file(root.work / "page.md");
+    CHECK(page.starts_with(
+        "# wood\n\nFor tests.\n\nThese are the textures of version 1.0.0, under the licence CC0-1.0."));
+    CHECK(contains(page, "### board\n\n![oak/board](page/oak/board.png)\n\n`wood.oak:board`, 12 mm wide\n\nFlat.\n"));
+    CHECK(read_file(root.work / "page/oak/board.png").starts_with("\x89PNG"));
+    CHECK_FALSE(fs::exists(root.work / "page/oak/gone.png"));
+    root.write("wood/README.md", "# Wood of tests\n");
+    CHECK(root.run("pack wood -o wood.haptlib --gallery page.md").code == 0);
+    CHECK(read_file(root.work / "page.md").starts_with("# Wood of tests\n\nThese are the textures of version 1.0.0"));
+    CHECK(root.run("pack wood -o wood.haptlib --gallery nowhere/page.md").code == 1);
+}
+
+TEST_CASE("test tries the tests of a library as pack does: they are flat where what they test holds")
+{
+    const LibraryRoot root;
+    write_library(root, "wood", "wood", "1.0.0", "1");
+    Ran ran = root.run("test wood");
+    INFO(ran.out << ran.err);
+    CHECK(ran.code == 0);
+    CHECK(contains(ran.out, "passed, is flat"));
+    CHECK(contains(ran.out, "2 passed, 0 failed"));
+    // Its gradient is that of its height, but a test has to be flat; and it steps, which a test may.
+    root.write("wood/tests/oak.haptel",
+               "import wood.oak as tested;\n\n/// It is 1 mm high.\ntexture board() { return p.x > 9mm ? 1um : "
+               "tested.board() - 1mm; }\n");
+    ran = root.run("test wood");
+    CHECK(ran.code == 1);
+    CHECK(contains(ran.out, "is not flat, as it is where what it tests holds: 1e-06 m"));
+    root.write(
+        "wood/tests/oak.haptel",
+        "import wood.oak as tested;\n\n/// It steps where nothing is tried.\ntexture board() { return p.x > 1m ? 1um "
+        ": tested.board() - 1mm; }\n");
+    CHECK(root.run("test wood").code == 0);
+}
