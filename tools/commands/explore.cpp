@@ -6,6 +6,7 @@
 #include "runtime/servo/allocation_count.h"
 #include "tools/arguments/quantity.h"
 #include "tools/commands/command.h"
+#include "tools/commands/explore_control.h"
 #include "tools/commands/explore_hands.h"
 #include "tools/commands/explore_scene.h"
 #include "tools/commands/explore_textures.h"
@@ -28,6 +29,9 @@
 namespace haptel::tools {
 
 namespace {
+
+// What is recorded goes to the file from the loop that pauses so, every few milliseconds.
+constexpr std::chrono::milliseconds pause{2};
 
 std::optional<runtime::LoadedScene> load(const ExploreOptions& options, ExploreTextures& textures,
                                          runtime::SurfaceCache& surfaces)
@@ -122,14 +126,31 @@ ExitCode explore(const ExploreOptions& options)
     ExploreStatus status(stderr_is_terminal());
     std::optional<ExploreScene> scene(std::in_place, options.scene, std::move(loaded.meshes), std::move(loaded.probes),
                                       surfaces, textures, hands);
+    std::optional<ExploreControl> control;
+    if (options.osc_port) {
+        control.emplace(*options.osc_port, hands, textures, *scene);
+        if (!control->error().empty()) {
+            say_error(control->error());
+            return ExitCode::findings;
+        }
+        status.say(control->greeting());
+    }
     hands.start();
     while (hands.running()) {
         if (interrupted() || hands.is_recording_lost()) hands.request_stop();
         if (const std::string messages = scene->take_messages() + textures.take_messages() + hands.take_messages();
-            !messages.empty())
+            !messages.empty()) {
             status.say(messages);
-        if (!hands.drain(status)) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+            if (control) control->tell(messages);
+        }
+        const bool is_quiet = !hands.drain(status);
+        if (control)
+            control->serve(is_quiet ? pause : std::chrono::milliseconds(0));
+        else if (is_quiet)
+            std::this_thread::sleep_for(pause);
     }
+    if (control) control->end();
+    control.reset();
     const std::string last_messages = scene->take_messages();
     scene.reset();
     status.say(last_messages);
@@ -168,6 +189,11 @@ void add_exploring(CLI::App& command, ExploreOptions& options)
     command.add_option("--core", options.core, "Processor for the servo alone to stay on, from 0")
         ->type_name("N")
         ->check(CLI::NonNegativeNumber);
+    command
+        .add_option("--osc", options.osc_port,
+                    "Port of 127.0.0.1 and ::1 for Open Sound Control: other programs of this machine set parameters "
+                    "while it runs (docs/control.md); 0: any free one")
+        ->type_name("PORT");
     command.add_flag("--json", options.json, "Report as JSON on standard output");
 }
 
