@@ -16,6 +16,7 @@
 #include "tools/report/explore_status.h"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
@@ -190,9 +191,18 @@ void add_exploring(CLI::App& command, ExploreOptions& options)
         ->type_name("N")
         ->check(CLI::NonNegativeNumber);
     command
-        .add_option("--osc", options.osc_port,
-                    "Port of 127.0.0.1 and ::1 for Open Sound Control: other programs of this machine set parameters "
-                    "while it runs (docs/control.md); 0: any free one")
+        .add_option_function<std::string>(
+            "--osc",
+            [&port = options.osc_port](const std::string& text) {
+                uint16_t number = 0;
+                const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), number);
+                if (failed != std::errc() || end != text.data() + text.size())
+                    throw CLI::ValidationError(
+                        fmt::format("expected a port from 1 to 65535, or 0 for any free one, found '{}'", text));
+                port = number;
+            },
+            "Port of 127.0.0.1 and ::1 for Open Sound Control: other programs of this machine set parameters "
+            "while it runs (docs/control.md); 0: any free one")
         ->type_name("PORT");
     command.add_flag("--json", options.json, "Report as JSON on standard output");
 }

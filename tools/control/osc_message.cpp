@@ -1,6 +1,7 @@
 #include "tools/control/osc_message.h"
 
 #include <cstdlib>
+#include <cstring>
 #include <fmt/format.h>
 #include <lo/lo.h>
 #include <lo/lo_lowlevel.h>
@@ -23,16 +24,25 @@ uint32_t big_endian(std::string_view bytes)
     return value;
 }
 
+// liblo gives the place of a value, which the protocol aligns to 4 bytes alone.
+template <typename Number>
+Number number_at(const void* place)
+{
+    Number number;
+    std::memcpy(&number, place, sizeof number);
+    return number;
+}
+
 // False: of a kind that is not taken.
-bool read_value(char type, const lo_arg& from, std::vector<OscValue>& to)
+bool read_value(char type, const void* from, std::vector<OscValue>& to)
 {
     switch (type) {
-    case LO_INT32: to.emplace_back(from.i); return true;
-    case LO_INT64: to.emplace_back(int64_t{from.h}); return true;
-    case LO_FLOAT: to.emplace_back(from.f); return true;
-    case LO_DOUBLE: to.emplace_back(from.d); return true;
+    case LO_INT32: to.emplace_back(number_at<int32_t>(from)); return true;
+    case LO_INT64: to.emplace_back(number_at<int64_t>(from)); return true;
+    case LO_FLOAT: to.emplace_back(number_at<float>(from)); return true;
+    case LO_DOUBLE: to.emplace_back(number_at<double>(from)); return true;
     case LO_STRING:
-    case LO_SYMBOL: to.emplace_back(std::string(&from.s)); return true;
+    case LO_SYMBOL: to.emplace_back(std::string(static_cast<const char*>(from))); return true;
     case LO_TRUE: to.emplace_back(true); return true;
     case LO_FALSE: to.emplace_back(false); return true;
     default: return false;
@@ -74,7 +84,8 @@ OscMessage read_osc(std::string_view bytes)
 {
     if (bytes.empty() || bytes.size() > osc_bytes_max || bytes.size() % 4 != 0 || bytes[0] != '/')
         return {{}, {}, "a message starts with an address such as /haptel/stop and has a multiple of 4 bytes"};
-    std::vector<double> aligned((bytes.size() + sizeof(double) - 1) / sizeof(double)); // it reads numbers in place
+    std::vector<double> aligned((bytes.size() + sizeof(double) - 1) /
+                                sizeof(double)); // it turns numbers round in place
     char* const copy = reinterpret_cast<char*>(aligned.data());
     bytes.copy(copy, bytes.size());
     int failed = 0;
@@ -84,8 +95,7 @@ OscMessage read_osc(std::string_view bytes)
     const std::string_view types = lo_message_get_types(read.get());
     lo_arg** const values = lo_message_get_argv(read.get());
     for (std::size_t i = 0; i < types.size(); ++i) {
-        constexpr lo_arg nothing{};
-        if (!read_value(types[i], values[i] ? *values[i] : nothing, message.values))
+        if (!read_value(types[i], values[i], message.values))
             return {message.address,
                     {},
                     fmt::format("expected numbers, texts, true or false, found the type '{}'",

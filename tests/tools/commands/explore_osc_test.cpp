@@ -71,8 +71,8 @@ std::vector<TracedForce> traced(const std::string& file)
     std::string line;
     std::getline(in, line);
     const auto column_of = [header = line](const std::string& name) {
-        return std::count(header.begin(), header.begin() + static_cast<long>(("," + header + ",").find("," + name + ",")),
-                          ',');
+        return std::count(header.begin(),
+                          header.begin() + static_cast<long>(("," + header + ",").find("," + name + ",")), ',');
     };
     const auto x = column_of("fx_n"), interrupted = column_of("interrupted"), contact = column_of("contact");
     std::vector<TracedForce> ticks;
@@ -90,13 +90,15 @@ std::vector<TracedForce> traced(const std::string& file)
 
 TEST_CASE("explore --osc: parameters, stop and start, recordings; told on standard error where it listens")
 {
-    const Stage stage("stroke = \"press\"");
+    const Stage stage;
     const uint16_t port = free_port();
     const std::string run = stage.out("run.haptrace");
     const Ran ran = explored(
         stage.scene + " --seconds 4 --json --out " + stage.out("out") + " --record " + run, port,
         [&](const OscClient& client) {
-            const auto says_ok = [&](const std::string& bytes) { CHECK(answered(client, bytes).address == "/haptel/ok"); };
+            const auto says_ok = [&](const std::string& bytes) {
+                CHECK(answered(client, bytes).address == "/haptel/ok");
+            };
             const std::string depth = "/haptel/object/1/parameter/depth";
             says_ok(osc_string_message(depth, "150um"));
             const OscHeard wrong = answered(client, osc_string_message(depth, "3kg"));
@@ -140,7 +142,7 @@ TEST_CASE("explore --osc: parameters, stop and start, recordings; told on standa
         last_withheld = i;
         CHECK(ticks[i].force_n == 0);
     }
-    CHECK(withheld >= 400);
+    CHECK(withheld >= 300);
     CHECK(touched > 0); // the hand is followed all the same
     REQUIRE(last_withheld + 500 < ticks.size());
     double most_n = 0;

@@ -133,14 +133,14 @@ TEST_CASE("info: the textures of a file, values as written and as numbers")
 TEST_CASE("info --json: the manifest of a file, version 1, is what docs/control.md promises, field by field")
 {
     const Folder folder;
-    const std::string file =
-        folder.write("a.haptel", "/// Grooves.\ntexture grooves(\n    /// Apart.\n    float pitch = 2mm in 1mm .. 5mm,\n"
-                                 "    int octaves = 4 in 1 .. 8, uint seed = 3u in 0 .. 9,\n    bool worn = true,\n"
-                                 "    int kind = soft in {soft, sharp},\n    vec2 size = vec2(1cm, 2cm),\n"
-                                 "    image relief, out float friction_scale)\n"
-                                 "{\n    friction_scale = worn ? 2.0 : 1.0;\n    float h = kind == sharp ? size.x : size.y;\n"
-                                 "    return 0.01 * h * fbm(p / pitch, octaves + int(seed)) + 1um * sample(relief, uv);\n}\n"
-                                 "/// Fine.\ntexture fine = grooves(pitch = 1mm);\ntexture finest = fine(octaves = 8);\n");
+    const std::string file = folder.write(
+        "a.haptel", "/// Grooves.\ntexture grooves(\n    /// Apart.\n    float pitch = 2mm in 1mm .. 5mm,\n"
+                    "    int octaves = 4 in 1 .. 8, uint seed = 3u in 0 .. 9,\n    bool worn = true,\n"
+                    "    int kind = soft in {soft, sharp},\n    vec2 size = vec2(1cm, 2cm),\n"
+                    "    image relief, out float friction_scale)\n"
+                    "{\n    friction_scale = worn ? 2.0 : 1.0;\n    float h = kind == sharp ? size.x : size.y;\n"
+                    "    return 0.01 * h * fbm(p / pitch, octaves + int(seed)) + 1um * sample(relief, uv);\n}\n"
+                    "/// Fine.\ntexture fine = grooves(pitch = 1mm);\ntexture finest = fine(octaves = 8);\n");
     const Ran ran = run_command("info '" + file + ":grooves' --json");
     REQUIRE(ran.code == 0);
     Json written = Json::parse(R"({

@@ -73,9 +73,12 @@ private:
     }
     std::string broken()
     {
-        const char* const texts[] = {"texture t() { return", "texture u() { return 1mm; }",
+        const char* const texts[] = {"texture t() { return",
+                                     "texture u() { return 1mm; }",
                                      "texture t() { return 1.0 / 0.0 * dept; }",
-                                     "texture t(int n = 3) { while (n > 0) {} return 1mm; }", "", "\xff\xfe\0"};
+                                     "texture t(int n = 3) { while (n > 0) {} return 1mm; }",
+                                     "",
+                                     "\xff\xfe\0"};
         return texts[below(std::size(texts))];
     }
     void mend_names() // of what was moved or removed by the last edit
@@ -92,8 +95,8 @@ private:
 void edit_while_it_is_felt(int times)
 {
     LiveStage stage("texture t() { return 60um; }\n");
-    const LiveRun still =
-        LiveRun::of(stage, std::min(times, 1000), [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(2)); });
+    const LiveRun still = LiveRun::of(stage, std::min(times, 1000),
+                                      [](int) { std::this_thread::sleep_for(std::chrono::milliseconds(2)); });
     Editor editor(stage.folder, 3);
     std::mt19937_64 random(4);
     std::size_t said = 0;

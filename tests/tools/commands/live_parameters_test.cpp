@@ -22,7 +22,6 @@ constexpr const char* ripples =
     "texture fine = t(pitch = 1mm, depth = 20um);\n";
 const std::string depth = "/haptel/object/1/parameter/depth";
 
-
 } // namespace
 
 TEST_CASE("a parameter that is set over OSC is felt within two ticks, and nothing is compiled")
@@ -87,8 +86,7 @@ TEST_CASE("a value that cannot be is answered with why, and nothing is felt of i
           "texture 't' has no parameter 'dept': did you mean 'depth'?");
     CHECK(why_not(osc_string_message("/haptel/object/1/preset", "fime")) ==
           "texture 't' has no preset 'fime': did you mean 'fine'?");
-    CHECK(why_not(osc_string_message("/haptel/object/2/preset", "fine")) ==
-          "expected an object from 1 to 1, found 2");
+    CHECK(why_not(osc_string_message("/haptel/object/2/preset", "fine")) == "expected an object from 1 to 1, found 2");
     std::this_thread::sleep_for(100ms);
     CHECK(stage.slot().newest_serial() == 1);
 }
@@ -123,7 +121,10 @@ TEST_CASE("10 000 parameters set over OSC while a servo runs: no allocation, no 
         switch (random() % 8) {
         case 0: client.send(osc_string_message("/haptel/object/1/preset", random() % 2 ? "fine" : "t")); break;
         case 1: client.send(osc_string_message(depth, "3kg")); break;
-        case 2: client.send(osc_bytes("/haptel/object/1/parameter/octaves", "i", osc_word(static_cast<uint32_t>(random() % 7)))); break;
+        case 2:
+            client.send(
+                osc_bytes("/haptel/object/1/parameter/octaves", "i", osc_word(static_cast<uint32_t>(random() % 7))));
+            break;
         default: client.send(osc_bytes(depth, "f", osc_float(metres))); break;
         }
         server.serve();
