@@ -127,7 +127,7 @@ ExitCode explore(const ExploreOptions& options)
     ExploreStatus status(stderr_is_terminal());
     std::optional<ExploreScene> scene(std::in_place, options.scene, std::move(loaded.meshes), std::move(loaded.probes),
                                       surfaces, textures, hands);
-    std::optional<ExploreControl> control;
+    std::optional<ExploreControl> control; // until the hands have told how it ended
     if (options.osc_port) {
         control.emplace(*options.osc_port, hands, textures, *scene);
         if (!control->error().empty()) {
@@ -150,8 +150,6 @@ ExitCode explore(const ExploreOptions& options)
         else if (is_quiet)
             std::this_thread::sleep_for(pause);
     }
-    if (control) control->end();
-    control.reset();
     const std::string last_messages = scene->take_messages();
     scene.reset();
     status.say(last_messages);
@@ -159,6 +157,8 @@ ExitCode explore(const ExploreOptions& options)
     outcome.scene = std::filesystem::path(options.scene).filename().string();
     outcome.clock = options.clock;
     outcome.hands = hands.wait(status);
+    if (control) control->end(outcome.hands.front().servo.stop_reason);
+    control.reset();
     status.say(textures.take_messages());
     outcome.textures_compiled = textures.compiled();
 

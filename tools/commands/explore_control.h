@@ -24,7 +24,7 @@ public:
     // Takes and sends messages; waits for one at most so long.
     void serve(std::chrono::milliseconds at_most);
     void tell(const std::string& messages) { server_.tell(messages); }
-    void end() { server_.end("the exploration is over"); }
+    void end(const std::string& why) { server_.end(why); }
 
 private:
     ControlAnswer set(uint32_t object, const std::string& parameter, const std::string& value) override;

@@ -164,7 +164,7 @@ TEST_CASE("info --json: the manifest of a file, version 1, is what docs/control.
                  "choices": [], "unit": "m", "doc": ""},
                 {"name": "relief", "type": "image", "default": null, "minimum": null, "maximum": null,
                  "choices": [], "unit": "", "doc": ""}],
-            "inputs": ["p", "uv"], "outputs": ["friction_scale"],
+            "inputs": ["p", "uv", "footprint"], "outputs": ["friction_scale"],
             "preset_of": null, "presets": ["fine", "finest"]}]})");
     written["textures"][0]["file"] = file;
     CHECK(Json::parse(ran.out).dump(1) == written.dump(1));
