@@ -119,7 +119,7 @@ void edit_while_it_is_felt(int times)
     CHECK(said > 0);
     CHECK(edited.force_max_n - edited.force_min_n > 0.02);
     CHECK(edited.step_max_n < 2 * edited.force_max_n / 50);
-    CHECK(edited.heap_growth < 8 << 20);
+    CHECK(edited.heap_growth < 1 << 20);
     CHECK(edited.resident_growth < 64 << 20);
 
     editor.mend(123); // and what is saved last is what is felt
